@@ -13,7 +13,6 @@ from rich.table import Table
 from dynamics.damping import pressed_ratios
 from dynamics.failure import NUMERICS
 from dynamics.motion import rest_of
-from geometry.arrays import Array
 from geometry.axial import carried, passed_over
 from geometry.boom import Boom, Direction, Joint
 from geometry.fit import room
@@ -44,8 +43,7 @@ def print_inferred(declared: Declared, console: Console) -> None:
     case, boom, preview = declared.case, declared.boom, Preview(declared)
     console.print(case.title, markup=False)
     console.print(_segments(case, boom))
-    stiffeners = _stiffeners(boom, case.system)
-    if stiffeners.rows:
+    if (stiffeners := _stiffeners(boom, case.system)).rows:
         console.print(stiffeners)
     if boom.joints:
         console.print(_joints(case, boom))
@@ -55,14 +53,12 @@ def print_inferred(declared: Declared, console: Console) -> None:
     console.print(_models(case, boom))
     if boom.compressed:
         print_axial_forces(declared, console)
-    ratios = _damping_ratios(preview)
-    if ratios.rows:
+    if (ratios := _damping_ratios(preview)).rows:
         console.print(ratios)
     print_statics(case, boom, console)
-    for note in actions.series_notes(case):
-        console.print(note, highlight=False, markup=False)
-    for caution in (*slips(case, boom), *slip_cautions(drives, case.system)):
-        console.print(caution, markup=False, highlight=False)
+    cautions = *slips(case, boom), *slip_cautions(drives, case.system)
+    for line in (*actions.series_notes(case), *cautions):
+        console.print(line, markup=False, highlight=False)
     console.print(f"A run may take {of_preview(preview)}.", highlight=False)
 
 
@@ -193,13 +189,11 @@ def _hardest(boom: Boom, number: int) -> tuple[float, float | None]:
     times = [joint.drive.times for joint in boom.joints if joint.drive is not None]
     time = np.unique(np.concatenate([np.zeros(1), *times]))
     forces = carried(boom.segments, boom.joints, number, x, time)
+    largest = float(forces.flat[np.abs(forces).argmax()])
     if segment.section is None:
-        return _farthest(forces), None
-    return _farthest(forces), _farthest(forces / [segment.section_at(at).area for at in x])
-
-
-def _farthest(values: Array) -> float:
-    return float(values.flat[np.abs(values).argmax()])
+        return largest, None
+    stresses = forces / [segment.section_at(at).area for at in x]
+    return largest, float(stresses.flat[np.abs(stresses).argmax()])
 
 
 def _damping_ratios(preview: Preview) -> Table:

@@ -13,7 +13,7 @@ from dynamics.line import Line, Quantity
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.axial import on_foot
-from geometry.boom import Boom, Segment, Support
+from geometry.boom import Boom, Segment
 from geometry.cylinder import forces
 from geometry.section import Direction
 from runs.pipeline.at_rest import AtRest, place_names
@@ -121,128 +121,98 @@ class Motions:
     jumps: bool
 
 
-class _Gone(NamedTuple):
-    """What a segment has gone through, (num_times, num_places), and at rest (num_rests, ...).
-
-    ``on_foot`` is the axial force in N that its foot bears.
-    """
-
-    segment: Segment
-    on_foot: float
-    line: Line
-    curves: Mapping[Quantity, Array]
-    still: Mapping[Quantity, Array]
-
-
 def gone_through(motions: Motions) -> tuple[Moved, list[Varying]]:
-    """Of beams, or of a shell but for its walls, and the stress where it varies most."""
-    envelopes, peaks = [], list(_observed(motions))
+    """Return what a beam, or a shell but for its walls, has gone through.
+
+    Beside it stands the stress of each segment where it varies most.
+    """
+    boom, envelopes, peaks = motions.boom, [], list(_observed(motions))
     fibres, varying = [], []
-    times = motions.trajectory.time, np.array([rest.time for rest in motions.rests])
-    states = motions.trajectory.states, motions.positions
-    for number, line in enumerate(motions.lines):
-        segment = motions.boom.segments[number]
-        curves, still = (
-            section_forces(motions.boom, number, line, *one)
-            for one in zip(states, times, strict=True)
-        )
-        borne = on_foot(motions.boom.segments, motions.boom.joints, number)
-        gone = _Gone(segment, borne, line, curves, still)
-        envelopes.append(_envelope(gone))
+    time, rest_times = motions.trajectory.time, np.array([rest.time for rest in motions.rests])
+    for number, (segment, line) in enumerate(zip(boom.segments, motions.lines, strict=True)):
+        curves = section_forces(boom, number, line, motions.trajectory.states, time)
+        still = section_forces(boom, number, line, motions.positions, rest_times)
+        low: dict[str, list[float]] = {n: rounded(one.min(axis=0)) for n, one in curves.items()}
+        high: dict[str, list[float]] = {n: rounded(one.max(axis=0)) for n, one in curves.items()}
+        envelopes.append(Envelope(segment.name, rounded(line.x), low, high))
         if "moment" in curves:
-            peaks += _section_peaks(motions, gone)
+            peaks += _bending_moments(segment, curves, still, time)
+            if motions.jumps:
+                peaks += _reactions(motions, number)
         if (found := Fibres.of(segment, line)) is not None:
-            largest, most = largest_stresses(segment, found, curves, still, times[0])
+            largest, most = largest_stresses(segment, found, curves, still, time)
             fibres.append(largest)
             varying.append(most)
     return Moved(envelopes, peaks, fibres, walls=[]), varying
 
 
-def _envelope(gone: _Gone) -> Envelope:
-    return Envelope(
-        gone.segment.name,
-        rounded(gone.line.x),
-        {name: rounded(values.min(axis=0)) for name, values in gone.curves.items()},
-        {name: rounded(values.max(axis=0)) for name, values in gone.curves.items()},
-    )
-
-
-class _Measured(NamedTuple):
-    """Something over time beside what it is in each rest, (num_times,) and (num_rests,)."""
-
-    what: str
-    where: str
-    unit: str
-    values: Array
-    still: Sequence[float] | Array
-
-
-def _peak(one: _Measured, time: Array) -> Peak:
-    step = int(np.abs(one.values).argmax())
-    still = max((float(abs(value)) for value in one.still), default=None)
-    return Peak(
-        one.what, one.where, one.unit, float(abs(one.values[step])), float(time[step]), still
-    )
+def _peak(
+    what: str, where: str, unit: str, time: Array, values: Array, still: Sequence[float] | Array
+) -> Peak:
+    """The largest over time (num_times,) beside the largest of the rests (num_rests,)."""
+    step = int(np.abs(values).argmax())
+    at_rest = max((float(abs(value)) for value in still), default=None)
+    return Peak(what, where, unit, float(abs(values[step])), float(time[step]), at_rest)
 
 
 def _observed(motions: Motions) -> Iterator[Peak]:
     """Of what trajectories hold."""
-    data, rests = motions.trajectory.data, motions.rests
-    found = [_Measured("deflection", "tip", "m", data["tip"].values, [r.tip for r in rests])]
+    data, rests, time = motions.trajectory.data, motions.rests, motions.trajectory.time
+    tips = [rest.tip for rest in rests]
+    yield _peak("deflection", "tip", "m", time, data["tip"].values, tips)
     if motions.boom.spatial:
         still = [rest.tip_lateral or 0.0 for rest in rests]
-        found.append(_Measured("lateral deflection", "tip", "m", data["tip_lateral"].values, still))
+        yield _peak("lateral deflection", "tip", "m", time, data["tip_lateral"].values, still)
     for number, name in enumerate(place_names(motions.boom.stations)):
         values = data["contact_force"].values[:, number]
         still = [rest.stations[number].force for rest in rests]
-        found.append(_Measured("contact force", name, "N", values, still))
+        yield _peak("contact force", name, "N", time, values, still)
     for name in forces(motions.boom):
         still = [rest.cylinders[name] for rest in rests]
-        found.append(_Measured("cylinder force", name, "N", data[name].values, still))
-    return (_peak(one, motions.trajectory.time) for one in found)
+        yield _peak("cylinder force", name, "N", time, data[name].values, still)
 
 
-def _section_peaks(motions: Motions, gone: _Gone) -> Iterator[Peak]:
-    """Of the bending moments, and of what supports bear."""
+def _bending_moments(
+    segment: Segment,
+    curves: Mapping[Quantity, Array],
+    still: Mapping[Quantity, Array],
+    time: Array,
+) -> Iterator[Peak]:
     for plane in _PLANES:
-        if plane.moment in gone.curves:
-            moments = gone.curves[plane.moment]
+        if plane.moment in curves:
+            moments = curves[plane.moment]
             most = moments[:, np.abs(moments).max(axis=0).argmax()]
-            still = np.abs(gone.still[plane.moment]).max(axis=1).tolist()
-            bent = _Measured(f"{plane.name}bending moment", gone.segment.name, "N m", most, still)
-            yield _peak(bent, motions.trajectory.time)
-    for support in gone.segment.supports if motions.jumps else ():
-        for borne in _borne(motions, gone, support):
-            yield _peak(borne, motions.trajectory.time)
+            at_rest = np.abs(still[plane.moment]).max(axis=1)
+            yield _peak(f"{plane.name}bending moment", segment.name, "N m", time, most, at_rest)
 
 
-def _borne(motions: Motions, gone: _Gone, support: Support) -> Iterator[_Measured]:
-    """What a support bears: the jumps of the section forces."""
-    segment, line = gone.segment, gone.line
-    where = f"{segment.name} at {support.x:g} m"
-    forces = []
-    for plane in _PLANES:
-        if plane.shear not in line.rows:
-            continue
-        forces.append(_jump(motions, line, plane.shear, support.x))
-        yield _Measured(f"{plane.name}reaction", where, "N", *forces[-1])
-        if support.holds_slope(plane.direction) or support.rotation_stiffness:
-            held = _jump(motions, line, plane.moment, support.x)
-            yield _Measured(f"{plane.name}moment at the support", where, "N m", *held)
-    if "torque" in line.rows:
-        held = _jump(motions, line, "torque", support.x)
-        yield _Measured("torque at the support", where, "N m", *held)
-    if support is segment.foot and (segment.compression or "normal" in line.rows):
-        along = [gone.on_foot + each for each in _jump(motions, line, "normal", support.x)]
-        yield _Measured("reaction along the boom", where, "N", *along)
-        whole = [np.linalg.norm(parts, axis=0) for parts in zip(*forces, along, strict=True)]
-        yield _Measured("reaction, across and along", where, "N", *whole)
+def _reactions(motions: Motions, number: int) -> Iterator[Peak]:
+    """What the supports of a segment bear: the jumps of its section forces."""
+    segment, line = motions.boom.segments[number], motions.lines[number]
+    states, time = (motions.trajectory.states, motions.positions), motions.trajectory.time
 
+    def jump(name: Quantity, x: float) -> list[Array]:
+        """(num_times,) and (num_rests,) what the line reads less behind x than before it."""
+        row = np.zeros(states[0].shape[1])
+        if name in line.rows:
+            row = line.beside(name, x, -1) - line.beside(name, x, 1)
+        return [each @ row for each in states]
 
-def _jump(motions: Motions, line: Line, name: Quantity, x: float) -> tuple[Array, Array]:
-    """(num_times,) and (num_rests,) what a line reads less behind x than before it."""
-    states = motions.trajectory.states, motions.positions
-    row = np.zeros(states[0].shape[1])
-    if name in line.rows:
-        row = line.beside(name, x, -1) - line.beside(name, x, 1)
-    return states[0] @ row, states[1] @ row
+    for support in segment.supports:
+        where, across = f"{segment.name} at {support.x:g} m", []
+        for plane in _PLANES:
+            if plane.shear not in line.rows:
+                continue
+            across.append(jump(plane.shear, support.x))
+            yield _peak(f"{plane.name}reaction", where, "N", time, *across[-1])
+            if support.holds_slope(plane.direction) or support.rotation_stiffness:
+                held = jump(plane.moment, support.x)
+                yield _peak(f"{plane.name}moment at the support", where, "N m", time, *held)
+        if "torque" in line.rows:
+            yield _peak("torque at the support", where, "N m", time, *jump("torque", support.x))
+        if support is segment.foot and (segment.compression or "normal" in line.rows):
+            foot = on_foot(motions.boom.segments, motions.boom.joints, number)
+            along = [foot + each for each in jump("normal", support.x)]
+            yield _peak("reaction along the boom", where, "N", time, *along)
+            whole = [np.linalg.norm(parts, axis=0) for parts in zip(*across, along, strict=True)]
+            yield _peak("reaction, across and along", where, "N", time, *whole)

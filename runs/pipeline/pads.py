@@ -16,7 +16,7 @@ from geometry.boom import Boom, Direction, Joint
 from geometry.joint import SIDES
 from geometry.section import Side
 from runs.case.build import joined
-from runs.case.contact import PADS_OF_SIDE, JointTable, PadTable, SlidePadTable
+from runs.case.contact import PADS_OF_SIDE, JointTable, PadTable
 from runs.case.schema import Case, Model
 
 if TYPE_CHECKING:
@@ -71,7 +71,8 @@ def pressed_pads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PressedPa
                         side = _ON[direction, 1 if largest > 0.0 else -1]
                         yield _pressed(model, table, table.pad, x, side, force)
                     forces = _of_each(joint, direction, law, pushed)
-                    for pad, force in zip(_along(table.pads, direction), forces, strict=True):
+                    pads = [pad for pad in table.pads if SIDES[pad.side][0] == direction]
+                    for pad, force in zip(pads, forces, strict=True):
                         yield _pressed(model, table, pad, x, pad.side, force)
 
 
@@ -91,10 +92,6 @@ def _pressed(
         pressure=pressure,
         utilisation=None if allowable is None else pressure / allowable,
     )
-
-
-def _along(pads: Sequence[SlidePadTable], direction: Direction) -> list[SlidePadTable]:
-    return [pad for pad in pads if SIDES[pad.side][0] == direction]
 
 
 def _of_each(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array) -> list[float]:

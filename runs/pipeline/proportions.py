@@ -13,7 +13,6 @@ from dynamics.excitation import Ramp, Step, Thrown
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
-from geometry.segment import Segment
 from runs.case.actions import STANDARD_GRAVITY, across
 from runs.case.build import joined
 from runs.case.schema import Case
@@ -102,7 +101,10 @@ def _pads(case: Case, boom: Boom) -> Iterator[str]:
 
 
 def _meshes(case: Case, boom: Boom) -> Iterator[str]:
-    narrowest = min((_narrowest(segment) for segment in boom.segments), default=np.inf)
+    known = [segment for segment in boom.segments if segment.section is not None]
+    sections = [segment.section_at(x) for segment in known for x in segment.ends]
+    walls = (plate.length for section in sections for plate in section.plates)
+    narrowest = min(walls, default=np.inf)
     for model in case.models:
         edge = model.longest_edge
         if edge > narrowest:
@@ -110,14 +112,6 @@ def _meshes(case: Case, boom: Boom) -> Iterator[str]:
                 f"the mesh size of {model.name!r}, {edge:g} m, is larger than a wall of "
                 f"{narrowest:.3g} m"
             )
-
-
-def _narrowest(segment: Segment) -> float:
-    """Width of its narrowest wall in m; infinite where the section is not known."""
-    if segment.section is None:
-        return np.inf
-    ends = (segment.section_at(x) for x in segment.ends)
-    return min(plate.length for section in ends for plate in section.plates)
 
 
 def _sizes(case: Case, boom: Boom) -> Iterator[str]:

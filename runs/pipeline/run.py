@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import xarray as xr
 
 from dynamics.failure import NUMERICS, NumericsError
 from geometry.boom import Boom
@@ -146,23 +145,17 @@ def _results(
     # Every file says which case it is of, so that a folder cannot mix two runs unnoticed.
     trajectories = {name: one.trajectory for name, one in moved.items()}
     data = label(boom, trajectories).assign_attrs(case_hash=summary.case_hash)
-    ensembles = _ensembles(data, moved)
+    ensembles = members.gather(
+        {name: one.ensemble for name, one in moved.items() if one.ensemble is not None}
+    )
+    if ensembles is not None:
+        for name, values in ensembles.data_vars.items():
+            values.attrs.update(data[name].attrs)
+        ensembles.attrs |= {"Conventions": CONVENTIONS, "case_hash": summary.case_hash}
     if case.ensemble is not None and ensembles is not None:
         summary.ensemble = Ensembles(**case.ensemble.model_dump(), slow_below=cutoff)
     summary.comparisons = compare_models(case, data, ensembles, cutoff)
     return Results(case, data, summary, ensembles)
-
-
-def _ensembles(data: xr.Dataset, moved: Mapping[str, Finished]) -> xr.Dataset | None:
-    """Those of all models, with the attributes of the trajectories."""
-    found = members.gather(
-        {name: one.ensemble for name, one in moved.items() if one.ensemble is not None}
-    )
-    if found is None:
-        return None
-    for name, values in found.data_vars.items():
-        values.attrs.update(data[name].attrs)
-    return found.assign_attrs(Conventions=CONVENTIONS, case_hash=data.attrs["case_hash"])
 
 
 def _attempt_all(

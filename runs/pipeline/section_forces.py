@@ -67,7 +67,10 @@ def section_forces(
         time: (...) of the states in s.
     """
     read = line.read(states)
-    x = _on_their_sides(line.x)
+    # A little before or behind themselves where places stand twice.
+    jump = np.diff(line.x) == 0.0
+    aside = _ASIDE * max(1.0, float(np.ptp(line.x)))
+    x = line.x + aside * (np.append(False, jump).astype(float) - np.append(jump, False))
     pressed = carried(boom.segments, boom.joints, number, x, time)
     if boom.driven:
         # Lines have the shear force of the axial forces at the start.
@@ -83,11 +86,3 @@ def _slopes(line: Line, deflection: Array) -> Array:
     x, index = np.unique(line.x, return_index=True)
     slopes = np.gradient(deflection[..., index], x, axis=-1)
     return np.asarray(slopes[..., np.searchsorted(x, line.x)])
-
-
-def _on_their_sides(x: Array) -> Array:
-    """(num_places,) places, a little before or behind themselves where they stand twice."""
-    jump = np.diff(x) == 0.0
-    before, behind = np.append(jump, False), np.append(False, jump)
-    aside = _ASIDE * max(1.0, float(np.ptp(x)))
-    return np.asarray(x + aside * (behind.astype(float) - before))
