@@ -3,16 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from time import perf_counter
 
 import numpy as np
 from mpi4py import MPI
 
 from dynamics.gap_builder import GapBuilder, Observed
+from dynamics.stages import Stages
 from geometry.arrays import Array
 from geometry.axial import pin_moments
 from geometry.boom import Boom, BoomError, Direction
@@ -70,28 +69,6 @@ class ShellOptions:
             mesh_size=2.0 * self.mesh_size,
             contact_tolerance=None if tolerance is None else 4.0 * tolerance,
         )
-
-
-class Stages:
-    """Wall time of the stages of a shell in s, and how far each is.
-
-    Args:
-        tell: called with the stage and the part of it that is done.
-    """
-
-    def __init__(self, tell: Callable[[str, float], None] | None = None) -> None:
-        self.tell = tell or (lambda stage, part: None)
-        self.seconds: dict[str, float] = {}
-
-    @contextmanager
-    def stage(
-        self, name: str, number: int = 0, count: int = 1
-    ) -> Iterator[Callable[[float], None]]:
-        """The part ``number`` of ``count`` of a stage; tells how much of that part is done."""
-        begin = perf_counter()
-        yield lambda part: self.tell(name, (number + part) / count)
-        self.tell(name, (number + 1) / count)
-        self.seconds[name] = self.seconds.get(name, 0.0) + perf_counter() - begin
 
 
 @dataclass(frozen=True)

@@ -13,11 +13,12 @@ from mpi4py import MPI
 
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
+from dynamics.stages import Stages
 from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.far_field import FarField
 from geometry.plating import PlatedMesh
-from shell_model.boom_shell import BoomShell, ShellOptions, Stages, assemble_boom
+from shell_model.boom_shell import BoomShell, ShellOptions, assemble_boom
 from shell_model.contact.local_compliance import (
     compliance,
     extrapolated_error,

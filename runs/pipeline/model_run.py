@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from time import perf_counter
@@ -17,6 +15,7 @@ from beam_model.calibration import Calibration, Stiffness
 from dynamics.failure import NUMERICS, NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.predictability.ensemble import integrate_ensemble
+from dynamics.stages import Stages
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Segment
 from runs.case import toml
@@ -24,7 +23,7 @@ from runs.case.kinds.model import Built, Workshop
 from runs.case.schema import Case, Model
 from runs.folder.cache import key
 from runs.pipeline import members
-from runs.pipeline.means import Means, Progress
+from runs.pipeline.means import Means
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.models import Plan, build
 from runs.pipeline.proportions import static_tip
@@ -42,24 +41,6 @@ _WALLS = {("z", 1): "top", ("z", -1): "bottom", ("y", 1): "right", ("y", -1): "l
 
 class SharedFailure(Exception):
     """Of one of several ranks, for which the others may wait in the middle of their own work."""
-
-
-class Stages:
-    """The stages of one model, how far each is, and the wall time of those that are done in s."""
-
-    def __init__(self, model: str, progress: Progress) -> None:
-        self.tell = partial(progress, model)
-        self.seconds: dict[str, float] = {}
-        self.begin = perf_counter()
-
-    @contextmanager
-    def stage(self, name: str) -> Iterator[Callable[[float], None]]:
-        """Give what tells the part of a stage that is done."""
-        begin = perf_counter()
-        self.tell(name, 0.0)
-        yield partial(self.tell, name)
-        self.tell(name, 1.0)
-        self.seconds[name] = perf_counter() - begin
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +92,8 @@ def run_model(
         NumericsError: the model cannot be computed.
         SharedFailure: likewise, of a shell that several ranks share.
     """
-    comm, stages = means.comm, Stages(model.name, means.progress)
+    begin, comm = perf_counter(), means.comm
+    stages = Stages(partial(means.progress, model.name))
     if model.needs_shell or means.first_rank:
         tools = None if comm is None else Workshop(comm, stages.tell, means.cache)
         try:
@@ -130,7 +112,7 @@ def run_model(
         name = key([*content])
         moved = kept.load(name, Finished) if kept else None
         if moved is None:
-            moving = Stages(model.name, means.progress)
+            moving = Stages(stages.tell)
             moved = _move(built, model, case, cutoff, executor, moving)
             if kept is not None:
                 kept.remember(name, moved)
@@ -149,7 +131,7 @@ def run_model(
         with stages.stage("stress"):
             shell = ShellOutput.of(boom, model.name, reduced, moved.trajectory)
         summary.stress = shell.largest
-    summary.seconds, summary.wall_time = stages.seconds, perf_counter() - stages.begin
+    summary.seconds, summary.wall_time = stages.seconds, perf_counter() - begin
     return ModelRun(model, built, moved, shell, stages)
 
 

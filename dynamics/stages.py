@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How long the stages of a computation take, and how far each is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from time import perf_counter
+
+
+class Stages:
+    """Wall time of stages in s, and how far each is.
+
+    >>> stages = Stages(print)
+    >>> with stages.stage("mesh") as tell:
+    ...     tell(0.5)
+    mesh 0.0
+    mesh 0.5
+    mesh 1.0
+
+    Args:
+        tell: called with the stage and the part of it that is done.
+    """
+
+    def __init__(self, tell: Callable[[str, float], None] | None = None) -> None:
+        self.tell = tell or (lambda stage, part: None)
+        self.seconds: dict[str, float] = {}
+
+    @contextmanager
+    def stage(
+        self, name: str, number: int = 0, count: int = 1
+    ) -> Iterator[Callable[[float], None]]:
+        """Run the part ``number`` of ``count`` of a stage; give what tells how far that is."""
+        begin = perf_counter()
+        self.tell(name, number / count)
+        yield lambda part: self.tell(name, (number + part) / count)
+        self.tell(name, (number + 1) / count)
+        self.seconds[name] = self.seconds.get(name, 0.0) + perf_counter() - begin
