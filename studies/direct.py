@@ -20,7 +20,7 @@ from dynamics.energy import ENERGY_BOUND
 from geometry.arrays import Array
 from runs.case.build import build_boom, joined
 from runs.case.schema import Case
-from runs.pipeline.models import Plan
+from runs.pipeline.models import MotionPlan
 from runs.report.tables import Table
 from studies.motions import STEP, friction_case, gap_system, lasting, loaded, shell_of
 from studies.pads import with_pads
@@ -100,7 +100,7 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, tell: Tell) -> lis
         ("reduced", gap_system(case, boom, model)),
         ("reduced, more coordinates", larger),
     ):
-        plan = Plan.of(system, case, model.model_copy(update={"step": STEP}))
+        plan = MotionPlan.of(system, case, model.model_copy(update={"step": STEP}))
         plan.warm()
         start = perf_counter()
         motion = plan.trajectory(lambda part: None)

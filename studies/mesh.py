@@ -12,7 +12,7 @@ from scipy.signal import find_peaks
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from runs.case.build import build_boom
-from runs.pipeline.models import Plan
+from runs.pipeline.models import MotionPlan
 from studies.motions import finer, friction_case, gap_system, lasting, shell_of
 from studies.refined import Refined, error_plot, refined_table
 from studies.study import Piece, Tell, titled
@@ -50,7 +50,7 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
         tell(f"edges x {part:g}")
         model = finer(shell_of(case), part)
         system = gap_system(case, build_boom(case), model)
-        motion = Plan.of(system, case, model).trajectory(lambda part: None)
+        motion = MotionPlan.of(system, case, model).trajectory(lambda part: None)
         results.append(_quantities(system, motion, sizes))
     found = [
         Refined(what, unit, sizes.meshes, [result[what, unit] for result in results])

@@ -29,7 +29,7 @@ from runs.case.kinds.model import Built, Workshop, of_kind
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case, Model
 from runs.folder.cache import Cache
-from runs.pipeline.models import Plan, build
+from runs.pipeline.models import MotionPlan, build
 
 CASE = CASES / "friction-walk.toml"
 
@@ -103,7 +103,7 @@ def finer(shell: Shell, part: float) -> Shell:
 def trajectories(case: Case) -> list[Trajectory]:
     """The motions of all models of a case, in their order, side by side on the cores."""
     boom = build_boom(case)
-    plans = [Plan.of(gap_system(case, boom, m), case, m) for m in case.models]
+    plans = [MotionPlan.of(gap_system(case, boom, m), case, m) for m in case.models]
     return side_by_side(lambda plan: plan.trajectory(lambda part: None), plans)
 
 

@@ -24,7 +24,7 @@ from runs import CASES
 from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.pipeline.models import Plan, build
+from runs.pipeline.models import MotionPlan, build
 from runs.report.tables import Table
 from studies.study import Held, Piece, Proof, Tell, titled
 
@@ -121,7 +121,7 @@ def _one_way(stiffness: float) -> list[float]:
     """A row of the table."""
     case = _weighing(stiffness)
     boom = build_boom(case)
-    plan = Plan.of(build(case, boom, case.models[0]).system, case, case.models[0])
+    plan = MotionPlan.of(build(case, boom, case.models[0]).system, case, case.models[0])
     asked = _moved(plan)
     told, data = asked.data.attrs["stick_slip"]["drive_force"], asked.data
     gone = Ways(tuple(asked.time), tuple((data["drawn_out"] - data["drive_lag"]).values))
@@ -139,7 +139,7 @@ def _one_way(stiffness: float) -> list[float]:
     ]  # fmt: skip
 
 
-def _moved(plan: Plan) -> Trajectory:
+def _moved(plan: MotionPlan) -> Trajectory:
     return plan.trajectory(lambda _: None)
 
 

@@ -23,7 +23,7 @@ from runs.pipeline.answers import Answers, ModelAnswers, added
 from runs.pipeline.at_rest import AtRest, at_rest, drawn_positions, instants, positions
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.model_quality import quality_notes, reference_of
-from runs.pipeline.models import Plan
+from runs.pipeline.models import MotionPlan
 from runs.pipeline.modes import Mode, ModesBeside, matched, modes
 from runs.pipeline.moved import Motions, Moved, gone_through
 from runs.pipeline.section_forces import with_cylinders
@@ -137,7 +137,7 @@ def _beside_tied(
         # Tied it cannot be drawn out.
         return answers
     try:
-        motion = Plan.of(tied.system, case, model).trajectory()
+        motion = MotionPlan.of(tied.system, case, model).trajectory()
         moved, lives = tied.moved(motion, found, rests, case, model)
     except NUMERICS:
         # What rests is known all the same.

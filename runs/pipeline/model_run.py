@@ -25,7 +25,7 @@ from runs.folder.cache import key
 from runs.pipeline import members
 from runs.pipeline.means import Means
 from runs.pipeline.model_output import ShellOutput
-from runs.pipeline.models import Plan, build
+from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.proportions import static_tip
 from runs.pipeline.summary import (
     BeamOfShell,
@@ -144,7 +144,7 @@ def _move(
     stages: Stages,
 ) -> Finished:
     """Move a model; measure its step error, its ensemble and its horizons."""
-    plan, table = Plan.of(built.system, case, model), case.ensemble
+    plan, table = MotionPlan.of(built.system, case, model), case.ensemble
     motion, system = plan.motion, plan.motion.system
     plan.warm()
     with stages.stage("motion") as told:

@@ -67,7 +67,7 @@ def begun(system: GapSystem, case: Case) -> Motion:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class MotionPlan:
     """The motion that a case asks of one of its models, and how it is integrated.
 
     Args:
@@ -79,7 +79,7 @@ class Plan:
     integrator: FixedStep | AdaptiveStep
 
     @classmethod
-    def of(cls, system: GapSystem, case: Case, model: ModelTable) -> Plan:
+    def of(cls, system: GapSystem, case: Case, model: ModelTable) -> MotionPlan:
         """Return the plan of a model of a case.
 
         Raises:

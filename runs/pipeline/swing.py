@@ -22,7 +22,7 @@ from geometry.arrays import Array, Indices
 from geometry.typography import TO_MILLI
 from runs.case.schema import Case, Model
 from runs.pipeline.metrics import Metric, Record
-from runs.pipeline.models import Plan
+from runs.pipeline.models import MotionPlan
 
 # At so many places along all that changes rests are found, linear between them, and so many from
 # where something turns back to where the next does; none where they do more often than the most.
@@ -175,7 +175,7 @@ def _passed(values: Array) -> Array:
 def _standing(system: GapSystem, case: Case, model: Model) -> float | None:
     """The swing of the same boom that stands, in m."""
     try:
-        plan = Plan.of(system, case, model)
+        plan = MotionPlan.of(system, case, model)
         changes = system.excitations or system.released.any() or plan.motion.velocity.any()
         if case.start.state == "equilibrium" and not changes:
             return 0.0

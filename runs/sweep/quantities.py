@@ -24,7 +24,7 @@ from runs.case.kinds.model import Workshop
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.metrics import Metric, metrics, records
-from runs.pipeline.models import Plan, build
+from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary
 
@@ -239,7 +239,7 @@ def comparable_until(
     if model.play_free or case.regular:
         return end
     tools = None if comm is None else Workshop(comm, cache=cache)
-    plan = Plan.of(build(case, build_boom(case), model, tools).system, case, model)
+    plan = MotionPlan.of(build(case, build_boom(case), model, tools).system, case, model)
     vary: Vary = "load" if plan.motion.system.largest_load.any() else "velocity"
     try:
         same = plan.integrator.like(plan.trajectory())

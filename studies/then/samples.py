@@ -26,7 +26,7 @@ from runs.paper.reading import LITERAL
 from runs.paper.rules import CONFORMITY, DIVERGENCE
 from runs.paper.run_query import peaks_apart
 from runs.pipeline.members import slow_below
-from runs.pipeline.models import Plan
+from runs.pipeline.models import MotionPlan
 from studies.motions import gap_system, model_of, side_by_side
 from studies.then.modal_integrators import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
 
@@ -220,7 +220,7 @@ def factors(members: int) -> Array:
 
 def _well(case: Case, system: GapSystem, model: Model, factor: float) -> Trajectory:
     """As a run of the case moves the model."""
-    plan = Plan.of(system, case, model)
+    plan = MotionPlan.of(system, case, model)
     return plan.integrator(changed(plan.motion, "load", factor))
 
 

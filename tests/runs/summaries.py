@@ -15,7 +15,7 @@ from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.pipeline.answers import Answers
 from runs.pipeline.means import Means
-from runs.pipeline.models import Plan, build
+from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
 from runs.pipeline.summary import ModelSummary, StepsForPeaks, Summary
@@ -82,4 +82,4 @@ def answers_of(case: Case, comm: Intracomm | None = None) -> Answers:
 def motion_of(case: Case, number: int = 0) -> Trajectory:
     """The motion of one of a case's models, in the case's order."""
     model = case.models[number]
-    return Plan.of(build(case, build_boom(case), model).system, case, model).trajectory()
+    return MotionPlan.of(build(case, build_boom(case), model).system, case, model).trajectory()

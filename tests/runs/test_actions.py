@@ -14,7 +14,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.messages import BadInput
-from runs.pipeline.models import Plan, build
+from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
 
 CANTILEVER = """
@@ -194,7 +194,7 @@ def test_constant_loads_are_weights_and_forces(tmp_path: Path) -> None:
     case = case_file.load(str(path))
     (model,) = case.models
     assert isinstance(model, BeamElements)
-    plan = Plan.of(build(case, build_boom(case), model).system, case, model)
+    plan = MotionPlan.of(build(case, build_boom(case), model).system, case, model)
     expected = (900.0 - 500.0 * 9.80665) * plan.motion.system.observers["tip"].row
     np.testing.assert_allclose(plan.motion.system.load, expected, rtol=1e-12)
 

@@ -19,8 +19,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.folder.cache import Cache
-from runs.pipeline.models import Plan as Moving
-from runs.pipeline.models import build
+from runs.pipeline.models import MotionPlan, build
 from runs.sweep import output
 from runs.sweep.points import Plan, plan
 from runs.sweep.quantities import (
@@ -225,7 +224,7 @@ def test_chaos_is_compared_until_its_horizon() -> None:
     case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 3.0})})
     (model,) = case.models
     until = comparable_until(case, model, run_case(case), None, None)
-    moving = Moving.of(build(case, build_boom(case), model).system, case, model)
+    moving = MotionPlan.of(build(case, build_boom(case), model).system, case, model)
     found = measure_horizons(
         moving.motion, [CHANGE], "load", partners=1, integrator=moving.integrator
     )

@@ -19,7 +19,7 @@ from dynamics.trajectory import Trajectory
 from runs.folder.cache import VARIABLE
 from runs.paper.rules import judge
 from runs.pipeline import run
-from runs.pipeline.models import Plan
+from runs.pipeline.models import MotionPlan
 from runs.pipeline.results import Results
 from tests.runs.coarse_case import COARSE
 from tests.system.run_folder import protractile
@@ -50,14 +50,14 @@ def write_case(step: str) -> None:
 def moved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The modes of each system with play that has moved."""
     modes: list[int] = []
-    move = Plan.trajectory
+    move = MotionPlan.trajectory
 
-    def count(plan: Plan, progress: Any = None) -> Trajectory:
+    def count(plan: MotionPlan, progress: Any = None) -> Trajectory:
         if plan.motion.system.laws:
             modes.append(plan.motion.system.num_modes)
         return move(plan, progress)
 
-    monkeypatch.setattr(Plan, "trajectory", count)
+    monkeypatch.setattr(MotionPlan, "trajectory", count)
     return modes
 
 
@@ -91,15 +91,15 @@ def test_the_next_run_goes_on(moved: list[int], monkeypatch: pytest.MonkeyPatch)
     assert protractile(*RUN, "--no-cache") == 0
     undisturbed = Path("out/trajectories.nc").read_bytes()
     assert moved == [4, 5]
-    move = Plan.trajectory
+    move = MotionPlan.trajectory
 
-    def break_off(plan: Plan, progress: Any = None) -> Trajectory:
+    def break_off(plan: MotionPlan, progress: Any = None) -> Trajectory:
         if plan.motion.system.num_modes == 5:
             raise OSError("broken off")
         return move(plan, progress)
 
     with monkeypatch.context() as patch:
-        patch.setattr(Plan, "trajectory", break_off)
+        patch.setattr(MotionPlan, "trajectory", break_off)
         assert protractile(*RUN) == 2
     assert protractile(*RUN) == 0
     assert moved == [4, 5, 4, 5]

@@ -17,7 +17,7 @@ from runs.case.declared import Declared
 from runs.case.schema import Case
 from runs.pipeline.at_rest import positions, pressed
 from runs.pipeline.inferred import print_inferred
-from runs.pipeline.models import Plan, build
+from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Summary
 from runs.report.answer_tables import pad_table
@@ -79,7 +79,7 @@ def test_the_play_above_is_where_the_tail_presses(tmp_path: Path) -> None:
         segments = tuple(s.model_copy(update={"load": sign * s.load}) for s in case.segments)
         case = case.model_copy(update={"segments": segments})
         model = case.models[0]
-        plan = Plan.of(build(case, build_boom(case), model).system, case, model)
+        plan = MotionPlan.of(build(case, build_boom(case), model).system, case, model)
         tips.append(sign * plan.trajectory(lambda part: None).data["tip"].values)
     np.testing.assert_allclose(tips[0], tips[1], atol=1e-9)
     assert np.ptp(tips[0]) > 0.05
@@ -90,7 +90,7 @@ def test_shims_hold_the_boom_as_springs_do(tmp_path: Path) -> None:
     case = case_with(tmp_path, "stiffness = 1e7\nexponent = 1.0\ninterference = 0.02\n", play=0.0)
     model, boom = case.models[0], build_boom(case)
     system = build(case, boom, model).system
-    motion = Plan.of(system, case, model).trajectory(lambda part: None)
+    motion = MotionPlan.of(system, case, model).trajectory(lambda part: None)
     springs = 2.0e7 * system.rows.T @ system.rows
     omega2, shapes = np.linalg.eigh(np.diag(system.omega2) + springs)
     load, tip = shapes.T @ system.load, system.observers["tip"].row @ shapes
