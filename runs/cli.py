@@ -389,12 +389,12 @@ def _rendered_again(folder: str) -> Iterator[tuple[Results, Addition, Path]]:
     """
     from runs.case.user_files import check_left
     from runs.client import judge
-    from runs.folder.files import alone, changed_folder
+    from runs.folder.files import changed_folder, exclusive
     from runs.pipeline.results import Results
     from runs.report import output
 
     path = Path(folder)
-    with alone(path):
+    with exclusive(path):
         results = Results.load(path)
         check_left(path, folder, "folder")
         judged = judge(results, path)

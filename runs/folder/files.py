@@ -22,7 +22,7 @@ from glob import escape
 from pathlib import Path
 from secrets import token_hex
 
-from runs.process.ending import undone
+from runs.process.ending import when_interrupted
 
 MANIFEST = ".manifest"
 
@@ -46,7 +46,7 @@ def real(path: Path) -> Path:
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
     """Give a name to write to; the file gets its own when it is complete."""
-    with beside(path) as folder:
+    with scratch_folder(path) as folder:
         yield folder / path.name
         os.replace(folder / path.name, path)
 
@@ -64,9 +64,9 @@ def whole_folder(folder: Path) -> Iterator[Path]:
     Args:
         folder: may exist; everything in it is removed.
     """
-    with beside(folder) as part:
+    with scratch_folder(folder) as part:
         yield part
-        with alone(folder):
+        with exclusive(folder):
             _take_the_place(part, folder, _files(part))
 
 
@@ -76,9 +76,9 @@ def changed_folder(folder: Path) -> Iterator[Path]:
 
     The copies share their content with the files in ``folder``: replace them, do not write to them.
     Files that the user has put there stay, and are not listed in the manifest. To be used
-    :func:`alone`.
+    :func:`exclusive`.
     """
-    with beside(folder) as part:
+    with scratch_folder(folder) as part:
         for source in folder.rglob("*"):
             target = part / source.relative_to(folder)
             if source.is_dir() and not source.is_symlink():
@@ -92,7 +92,7 @@ def changed_folder(folder: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def alone(folder: Path) -> Iterator[None]:
+def exclusive(folder: Path) -> Iterator[None]:
     """Wait until no other process replaces a folder beside this one, and keep others waiting."""
     path = real(folder)
     with ExitStack() as stack:
@@ -108,7 +108,7 @@ def alone(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
-def beside(path: Path) -> Iterator[Path]:
+def scratch_folder(path: Path) -> Iterator[Path]:
     """Give an empty folder to work in beside a path; it is removed in the end, earlier ones too."""
     path = real(path)
     part = path.with_name(f"{_hidden(path)}{token_hex(4)}")
@@ -121,7 +121,7 @@ def beside(path: Path) -> Iterator[Path]:
         with ExitStack() as stack:
             for scratch in (unlocked, part):
                 remove = partial(shutil.rmtree, scratch, ignore_errors=True)
-                stack.enter_context(undone(remove))
+                stack.enter_context(when_interrupted(remove))
                 stack.callback(remove)
             unlocked.mkdir()
             manifest = stack.enter_context((unlocked / MANIFEST).open("a", encoding="utf-8"))

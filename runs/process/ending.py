@@ -46,7 +46,7 @@ _GRACE_OF_RANKS = 5.0
 # Seconds for which a message may wait to be read, and between looks at whether it was.
 _UNREAD, _LOOK = 5.0, 1.0e-3
 
-_undone: list[Callable[[], object]] = []
+_cleanups: list[Callable[[], object]] = []
 _ending = RLock()
 _signals: list[int] = []
 
@@ -66,13 +66,13 @@ def listen() -> None:
 
 
 @contextmanager
-def undone(work: Callable[[], object]) -> Iterator[None]:
-    """Do something besides if the process is interrupted meanwhile."""
-    _undone.append(work)
+def when_interrupted(work: Callable[[], object]) -> Iterator[None]:
+    """Do something if the process is interrupted within."""
+    _cleanups.append(work)
     try:
         yield
     finally:
-        _undone.remove(work)
+        _cleanups.remove(work)
 
 
 def launched_rank() -> int | None:
@@ -143,7 +143,7 @@ def _end(number: int, frame: object = None) -> None:
     if not launched_rank():
         with suppress(OSError):
             os.write(2, _CLEAR + LINE if os.isatty(2) else LINE)
-    for work in reversed(_undone):
+    for work in reversed(_cleanups):
         with suppress(Exception):
             work()
     os._exit(128 + number)

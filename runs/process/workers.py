@@ -12,7 +12,7 @@ from multiprocessing import active_children, get_context, parent_process
 from threading import Thread
 from typing import Any
 
-from runs.process.ending import undone
+from runs.process.ending import when_interrupted
 from runs.process.terminal import show_notices
 
 # A process has one thread, though its libraries would take all cores. They warn nobody while they
@@ -26,7 +26,7 @@ _SECONDS_TO_DIE = 1.0
 _OF_RANKS = ("OMPI_", "PMIX_", "PMI_")
 
 
-class _Deaf(ProcessPoolExecutor):
+class _Shielded(ProcessPoolExecutor):
     """Its processes never hear signals to all of a group, as Ctrl-C is one."""
 
     def submit(self, work: Callable[..., Any], /, *given: Any, **named: Any) -> Future[Any]:
@@ -52,9 +52,9 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
     # A process takes these from here when it starts.
     outside = {name: os.environ[name] for name in _OF_WORKERS if name in os.environ}
     os.environ.update(_OF_WORKERS)
-    pool = _Deaf(count or os.cpu_count(), get_context("spawn"), _start, (prepare,))
+    pool = _Shielded(count or os.cpu_count(), get_context("spawn"), _start, (prepare,))
     try:
-        with undone(end):
+        with when_interrupted(end):
             yield pool
     except BaseException:
         end()

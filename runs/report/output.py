@@ -13,7 +13,7 @@ import xarray as xr
 
 from runs.case.messages import BadInput
 from runs.case.user_files import check_left
-from runs.folder.files import MANIFEST, beside, real, write_whole
+from runs.folder.files import MANIFEST, real, scratch_folder, write_whole
 from runs.pipeline.results import FIELDS, SUMMARY, TRAJECTORIES, Results
 from runs.pipeline.run import Run
 from runs.pipeline.summary import Snapshots
@@ -50,7 +50,7 @@ def prepare(out: str, file: str) -> Path:
             file, key, "is where a disk begins, and cannot be replaced; give a folder in it"
         )
     try:
-        with beside(folder):
+        with scratch_folder(folder):
             names = {path.name for path in folder.glob("*")}
     except OSError as error:
         raise BadInput(

@@ -21,7 +21,7 @@ from geometry.arrays import Array
 from runs.case.build import build_boom, joined
 from runs.case.kinds.model import Joined, Workshop
 from runs.case.schema import Case, Model
-from runs.folder.files import alone, changed_folder, whole
+from runs.folder.files import changed_folder, exclusive, whole
 from runs.pipeline.means import Progress, silent
 from runs.pipeline.results import CONVENTIONS
 from runs.report.tables import Column, Table
@@ -126,7 +126,7 @@ def table(data: xr.Dataset) -> Table:
 def write(data: xr.Dataset, folder: Path) -> None:
     """Write NAME.nc, NAME.csv and, over one key, NAME.png beside what a sweep has left there."""
     with (
-        alone(folder),
+        exclusive(folder),
         changed_folder(folder) as part,
         whole(part / f"{NAME}.nc") as netcdf,
         whole(part / f"{NAME}.csv") as lines,

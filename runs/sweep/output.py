@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from rich.console import Console
 
-from runs.folder.files import alone, changed_folder, whole
+from runs.folder.files import changed_folder, exclusive, whole
 from runs.pipeline.metrics import Metric, metrics
 from runs.pipeline.results import CONVENTIONS
 from runs.pipeline.summary import ModelSummary
@@ -69,7 +69,7 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
     """Write ``sweep.nc``, ``sweep.csv`` and the figures, which replace earlier ones at once."""
     data = gather(plan, outcomes)
     with (
-        alone(folder),
+        exclusive(folder),
         changed_folder(folder) as part,
         whole(part / NETCDF) as netcdf,
         whole(part / CSV) as table,

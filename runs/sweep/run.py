@@ -23,7 +23,7 @@ from runs.folder.cache import Cache, key
 from runs.pipeline.means import Means, Progress
 from runs.pipeline.run import run_case
 from runs.process import ending
-from runs.process.ending import undone
+from runs.process.ending import when_interrupted
 from runs.process.workers import end
 from runs.sweep.points import Plan
 from runs.sweep.quantities import Features, Measured, comparable_until, measure
@@ -117,7 +117,7 @@ def run_points(
     progress("sweep", stage, done / len(points))
     try:
         # Nobody waits for what they compute.
-        with undone(end):
+        with when_interrupted(end):
             for future in as_completed(futures):
                 i = futures[future]
                 outcomes[i] = outcome = future.result()

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from runs.folder.files import MANIFEST, alone, changed_folder, damaged, whole, whole_folder
+from runs.folder.files import MANIFEST, changed_folder, damaged, exclusive, whole, whole_folder
 
 ROOT = Path(__file__).parents[2]
 
@@ -37,8 +37,8 @@ def in_the_making(path: Path) -> subprocess.Popen[str]:
     """A process that has begun to write a folder, says where, and goes on at a line of input."""
     program = f"""
 from pathlib import Path
-from runs.folder.files import beside
-with beside(Path({str(path)!r})) as part:
+from runs.folder.files import scratch_folder
+with scratch_folder(Path({str(path)!r})) as part:
     (part / "half").write_text("half")
     print(part, flush=True)
     input()
@@ -104,7 +104,7 @@ def test_a_changed_folder_keeps_what_is_not_changed(tmp_path: Path) -> None:
     (folder / "empty").mkdir()
     (folder / "link").symlink_to("nowhere")
     os.mkfifo(folder / "pipe")
-    with alone(folder), changed_folder(folder) as part, whole(part / "report") as report:
+    with exclusive(folder), changed_folder(folder) as part, whole(part / "report") as report:
         report.write_text("again", encoding="utf-8")
     mine = dict.fromkeys(("mine", "deep/mine"), "mine deep/mine")
     assert contents(folder) == {"data": "data report", "report": "again", **mine}
@@ -140,7 +140,7 @@ def test_a_folder_that_was_away_when_its_process_was_killed_comes_back(tmp_path:
     with whole_folder(folder) as part:
         write(part, "earlier")
     folder.rename(tmp_path / ".out.away")
-    with alone(folder):
+    with exclusive(folder):
         assert contents(folder) == {"earlier": "earlier"}
 
 
@@ -153,7 +153,7 @@ def test_who_changes_a_folder_keeps_others_waiting(tmp_path: Path) -> None:
             write(part, "later")
 
     with ThreadPoolExecutor(1) as pool:
-        with alone(folder):
+        with exclusive(folder):
             other = pool.submit(replace)
             time.sleep(0.1)
             assert not other.done()

@@ -32,7 +32,7 @@ def clean():
     print("clean", flush=True)
 
 ending.listen()
-with ending.undone(clean):
+with ending.when_interrupted(clean):
     signal.raise_signal(signal.SIGINT)
     time.sleep(60.0)
 """
