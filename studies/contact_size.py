@@ -16,7 +16,7 @@ import numpy as np
 from mpi4py import MPI
 
 from geometry.arrays import Array
-from runs.case.build import build_boom, joined
+from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.report.tables import Table
 from studies.motions import finer, friction_case, gap_system, move, shell_of
@@ -85,7 +85,7 @@ def squeezed(contact: Contact, part: float) -> Array:
     model = finer(shell_of(contact.case), part)
     options = model.options()
     shells = assemble_segments(boom, options, MPI.COMM_SELF)
-    seen = joined(contact.case, boom, model).boom
+    seen = model.joined(boom).boom
     touching = Touching.of(seen, shells, options.contact_line, options.surface)
     rows = touching.rows({}).contacts
     stations = [row.station for row in rows]

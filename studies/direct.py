@@ -18,7 +18,7 @@ from mpi4py import MPI
 
 from dynamics.energy import ENERGY_BOUND
 from geometry.arrays import Array
-from runs.case.build import build_boom, joined
+from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.pipeline.models import MotionPlan
 from runs.report.tables import Table
@@ -85,7 +85,7 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, tell: Tell) -> lis
     case = lasting(case, sizes.duration)
     boom, output_step = build_boom(case), case.time.output_step
     model = shell_of(case).model_copy(update={"mesh_size": sizes.mesh, "contact_tolerance": "any"})
-    seen = joined(case, boom, model).boom
+    seen = model.joined(boom).boom
     krylov = KrylovOptions(sizes.shifts, sizes.moments)
     options = ShellOptions(sizes.mesh, contact_line=model.contact_line)
     finer = replace(options, krylov=krylov)

@@ -15,7 +15,7 @@ from mpi4py import MPI
 
 from geometry.boom import Boom
 from geometry.contact_places import pads
-from runs.case.build import build_boom, joined
+from runs.case.build import build_boom
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.wall_rows import CornerLines
 from shell_model.reduced_shell import reduce_boom
@@ -192,7 +192,7 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
         tell(f"mesh of {size:g} m")
         pressed.append(Pressed.on_mesh(boom, size))
     tell(f"mesh of {sizes.default:g} m, reduced")
-    seen = joined(case, boom, model_of(case, "shell")).boom
+    seen = model_of(case, "shell").joined(boom).boom
     reduced = Pressed.reduced(seen, sizes.default)
     near = stresses(pressed, sizes)
     title = "Von Mises stress where the inner segment is pressed"

@@ -15,7 +15,7 @@ import numpy as np
 
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
-from runs.case.build import build_boom, joined
+from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.report.numerals import number
 from runs.report.tables import Table
@@ -179,7 +179,7 @@ def _proofs(case: Case, system: GapSystem) -> Iterator[Proof]:
     start, end = boom.overlap(joint)
     clearance = system.laws[0].terms[0].onset
     whole = _upper_stiffness(system)
-    upper, _ = joined(case, boom, model_of(case, "shell")).boom.joints[0].contact.terms
+    upper, _ = model_of(case, "shell").joined(boom).boom.joints[0].contact.terms
     n, k = upper.exponent, upper.stiffness * len(joint.stations)
 
     def forces(tail: float, slope: float) -> Array:

@@ -9,7 +9,7 @@ from typing import Any
 
 from dynamics.contact import ContactLaw, Gap
 from geometry.boom import Boom, Direction
-from runs.case.build import build_boom, joined
+from runs.case.build import build_boom
 from runs.case.schema import Case, Model
 
 Laws = ContactLaw | Sequence[ContactLaw]
@@ -30,4 +30,4 @@ def touching(boom: Boom, laws: Laws, lateral_laws: Laws = ()) -> Boom:
 
 def contact_laws(case: Case, model: Model, direction: Direction = "z") -> list[Gap]:
     """The law of each joint of a case as a model sees it."""
-    return [joint.law(direction) for joint in joined(case, build_boom(case), model).boom.joints]
+    return [joint.law(direction) for joint in model.joined(build_boom(case)).boom.joints]

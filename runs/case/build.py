@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from dynamics.drive.stick_slip import FOLLOWED
 from dynamics.energy import DRIVEN_ENERGIES
@@ -31,11 +30,10 @@ from geometry.taper import check_alike, half_way, mean_area
 from runs.case import actions
 from runs.case.contact import JointTable
 from runs.case.extension import spans
-from runs.case.kinds.model import Joined
 from runs.case.limits import described
 from runs.case.places import at
 from runs.case.pulled import check_pulled
-from runs.case.schema import Case, Model
+from runs.case.schema import Case
 from runs.case.segment import SegmentTable, SupportTable
 
 # What trajectories hold of every boom.
@@ -129,32 +127,6 @@ def _observations(case: Case, segments: Sequence[Segment]) -> tuple[Observation,
         x = at(table.x, segments[index].start, segments[index].end)
         found.append(Observation(table.name, index, x, table.quantity))
     return tuple(found)
-
-
-def joined(case: Case, boom: Boom, model: Model) -> Joined:
-    """The boom of a case as a model sees it: with the model's own contact, if it has one.
-
-    Raises:
-        BoomError: what shims press follows no such law.
-    """
-    own = model.contact
-    if own is not None:
-        along_z, along_y = own.law("z"), own.law("y")
-        joints = (replace(j, contact=along_z, lateral_contact=along_y) for j in boom.joints)
-        boom = replace(boom, joints=tuple(joints))
-    for number, joint in enumerate(boom.joints, start=1):
-        try:
-            for law in (joint.law(direction) for direction in boom.directions):
-                for pad in joint.pads:
-                    law.behind(-pad.shim)
-        except ValueError:
-            key = "interference" if not joint.pads else "pads"
-            raise BoomError(
-                f"joint[{number}].{key}",
-                f"what presses from both sides of a joint needs a law of the exponent 1, and model "
-                f"{model.name!r} has another; give it one, or leave interference out",
-            ) from None
-    return Joined(boom)
 
 
 def check_names(where: str, names: Sequence[str]) -> None:

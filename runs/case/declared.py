@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from geometry.boom import Boom
-from runs.case.build import build_boom, joined
+from runs.case.build import build_boom
 from runs.case.kinds.model import Joined
 from runs.case.schema import Case, Model
 
@@ -27,5 +27,5 @@ class Declared:
     def joined(self, model: Model) -> Joined:
         """The boom as one of the case's models sees it."""
         if model.name not in self._joined:
-            self._joined[model.name] = joined(self.case, self.boom, model)
+            self._joined[model.name] = model.joined(self.boom)
         return self._joined[model.name]

@@ -16,7 +16,6 @@ import numpy as np
 from scipy.stats import t as student
 
 from geometry.arrays import Array, Mask
-from runs.case.build import joined
 from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.kinds.model import of_kind
 from runs.case.schema import Model
@@ -450,5 +449,5 @@ def _range(curve: Array) -> float:
 
 def _exponents(run: RunQuery, model: Model) -> list[set[float]]:
     """n of each joint, as the model sees it."""
-    joints = joined(run.case, run.results.boom, model).boom.joints
+    joints = model.joined(run.results.boom).boom.joints
     return [{term.exponent for term in joint.contact.terms} for joint in joints]

@@ -18,7 +18,6 @@ from geometry.boom import Boom, Direction, Joint
 from geometry.fit import room
 from geometry.typography import TO_KILO, TO_MEGA
 from runs.case import actions
-from runs.case.build import joined
 from runs.case.declared import Declared
 from runs.case.kinds.model import ModelTable
 from runs.case.schema import Case, Model
@@ -150,7 +149,7 @@ def _friction(joint: Joint) -> str:
 def _models(case: Case, boom: Boom) -> Table:
     table = Table("model", "kind", "", "contact (k in N/mⁿ)")
     for model in case.models:
-        laws = {str(joint.contact) for joint in joined(case, boom, model).boom.joints}
+        laws = {str(joint.contact) for joint in model.joined(boom).boom.joints}
         contact = "tied" if model.play_free else "; ".join(sorted(laws))
         table.add_row(model.name, model.kind, model.describe(), contact)
     return table

@@ -14,7 +14,6 @@ from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion, begin
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
-from runs.case.build import joined
 from runs.case.kinds.model import Built, Joined, ModelTable, Workshop
 from runs.case.pulled import with_pulled
 from runs.case.schema import Case, Model
@@ -38,7 +37,7 @@ def build(case: Case, boom: Boom, model: Model, workshop: Workshop | None = None
     Raises:
         BoomError: the boom lacks what the model needs.
     """
-    return build_on(joined(case, boom, model), case, model, workshop)
+    return build_on(model.joined(boom), case, model, workshop)
 
 
 def build_on(

@@ -15,7 +15,6 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Direction, Joint
 from geometry.joint import SIDES
 from geometry.section import Side
-from runs.case.build import joined
 from runs.case.contact import PADS_OF_SIDE, JointTable, PadTable
 from runs.case.schema import Case, Model
 
@@ -57,7 +56,7 @@ def pressed_pads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PressedPa
         return
     with_play = (model for model in case.models if not model.play_free)
     for model in (model for model in with_play if model.name in data["model"].values):
-        seen = joined(case, boom, model).boom
+        seen = model.joined(boom).boom
         station, own = count(), data["contact_force_peak"].sel(model=model.name)
         ends = np.stack([own.min("time").values, own.max("time").values], axis=1)
         for direction in boom.directions:

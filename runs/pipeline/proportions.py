@@ -14,7 +14,6 @@ from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
 from runs.case.actions import STANDARD_GRAVITY, across
-from runs.case.build import joined
 from runs.case.schema import Case
 from runs.case.usual import usual_numbers
 
@@ -87,7 +86,7 @@ def _in_vain(case: Case) -> Iterator[str]:
 def _pads(case: Case, boom: Boom) -> Iterator[str]:
     """A contact that gives way more than the inner segment bends is none."""
     for model in (model for model in case.models if not model.play_free):
-        for joint in joined(case, boom, model).boom.joints:
+        for joint in model.joined(boom).boom.joints:
             inner = boom.segments[joint.inner]
             bending = 3.0 * inner.bending_stiffness / inner.length**3
             force = 0.5 * STANDARD_GRAVITY * inner.mass

@@ -18,7 +18,6 @@ from geometry.axial import on_foot
 from geometry.boom import Boom
 from geometry.cylinder import force_name
 from geometry.typography import TO_KILO, TO_MILLI
-from runs.case.build import joined
 from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.at_rest import pressed, tilts
@@ -78,7 +77,7 @@ def statics(case: Case, boom: Boom) -> Statics | None:
 def with_play_seen(case: Case, boom: Boom) -> Boom:
     """The boom as the first model with play sees it."""
     with_play = next((model for model in case.models if not model.play_free), case.models[0])
-    return joined(case, boom, with_play).boom
+    return with_play.joined(boom).boom
 
 
 def reactions(state: StaticState) -> list[Reaction]:

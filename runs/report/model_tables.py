@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from dynamics.predictability.horizon import SHARES
 from geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT
-from runs.case.build import joined, material_of
+from runs.case.build import material_of
 from runs.case.schema import Case
 from runs.pipeline.metrics import metrics
 from runs.pipeline.results import Results
@@ -140,7 +140,7 @@ def law_table(results: Results) -> Table | None:
         if not model.play_free
         for joint, seen in zip(
             results.case.joints,
-            joined(results.case, results.boom, model).boom.joints,
+            model.joined(results.boom).boom.joints,
             strict=True,
         )
         if not joint.tied

@@ -25,7 +25,6 @@ from geometry.boom import Boom, BoomError
 from geometry.contact_places import Pad, pads
 from geometry.section import Direction
 from runs.case.build import build_boom
-from runs.case.build import joined as joined_as_seen_by
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.kinds.model import Joined, Workshop, of_kind
 from runs.case.messages import BadInput, choices
@@ -327,7 +326,7 @@ def write(
         assert comm is not None
         calibration = build(case, boom, model, Workshop(comm, cache=cache)).calibration
     try:
-        text = script(case, joined_as_seen_by(case, boom, model), model, calibration)
+        text = script(case, model.joined(boom), model, calibration)
     except BoomError as error:
         raise BadInput(file, error.where, error.what) from None
     write_whole(path, text)

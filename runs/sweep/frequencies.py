@@ -18,7 +18,7 @@ from dynamics.damping import pressed_modes
 from dynamics.failure import NUMERICS
 from dynamics.motion import initial_state
 from geometry.arrays import Array
-from runs.case.build import build_boom, joined
+from runs.case.build import build_boom
 from runs.case.kinds.model import Joined, Workshop
 from runs.case.schema import Case, Model
 from runs.folder.files import changed_folder, exclusive, whole
@@ -52,7 +52,7 @@ def first_frequencies(
         cache: of reduced shells.
     """
     boom = build_boom(case)
-    with_play = joined(case, boom, model)
+    with_play = model.joined(boom)
     found = np.full((len(JOINTS), MODES), np.nan)
     for row, booms in enumerate((with_play, Joined(boom.play_free))):
         if row == 0 and model.play_free:

@@ -26,7 +26,7 @@ from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from runs import CASES
 from runs.case import reading as case_file
-from runs.case.build import build_boom, joined
+from runs.case.build import build_boom
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import Shell
 from runs.process.terminal import show_notices
@@ -174,7 +174,7 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
 
     comm.barrier()
     start = perf_counter()
-    reduced = reduce_boom(joined(case, boom, model).boom, options, comm, tell)
+    reduced = reduce_boom(model.joined(boom).boom, options, comm, tell)
     comm.barrier()
     total = perf_counter() - start
     peaks["fields"] = _peak()

@@ -99,6 +99,23 @@ def test_changing_the_play_of_a_joint_changes_what_touches(boom: pt.Boom) -> Non
     assert touched[1] == pytest.approx(touched[0] / np.sqrt(5.0), rel=1e-3)
 
 
+def test_a_model_has_its_own_contact(boom: pt.Boom) -> None:
+    """Reference: other way to say it, to the bit."""
+    model = pt.BeamElements(boom, contact={"stiffness": 1.0e7, "exponent": 1.5})
+    softer = [replace(boom.joints[0], contact=pt.PowerContact(1.0e7, exponent=1.5))]
+    one, other = (m.simulate(0.1) for m in (model, pt.BeamElements(replace(boom, joints=softer))))
+    np.testing.assert_array_equal(one.tip, other.tip)
+
+
+def test_what_presses_or_is_modelled_must_be_given(boom: pt.Boom) -> None:
+    loose = replace(boom, joints=[replace(boom.joints[0], contact=None)])
+    assert pt.BeamElements(loose, tied=True).system().laws == []
+    with pytest.raises(pt.BoomError, match=r"^joint\[1\].contact: missing; give a contact law, or"):
+        pt.BeamElements(loose).system()
+    with pytest.raises(pt.BoomError, match=r"^rigid: missing; give the boom that it is a model of"):
+        pt.Rigid().system()
+
+
 def test_a_name_that_is_no_segment(boom: pt.Boom) -> None:
     with pytest.raises(pt.BoomError) as error:
         replace(boom, loads=[pt.Load("jib", "z", -1.0, 14.0, pt.Step())])

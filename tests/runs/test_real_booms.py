@@ -14,7 +14,7 @@ from beam_model.statics import Elements, StaticState, static_state
 from geometry.boom import Boom, Segment
 from runs import CASES
 from runs.case import reading as case_file
-from runs.case.build import build_boom, joined
+from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.pipeline.statics import cylinder_force, reactions
 
@@ -114,7 +114,7 @@ def level(name: str) -> Case:
 def rest_of(case: Case, boom: Boom) -> tuple[StaticState, list[float]]:
     """At rest, and the stiffness of each joint's contacts along z."""
     model = next(model for model in case.models if not model.play_free)
-    found = joined(case, boom, model)
+    found = model.joined(boom)
     stiffness = [joint.contact.terms[0].stiffness for joint in found.boom.joints]
     return static_state(found.boom), stiffness
 

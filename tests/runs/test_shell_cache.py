@@ -17,7 +17,7 @@ from mpi4py import MPI
 from dynamics.excitation import Ramp
 from runs import CASES
 from runs.case import reading as case_file
-from runs.case.build import build_boom, joined
+from runs.case.build import build_boom
 from runs.case.kinds.model import Workshop
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case, LoadTable
@@ -104,7 +104,7 @@ def test_another_play_and_load_are_the_same_entry(case: Case, tmp_path: Path) ->
     assert len(entries(cache)) == 1
     boom, (model,) = build_boom(other), other.models
     assert isinstance(model, Shell)
-    contacts = joined(other, boom, model)
+    contacts = model.joined(boom)
     own = reduce_boom(contacts.boom, model.options(), MPI.COMM_SELF).system
     assert found.laws == own.laws
     assert [x.history for x in found.excitations] == [Ramp(0.1)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, TypeVar, get_args
@@ -132,7 +132,7 @@ class ModelTable(Table):
     """the model's own step of the integrator in s; the case's unless given"""
     kind: str
     """the kind of model"""
-    _joined: Joined | None = PrivateAttr(None)
+    _boom: Boom | None = PrivateAttr(None)
 
     def __init__(self, boom: Boom | None = None, /, **keys: Any) -> None:
         """Make a model of a boom.
@@ -146,7 +146,7 @@ class ModelTable(Table):
         """
         kind = get_args(type(self).model_fields["kind"].annotation)[0]
         super().__init__(**{"name": kind, "kind": kind, **keys})
-        self._joined = None if boom is None else Joined(boom)
+        self._boom = boom
 
     # Case files are read past it: they must give name and kind.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
@@ -246,6 +246,34 @@ class ModelTable(Table):
             BoomError: the boom lacks what the model needs.
         """
 
+    def joined(self, boom: Boom) -> Joined:
+        """Return a boom as the model sees it: with the model's own contact, if it has one.
+
+        Raises:
+            BoomError: a joint has no contact, or what shims press follows no such law.
+        """
+        if self.contact is not None:
+            along_z, along_y = self.contact.law("z"), self.contact.law("y")
+            joints = (replace(j, contact=along_z, lateral_contact=along_y) for j in boom.joints)
+            boom = replace(boom, joints=tuple(joints))
+        for number, joint in enumerate(boom.joints, start=1):
+            if joint.contact is None and (joint.tied or self.play_free):
+                continue
+            try:
+                for law in (joint.law(direction) for direction in boom.directions):
+                    for pad in joint.pads:
+                        law.behind(-pad.shim)
+            except BoomError as error:
+                raise BoomError(f"joint[{number}].contact", error.what) from None
+            except ValueError:
+                key = "interference" if not joint.pads else "pads"
+                raise BoomError(
+                    f"joint[{number}].{key}",
+                    f"what presses from both sides of a joint needs a law of the exponent 1, and "
+                    f"model {self.name!r} has another; give it one, or leave interference out",
+                ) from None
+        return Joined(boom)
+
     def system(self) -> GapSystem:
         """Return the gap system of its boom.
 
@@ -255,8 +283,10 @@ class ModelTable(Table):
         Raises:
             BoomError: the boom cannot be modelled so.
         """
-        assert self._joined is not None
-        self.check(self.name, self._joined)
+        if self._boom is None:
+            raise BoomError(self.name, "missing; give the boom that it is a model of")
+        joined = self.joined(self._boom)
+        self.check(self.name, joined)
         workshop = None
         if self.needs_shell:
             from mpi4py import MPI
@@ -264,7 +294,7 @@ class ModelTable(Table):
             from runs.folder.cache import Cache
 
             workshop = Workshop(MPI.COMM_SELF, cache=Cache.of_user())
-        return self.build(self._joined, workshop).system
+        return self.build(joined, workshop).system
 
     def simulate(
         self,
