@@ -23,7 +23,7 @@ from runs.pipeline.means import Means
 from runs.pipeline.modes import modes
 from runs.pipeline.moved import Motions, gone_through
 from runs.pipeline.run import run_case
-from runs.pipeline.stresses import counted, endurance
+from runs.pipeline.strength import counted, endurance
 from studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
 from studies.study import Held, Proof, Tell, titled
 

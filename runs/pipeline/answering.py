@@ -28,7 +28,7 @@ from runs.pipeline.modes import Mode, ModesBeside, matched, modes
 from runs.pipeline.moved import Motions, Moved, gone_through
 from runs.pipeline.section_forces import with_cylinders
 from runs.pipeline.statics import reactions, statics
-from runs.pipeline.stresses import COUNTS, Life, life, wall_stresses
+from runs.pipeline.strength import COUNTS, Life, life, wall_stresses
 from runs.pipeline.summary import Summary
 from runs.pipeline.swing import swing
 
@@ -64,7 +64,7 @@ class _Model(NamedTuple):
         return moved, [life(one, case.life) for one in varying] if COUNTS else []
 
 
-def of_model(
+def answer_model(
     boom: Boom,
     case: Case,
     model: Model,
@@ -150,7 +150,9 @@ def _as_begun(boom: Boom, time: float) -> bool:
     return not any(drawn(boom, segment, time) for segment in range(len(boom.segments)))
 
 
-def of_run(boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelAnswers]) -> Answers:
+def answer_run(
+    boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelAnswers]
+) -> Answers:
     """Return what all models answer together.
 
     Args:

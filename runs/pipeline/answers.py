@@ -11,7 +11,7 @@ from runs.pipeline.at_rest import AtRest
 from runs.pipeline.modes import Mode, ModesBeside
 from runs.pipeline.moved import Moved
 from runs.pipeline.statics import Reaction
-from runs.pipeline.stresses import Life
+from runs.pipeline.strength import Life
 from runs.pipeline.swing import Swing
 
 

@@ -28,7 +28,7 @@ from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.proportions import static_tip
 from runs.pipeline.summary import (
-    BeamOfShell,
+    BeamStiffness,
     CalibrationCard,
     FirstPeak,
     ModelSummary,
@@ -237,7 +237,7 @@ def calibration_card(boom: Boom, system: GapSystem, calibration: Calibration) ->
     )
 
 
-def _beam(segment: Segment, stiffness: Stiffness) -> BeamOfShell:
+def _beam(segment: Segment, stiffness: Stiffness) -> BeamStiffness:
     planes = (
         (segment, segment.turned())[: len(stiffness.bending)] if segment.lateral else (segment,)
     )
@@ -246,7 +246,7 @@ def _beam(segment: Segment, stiffness: Stiffness) -> BeamOfShell:
     if stiffness.torsion is not None and segment.lateral is not None:
         own = segment.material.shear_modulus * segment.lateral.torsion_constant
         torsion = stiffness.torsion / own
-    return BeamOfShell(
+    return BeamStiffness(
         segment=segment.name,
         bending=list(stiffness.bending),
         shear=list(stiffness.shear),

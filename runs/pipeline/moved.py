@@ -18,7 +18,7 @@ from geometry.cylinder import forces
 from geometry.section import Direction
 from runs.pipeline.at_rest import AtRest, place_names
 from runs.pipeline.section_forces import rounded, section_forces
-from runs.pipeline.stresses import Fibres, FibreStress, Varying, WallStress, largest_stresses
+from runs.pipeline.strength import Fibres, FibreStress, Varying, WallStress, largest_stresses
 
 
 @dataclass(frozen=True, slots=True)

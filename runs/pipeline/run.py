@@ -17,7 +17,7 @@ from runs.case.build import build_boom
 from runs.case.schema import Case, Model
 from runs.folder.versions import versions
 from runs.pipeline import members
-from runs.pipeline.answering import of_model, of_run
+from runs.pipeline.answering import answer_model, answer_run
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.means import Means
 from runs.pipeline.model_output import BeamOutput, ShellOutput
@@ -69,7 +69,7 @@ class Run:
             own = summary.models[name]
             with ran.stages.stage("answers"), np.errstate(all="ignore"):
                 try:
-                    answers[name] = of_model(
+                    answers[name] = answer_model(
                         boom, case, ran.model, ran.built, ran.moved.trajectory, ran.shell
                     )
                     check_finite(answers[name])
@@ -77,7 +77,7 @@ class Run:
                     summary.failures[name], answers[name] = failure_reason(error), ModelAnswers()
             own.seconds = ran.stages.seconds
             own.wall_time = (own.wall_time or 0.0) + own.seconds["answers"]
-        summary.answers = of_run(boom, case, summary, answers)
+        summary.answers = answer_run(boom, case, summary, answers)
         self.results.conclude()
         check_finite(summary)
 

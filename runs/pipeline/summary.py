@@ -39,13 +39,13 @@ Known = Annotated[float | None, BeforeValidator(_known)]
 Numbers = Annotated[list[float], BeforeValidator(_listed)]
 
 
-class Entry(BaseModel):
+class SummaryTable(BaseModel):
     """A table of the summary, which has no other keys than its own."""
 
     model_config = ConfigDict(extra="forbid", validate_assignment=True)
 
 
-class Measured(Entry):
+class Measured(SummaryTable):
     """What is measured elsewhere, by the same names or by their plurals."""
 
     model_config = ConfigDict(
@@ -72,7 +72,7 @@ class CommonPeaks(Measured):
     period_spread: Known
 
 
-class EnsembleSummary(Entry):
+class EnsembleSummary(SummaryTable):
     """What a model's ensemble tells.
 
     ``horizons`` has the time in s from which the members are a part of the tip's range apart, by
@@ -88,7 +88,7 @@ class EnsembleSummary(Entry):
         return self.horizons[f"{share:g}"]
 
 
-class Predictability(Entry):
+class Predictability(SummaryTable):
     """When changes of several sizes have grown to parts of the tip's range.
 
     ``times`` (relatives, shares) and ``of_step`` (shares) in s; ``rate`` (shares) in 1/s;
@@ -104,7 +104,7 @@ class Predictability(Entry):
     limits: list[str]
 
 
-class Trial(Entry):
+class Trial(SummaryTable):
     """A motion in longer steps: ``step`` in s, and whether it keeps the slow peaks."""
 
     step: float
@@ -113,7 +113,7 @@ class Trial(Entry):
     holds: bool
 
 
-class StepsForPeaks(Entry):
+class StepsForPeaks(SummaryTable):
     """How few steps keep so many slow peaks ``within`` a part; ``duration`` in s.
 
     ``fewest`` is None where no trial holds.
@@ -126,7 +126,7 @@ class StepsForPeaks(Entry):
     trials: list[Trial]
 
 
-class BeamOfShell(Entry):
+class BeamStiffness(SummaryTable):
     """A segment as the beam that its shell acts as: E J in N·m² and G A_s in N, along z and in
     space along y, G J_t in N·m² in space; ``bending_part`` and ``shear_part`` are these over what
     the section's numbers make, ``torsion_part`` likewise.
@@ -141,7 +141,7 @@ class BeamOfShell(Entry):
     torsion_part: Known = None
 
 
-class StationSpring(Entry):
+class StationSpring(SummaryTable):
     """What a pressed place gives way beyond the beams, in series with the contact there.
 
     ``x`` is its station's in m, ``side`` that of the outer segment's walls which the inner one
@@ -153,14 +153,14 @@ class StationSpring(Entry):
     stiffness: Known
 
 
-class CalibrationCard(Entry):
+class CalibrationCard(SummaryTable):
     """What a calibrated beam has read from its shell, for whoever computes the boom elsewhere."""
 
-    segments: list[BeamOfShell]
+    segments: list[BeamStiffness]
     springs: list[StationSpring]
 
 
-class ModelSummary(Entry):
+class ModelSummary(SummaryTable):
     """What one model has found: ``frequencies`` in Hz, ``seconds`` of wall time by the stage.
 
     ``wall_time`` in s is what has passed, be it for compiling loops, while a stage whose results
@@ -259,7 +259,7 @@ class Levels(Measured):
     distributions: DistributionsLevel
 
 
-class Whole(Entry):
+class Whole(SummaryTable):
     """Two tips until several times in s, as parts of the larger range."""
 
     until: list[float]
@@ -267,7 +267,7 @@ class Whole(Entry):
     rms: list[Known]
 
 
-class Comparisons(Entry):
+class Comparisons(SummaryTable):
     """Each model against the reference, by its name; ``whole`` where segments rub."""
 
     reference: str
@@ -281,14 +281,14 @@ class Ensembles(EnsembleTable):
     slow_below: float | None
 
 
-class Snapshots(Entry):
+class Snapshots(SummaryTable):
     """Names of the pictures, or why there are none."""
 
     written: list[str]
     skipped: str | None
 
 
-class Summary(Entry):
+class Summary(SummaryTable):
     """What ``summary.json`` holds; ``models`` those that ran, ``failures`` why others did not.
 
     ``pads`` are those of all models and stations, ``cautions`` lines that say what the results are

@@ -30,7 +30,7 @@ from runs.case.schema import Case
 from runs.folder.files import whole
 from runs.report import numerals, theme
 from runs.report.figure_context import Figure, Pen
-from runs.report.marks import PINNED, Mark, amount, edges, look, marks
+from runs.report.marks import PINNED, Mark, abbreviated, edges, look, marks
 
 # Of the panels' height the outermost section takes this part, in the one that draws heights larger.
 SECTION_SHARE = 0.2
@@ -295,7 +295,7 @@ def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
     if panel.whole:
         panel.line([ground], **look(PINNED, theme.INK, SIGN))
     thick = Line2D([], [], color=theme.INK, linewidth=4.0)
-    panel.meanings[f"cylinder, {amount(cylinder.stiffness, 'N/m')}"] = thick
+    panel.meanings[f"cylinder, {abbreviated(cylinder.stiffness, 'N/m')}"] = thick
 
 
 def _extent(boom: Boom, angle: float) -> tuple[Array, Array]:

@@ -143,7 +143,7 @@ def edges(
     return (-half, half) if segment.section is None else segment.section_at(x).reach(direction)
 
 
-def amount(value: float, unit: str) -> str:
+def abbreviated(value: float, unit: str) -> str:
     """A number with its unit, in thousands, millions where it is large."""
     for larger, factor in _MORE.get(unit, ()):
         if abs(value) >= factor:
@@ -172,7 +172,7 @@ def marks(case: Case, boom: Boom) -> Iterator[Mark]:
         yield _load(table, boom, names.index(table.segment))
     for thrust in actions.thrusts(case, boom.segments):
         sign = FORCE_BACK if thrust.force > 0.0 else FORCE_ON
-        along = f"{amount(abs(thrust.force), 'N')} along the boom"
+        along = f"{abbreviated(abs(thrust.force), 'N')} along the boom"
         yield Mark("loads", thrust.segment, (thrust.x,), 0.0, sign, along)
 
 
@@ -188,7 +188,7 @@ def _ground_marks(boom: Boom) -> Iterator[Mark]:
             elif support.stiffness is None:
                 yield Mark("supports", index, place, edge, PINNED, "support", **upright)
             else:
-                meaning = f"elastic support, {amount(support.stiffness, 'N/m')}"
+                meaning = f"elastic support, {abbreviated(support.stiffness, 'N/m')}"
                 yield Mark("springs", index, place, edge, ELASTIC, meaning, **upright)
     for stop in boom.stops:
         grey = {**upright, "color": theme.PLAY_FREE, "clearance": 0.5 * stop.play}
@@ -214,7 +214,9 @@ def _load(table: LoadTable, boom: Boom, index: int) -> Mark:
     place = (at(table.x, *ends),)
     if table.moment:
         sign = MOMENT if largest > 0.0 else CLOCKWISE
-        return Mark("loads", index, place, 0.0, sign, f"moment {amount(abs(largest), 'N m')}{how}")
+        return Mark(
+            "loads", index, place, 0.0, sign, f"moment {abbreviated(abs(largest), 'N m')}{how}"
+        )
     return _force(index, place, largest, table.direction, "N", how)
 
 
@@ -232,7 +234,7 @@ def _spread(
 def _force(
     index: int, places: tuple[float, ...], value: float, direction: str, unit: str, how: str
 ) -> Mark:
-    size = amount(abs(value), unit)
+    size = abbreviated(abs(value), unit)
     if direction == "y":
         sign = AWAY if value > 0.0 else TOWARDS
         return Mark("loads", index, places, 0.0, sign, f"{size} sideways{how}")

@@ -15,7 +15,7 @@ from runs.pipeline.answers import Added, Answers, PlayAdds
 from runs.pipeline.pads import PressedPad
 from runs.pipeline.results import Results
 from runs.pipeline.statics import Reaction
-from runs.pipeline.stresses import COUNTS, Life, WallStress
+from runs.pipeline.strength import COUNTS, Life, WallStress
 from runs.report.answer_tables import (
     answer_tables,
     mode_table,

@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("rainflow", reason="the cycles are counted by it")
 
 from runs.case.schema import LifeTable
-from runs.pipeline.stresses import Varying, counted, endurance, life
+from runs.pipeline.strength import Varying, counted, endurance, life
 
 
 def test_cycles_are_those_of_the_standard() -> None:

@@ -18,7 +18,7 @@ from geometry.profiles import hexagon
 from geometry.section import BoxSection
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.section_forces import section_forces
-from runs.pipeline.stresses import Fibres, outer_corners
+from runs.pipeline.strength import Fibres, outer_corners
 from tests.runs.case_texts import read_case
 from tests.runs.summaries import answers_of
 

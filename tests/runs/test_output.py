@@ -129,7 +129,7 @@ def test_a_model_that_nothing_answers_for_keeps_its_motion(
     def singular(*_: object) -> ModelAnswers:
         raise np.linalg.LinAlgError("Singular matrix")
 
-    monkeypatch.setattr("runs.pipeline.run.of_model", singular)
+    monkeypatch.setattr("runs.pipeline.run.answer_model", singular)
     again = replace(run, results=replace(run.results, summary=run.results.summary.model_copy()))
     again.results.summary.failures = {}
     again.answer()
