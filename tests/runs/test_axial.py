@@ -133,18 +133,14 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
     [
         ("", None),
         ("[[axial]]\nforce = 1e4\n", None),
-        (
-            "[[axial]]\nforce = 3e5\n",
-            "caution: in tied the axial forces are 48.2 % of those under which the boom buckles, "
-            "more than a third: deflections grow out of proportion",
-        ),
-        (
-            '[[load]]\nsegment = "fly"\nx = 14.0\nmagnitude = -1e5\n',
-            "caution: {} the tip rests at -1.79 m, 13 % of the boom's length and more than 5 %: "
-            "small displacements do not hold; check units and loads",
-        ),
+        ("[[axial]]\nforce = 3e5\n",
+         "caution: in tied the axial forces are 48.2 % of those under which the boom buckles, "
+         "more than a third: deflections grow out of proportion"),
+        ('[[load]]\nsegment = "fly"\nx = 14.0\nmagnitude = -1e5\n',
+         "caution: {} the tip rests at -1.79 m, 13 % of the boom's length and more than 5 %: "
+         "small displacements do not hold; check units and loads"),
     ],
-)
+)  # fmt: skip
 def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | None) -> None:
     """Each on its slip, none on what is in proportion."""
     case = read_case(tmp_path, (LIFT + text + TIED).replace("= 0.05", "= 0.5"))
@@ -163,40 +159,26 @@ def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | 
 @pytest.mark.parametrize(
     ("text", "line"),
     [
-        (
-            "[[axial]]\nforce = 1e6\n",
-            "model[1]: the boom of 'beam' buckles under 0.622 times its axial forces, and has no "
-            "motion; it must bear more than all of them: make these smaller, or the sections "
-            "larger",
-        ),
-        (
-            "[[axial]]\nmass = 100.0\n",
-            "axial[1].force: missing; it is the force in N towards the base, or give the falls of "
-            "a hoist rope",
-        ),
-        (
-            "[[axial]]\nforce = 1e3\nfalls = 2\n",
-            "axial[1].falls: force is given; leave one of them out",
-        ),
-        (
-            "[[axial]]\nfalls = 2\n",
-            "axial[1].mass: missing, and there is no payload; it is the mass in kg that the rope "
-            "carries",
-        ),
-        (
-            '[[axial]]\nforce = 1e3\nsegment = "jib"\n',
-            "axial[1].segment: 'jib' is no segment; give 'mast' or 'fly'",
-        ),
-        (
-            "[[axial]]\nforce = 1e3\nx = 3.0\n",
-            "axial[1].x: 3 m lies outside 'fly'; it must be between 6 and 14 m",
-        ),
-        (
-            "[axial]\nforce = 1e3\n",
-            "axial: must be an array of tables, each headed [[axial]], got {'force': 1000.0}",
-        ),
+        ("[[axial]]\nforce = 1e6\n",
+         "model[1]: the boom of 'beam' buckles under 0.622 times its axial forces, and has no "
+         "motion; it must bear more than all of them: make these smaller, or the sections "
+         "larger"),
+        ("[[axial]]\nmass = 100.0\n",
+         "axial[1].force: missing; it is the force in N towards the base, or give the falls of "
+         "a hoist rope"),
+        ("[[axial]]\nforce = 1e3\nfalls = 2\n",
+         "axial[1].falls: force is given; leave one of them out"),
+        ("[[axial]]\nfalls = 2\n",
+         "axial[1].mass: missing, and there is no payload; it is the mass in kg that the rope "
+         "carries"),
+        ('[[axial]]\nforce = 1e3\nsegment = "jib"\n',
+         "axial[1].segment: 'jib' is no segment; give 'mast' or 'fly'"),
+        ("[[axial]]\nforce = 1e3\nx = 3.0\n",
+         "axial[1].x: 3 m lies outside 'fly'; it must be between 6 and 14 m"),
+        ("[axial]\nforce = 1e3\n",
+         "axial: must be an array of tables, each headed [[axial]], got {'force': 1000.0}"),
     ],
-)
+)  # fmt: skip
 def test_says_what_cannot_press(tmp_path: Path, text: str, line: str) -> None:
     assert refusal(tmp_path, LIFT + text) == line
 

@@ -75,25 +75,21 @@ def memory(*arguments: str) -> int:
     ("edits", "options", "members"),
     [
         ((("output_step = 1e-3", "output_step = 1e-5"),), SERIES, 20),
-        (
-            (("mesh_size = 0.25", "mesh_size = 0.1"), ("duration = 0.6", "duration = 0.1")),
-            ("--models", "shell"),
-            None,
-        ),
-        (
-            (
-                ("output_step = 1e-3", "output_step = 0.3\nstep = 1e-7"),
-                (
-                    "[[model]]",
-                    "[[load]]\nsegment = 'inner'\nmagnitude = 9.0\nramp = 0.2\n[[model]]",
-                ),
-            ),
-            SERIES,
-            None,
-        ),
+        ((("mesh_size = 0.25", "mesh_size = 0.1"), ("duration = 0.6", "duration = 0.1")),
+         ("--models", "shell"),
+         None),
+        ((
+             ("output_step = 1e-3", "output_step = 0.3\nstep = 1e-7"),
+             (
+                 "[[model]]",
+                 "[[load]]\nsegment = 'inner'\nmagnitude = 9.0\nramp = 0.2\n[[model]]",
+             ),
+         ),
+         SERIES,
+         None),
     ],
     ids=["outputs and members", "mesh", "steps of an output interval"],
-)
+)  # fmt: skip
 def test_memory_is_not_above_the_estimate_and_not_far_below(
     edits: tuple[tuple[str, str], ...], options: tuple[str, ...], members: int | None
 ) -> None:

@@ -116,34 +116,24 @@ def test_the_case_needs_no_material_where_each_segment_has_its_own(tmp_path: Pat
 @pytest.mark.parametrize(
     ("rest", "material", "line"),
     [
-        (
-            "",
-            "# none\n",
-            "material: missing, and 'arm' has none of its own; it is the table of the elastic "
-            "constants and density of all segments that have none of their own",
-        ),
-        (
-            "[payload]\nmass = 5.0\ngravity = 4.9\n[gravity]\nangle = 60.0",
-            "",
-            "payload.gravity: the table gravity is given, by which the payload weighs too; leave "
-            "one of them out",
-        ),
-        (
-            "[gravity]\nangle = 100.0",
-            "",
-            "gravity.angle: must be a number not greater than 90, got 100.0",
-        ),
-        (
-            "[gravity]\nacceleration = -9.8",
-            "",
-            "gravity.acceleration: must be a number not less than 0, got -9.8",
-        ),
-        (
-            "[gravity]\nluffing = 60.0",
-            "",
-            "gravity.luffing: unknown key; known ones are acceleration, angle",
-        ),
+        ("",
+         "# none\n",
+         "material: missing, and 'arm' has none of its own; it is the table of the elastic "
+         "constants and density of all segments that have none of their own"),
+        ("[payload]\nmass = 5.0\ngravity = 4.9\n[gravity]\nangle = 60.0",
+         "",
+         "payload.gravity: the table gravity is given, by which the payload weighs too; leave "
+         "one of them out"),
+        ("[gravity]\nangle = 100.0",
+         "",
+         "gravity.angle: must be a number not greater than 90, got 100.0"),
+        ("[gravity]\nacceleration = -9.8",
+         "",
+         "gravity.acceleration: must be a number not less than 0, got -9.8"),
+        ("[gravity]\nluffing = 60.0",
+         "",
+         "gravity.luffing: unknown key; known ones are acceleration, angle"),
     ],
-)
+)  # fmt: skip
 def test_says_what_cannot_weigh(tmp_path: Path, rest: str, material: str, line: str) -> None:
     assert refusal(tmp_path, text_of(rest, material)) == line

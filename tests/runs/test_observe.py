@@ -155,47 +155,29 @@ def test_a_segment_s_name_may_have_blanks_and_points(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "line"),
     [
-        (
-            observe("a", 1.0, segment="jib"),
-            "observe[1].segment: 'jib' is no segment; give 'outer' or 'inner'",
-        ),
-        (
-            observe("a", 1.0),
-            "observe[1].x: 1 m lies outside 'inner'; it must be between 9 and 19 m",
-        ),
-        (
-            observe("tip", 11.0),
-            "observe[1].name: 'tip' is the name of another output already; give it its own",
-        ),
-        (
-            observe("contact_force", 11.0),
-            "observe[1].name: 'contact_force' is the name of another output already; give it its "
-            "own",
-        ),
-        (
-            observe("a", 11.0) + observe("a", 12.0),
-            "observe[2].name: 'a' is the name of observe[1] already; give each its own",
-        ),
-        (
-            observe("a", 11.0, "twist"),
-            "observe[1].quantity: the boom is flat, and nothing moves along 'y' or twists; give "
-            "another quantity, or the joints lateral_play",
-        ),
-        (
-            observe("a", 11.0, "speed"),
-            "observe[1].quantity: must be 'deflection', 'rotation', 'velocity', 'acceleration', "
-            "'lateral' or 'twist', got 'speed'",
-        ),
-        (
-            "[start]\nvelocity = { inner = { speed = 1.0 } }",
-            "start.velocity.inner.speed: unknown key; known ones are z, y, turn, lateral_turn, x",
-        ),
-        (
-            "[start]\nvelocity = { inner = { lateral_turn = 1.0 } }",
-            "start.velocity.inner.lateral_turn: the boom is flat, and nothing moves along 'y'; "
-            "give the joints lateral_play",
-        ),
+        (observe("a", 1.0, segment="jib"),
+         "observe[1].segment: 'jib' is no segment; give 'outer' or 'inner'"),
+        (observe("a", 1.0),
+         "observe[1].x: 1 m lies outside 'inner'; it must be between 9 and 19 m"),
+        (observe("tip", 11.0),
+         "observe[1].name: 'tip' is the name of another output already; give it its own"),
+        (observe("contact_force", 11.0),
+         "observe[1].name: 'contact_force' is the name of another output already; give it its "
+         "own"),
+        (observe("a", 11.0) + observe("a", 12.0),
+         "observe[2].name: 'a' is the name of observe[1] already; give each its own"),
+        (observe("a", 11.0, "twist"),
+         "observe[1].quantity: the boom is flat, and nothing moves along 'y' or twists; give "
+         "another quantity, or the joints lateral_play"),
+        (observe("a", 11.0, "speed"),
+         "observe[1].quantity: must be 'deflection', 'rotation', 'velocity', 'acceleration', "
+         "'lateral' or 'twist', got 'speed'"),
+        ("[start]\nvelocity = { inner = { speed = 1.0 } }",
+         "start.velocity.inner.speed: unknown key; known ones are z, y, turn, lateral_turn, x"),
+        ("[start]\nvelocity = { inner = { lateral_turn = 1.0 } }",
+         "start.velocity.inner.lateral_turn: the boom is flat, and nothing moves along 'y'; "
+         "give the joints lateral_play"),
     ],
-)
+)  # fmt: skip
 def test_says_what_cannot_be_observed(tmp_path: Path, text: str, line: str) -> None:
     assert refusal(tmp_path, COARSE.replace("[[model]]", f"{text}\n\n[[model]]", 1)) == line

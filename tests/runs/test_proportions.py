@@ -55,50 +55,36 @@ def test_cases_that_come_along_have_none(path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "slip"),
     [
-        (
-            "youngs_modulus = 2.1e11",
-            "youngs_modulus = 7e8",
-            "material.youngs_modulus: Young's modulus is 7e+08 Pa, usual is from 1e+09 up to 1e+12 "
-            "Pa; if it is in kPa, give 7e+11 Pa",
-        ),
-        (
-            "density = 7850.0",
-            "density = 7.85",
-            "material.density: the density is 7.85 kg/m³, usual is from 500 up to 2.5e+04 kg/m³; "
-            "if it is in t/m^3, give 7850 kg/m³",
-        ),
-        (
-            "height = 0.4, width = 0.3",
-            "height = 4.0, width = 0.3",
-            "segment[1].section: the height of 'arm' is 4 m, usual is from 0.016 up to 1.6 m; if "
-            "it is in cm, give 0.04 m",
-        ),
-        (
-            "mass = 500.0",
-            "mass = 0.5",
-            "the payload of 0.5 kg is less than a thousandth of the boom's 972.6 kg; check the "
-            "units",
-        ),
-        (
-            "load = -470.0",
-            "load = -4.7e6",
-            "a load of 3.29e+07 N is more than a hundred times the boom's weight of 1.444e+04 N; "
-            "check the units",
-        ),
-        (
-            "stiffness = 1e8",
-            "stiffness = 1e4",
-            "the contacts of 'fly' in 'beam' give way by 0.0001 m/N, more than the segment itself "
-            "as a cantilever, 3.89e-06 m/N; check their stiffness",
-        ),
-        (
-            "mesh_size = 0.1",
-            "mesh_size = 0.5",
-            "the mesh size of 'shell', 0.5 m, is larger than a wall of 0.26 m",
-        ),
+        ("youngs_modulus = 2.1e11",
+         "youngs_modulus = 7e8",
+         "material.youngs_modulus: Young's modulus is 7e+08 Pa, usual is from 1e+09 up to 1e+12 "
+         "Pa; if it is in kPa, give 7e+11 Pa"),
+        ("density = 7850.0",
+         "density = 7.85",
+         "material.density: the density is 7.85 kg/m³, usual is from 500 up to 2.5e+04 kg/m³; "
+         "if it is in t/m^3, give 7850 kg/m³"),
+        ("height = 0.4, width = 0.3",
+         "height = 4.0, width = 0.3",
+         "segment[1].section: the height of 'arm' is 4 m, usual is from 0.016 up to 1.6 m; if "
+         "it is in cm, give 0.04 m"),
+        ("mass = 500.0",
+         "mass = 0.5",
+         "the payload of 0.5 kg is less than a thousandth of the boom's 972.6 kg; check the "
+         "units"),
+        ("load = -470.0",
+         "load = -4.7e6",
+         "a load of 3.29e+07 N is more than a hundred times the boom's weight of 1.444e+04 N; "
+         "check the units"),
+        ("stiffness = 1e8",
+         "stiffness = 1e4",
+         "the contacts of 'fly' in 'beam' give way by 0.0001 m/N, more than the segment itself "
+         "as a cantilever, 3.89e-06 m/N; check their stiffness"),
+        ("mesh_size = 0.1",
+         "mesh_size = 0.5",
+         "the mesh size of 'shell', 0.5 m, is larger than a wall of 0.26 m"),
     ],
     ids=["modulus", "density", "height", "payload", "load", "contact", "mesh"],
-)
+)  # fmt: skip
 def test_each_slip_is_told(tmp_path: Path, old: str, new: str, slip: str) -> None:
     assert f"caution: {slip}" in slips_of(tmp_path, old, new)
 
