@@ -10,7 +10,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.systems import finite_element_system, kantorovich_system
 from dynamics.contact import PowerContact
 from dynamics.drive.travel import SCurve, Stroke, Together
 from dynamics.equilibrium import equilibrium
@@ -21,6 +20,7 @@ from dynamics.motion import Motion
 from geometry.boom import Boom, BoomError, Joint, Stop, Support
 from geometry.drive import Drive
 from tests.beam_model.drawn import DRAWN, LAW, LONGEST, runge_kutta, shifted, telescope, tips
+from tests.beam_model.systems import finite_element_system, kantorovich_system
 from tests.touching import touching
 
 

@@ -16,7 +16,6 @@ from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.segment_model import gap_system
-from beam_model.systems import finite_element_system
 from dynamics.arrays import Array
 from dynamics.drive.travel import SCurve, Stroke
 from dynamics.equilibrium import equilibrium
@@ -27,6 +26,7 @@ from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, PointMass
 from geometry.drive import Carrier, Drive
 from tests.beam_model.drawn import DRAWN, LAW, LONGEST, runge_kutta, telescope, tips
+from tests.beam_model.systems import finite_element_system
 from tests.touching import touching
 
 GRAVITY = 8.5

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from beam_model.systems import finite_element_system
 from dynamics.contact import PowerContact
 from dynamics.drive.travel import SCurve
 from dynamics.equilibrium import equilibrium
@@ -25,6 +24,7 @@ from shell_model.boom_shell import ShellOptions
 from shell_model.contact.local_compliance import compliance, local_compliance
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.pad_springs import SLOW, springs, squared
+from tests.beam_model.systems import finite_element_system
 from tests.shell_model.booms import LATERAL_LAW, boom_in_space, flat_boom
 from tests.touching import touching
 
