@@ -99,6 +99,14 @@ class Integration:
         moving, thrusts = moving_rows(system), thrust_arrays(system)
         return LoopSystem(omega2, load, loads, row_laws(system), moving, thrusts)
 
+    @property
+    def _flies(self) -> bool:
+        """Whether constant loads alone act while all contacts are open."""
+        system = self.motion.system
+        others = len(system.excitations), len(system.travels), len(system.dashpots)
+        rubbed = any(friction.normal_force for friction in system.frictions)
+        return not (any(others) or rubbed or (system.omega2 < 0.0).any())
+
     @cached_property
     def _tables(self) -> dict[int, tuple[Flow, Array]]:
         return {}
@@ -118,16 +126,19 @@ class Integration:
             NumericsError: the state is not finite, or row forces do not converge.
         """
         system, step = self.motion.system, self.motion.output_step / substeps
+        joined = (substeps & -substeps).bit_length() - 1 if self._flies else 0
+        stretches = substeps >> joined
         if substeps not in self._tables:
-            flow = modal_flow(system, step * 0.5 ** np.arange(_HALVINGS + 1))
+            lengths = step * 2.0**joined * 0.5 ** np.arange(joined + _HALVINGS + 1)
+            flow = modal_flow(system, lengths)
             matrices = [compliance(state.rows, state.rows, rise) for rise in flow.rise]
             self._tables[substeps] = flow, np.array(matrices)
         if output is None:
             output = Output(*(np.zeros((last - first, x.shape[1])) for x in self.output))
-        times = step * np.arange(first * substeps, last * substeps + 1)
+        times = step * 2.0**joined * np.arange(first * stretches, last * stretches + 1)
         problem = row_problem(len(state.rows), len(system.frictions))
         if not march(
-            self._system, *self._tables[substeps], state, course(system, times), substeps,
+            self._system, *self._tables[substeps], state, course(system, times), stretches, joined,
             problem, output,
         ):  # fmt: skip
             raise NumericsError(

@@ -225,20 +225,49 @@ def _agree(found: Array, used: Array) -> bool:
     return apart <= _AGREED * size
 
 
+@njit(**SUMS)
+def free_time(system: LoopSystem, flow: Flow, state: State, longest: float) -> float:
+    """Return a time in s within which no contact closes; 0 where one is closed.
+
+    Without forces of rows the speed of mode i is at most √(v² + (ω² a − Q)²/ω²), or |v| + |Q| t
+    where ω is 0, and that of a row at most the sum over its modes.
+    """
+    limits, speed = system.laws.limits, np.empty(state.a.size)
+    for i in range(speed.size):
+        pull = system.load[i] - flow.omega2[i] * state.a[i]
+        if flow.omega2[i] > 0.0:
+            speed[i] = np.sqrt(state.v[i] * state.v[i] + pull * pull / flow.omega2[i])
+        else:
+            speed[i] = abs(state.v[i]) + abs(pull) * longest
+    for j in range(limits.size):
+        room = min(limits[j]["high"] - state.y[j], state.y[j] - limits[j]["low"])
+        if room <= 0.0:
+            return 0.0
+        fastest = 0.0
+        for i in range(speed.size):
+            fastest += abs(state.rows[j, i]) * speed[i]
+        longest = min(longest, room / fastest) if fastest > 0.0 else longest
+    return longest
+
+
 @njit(**LOOP)
 def march(
-    system: LoopSystem, flow: Flow, compliances: Array, state: State, course: Course, substeps: int,
-    problem: Problem, output: Output,
+    system: LoopSystem, flow: Flow, compliances: Array, state: State, course: Course,
+    stretches: int, joined: int, problem: Problem, output: Output,
 ) -> bool:  # fmt: skip
     """Advance by as many output intervals as ``output`` has; return whether all steps converged.
 
+    An output interval is a number of stretches of 2ʲ steps. Where contacts alone act, steps in
+    which none can close are joined up to a whole stretch: the flow is exact.
+
     Args:
         system: moves.
-        flow: over the step, its half, its quarter and so on: a step whose forces do not converge
-            is halved.
+        flow: over a stretch, its half, its quarter and so on beyond the step: a step whose forces
+            do not converge is halved.
         compliances: (num_lengths, num_rows, num_rows) C of each, where no row moves.
         state: is changed.
-        course: of the ``substeps`` steps of each output interval, one after the other.
+        course: of the ``stretches`` of each output interval, one after the other.
+        joined: j, halvings of a stretch that give the step; 0 where other forces act.
         problem: scratch for the row forces.
         output: is filled.
     """
@@ -258,9 +287,17 @@ def march(
     stored = np.zeros((4, thrusts.force.size))
     mean, peak, friction = np.zeros(contacts), np.zeros(contacts), np.zeros(frictions)
     matrix = compliances[0]
-    for step in range(output.states.shape[0] * substeps):
-        done, depth = 0.0, 0
+    for step in range(output.states.shape[0] * stretches):
+        done, depth = 0.0, joined
         while done < 1.0:
+            if 0 < joined == depth and done * 2.0 ** (joined - 1) % 1.0 == 0.0:
+                free_for = free_time(system, flow, state, flow.time[0])
+                while (
+                    depth > 0
+                    and flow.time[depth - 1] <= free_for
+                    and done * 2.0 ** (depth - 1) % 1.0 == 0.0
+                ):
+                    depth -= 1
             part, time = 0.5**depth, flow.time[depth]
             if excited:
                 off = done + 0.5 * part - 0.5
@@ -299,7 +336,7 @@ def march(
                 if depth == flow.time.size:
                     return False
                 continue
-            share = part / substeps
+            share = part / stretches
             for j in range(m):
                 y_end[j] = free[j]
                 for i in range(m):
@@ -340,10 +377,11 @@ def march(
             if moves:
                 rows[:] = then
             done += part
-            while depth > 0 and done * 2.0 ** (depth - 1) % 1.0 == 0.0:
+            depth = max(depth, joined)
+            while depth > joined and done * 2.0 ** (depth - 1) % 1.0 == 0.0:
                 depth -= 1
-        if (step + 1) % substeps == 0:
-            interval = step // substeps
+        if (step + 1) % stretches == 0:
+            interval = step // stretches
             output.states[interval] = a
             output.velocities[interval] = v[: output.velocities.shape[1]]
             output.gaps[interval] = y[:contacts]
