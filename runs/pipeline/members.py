@@ -86,19 +86,12 @@ def slow_below(boom: Boom, time: TimeTable) -> float | None:
     return cutoff
 
 
-def common_peaks(ensemble: xr.Dataset, cutoff: float | None) -> SlowPeaks | None:
-    """The tip's slow peaks that all members have; None without a cut-off in Hz."""
-    if cutoff is None:
-        return None
-    return SlowPeaks.of(ensemble["tip"].values, ensemble["time"].values, cutoff)
-
-
 def sum_up(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> EnsembleSummary:
     """What the summary says of one model's ensemble.
 
     Args:
         ensemble: of :func:`dynamics.predictability.ensemble.integrate_ensemble`.
-        peaks: its :func:`common_peaks`.
+        peaks: the tip's slow peaks that all members have; None without a cut-off.
     """
     shares = zip(SHARES, horizons_of(ensemble), strict=True)
     return EnsembleSummary(

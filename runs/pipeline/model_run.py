@@ -15,6 +15,7 @@ from beam_model.calibration import Calibration, Stiffness
 from dynamics.failure import NUMERICS, NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.predictability.ensemble import integrate_ensemble
+from dynamics.predictability.low_pass import SlowPeaks
 from dynamics.stages import Stages
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Segment
@@ -167,7 +168,8 @@ def _move(
                 told,
                 trajectory,
             )
-        peaks = members.common_peaks(ensemble, cutoff)
+        tips, time = ensemble["tip"].values, ensemble["time"].values
+        peaks = None if cutoff is None else SlowPeaks.of(tips, time, cutoff)
         summary.ensemble = members.sum_up(ensemble, peaks)
         with stages.stage("horizons") as told:
             summary.horizons = members.measure_predictability(

@@ -94,17 +94,13 @@ class Results:
         if expected != summary.case_hash == sha256((folder / CASE).read_bytes()).hexdigest():
             what = "is another version's, which had other keys; run the case again"
             raise BadInput(str(folder), CASE, what)
-        marks = {
-            TRAJECTORIES: trajectories.attrs.get("case_hash"),
-            SUMMARY: summary.case_hash,
-        }
+        marks = {TRAJECTORIES: trajectories.attrs.get("case_hash"), SUMMARY: summary.case_hash}
         if ensembles is not None:
             marks[ENSEMBLES] = ensembles.attrs.get("case_hash")
         for name, mark in marks.items():
             if mark != expected:
-                raise BadInput(
-                    str(folder), name, f"is not of the case in {CASE}; run the case again"
-                )
+                what = f"is not of the case in {CASE}; run the case again"
+                raise BadInput(str(folder), name, what)
         results = cls(case, trajectories, summary, ensembles)
         if not {"pads", "cautions"} <= summary.model_fields_set:
             results.conclude()

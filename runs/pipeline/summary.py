@@ -18,6 +18,7 @@ from pydantic_core import to_jsonable_python
 
 from dynamics.drive.stick_slip import StickSlip
 from dynamics.failure import NumericsError
+from dynamics.trajectory import Pointwise
 from geometry.typography import TO_KILO, TO_PERCENT
 from runs.case.schema import EnsembleTable
 from runs.pipeline.answers import Answers
@@ -26,16 +27,15 @@ from runs.pipeline.pads import PressedPad
 from shell_model.stress.history import StressSummary
 
 
-def _known(number: Any) -> Any:
-    return None if isinstance(number, float) and not math.isfinite(number) else number
-
-
 def _listed(values: Any) -> Any:
     return values.tolist() if isinstance(values, np.ndarray) else values
 
 
 # A number, and None for NaN and infinity, which JSON does not have.
-Known = Annotated[float | None, BeforeValidator(_known)]
+Known = Annotated[
+    float | None,
+    BeforeValidator(lambda n: None if isinstance(n, float) and not math.isfinite(n) else n),
+]
 Numbers = Annotated[list[float], BeforeValidator(_listed)]
 
 
@@ -223,14 +223,6 @@ class ModelSummary(SummaryTable):
     stick_slip: dict[str, StickSlip] = {}
 
 
-class PointwiseLevel(Measured):
-    """Of :class:`dynamics.predictability.comparison.Pointwise`."""
-
-    until: float
-    largest: float
-    rms: float
-
-
 class PeaksLevel(Measured):
     """Of :class:`dynamics.predictability.comparison.PeakDifferences`, in s and m."""
 
@@ -254,7 +246,7 @@ class DistributionsLevel(Measured):
 class Levels(Measured):
     """Two ensembles compared, at three levels."""
 
-    pointwise: PointwiseLevel
+    pointwise: Pointwise
     peaks: PeaksLevel
     distributions: DistributionsLevel
 
