@@ -82,9 +82,9 @@ def measure(
         tell: told how far it is.
     """
     found = []
-    for number, case in enumerate(cases, start=1):
-        found.append([first_frequencies(case, m, comm, cache) for m in case.models])
-        tell(NAME, f"{len(cases)} points", number / len(cases))
+    for case in cases:
+        found.append([first_frequencies(case, model, comm, cache) for model in case.models])
+        tell(NAME, f"{len(cases)} points", len(found) / len(cases))
     return np.array(found)
 
 
@@ -109,12 +109,9 @@ def table(data: xr.Dataset) -> Table:
         row=[dim for dim in data.dims if dim not in ("joints", "mode")]
     )
     rows = stacked["row"].to_index().to_frame()
-    columns = [
-        Column(str(key).replace(".", ".\n"), [f"{x:g}" for x in rows[key]])
-        for key in rows
-        if key != "model"
-    ]
-    columns.insert(0, Column("model", [str(name) for name in rows["model"]]))
+    columns = [Column("model", [str(name) for name in rows.pop("model")])]
+    for key in rows:
+        columns.append(Column(str(key).replace(".", ".\n"), [f"{x:g}" for x in rows[key]]))
     for joints in JOINTS:
         for mode in data["mode"].values[:SHOWN]:
             of_mode = stacked.sel(joints=joints, mode=mode).values

@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import csv
-import io
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.figure import Figure as Sheet
 from rich.console import Console
 
@@ -85,6 +85,14 @@ def against(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Plan:
     return plan("case.toml", ["joint.play=0.008,0.014"], MODELS, None, "kantorovich-5")
 
 
+def shown(data: xr.Dataset) -> str:
+    """What a terminal of 80 columns shows of a sweep."""
+    console = Console(width=80, legacy_windows=False)
+    with console.capture() as captured:
+        output.show(data, "kantorovich-5", console)
+    return captured.get()
+
+
 def test_a_sweep_tells_the_distances_of_its_models(against: Plan) -> None:
     """Reference: other code, both models in one run, their tips held against one another here."""
     data = output.write(against, run(against), Path("out"))
@@ -111,11 +119,7 @@ def test_a_sweep_tells_the_distances_of_its_models(against: Plan) -> None:
         "sweep-lines.png",
     ]
     assert run(against)[0].off.keys() == {"kantorovich-4", "beam-fe-tied"}
-    console = Console(file=io.StringIO(), width=80, legacy_windows=False)
-    output.show(data, "kantorovich-5", console)
-    printed = console.file
-    assert isinstance(printed, io.StringIO)
-    table = printed.getvalue().partition("Distances from kantorovich-5")[2]
+    table = shown(data).partition("Distances from kantorovich-5")[2]
     first = [line.split()[0] for line in table.splitlines() if line.strip()]
     assert [word for word in first if word in MODELS] == ["kantorovich-4", "beam-fe-tied"]
     assert "the time step changes the tip of kantorovich-5 by" in " ".join(table.split())
@@ -131,11 +135,8 @@ def test_a_sweep_says_until_when_it_compares_and_what_steps_change(against: Plan
     assert doubled is not None
     there = data["step_error"].sel({"joint.play": 0.014, "model": "kantorovich-5"})
     assert float(there) == pytest.approx(doubled)
-    console = Console(file=io.StringIO(), width=80, legacy_windows=False)
-    output.show(data, "kantorovich-5", console)
-    assert isinstance(console.file, io.StringIO)
     assert 0.0 < doubled < 1.0e-3
-    until, changes = console.file.getvalue().splitlines()[-2:]
+    until, changes = shown(data).splitlines()[-2:]
     assert until == "tips are compared until 0.9 s"
     assert changes.startswith("the time step changes the tip of kantorovich-5 by 0.0")
     assert changes.endswith(" % of its range")
