@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import log, pi
+from typing import Any
 
 import pytest
 
@@ -38,6 +39,16 @@ PLAYED, TIED = "kantorovich-5", "beam-fe-tied"
 def results() -> Results:
     case = change(case_file.load(str(CASES / "coarse.toml")), **{"damping.modal": 0.02})
     return run_case(case, [PLAYED, TIED])
+
+
+def answering(results: Results, **changes: Any) -> Results:
+    """Results whose answers say something else of the run, or by ``own`` of the model with play."""
+    answers = results.summary.answers
+    if own := changes.pop("own", None):
+        changed = replace(answers.models[PLAYED], **own)
+        changes["models"] = answers.models | {PLAYED: changed}
+    summary = results.summary.model_copy(update={"answers": replace(answers, **changes)})
+    return replace(results, summary=summary)
 
 
 def cells(table: Table | None) -> dict[str, dict[str, str]]:
@@ -75,8 +86,7 @@ def test_play_is_said_in_a_sentence(results: Results) -> None:
         Added("stress", "inner", "Pa", 9e7, 10e7),
         Added("stress", "outer", "Pa", 12e7, 10e7),
     ]
-    answers = replace(results.summary.answers, play=[PlayAdds(PLAYED, numbers)])
-    told = replace(results, summary=results.summary.model_copy(update={"answers": answers}))
+    told = answering(results, play=[PlayAdds(PLAYED, numbers)])
     assert play_sentence(told) == (
         "Play adds 50 mm (+50 %) to the tip at rest under the largest loads and 20 MPa (+20 %) "
         "to the largest stress of an outer fibre. The first frequency is 1.5 Hz in place of 2 Hz."
@@ -94,9 +104,7 @@ def test_every_table_of_a_rest_says_under_which_loads(results: Results) -> None:
         Reaction("outer", 0.0, 1e3, 5e3, None),
         Reaction("outer", 3.0, 2e3, 1.6e-7, None),
     ]
-    answers = replace(results.summary.answers, reactions=bears)
-    told = replace(results, summary=results.summary.model_copy(update={"answers": answers}))
-    tables = rest_tables(told)
+    tables = rest_tables(answering(results, reactions=bears))
     assert [table.title.partition(":")[0] for table in tables] == [
         "At rest under the largest loads",
         "At rest under the largest loads",
@@ -108,16 +116,12 @@ def test_every_table_of_a_rest_says_under_which_loads(results: Results) -> None:
 
 def with_stress(results: Results, stress: float) -> Results:
     """The outer segment's largest stress in Pa, of a steel of 355 MPa, its wall a tenth more."""
-    answers = results.summary.answers
-    own = answers.models[PLAYED]
-    assert own.moved is not None
-    fibre = replace(own.moved.fibres[0], stress=-stress, x=2.0, utilisation=stress / 355e6)
+    moved = results.summary.answers.models[PLAYED].moved
+    assert moved is not None
+    fibre = replace(moved.fibres[0], stress=-stress, x=2.0, utilisation=stress / 355e6)
     patch = 1.1 * stress
     wall = WallStress("outer", 10.0, patch, 0.5, 3.0 * patch, patch / 355e6)
-    moved = replace(own.moved, fibres=[fibre], walls=[wall])
-    models = answers.models | {PLAYED: replace(own, moved=moved)}
-    answers = replace(answers, models=models)
-    return replace(results, summary=results.summary.model_copy(update={"answers": answers}))
+    return answering(results, own={"moved": replace(moved, fibres=[fibre], walls=[wall])})
 
 
 def test_what_nears_the_yield_strength_stands_out(results: Results) -> None:
@@ -170,12 +174,8 @@ def test_pads_of_unknown_strength_are_not_strong_enough(results: Results) -> Non
 
 def test_a_life_that_is_used_up_is_not_strong_enough(results: Results) -> None:
     """Reference: by hand, a damage of 3.2."""
-    answers = results.summary.answers
-    own = answers.models[PLAYED]
     life = Life("inner", 10.0, 0.0, 0.2, 4.0, 9e7, 8e7, [9e7], [4.0], 1.6e-4, 3.2)
-    models = answers.models | {PLAYED: replace(own, life=[life])}
-    answers = replace(answers, models=models)
-    told = replace(results, summary=results.summary.model_copy(update={"answers": answers}))
+    told = answering(results, own={"life": [life]})
     assert strength_sentence(told) == (
         "Not strong enough: 320 % of a life is used. No yield strength is given of outer and inner."
     )
