@@ -8,7 +8,6 @@ from itertools import islice
 
 import numpy as np
 from rich.console import Console
-from rich.table import Table
 
 from dynamics.damping import pressed_ratios
 from dynamics.failure import NUMERICS
@@ -26,6 +25,7 @@ from runs.pipeline.drives import drive_lines, slip_cautions, slip_lines, slippin
 from runs.pipeline.estimates import Preview, of_preview
 from runs.pipeline.proportions import of_buckling, slips
 from runs.pipeline.statics import print_statics
+from runs.report.tables import Table
 
 # Modes whose damping is shown.
 SHOWN_MODES = 3
@@ -41,19 +41,19 @@ def print_inferred(declared: Declared, console: Console) -> None:
     """Print a checked case's segments, joints and models."""
     case, boom, preview = declared.case, declared.boom, Preview(declared)
     console.print(case.title, markup=False)
-    console.print(_segments(case, boom))
+    _segments(case, boom).show(console)
     if (stiffeners := _stiffeners(boom, case.system)).rows:
-        console.print(stiffeners)
+        stiffeners.show(console)
     if boom.joints:
-        console.print(_joints(case, boom))
+        _joints(case, boom).show(console)
     drives = list(slippings(case, boom))
     for line in (*drive_lines(boom, case.system), *slip_lines(drives, case.system)):
         console.print(line, markup=False, highlight=False)
-    console.print(_models(case, boom))
+    _models(case, boom).show(console)
     if boom.compressed:
         print_axial_forces(declared, console)
     if (ratios := _damping_ratios(preview)).rows:
-        console.print(ratios)
+        ratios.show(console)
     print_statics(case, boom, console)
     cautions = *slips(case, boom), *slip_cautions(drives, case.system)
     for line in (*actions.series_notes(case), *cautions):
@@ -65,12 +65,12 @@ def _segments(case: Case, boom: Boom) -> Table:
     system = case.system
     headings = {"span": "m", "m": "kg/m", "J": "m^4", "I_p": "kg m"}
     shown = [f"{name} ({system.label(unit)})" for name, unit in headings.items()]
-    table = Table("segment", *shown, "box (mm)")
+    rows = []
     for given, segment in zip(case.segments, boom.segments, strict=True):
         box = "unknown" if segment.section is None else str(segment.section)
         if segment.head_section is not None:
             box = f"{box} to {segment.head_section}"
-        table.add_row(
+        row = (
             segment.name,
             f"{system.of(segment.start, 'm'):g}–{system.of(segment.end, 'm'):g}",
             f"{system.of(segment.mass_per_length, 'kg/m'):.4g}",
@@ -78,13 +78,14 @@ def _segments(case: Case, boom: Boom) -> Table:
             f"{system.of(segment.rotary_inertia, 'kg m'):.3g}",
             box if given.section is not None or segment.section is None else f"{box}, inferred",
         )
-    return table
+        rows.append(row)
+    return Table.of_rows("", "", ("segment", *shown, "box (mm)"), rows)
 
 
 def _stiffeners(boom: Boom, system: System) -> Table:
     """Those of segments with known plates; without, there is no shell either."""
     x, mass = f"x ({system.label('m')})", f"mass ({system.label('kg')})"
-    table = Table("stiffener", "of", x, "t (mm)", mass)
+    rows = []
     for segment in boom.segments:
         box, density = segment.section, segment.material.density
         if box is None:
@@ -93,12 +94,12 @@ def _stiffeners(boom: Boom, system: System) -> Table:
             area = segment.mean_perimeter(one) * (one.end - one.start)
             place = f"{system.of(one.start, 'm'):g}–{system.of(one.end, 'm'):g}"
             row = _plate(one.thickness, density * area, system)
-            table.add_row("collar", segment.name, place, *row)
+            rows.append(("collar", segment.name, place, *row))
         for plate in segment.diaphragms:
             per_thickness = density * segment.section_at(plate.x).enclosed_area
             row = _plate(plate.thickness, per_thickness, system)
-            table.add_row("diaphragm", segment.name, f"{system.of(plate.x, 'm'):g}", *row)
-    return table
+            rows.append(("diaphragm", segment.name, f"{system.of(plate.x, 'm'):g}", *row))
+    return Table.of_rows("", "", ("stiffener", "of", x, "t (mm)", mass), rows)
 
 
 def _plate(thickness: float, mass_per_thickness: float, system: System) -> tuple[str, str]:
@@ -109,14 +110,14 @@ def _plate(thickness: float, mass_per_thickness: float, system: System) -> tuple
 def _joints(case: Case, boom: Boom) -> Table:
     system, m = case.system, case.system.label("m")
     lengths = f"overlap ({m})", f"stations ({m})"
-    table = Table("joint", *lengths, "clearance (mm)", "free (mm)", "friction")
+    rows = []
     for joint in boom.joints:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         free = "unknown"
         if outer.section is not None and inner.section is not None:
             height, width = room(joint, outer, inner)
             free = f"{1e3 * height:.1f} high, {1e3 * width:.1f} wide"
-        table.add_row(
+        row = (
             f"{inner.name} in {outer.name}",
             f"{system.of(min(outer.end, inner.end) - max(outer.start, inner.start), 'm'):g}",
             ", ".join(f"{system.of(x, 'm'):g}" for x in joint.stations),
@@ -124,7 +125,10 @@ def _joints(case: Case, boom: Boom) -> Table:
             free,
             _friction(joint),
         )
-    return table
+        rows.append(row)
+    return Table.of_rows(
+        "", "", ("joint", *lengths, "clearance (mm)", "free (mm)", "friction"), rows
+    )
 
 
 def _clearances(joint: Joint) -> Iterator[str]:
@@ -147,23 +151,25 @@ def _friction(joint: Joint) -> str:
 
 
 def _models(case: Case, boom: Boom) -> Table:
-    table = Table("model", "kind", "", "contact (k in N/mⁿ)")
+    rows = []
     for model in case.models:
         laws = {str(joint.contact) for joint in model.joined(boom).boom.joints}
         contact = "tied" if model.play_free else "; ".join(sorted(laws))
-        table.add_row(model.name, model.kind, model.describe(), contact)
-    return table
+        rows.append((model.name, model.kind, model.describe(), contact))
+    return Table.of_rows("", "", ("model", "kind", "", "contact (k in N/mⁿ)"), rows)
 
 
 def print_axial_forces(declared: Declared, console: Console) -> None:
     """Print the largest force of each segment, and the buckling factor of each model."""
-    table = Table("axial force, pressing", "largest (kN)", "over the plain area (MPa)")
+    rows = []
     for number, segment in enumerate(declared.boom.segments):
         force, stress = _hardest(declared.boom, number)
         told = "unknown" if stress is None else f"{stress * TO_MEGA:.4g}"
-        table.add_row(segment.name, f"{force * TO_KILO:.4g}", told)
-    console.print(table)
-    buckling = Table("joints pressed", "buckling factor", "of the critical forces")
+        rows.append((segment.name, f"{force * TO_KILO:.4g}", told))
+    Table.of_rows(
+        "", "", ("axial force, pressing", "largest (kN)", "over the plain area (MPa)"), rows
+    ).show(console)
+    factors = []
     cautions: list[str] = []
     for model in declared.case.models:
         # A shell would have to be computed first.
@@ -173,8 +179,10 @@ def print_axial_forces(declared: Declared, console: Console) -> None:
         row = "unknown", "unknown"
         if factor is not None:
             row = f"{factor:.4g}", f"{100.0 / factor:.3g} %"
-        buckling.add_row(name, *row)
-    console.print(buckling)
+        factors.append((name, *row))
+    Table.of_rows(
+        "", "", ("joints pressed", "buckling factor", "of the critical forces"), factors
+    ).show(console)
     for caution in cautions:
         console.print(caution, markup=False)
 
@@ -199,7 +207,7 @@ def _damping_ratios(preview: Preview) -> Table:
     """What the first modes of the boom get in each model, its joints pressed, from all damping."""
     case, boom = preview.declared.case, preview.declared.boom
     shapes = [f"mode {number}" for number in range(1, SHOWN_MODES + 1)]
-    table = Table("damping, joints pressed", *shapes)
+    rows = []
     given = [*case.damping.model_dump().values(), *(s.viscous_damping for s in boom.segments)]
     given += [joint.dashpot for joint in boom.joints]
     given += [cylinder.dashpot for cylinder in boom.cylinders]
@@ -208,8 +216,8 @@ def _damping_ratios(preview: Preview) -> Table:
         # A shell would have to be computed first.
         beam = model.stand_in(boom).beam if model.needs_shell else model.coarsened(boom)
         name = f"{model.name}, as beam elements" if model.needs_shell else model.name
-        table.add_row(name, *islice(_ratios(preview, model, beam), SHOWN_MODES))
-    return table
+        rows.append((name, *islice(_ratios(preview, model, beam), SHOWN_MODES)))
+    return Table.of_rows("", "", ("damping, joints pressed", *shapes), rows)
 
 
 def _ratios(preview: Preview, model: Model, beam: ModelTable) -> list[str]:

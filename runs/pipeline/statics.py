@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 from rich.console import Console
-from rich.table import Table
 
 from beam_model.statics import Elements, StaticState, handed_on, static_state
 from dynamics.damping import pressed_modes
@@ -22,6 +21,7 @@ from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.at_rest import pressed, tilts
 from runs.pipeline.proportions import of_period, of_tip
+from runs.report.tables import Table
 
 # A part of what others bear that is none.
 ROUND_OFF = 1.0e-9
@@ -150,15 +150,15 @@ def cylinder_force(state: StaticState, number: int) -> float:
 
 def print_statics(case: Case, boom: Boom, console: Console) -> None:
     """Print masses, and the boom at rest."""
-    console.print(_masses(boom, case.system))
+    _masses(boom, case.system).show(console)
     found = statics(case, boom)
     if found is None:
         console.print("No rest under the loads of t = 0 is found.")
         return
     played, tied = found
-    console.print(_reactions(played, case.system))
+    _reactions(played, case.system).show(console)
     if boom.cylinders:
-        console.print(_cylinders(played, case.system))
+        _cylinders(played, case.system).show(console)
     hertz = [
         float(pressed_modes(state.system, state.position)[0][0]) / (2.0 * np.pi) for state in found
     ]
@@ -180,7 +180,7 @@ def print_statics(case: Case, boom: Boom, console: Console) -> None:
 def _masses(boom: Boom, system: System) -> Table:
     """Of each segment with what it carries, and of all."""
     kg, m = system.label("kg"), system.label("m")
-    table = Table("mass", f"segment ({kg})", f"on it ({kg})", f"middle ({m})")
+    rows = []
 
     def mass(value: float) -> str:
         return f"{system.of(value, 'kg'):.4g}"
@@ -193,10 +193,12 @@ def _masses(boom: Boom, system: System) -> Table:
         own, here = segment.mass_per_length * segment.length, segment.mass
         middle = own * segment.mass_middle
         middle += sum(point.mass * point.x for point in segment.carried)
-        table.add_row(segment.name, mass(own), mass(here - own), place(middle / here))
+        rows.append((segment.name, mass(own), mass(here - own), place(middle / here)))
         whole, moment = whole + here, moment + middle
-    table.add_row("all", mass(whole), "", place(moment / whole))
-    return table
+    rows.append(("all", mass(whole), "", place(moment / whole)))
+    return Table.of_rows(
+        "", "", ("mass", f"segment ({kg})", f"on it ({kg})", f"middle ({m})"), rows
+    )
 
 
 def _reactions(state: StaticState, system: System) -> Table:
@@ -205,9 +207,9 @@ def _reactions(state: StaticState, system: System) -> Table:
     pushed = any(one.along for one in held)
     along = ["along (kN)"] if pushed else []
     x = f"x ({system.label('m')})"
-    table = Table("holds at rest", x, "force (kN)", *along, "moment (kN m)", "pressed in (mm)")
+    rows = []
     for one in held:
-        table.add_row(
+        row = (
             one.segment,
             f"{system.of(one.x, 'm'):g}",
             f"{one.force * TO_KILO:.4g}",
@@ -215,21 +217,25 @@ def _reactions(state: StaticState, system: System) -> Table:
             f"{one.moment * TO_KILO:.4g}" if abs(one.moment) > _NO_MOMENT else "",
             "" if one.depth is None else f"{one.depth * TO_MILLI:.3g}",
         )
-    return table
+        rows.append(row)
+    return Table.of_rows(
+        "", "", ("holds at rest", x, "force (kN)", *along, "moment (kN m)", "pressed in (mm)"), rows
+    )
 
 
 def _cylinders(state: StaticState, system: System) -> Table:
     """Their lines, and the forces along them: of two side by side together."""
     lengths = [f"{name} ({system.label('m')})" for name in ("x", "length", "arm")]
-    table = Table("cylinder of", *lengths, "force (kN)")
+    rows = []
     for number, cylinder in enumerate(state.boom.cylinders, start=1):
         segment = state.boom.segments[cylinder.segment]
         arm = None if segment.foot is None else cylinder.arm(segment.foot)
-        table.add_row(
+        row = (
             segment.name,
             f"{system.of(cylinder.x, 'm'):g}",
             f"{system.of(cylinder.length, 'm'):.5g}",
             "" if arm is None else f"{system.of(arm, 'm'):.5g}",
             f"{cylinder_force(state, number) * TO_KILO:.4g}",
         )
-    return table
+        rows.append(row)
+    return Table.of_rows("", "", ("cylinder of", *lengths, "force (kN)"), rows)
