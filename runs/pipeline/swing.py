@@ -8,6 +8,7 @@ under the loads of that moment.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated
 
 import numpy as np
@@ -30,6 +31,10 @@ _RESTS, _BETWEEN_TURNS, _MOST_TURNS = 60, 4, 100
 
 _TIP = ("tip", "tip_lateral")
 
+# A length, and one that is a level beside a curve.
+_metres = partial(Metric, unit="m", factor=TO_MILLI, shown_unit="mm")
+_level, _AT = partial(_metres, charted=False), "at rest where\nit "
+
 
 @dataclass(frozen=True, slots=True)
 class Swing(Record):
@@ -49,37 +54,18 @@ class Swing(Record):
         "under the loads of that moment; beside it that of the same boom that is not drawn.",
     )
 
-    tip: Annotated[
-        float,
-        Metric("swing", "m", "swing while drawn out", TO_MILLI, "mm", heading="tip swings"),
-    ]
+    tip: Annotated[float, _metres("swing", title="swing while drawn out", heading="tip swings")]
     time: Annotated[float, Metric("", "s", "time of the swing", 1.0, "s", heading="at", form=".3f")]
     speed: Annotated[
         float, Metric("drive_speed", "m/s", "mean speed of the drive", 1.0, "m/s", charted=False)
     ]
     where_begun: Annotated[
         float | None,
-        Metric(
-            "swing_where_begun",
-            "m",
-            "swing at rest where it begins",
-            TO_MILLI,
-            "mm",
-            charted=False,
-            heading="at rest where\nit begins",
-        ),
+        _level("swing_where_begun", title="swing at rest where it begins", heading=_AT + "begins"),
     ]
     where_ended: Annotated[
         float | None,
-        Metric(
-            "swing_where_ended",
-            "m",
-            "swing at rest where it ends",
-            TO_MILLI,
-            "mm",
-            charted=False,
-            heading="at rest where\nit ends",
-        ),
+        _level("swing_where_ended", title="swing at rest where it ends", heading=_AT + "ends"),
     ]
 
 
