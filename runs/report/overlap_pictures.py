@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -84,53 +85,29 @@ class Half(NamedTuple):
     cut: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class OverlapView:
-    """What the pictures of an overlap share.
+    """What the pictures of an overlap share: it shows all stations, and forces there.
 
     Args:
         scene: a shell in motion.
-        stress: of the shell.
         overlap: one of the scene's.
+        times: of the pictures in s.
         pixels: width and height of the picture.
-        scale: of displacements and play.
-        width: of what is seen in m.
-        behind: (num_triangles,) what is left when the half before the cut is taken away.
     """
 
     scene: Scene
-    stress: ShellStress
     overlap: Overlap
-    pixels: tuple[int, int]
-    scale: float
-    width: float
-    behind: Mask
-
-    @classmethod
-    def of(
-        cls,
-        scene: Scene,
-        instants: Sequence[Instant],
-        overlap: Overlap,
-        pixels: tuple[int, int] = PIXELS,
-    ) -> OverlapView:
-        """The view that shows all stations of an overlap, and forces there at these instants."""
-        half = scene.half_height(overlap.outer)
-        scale = round_scale(CLEARANCE_DRAWN * 2.0 * half / max(overlap.clearance, SAME_PLACE))
-        assert scene.stress is not None, "a beam has no walls to be cut"
-        nothing = np.zeros(len(scene.triangles), dtype=bool)
-        view = cls(scene, scene.stress, overlap, pixels, scale, 0.0, nothing)
-        tallest = scene.wall(overlap) + max(
-            float(np.ptp(view.ends(view.places(instant.time)))) for instant in instants
-        )
-        room = tallest * pixels[0] / (pixels[1] - 2.0 * ARROW_ROOM)
-        width = max(float(np.ptp(view.stations)) + 2.0 * MARGIN, room)
-        corners = scene.points[scene.triangles]
-        behind = (np.abs(corners[..., 0] - view.middle) < width).all(axis=1)
-        behind &= corners[..., 1].mean(axis=1) > 0.0
-        return cls(scene, scene.stress, overlap, pixels, scale, width, behind)
+    times: Sequence[float]
+    pixels: tuple[int, int] = PIXELS
 
     @property
+    def stress(self) -> ShellStress:
+        """Of the shell; a beam has no walls that could be cut."""
+        assert self.scene.stress is not None
+        return self.scene.stress
+
+    @cached_property
     def motion(self) -> xr.Dataset:
         """The trajectories, of the overlap's stations alone."""
         return self.scene.motion.isel(station=self.overlap.stations)
@@ -144,6 +121,27 @@ class OverlapView:
     def middle(self) -> float:
         """x between the stations in m."""
         return float(0.5 * (self.stations.min() + self.stations.max()))
+
+    @cached_property
+    def scale(self) -> float:
+        """Of displacements and play."""
+        height = 2.0 * self.scene.half_height(self.overlap.outer)
+        return round_scale(CLEARANCE_DRAWN * height / max(self.overlap.clearance, SAME_PLACE))
+
+    @cached_property
+    def width(self) -> float:
+        """Of what is seen in m."""
+        ends = [self.ends(self.places(time)) for time in self.times]
+        tallest = float(np.ptp(ends, axis=1).max()) + self.scene.wall(self.overlap)
+        room = tallest * self.pixels[0] / (self.pixels[1] - 2.0 * ARROW_ROOM)
+        return max(float(np.ptp(self.stations)) + 2.0 * MARGIN, room)
+
+    @cached_property
+    def behind(self) -> Mask:
+        """(num_triangles,) what is left when the half before the cut is taken away."""
+        corners = self.scene.points[self.scene.triangles]
+        near = (np.abs(corners[..., 0] - self.middle) < self.width).all(axis=1)
+        return np.asarray(near & (corners[..., 1].mean(axis=1) > 0.0))
 
     @property
     def numbers(self) -> tuple[int, int]:
@@ -235,7 +233,7 @@ def draw_overlap(
     scene: Scene, instants: Sequence[Instant], overlap: Overlap
 ) -> Iterator[Image.Image]:
     """An overlap without its half before the plane of bending, and the forces at its stations."""
-    view = OverlapView.of(scene, instants, overlap)
+    view = OverlapView(scene, overlap, [instant.time for instant in instants])
     outer, inner = view.names
     labels = {theme.OUTER: outer, theme.INNER: inner, theme.FORCE: f"force of {inner} on {outer}"}
     aside = "seen from above, " if scene.from_above else ""
@@ -318,7 +316,8 @@ def draw_stress(
     scene: Scene, instants: Sequence[Instant], scale: StressScale, overlap: Overlap
 ) -> Iterator[Image.Image]:
     """Von Mises stresses of the whole boom, and below it of an overlap cut open."""
-    view = OverlapView.of(scene, instants, overlap, STRESS_PIXELS)
+    times = [instant.time for instant in instants]
+    view = OverlapView(scene, overlap, times, STRESS_PIXELS)
     whole = BoomView.of(scene, instants, BOOM_PIXELS, BOOM_DISPLACEMENT)
     aside = "from above; " if scene.from_above else ""
     for instant in instants:

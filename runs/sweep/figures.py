@@ -12,12 +12,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from pathlib import Path
-from typing import Literal
+from typing import Any, Final, Literal, TypeVar
 
 import matplotlib
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure as Sheet
 
 from geometry.arrays import Array
@@ -26,7 +27,7 @@ from runs.pipeline.metrics import Metric
 from runs.report import theme
 from runs.report.figure_context import new_sheet
 from runs.report.numerals import number
-from runs.sweep.quantities import QUANTITIES
+from runs.sweep.quantities import DISTANCES, LEVELS, QUANTITIES, TIP_OFF, UNTIL
 from runs.sweep.swings import draw_swings
 
 CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
@@ -47,6 +48,17 @@ MOST_TICKS = 6
 # Contours through fewer values along an axis would be guesses.
 LEAST_FOR_CONTOURS = 4
 
+# Distances below the first level, between levels, beyond the last one.
+_SHADES = ("#2e7d32", "#a5c882", "#f2c14e", "#b23a2e")
+# In percent: more is as bad, and less as good.
+_MOST, _LEAST = 100.0, 0.01
+# Where letters stand at the first and the last place along an axis.
+_SIDES: Final = ("left", "right")
+_ENDS: Final = ("bottom", "top")
+# Inches of a map beside another one.
+_COLUMN = 3.6
+
+_Word = TypeVar("_Word", bound=str)
 _SUPERSCRIPT = str.maketrans({"^": "", "2": "²", "3": "³", "4": "⁴", "n": "ⁿ"})
 
 
@@ -60,30 +72,27 @@ def draw(data: xr.Dataset, play_free: Sequence[str], folder: Path) -> None:
     """
     data = in_shown_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
-    strokes = theme.strokes([str(name) for name in data["model"].values], play_free)
+    strokes = _strokes(data, play_free)
     with matplotlib.rc_context(RC):
         if len(keys) == 2:
             for quantity in _changing(data):
                 _map(data, quantity, keys, folder)
             return
-        for part, where, number in over_first_key(data, keys):
+        for count, there in enumerate(_at_ends(data, keys[1:]), start=1):
+            part = data.sel(there)
             # Where everything failed there is nothing to draw.
-            if _changing(part):
-                _lines(part, strokes, f"Sweep {where}", folder / f"sweep-lines{number}.png")
+            if changing := _changing(part):
+                sheet, panels = _lines(data[keys[0]], _of_models(part, changing, strokes))
+                for axes, quantity in zip(panels, changing, strict=True):
+                    axes.set_yscale("log" if quantity.logarithmic else "linear")
+                where = "".join(f", {key} {value:g}" for key, value in there.items())
+                name = f"sweep-lines-{count}.png" if there else "sweep-lines.png"
+                _finish(sheet, f"Sweep over {keys[0]}{where}", folder / name)
         if len(keys) == 1:
             draw_swings(data, strokes, folder / "sweep-swing.png")
 
 
-def over_first_key(data: xr.Dataset, keys: Sequence[str]) -> Iterator[tuple[xr.Dataset, str, str]]:
-    """The data at each combination of the ends of all keys but the first, where that is, in words,
-    and the number behind the name of its file.
-    """
-    for count, there in enumerate(at_ends(data, keys[1:]), start=1):
-        where = f"over {keys[0]}" + "".join(f", {k} {v:g}" for k, v in there.items())
-        yield data.sel(there), where, f"-{count}" if there else ""
-
-
-def at_ends(data: xr.Dataset, keys: Sequence[str]) -> Iterator[dict[str, float]]:
+def _at_ends(data: xr.Dataset, keys: Sequence[str]) -> Iterator[dict[str, float]]:
     """Each combination of the ends of some keys; one of nothing where there are none."""
     ends = [(data[key].values[0], data[key].values[-1]) for key in keys]
     for values in product(*ends):
@@ -127,61 +136,113 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
     """
     data = in_shown_units(data)
     (key,) = (str(dim) for dim in data.dims if dim not in ("model", "joints", "mode"))
-    strokes = theme.strokes([str(name) for name in data["model"].values], ())
-    modes = data["mode"].values
+    colors = {name: one.color for name, one in _strokes(data, ()).items()}
+    shown = {
+        f"mode {mode} (Hz)": {
+            f"{name}, joints {joints}": (
+                data["frequency"].sel(model=name, joints=joints, mode=mode).values,
+                theme.Stroke(color, dashes),
+            )
+            for name, color in colors.items()
+            for joints, dashes in (("pressed", "-"), ("tied", "--"))
+        }
+        for mode in data["mode"].values
+    }
     with matplotlib.rc_context(RC):
-        sheet, panels = new_sheet(len(modes), 1.2 + 1.8 * len(modes))
-        for axes, mode in zip(panels, modes, strict=True):
-            for name, stroke in strokes.items():
-                for joints, line in (("pressed", "-"), ("tied", "--")):
-                    values = data["frequency"].sel(model=name, joints=joints, mode=mode).values
-                    pen = theme.Stroke(stroke.color, line)
-                    marked(axes, data[key], values, pen, f"{name}, joints {joints}")
-            axes.set_title(f"mode {mode} (Hz)")
+        sheet, panels = _lines(data[key], shown)
+        for axes in panels:
             axes.set_ylim(bottom=0.0)
-        finish_lines(sheet, panels, data[key], f"First frequencies over {key}", path)
+        _finish(sheet, f"First frequencies over {key}", path)
 
 
-def _lines(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], title: str, path: Path) -> None:
-    """All quantities over the one key that is left."""
-    (key,) = (str(dim) for dim in data["failed"].dims if dim != "model")
-    shown = _changing(data)
+def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
+    """Draw how far models are from a reference: over one key lines of each, over more maps of each.
+
+    Args:
+        data: of :func:`runs.sweep.output.gather`, without the reference.
+        reference: its name.
+        folder: where the PNG files go; it must exist.
+    """
+    data = in_shown_units(data)
+    keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
+    known = [one for one in DISTANCES if np.isfinite(data[one.name].values).any()]
+    with matplotlib.rc_context(RC):
+        if len(keys) > 1:
+            for quantity in known:
+                _distance_maps(data, quantity, keys, reference, folder)
+        elif known:
+            floor = {one.name: np.maximum(data[one.name], _LEAST / one.factor) for one in known}
+            shown = _of_models(data.assign(floor), known, _strokes(data, ()))
+            sheet, panels = _lines(data[keys[0]], shown)
+            for axes in panels:
+                for level in LEVELS:
+                    axes.axhline(level, color=theme.INK, linewidth=0.8, linestyle=":")
+                axes.set_yscale("log")
+                axes.set_yticks(LEVELS, [f"{level:g}" for level in LEVELS])
+            title = f"Distance from {reference} over {keys[0]}"
+            _finish(sheet, title, folder / "sweep-distances.png")
+
+
+def _strokes(data: xr.Dataset, play_free: Sequence[str]) -> dict[str, theme.Stroke]:
+    return theme.strokes([str(name) for name in data["model"].values], play_free)
+
+
+def _of_models(
+    data: xr.Dataset, quantities: Sequence[Metric], strokes: Mapping[str, theme.Stroke]
+) -> dict[str, dict[str, tuple[Array, theme.Stroke]]]:
+    """Title of each quantity → label of each line → its values and its stroke."""
+    return {
+        f"{one.title} ({one.shown_unit})": {
+            name: (one.factor * data[one.name].sel(model=name).values, stroke)
+            for name, stroke in strokes.items()
+        }
+        for one in quantities
+    }
+
+
+def _lines(
+    along: xr.DataArray, shown: Mapping[str, Mapping[str, tuple[Array, theme.Stroke]]]
+) -> tuple[Sheet, list[Axes]]:
+    """Panels of lines whose points are seen, as of :func:`_of_models`, with axis and legend."""
     sheet, panels = new_sheet(len(shown), 1.2 + 1.8 * len(shown))
-    for axes, quantity in zip(panels, shown, strict=True):
-        for name, stroke in strokes.items():
-            values = quantity.factor * data[quantity.name].sel(model=name).values
-            marked(axes, data[key], values, stroke, name)
-        axes.set_title(f"{quantity.title} ({quantity.shown_unit})")
-        if quantity.logarithmic:
-            axes.set_yscale("log")
-    finish_lines(sheet, panels, data[key], title, path)
+    for axes, (title, lines) in zip(panels, shown.items(), strict=True):
+        for label, (values, stroke) in lines.items():
+            (line,) = axes.plot(along.values, values, marker="o", markersize=4.0, label=label)
+            line.set(color=stroke.color, linestyle=stroke.linestyle)
+        axes.set_title(title)
+    _scale_axis(panels[-1], "x", along)
+    handles, labels = panels[0].get_legend_handles_labels()
+    sheet.legend(handles, labels, loc="outside lower left", ncols=2)
+    return sheet, panels
 
 
 def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) -> None:
     """One quantity over two keys, a panel for each model that has it, all with one scale."""
-    places = (data[keys[0]].values, data[keys[1]].values)
-    edges = [_edges(along) for along in places]
-    values = quantity.factor * data[quantity.name].transpose("model", keys[1], keys[0])
-    failed = data["failed"].transpose("model", keys[1], keys[0])
+    x, y = (data[key] for key in keys)
+    values = quantity.factor * data[quantity.name].transpose("model", *keys[::-1])
+    failed = data["failed"].transpose("model", *keys[::-1])
     known = np.isfinite(values.values).any(axis=(1, 2))
     names = [str(name) for name in values["model"].values[known]]
     sheet, panels = new_sheet(len(names), 1.4 + 2.4 * len(names))
     low, high = float(values.min()), float(values.max())
     for axes, name in zip(panels, names, strict=True):
         # Labels of contours stand where they belong if the scales are known before them.
-        scale_axis(axes, "x", data[keys[0]])
-        scale_axis(axes, "y", data[keys[1]])
-        of_model = values.sel(model=name).values
-        mesh = axes.pcolormesh(*edges, of_model, vmin=low, vmax=high, cmap="viridis")
-        if max(of_model.shape) <= MOST_CELLS:
-            _label_cells(axes, places, of_model, 0.5 * (low + high))
-        elif min(of_model.shape) >= LEAST_FOR_CONTOURS and np.nanmax(of_model) > np.nanmin(
-            of_model
-        ):
-            lines = axes.contour(*places, of_model, colors="white", linewidths=0.8)
+        _scale_axis(axes, "x", x)
+        _scale_axis(axes, "y", y)
+        cells = values.sel(model=name).values
+        edges = _edges(x.values), _edges(y.values)
+        mesh = axes.pcolormesh(*edges, cells, vmin=low, vmax=high, cmap="viridis")
+        if max(cells.shape) <= MOST_CELLS:
+            for row, column in np.argwhere(np.isfinite(cells)):
+                value = float(cells[row, column])
+                color = "white" if value < 0.5 * (low + high) else theme.INK
+                centred: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 8.5}
+                axes.text(x.values[column], y.values[row], number(value), color=color, **centred)
+        elif min(cells.shape) >= LEAST_FOR_CONTOURS and np.nanmax(cells) > np.nanmin(cells):
+            lines = axes.contour(x.values, y.values, cells, colors="white", linewidths=0.8)
             axes.clabel(lines, fontsize=9.0)
         rows, columns = np.nonzero(failed.sel(model=name).values)
-        axes.plot(places[0][columns], places[1][rows], "x", color=theme.INK)
+        axes.plot(x.values[columns], y.values[rows], "x", color=theme.INK)
         axes.set(title=name, facecolor=theme.RULE)
         axes.grid(visible=False)
         axes.label_outer()
@@ -194,23 +255,68 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
     ]
     sheet.supxlabel("; ".join(remarks), x=0.02, ha="left", fontsize=9.0)
     title = f"{quantity.title[0].upper()}{quantity.title[1:]}: {low:.3g} to {high:.3g} "
-    path = folder / f"sweep-{quantity.name.replace('_', '-')}.png"
-    finish(sheet, title + quantity.shown_unit, path)
+    _finish(sheet, title + quantity.shown_unit, folder / _name(quantity))
 
 
-def _label_cells(axes: Axes, places: tuple[Array, Array], values: Array, middle: float) -> None:
-    """The value in each cell, white on dark ones."""
-    for row, column in np.argwhere(np.isfinite(values)):
-        value = float(values[row, column])
-        axes.text(
-            places[0][column],
-            places[1][row],
-            number(value),
-            ha="center",
-            va="center",
-            fontsize=8.5,
-            color="white" if value < middle else theme.INK,
-        )
+def _distance_maps(
+    data: xr.Dataset, quantity: Metric, keys: Sequence[str], reference: str, folder: Path
+) -> None:
+    """One distance over the last two keys, for each model that has it and, side by side, each
+    combination of the ends of the keys before them.
+    """
+    *before, x, y = keys
+    parts = [data.sel(there) for there in _at_ends(data, before)]
+    values = quantity.factor * data[quantity.name]
+    known = [name for name in values["model"].values if np.isfinite(values.sel(model=name)).any()]
+    width = theme.WIDTH + (len(parts) - 1) * _COLUMN
+    sheet = Sheet(figsize=(width, 1.4 + 2.2 * len(known)))
+    theme.Canvas(sheet)
+    grid = sheet.subplots(len(known), len(parts), sharex=True, sharey=True, squeeze=False)
+    for part, column in zip(parts, grid.T, strict=True):
+        for axes, name in zip(column, known, strict=True):
+            _scale_axis(axes, "x", data[x])
+            _scale_axis(axes, "y", data[y])
+            off = quantity.factor * part[quantity.name].sel(model=name).transpose(y, x)
+            shade = _shade(axes, off)
+            if quantity.name == TIP_OFF:
+                _say_until_when(axes, part[UNTIL].transpose(y, x), float(data[UNTIL].max()))
+            axes.label_outer()
+        where = ", ".join(f"{key} {part[key].item():g}" for key in before)
+        column[0].set_title("\n".join(filter(None, [where, column[0].get_title(loc="left")])))
+    sheet.colorbar(shade, ax=grid, label=f"{quantity.title} (%)", aspect=40)
+    if quantity.name == TIP_OFF and data[UNTIL].min() < data[UNTIL].max():
+        until = f"compared until {data[UNTIL].max():g} s, or until where seconds stand"
+        sheet.supxlabel(until, x=0.02, ha="left", fontsize=9.0)
+    title = f"Distance from {reference}: {quantity.title}"
+    _finish(sheet, title, folder / _name(quantity))
+
+
+def _shade(axes: Axes, off: xr.DataArray) -> ContourSet:
+    """A map in percent, with its levels and from where to where it goes."""
+    y, x = (off[dim].values for dim in off.dims)
+    least, most = float(off.min()), float(off.max())
+    levels = [0.0, *LEVELS, _MOST]
+    shade = axes.contourf(x, y, np.clip(off, 0.0, _MOST), levels=levels, colors=_SHADES)
+    if least < LEVELS[-1] and most > LEVELS[0]:
+        lines = axes.contour(x, y, off, levels=LEVELS, colors="black")
+        axes.clabel(lines, fmt="%g %%", fontsize=9.0)
+    name = off["model"].item()
+    axes.set(title=f"{name}: {least:.2g} to {most:.2g} %", facecolor=theme.RULE)
+    return shade
+
+
+def _say_until_when(axes: Axes, until: xr.DataArray, longest: float) -> None:
+    """The seconds up to which tips are compared, where these are fewer than elsewhere."""
+    y, x = (until[dim].values for dim in until.dims)
+    for row, column in np.argwhere(until.values < longest):
+        text = f"{until.values[row, column]:.1f} s"
+        ha, va = _inwards(column, x.size, _SIDES), _inwards(row, y.size, _ENDS)
+        axes.text(x[column], y[row], text, fontsize=7.0, ha=ha, va=va)
+
+
+def _inwards(place: int, count: int, outer: tuple[_Word, _Word]) -> _Word | Literal["center"]:
+    """How letters are aligned that are not to leave a panel."""
+    return outer[0] if place == 0 else outer[1] if place == count - 1 else "center"
 
 
 def _spans_decades(values: Array) -> bool:
@@ -227,7 +333,7 @@ def _edges(values: Array) -> Array:
     return np.asarray(np.exp(bounds)) if _spans_decades(values) else bounds
 
 
-def scale_axis(axes: Axes, which: Literal["x", "y"], values: xr.DataArray) -> None:
+def _scale_axis(axes: Axes, which: Literal["x", "y"], values: xr.DataArray) -> None:
     """Label an axis with its key and unit; logarithmic where values span decades."""
     unit, places = values.attrs["units"], values.values
     label = str(values.name) + ("" if unit == "1" else f" ({unit.translate(_SUPERSCRIPT)})")
@@ -241,25 +347,12 @@ def scale_axis(axes: Axes, which: Literal["x", "y"], values: xr.DataArray) -> No
         axes.locator_params(axis=which, nbins=MOST_TICKS)
 
 
-def finish(sheet: Sheet, title: str, path: Path) -> None:
+def _finish(sheet: Sheet, title: str, path: Path) -> None:
     """Give a sheet its title, and write it."""
     sheet.suptitle(title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
     sheet.savefig(path)
 
 
-def marked(
-    axes: Axes, along: xr.DataArray, values: Array, stroke: theme.Stroke, label: str
-) -> None:
-    """A line whose points are seen."""
-    (line,) = axes.plot(along.values, values, marker="o", markersize=4.0, label=label)
-    line.set(color=stroke.color, linestyle=stroke.linestyle)
-
-
-def finish_lines(
-    sheet: Sheet, panels: Sequence[Axes], along: xr.DataArray, title: str, path: Path
-) -> None:
-    """Give panels of the same lines their axis, their legend and their title, and write them."""
-    scale_axis(panels[-1], "x", along)
-    handles, labels = panels[0].get_legend_handles_labels()
-    sheet.legend(handles, labels, loc="outside lower left", ncols=2)
-    finish(sheet, title, path)
+def _name(quantity: Metric) -> str:
+    """Of a file."""
+    return f"sweep-{quantity.name.replace('_', '-')}.png"

@@ -18,8 +18,7 @@ from runs.pipeline.results import CONVENTIONS
 from runs.pipeline.summary import ModelSummary
 from runs.report.numerals import NONE, number
 from runs.report.tables import Table
-from runs.sweep.distance_figures import draw_distances
-from runs.sweep.figures import draw
+from runs.sweep.figures import draw, draw_distances
 from runs.sweep.points import Plan
 from runs.sweep.quantities import DISTANCES, QUANTITIES, UNTIL
 from runs.sweep.run import Outcome

@@ -2,7 +2,6 @@
 """Every figure is drawn from what a run has, shows all its models, and says its units."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -40,34 +39,42 @@ def results() -> Results:
     return run_case(case_file.load(str(COARSE)), [*WITH_PLAY, "beam-fe-tied"])
 
 
-@contextmanager
-def kept_sheets() -> Iterator[dict[str, Sheet]]:
-    """The matplotlib figure behind each file that is saved, by its stem."""
-    saved: dict[str, Sheet] = {}
-    save = Sheet.savefig
+Everything = tuple[list[Figure], dict[str, Sheet]]
+
+
+class Drawn:
+    """Figures in a folder, and the matplotlib sheets behind them by their stems."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.sheets = folder, dict[str, Sheet]()
+
+    def __call__(self, of: Callable[[Pen], list[Figure]], results: Results) -> list[Figure]:
+        """Some of the figures of a run, anew."""
+        for earlier in self.folder.glob("*.png"):
+            earlier.unlink()
+        with matplotlib.rc_context(theme.RC):
+            return of(Pen(results, self.folder))
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Drawn]:
+    found, save = Drawn(tmp_path_factory.mktemp("figures")), Sheet.savefig
 
     def keep(sheet: Sheet, path: Path, **options: Any) -> None:
-        saved[path.stem] = sheet
+        found.sheets[path.stem] = sheet
         save(sheet, path, **options)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Sheet, "savefig", keep)
-        yield saved
-
-
-@pytest.fixture
-def sheets() -> Iterator[dict[str, Sheet]]:
-    with kept_sheets() as saved:
-        yield saved
+        yield found
 
 
 @pytest.fixture(scope="module")
 def everything(
-    results: Results, tmp_path_factory: pytest.TempPathFactory
-) -> tuple[list[Figure], dict[str, Sheet]]:
+    results: Results, drawn: Drawn, tmp_path_factory: pytest.TempPathFactory
+) -> Everything:
     """All figures of the run."""
-    with kept_sheets() as saved:
-        return draw(results, tmp_path_factory.mktemp("figures")), saved
+    return draw(results, tmp_path_factory.mktemp("everything")), dict(drawn.sheets)
 
 
 def model_of(line: Line2D) -> str:
@@ -77,12 +84,6 @@ def model_of(line: Line2D) -> str:
 
 def labels(axes: Axes) -> list[str]:
     return list(dict.fromkeys(axes.get_legend_handles_labels()[1]))
-
-
-def draw_some(of: Callable[[Pen], list[Figure]], results: Results, folder: Path) -> list[Figure]:
-    """Some of the figures alone."""
-    with matplotlib.rc_context(theme.RC):
-        return of(Pen(results, folder))
 
 
 def with_friction(results: Results) -> Results:
@@ -97,7 +98,7 @@ def with_friction(results: Results) -> Results:
     return replace(results, case=case, trajectories=data)
 
 
-def test_draws_each_figure_as_png(everything: tuple[list[Figure], dict[str, Sheet]]) -> None:
+def test_draws_each_figure_as_png(everything: Everything) -> None:
     figures, _ = everything
     stems = [figure.path.stem for figure in figures]
     assert stems == [
@@ -114,7 +115,7 @@ def test_draws_each_figure_as_png(everything: tuple[list[Figure], dict[str, Shee
         assert figure.caption.endswith(".")
 
 
-def test_every_axis_says_its_unit(everything: tuple[list[Figure], dict[str, Sheet]]) -> None:
+def test_every_axis_says_its_unit(everything: Everything) -> None:
     _, sheets = everything
     along = {"boom": 1, "at-rest": -1, "envelopes": -1, "modes": -1}
     for stem, panel in along.items():
@@ -128,21 +129,19 @@ def test_every_axis_says_its_unit(everything: tuple[list[Figure], dict[str, Shee
         assert heading.endswith(f"({expected})"), stem
 
 
-def test_deflections_are_in_millimetres(
-    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
-) -> None:
+def test_deflections_are_in_millimetres(results: Results, drawn: Drawn) -> None:
     """Reference: the trajectories themselves, in m."""
-    draw_some(tip, results, tmp_path)
-    (axes,) = sheets["tip"].axes
+    drawn(tip, results)
+    (axes,) = drawn.sheets["tip"].axes
     curves = {model_of(line): np.asarray(line.get_ydata()) for line in axes.get_lines()}
     for name in results.trajectories["model"].values:
         deflection = results.trajectories["tip"].sel(model=name).values
         np.testing.assert_allclose(curves[name], 1000.0 * deflection, rtol=1e-12)
 
 
-def test_contact_forces_keep_their_impulse(results: Results, tmp_path: Path) -> None:
+def test_contact_forces_keep_their_impulse(results: Results, drawn: Drawn) -> None:
     """Reference: analytic. A running mean has the sum of what it averages, but for its ends."""
-    (figure,) = draw_some(first_contacts, results, tmp_path)
+    (figure,) = drawn(first_contacts, results)
     assert figure.chart is not None
     assert len(figure.chart.curves) == 2 * len(WITH_PLAY)
     for curve in figure.chart.curves:
@@ -154,21 +153,19 @@ def test_contact_forces_keep_their_impulse(results: Results, tmp_path: Path) -> 
         assert total == pytest.approx(force.sum(), abs=ends + 1.0e-6 * abs(total))
 
 
-def test_what_presses_from_the_start_does_so_in_full(
-    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
-) -> None:
+def test_what_presses_from_the_start_does_so_in_full(results: Results, drawn: Drawn) -> None:
     """Reference: analytic. The running mean of a constant is that constant, at both ends too."""
     pressed = results.trajectories.copy(deep=True)
     pressed["contact_force"][:] = 1000.0
     for stretch in (pressed, pressed.isel(time=slice(0, 5))):
-        draw_some(first_contacts, replace(results, trajectories=stretch), tmp_path)
-        for line in (line for axes in sheets["contact-first"].axes for line in axes.get_lines()):
+        drawn(first_contacts, replace(results, trajectories=stretch))
+        for line in (
+            line for axes in drawn.sheets["contact-first"].axes for line in axes.get_lines()
+        ):
             assert line.get_ydata() == pytest.approx(1.0, rel=1e-12)
 
 
-def test_one_colour_per_model_in_all_figures(
-    results: Results, everything: tuple[list[Figure], dict[str, Sheet]]
-) -> None:
+def test_one_colour_per_model_in_all_figures(results: Results, everything: Everything) -> None:
     _, sheets = everything
     colours: dict[str, set[str]] = {}
     for stem in ("tip", "tip-close-up", "head", "contact-first", "contact-peaks"):
@@ -181,12 +178,10 @@ def test_one_colour_per_model_in_all_figures(
     assert len(set.union(*colours.values())) == len(colours)
 
 
-def test_close_up_marks_first_contacts_and_peaks(
-    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
-) -> None:
-    (figure,) = draw_some(close_up, results, tmp_path)
+def test_close_up_marks_first_contacts_and_peaks(results: Results, drawn: Drawn) -> None:
+    (figure,) = drawn(close_up, results)
     marks = {"o": set(), "v": set()}
-    for line in sheets["tip-close-up"].axes[0].get_lines():
+    for line in drawn.sheets["tip-close-up"].axes[0].get_lines():
         if line.get_marker() in marks and np.size(line.get_xdata()):
             marks[line.get_marker()].add(float(np.asarray(line.get_xdata())[0]))
     models = results.summary.models
@@ -218,36 +213,33 @@ def test_draws_around_what_is_not_finite(results: Results, tmp_path: Path) -> No
     assert len(draw(replace(results, trajectories=broken), tmp_path)) == 11
 
 
-def test_draws_a_run_shorter_than_its_means(results: Results, tmp_path: Path) -> None:
+def test_draws_a_run_shorter_than_its_means(results: Results, drawn: Drawn) -> None:
     """Contact forces are means over 10 ms; here are 4."""
     few = replace(results, trajectories=results.trajectories.isel(time=slice(0, 5)))
-    assert draw_some(first_contacts, few, tmp_path)[0].path.exists()
+    assert drawn(first_contacts, few)[0].path.exists()
 
 
-def test_the_title_follows_the_motion_downwards(results: Results, tmp_path: Path) -> None:
+def test_the_title_follows_the_motion_downwards(results: Results, drawn: Drawn) -> None:
     """A boom under its weight deflects downwards: the title tells how far, with the sign."""
     down = results.trajectories.copy(deep=True)
     down["tip"] *= -1.0
     upwards, downwards = (
-        draw_some(tip, run_of, tmp_path)[0].title
-        for run_of in (results, replace(results, trajectories=down))
+        drawn(tip, run_of)[0].title for run_of in (results, replace(results, trajectories=down))
     )
     assert downwards == upwards.replace("up to ", "up to −")
     assert upwards.partition(" mm in ")[2] in WITH_PLAY
     assert "without" not in upwards
 
 
-def test_what_is_without_play_says_what_it_is(
-    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
-) -> None:
+def test_what_is_without_play_says_what_it_is(results: Results, drawn: Drawn) -> None:
     """Reference: the case, whose beam elements are tied."""
-    (figure,) = draw_some(heads, results, tmp_path)
+    (figure,) = drawn(heads, results)
     assert "Dashed: beam-fe-tied (beam), without play." in figure.caption
-    assert "beam-fe-tied (beam)" in labels(sheets["head"].axes[0])
+    assert "beam-fe-tied (beam)" in labels(drawn.sheets["head"].axes[0])
 
 
 def test_what_is_pressed_from_the_start_has_no_first_contact(
-    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
+    results: Results, drawn: Drawn
 ) -> None:
     """Reference: a summary in which all touches at 0 s, of a case without statements."""
     models = {
@@ -261,30 +253,30 @@ def test_what_is_pressed_from_the_start_has_no_first_contact(
         trajectories=pressed,
         summary=results.summary.model_copy(update={"models": models}),
     )
-    (figure,) = draw_some(close_up, still, tmp_path)
+    (figure,) = drawn(close_up, still)
     assert figure.title.startswith("Tip, first ")
     assert "touch" not in figure.title + figure.caption
     assert "verdicts" not in figure.caption
-    assert not any(line.get_marker() == "o" for line in sheets["tip-close-up"].axes[0].get_lines())
-    (figure,) = draw_some(first_contacts, still, tmp_path)
+    assert not any(
+        line.get_marker() == "o" for line in drawn.sheets["tip-close-up"].axes[0].get_lines()
+    )
+    (figure,) = drawn(first_contacts, still)
     assert "impacts" not in figure.caption
-    assert "impacts" in draw_some(first_contacts, results, tmp_path)[0].caption
+    assert "impacts" in drawn(first_contacts, results)[0].caption
     assert "first contact\ns" not in model_table(still).headings
     assert "first contact\ns" in model_table(results).headings
 
 
-def test_without_a_peak_there_is_no_close_up(results: Results, tmp_path: Path) -> None:
+def test_without_a_peak_there_is_no_close_up(results: Results, drawn: Drawn) -> None:
     models = {
         name: model.model_copy(update={"first_peak": {"tip": FirstPeak(None, None)}})
         for name, model in results.summary.models.items()
     }
     summary = results.summary.model_copy(update={"models": models})
-    assert draw_some(close_up, replace(results, summary=summary), tmp_path) == []
+    assert drawn(close_up, replace(results, summary=summary)) == []
 
 
-def test_energies_start_where_the_boom_does(
-    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
-) -> None:
+def test_energies_start_where_the_boom_does(results: Results, drawn: Drawn) -> None:
     """Reference: by hand, 5 J of strain that were there at the start."""
     loaded = results.trajectories.assign(strain_energy=results.trajectories["strain_energy"] + 5.0)
     line = {}
@@ -292,27 +284,24 @@ def test_energies_start_where_the_boom_does(
         "from zero": results,
         "loaded": replace(results, trajectories=loaded),
     }.items():
-        (tmp_path / name).mkdir()
-        (figure,) = draw_some(energies, run, tmp_path / name)
-        (work,) = sheets["energies"].axes[0].get_lines()
+        (figure,) = drawn(energies, run)
+        (work,) = drawn.sheets["energies"].axes[0].get_lines()
         line[name] = np.asarray(work.get_ydata(), dtype=float)
         assert ("what was there at the start" in figure.caption) == (name == "loaded")
     np.testing.assert_allclose(line["loaded"] - line["from zero"], 5.0, rtol=1e-9)
 
 
-def test_friction_is_drawn_where_there_is_any(
-    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
-) -> None:
+def test_friction_is_drawn_where_there_is_any(results: Results, drawn: Drawn) -> None:
     """Reference: the forces themselves, 1 kN at one of two stations."""
-    assert draw_some(friction, results, tmp_path) == []
-    draw_some(friction, with_friction(results), tmp_path)
-    (axes,) = sheets["friction"].axes
+    assert drawn(friction, results) == []
+    drawn(friction, with_friction(results))
+    (axes,) = drawn.sheets["friction"].axes
     assert axes.get_title(loc="left") == "x = 9 m"
     assert labels(axes) == WITH_PLAY[-1:]
     (line,) = axes.get_lines()
     np.testing.assert_allclose(np.asarray(line.get_ydata())[5:-5], 1.0)
-    (figure,) = draw_some(energies, with_friction(results), tmp_path)
-    axes = sheets["energies"].axes[0]
+    (figure,) = drawn(energies, with_friction(results))
+    axes = drawn.sheets["energies"].axes[0]
     assert "friction loss" in labels(axes)
     hatches = {str(area.get_label()): area.get_hatch() for area in axes.collections}
     assert hatches == {"strain": None, "kinetic": None, "contact": None, "friction loss": "///"}
@@ -332,24 +321,24 @@ def test_a_long_curve_has_no_gaps(tmp_path: Path) -> None:
     np.testing.assert_array_equal(*pictures)
 
 
-def test_captions_of_a_case_with_friction(results: Results, tmp_path: Path) -> None:
+def test_captions_of_a_case_with_friction(results: Results, drawn: Drawn) -> None:
     """Reference: given normal forces keep motions comparable from moment to moment."""
     for run_of, chaotic in ((results, 2), (with_friction(results), 0)):
-        found = draw_some(tip, run_of, tmp_path) + draw_some(heads, run_of, tmp_path)
+        found = drawn(tip, run_of) + drawn(heads, run_of)
         assert sum("chaotic" in figure.caption for figure in found) == chaotic
 
 
 @pytest.mark.parametrize("spread", [1.0, 1.5, 30.0, 1.0e4])
 def test_peak_forces_have_labels_on_one_scale(
-    results: Results, tmp_path: Path, sheets: dict[str, Sheet], spread: float
+    results: Results, drawn: Drawn, spread: float
 ) -> None:
     """Reference: the forces, from 20 kN to so many times that."""
     data = results.trajectories.copy(deep=True)
     rising = 2.0e4 * np.geomspace(1.0, spread, data.sizes["time"])
     peaks = data["contact_force_peak"]
     peaks.values[...] = np.broadcast_to(rising[:, None], peaks.shape)
-    draw_some(contact_peaks, replace(results, trajectories=data), tmp_path)
-    panels = sheets["contact-peaks"].axes
+    drawn(contact_peaks, replace(results, trajectories=data))
+    panels = drawn.sheets["contact-peaks"].axes
     assert len({axes.get_ylim() for axes in panels}) == 1
     for axes in panels:
         low, high = axes.get_ylim()
@@ -359,37 +348,33 @@ def test_peak_forces_have_labels_on_one_scale(
         assert all(axes.yaxis.get_major_formatter()(tick) for tick in shown)
 
 
-def test_every_head_has_a_figure(results: Results, tmp_path: Path) -> None:
+def test_every_head_has_a_figure(results: Results, drawn: Drawn) -> None:
     head = results.trajectories["head"]
     data = results.trajectories.assign({"head-2": head, "head-2_rotation": head})
     joints = results.case.joints * 2
     case = results.case.model_copy(update={"joints": joints})
-    found = draw_some(heads, replace(results, trajectories=data, case=case), tmp_path)
+    found = drawn(heads, replace(results, trajectories=data, case=case))
     assert [figure.path.stem for figure in found] == ["head", "head-2"]
 
 
-def test_a_boom_in_space_moves_to_the_sides(
-    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
-) -> None:
+def test_a_boom_in_space_moves_to_the_sides(results: Results, drawn: Drawn) -> None:
     """Reference: the trajectories, half the tip's deflection to the sides."""
     data = results.trajectories.assign(tip_lateral=0.5 * results.trajectories["tip"])
     data = data.assign_coords(direction=("station", ["z", "y"]))
     in_space = replace(results, trajectories=data)
-    draw_some(lateral_tip, in_space, tmp_path)
-    draw_some(first_contacts, in_space, tmp_path)
-    (axes,) = sheets["tip-lateral"].axes
+    drawn(lateral_tip, in_space)
+    drawn(first_contacts, in_space)
+    (axes,) = drawn.sheets["tip-lateral"].axes
     for line in axes.get_lines():
         tip = data["tip"].sel(model=model_of(line)).values
         np.testing.assert_allclose(np.asarray(line.get_ydata()), 500.0 * tip, rtol=1e-12)
-    titles = [panel.get_title(loc="left") for panel in sheets["contact-first"].axes]
+    titles = [panel.get_title(loc="left") for panel in drawn.sheets["contact-first"].axes]
     assert titles == ["x = 9 m", "x = 10 m, to the sides"]
 
 
-def test_horizons_are_drawn_where_they_are_measured(
-    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
-) -> None:
+def test_horizons_are_drawn_where_they_are_measured(results: Results, drawn: Drawn) -> None:
     """Reference: the numbers of the summary."""
-    assert draw_some(horizons, results, tmp_path) == []
+    assert drawn(horizons, results) == []
     measured = {
         "relatives": [1e-12, 1e-6],
         "shares": [0.01, 0.2],
@@ -399,8 +384,8 @@ def test_horizons_are_drawn_where_they_are_measured(
         "step_change": None,
         "limits": ["step", "physics"],
     }
-    draw_some(horizons, changed(results, "beam-fe", horizons=measured), tmp_path)
-    (axes,) = sheets["horizons"].axes
+    drawn(horizons, changed(results, "beam-fe", horizons=measured))
+    (axes,) = drawn.sheets["horizons"].axes
     points = [np.asarray(line.get_xydata()) for line in axes.get_lines() if line.get_xydata().size]
     first, of_step, last = points
     np.testing.assert_allclose(first, [[-12.0, 1.5], [-6.0, 1.0]])
