@@ -44,9 +44,9 @@ except SystemExit as ended:
 """
 
 
-def imported(node: ast.AST) -> Iterator[str]:
-    """Every module, or name of one, that a file imports, wherever; for types alone left out."""
-    if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+def imported(node: ast.AST, for_types: bool) -> Iterator[str]:
+    """Every module, or name of one, that a file imports, inside functions, too."""
+    if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING" and not for_types:
         return
     if isinstance(node, ast.Import):
         yield from (alias.name for alias in node.names)
@@ -54,21 +54,25 @@ def imported(node: ast.AST) -> Iterator[str]:
         yield str(node.module)
         yield from (f"{node.module}.{alias.name}" for alias in node.names)
     for child in ast.iter_child_nodes(node):
-        yield from imported(child)
+        yield from imported(child, for_types)
 
 
 @pytest.fixture(scope="module")
-def graph() -> dict[str, set[str]]:
-    """What each module imports of ours, inside functions, too."""
-    files = {
-        ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): path
+def trees() -> dict[str, ast.Module]:
+    """Each of our modules, by its name."""
+    return {
+        ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): ast.parse(
+            path.read_text("utf-8")
+        )
         for room in ROOMS
         for path in (ROOT / room).rglob("*.py")
     }
-    return {
-        name: {found for found in imported(ast.parse(path.read_text("utf-8"))) if found in files}
-        for name, path in files.items()
-    }
+
+
+@pytest.fixture(scope="module")
+def graph(trees: dict[str, ast.Module]) -> dict[str, set[str]]:
+    """What each module imports of ours, but for types."""
+    return {name: {*imported(tree, False)} & trees.keys() for name, tree in trees.items()}
 
 
 def test_no_module_imports_itself_by_way_of_others(graph: dict[str, set[str]]) -> None:
@@ -76,9 +80,11 @@ def test_no_module_imports_itself_by_way_of_others(graph: dict[str, set[str]]) -
 
 
 @pytest.mark.parametrize("room", ROOMS)
-def test_a_room_knows_those_below(room: str, graph: dict[str, set[str]]) -> None:
-    own = (found for name in graph if name.split(".")[0] == room for found in graph[name])
-    assert {found.split(".")[0] for found in own} <= ROOMS[room] | {room}
+def test_a_room_knows_those_below(room: str, trees: dict[str, ast.Module]) -> None:
+    """For types, too; no room knows the studies, which prove it."""
+    own = (tree for name, tree in trees.items() if name.split(".")[0] == room)
+    known = {found.split(".")[0] for tree in own for found in imported(tree, True)}
+    assert known & ROOMS.keys() <= ROOMS[room] | {room}
 
 
 def test_the_paper_is_a_client(graph: dict[str, set[str]]) -> None:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import ast
 import re
 import tomllib
 from pathlib import Path
@@ -27,27 +26,6 @@ def test_the_wheel_brings_the_names_that_the_readme_says_and_no_tests() -> None:
     assert said is not None
     assert brought == set(re.findall(r"`(\w+)`", said[1]))
     assert "tests" not in brought
-
-
-def test_the_product_imports_no_study() -> None:
-    """Reference: by hand. Studies prove the product and are not part of it."""
-    for package in PYPROJECT["tool"]["mypy"]["packages"]:
-        if package == "studies":
-            continue
-        for path in (ROOT / package).glob("**/*.py"):
-            tree = ast.parse(path.read_text(encoding="utf-8"))
-            names = [
-                name
-                for node in ast.walk(tree)
-                for name in (
-                    [node.module or ""]
-                    if isinstance(node, ast.ImportFrom)
-                    else [alias.name for alias in node.names]
-                    if isinstance(node, ast.Import)
-                    else []
-                )
-            ]
-            assert not [name for name in names if name.split(".")[0] == "studies"], path
 
 
 def test_the_version_is_that_of_the_changes_and_of_the_citation() -> None:
