@@ -141,8 +141,8 @@ def test_each_pad_rubs_where_it_presses() -> None:
         laws = [
             w for w, at in zip(system.laws, system.station_of_row, strict=True) if at == station
         ]
-        assert sum(law.stiffness for law in laws) == pytest.approx(1.0e13)
-        assert sum(law.below for law in laws) == pytest.approx(1.0e13)
+        assert sum(law.law.stiffness for law in laws) == pytest.approx(1.0e13)
+        assert sum(law.law.below for law in laws) == pytest.approx(1.0e13)
 
 
 @pytest.mark.slow

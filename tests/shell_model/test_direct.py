@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 
@@ -20,7 +19,7 @@ from dynamics.gap_builder import GapBuilder, Observed
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
-from geometry.boom import Boom, BoomError, Cylinder, Direction, Stop
+from geometry.boom import Boom, BoomError, Cylinder, Stop
 from shell_model.boom_shell import BoomShell, ShellOptions, assemble_boom
 from shell_model.contact.rows import Touching
 from shell_model.reduced_shell import reduce_boom
@@ -60,7 +59,7 @@ class _Loaded:
         self.rest = float(gains.sum())
         self.period = 2.0 * np.pi / float(self._omega.max())
         observed = {"tip": Observed(Reading({0: tip}))}
-        touching = Touching(Boom((shell.segment,), ()), {}, "near webs", [], [], [])
+        touching = Touching(Boom((shell.segment,), ()), "near webs", [], [], [])
         self.few, self.all = (
             BoomShell(MPI.COMM_WORLD, [shell], [], touching, GapBuilder(), [], [push], [], observed)
             for push in (narrow, load)
@@ -80,8 +79,7 @@ def loaded() -> _Loaded:
 
 @cache
 def _full(boom: Boom, size: float = 0.5) -> BoomShell:
-    laws = {"z": [_SOFT] * len(boom.joints)}
-    return assemble_boom(touching(boom, laws), ShellOptions(size), MPI.COMM_SELF)
+    return assemble_boom(touching(boom, _SOFT), ShellOptions(size), MPI.COMM_SELF)
 
 
 @pytest.mark.parametrize("radius", [0.5, 0.8, 1.0])
@@ -226,10 +224,7 @@ def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
     ],
 )
 def test_what_it_does_not_take_is_refused(boom: Boom, law: PowerContact, message: str) -> None:
-    laws: Mapping[Direction, list[PowerContact]] = dict.fromkeys(
-        boom.directions, [law] * len(boom.joints)
-    )
-    full = assemble_boom(touching(boom, laws), ShellOptions(2.0), MPI.COMM_SELF)
+    full = assemble_boom(touching(boom, law, law), ShellOptions(2.0), MPI.COMM_SELF)
     with pytest.raises(BoomError, match=message):
         integrate_directly(full, 1.0e-3, 1.0e-3)
 

@@ -14,6 +14,7 @@ from shell_model.contact.rows import Touching
 from shell_model.contact.surface import SurfaceOptions
 from tests.shell_model.booms import LAW, flat_boom
 from tests.shell_model.conftest import compliance
+from tests.touching import touching
 
 pytestmark = pytest.mark.slow
 
@@ -39,9 +40,7 @@ def _squeezed(boom: Boom, tolerance: float | None) -> float:
     options = ShellOptions(0.1, contact_tolerance=tolerance)
     shells = assemble_segments(boom, options, MPI.COMM_WORLD)
     contacts = (
-        Touching.of(boom, shells, {"z": [LAW], "y": ()}, "near webs", SurfaceOptions())
-        .rows({})
-        .contacts
+        Touching.of(touching(boom, LAW), shells, "near webs", SurfaceOptions()).rows({}).contacts
     )
     up, down = (contact.reading for contact in contacts if contact.station == 0)
     return sum(compliance(shell, up[k] - down[k]) for k, shell in enumerate(shells))

@@ -56,7 +56,7 @@ def test_a_station_slides_as_the_mean_of_its_contact_rows(line: ContactLine) -> 
     for station, row in enumerate(system.friction_rows):
         mine = system.station_of_row == station
         stiffness = [
-            max(w.stiffness, w.below) for w, at in zip(system.laws, mine, strict=True) if at
+            max(w.law.stiffness, w.law.below) for w, at in zip(system.laws, mine, strict=True) if at
         ]
         mean = np.average(system.rows[mine], axis=0, weights=stiffness)
         assert row == pytest.approx(mean, rel=1.0e-9, abs=1.0e-12)

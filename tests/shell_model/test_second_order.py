@@ -38,7 +38,7 @@ THRUST = 1.0e5
 def telescope(thrust: float, lateral: float | None = None) -> Boom:
     arm = Segment.of_section("arm", 0.0, 6.0, STEEL, OUTER, supports=(Support(0.0, "clamped"),))
     fly = Segment.of_section("fly", 4.5, 10.5, STEEL, INNER, load=-300.0)
-    joint = Joint(0, 1, stations=(4.5, 6.0), play=0.01, lateral_play=2.0 * lateral)
+    joint = Joint(0, 1, stations=(4.5, 6.0), play=0.01, lateral_play=lateral and 2.0 * lateral)
     pressed = with_compression((arm, fly), (joint,), [Thrust(1, 10.5, thrust)], gravity=5.0)
     return Boom(pressed, (joint,))
 
@@ -46,9 +46,7 @@ def telescope(thrust: float, lateral: float | None = None) -> Boom:
 @cache
 def shell(lateral: float | None = None) -> ReducedShell:
     laws = [PowerContact(1e9, 1.0).behind(lateral)] if lateral is not None else []
-    return reduce_boom(
-        touching(telescope(THRUST, lateral), LAW, laws), OPTIONS, MPI.COMM_SELF, None
-    )
+    return reduce_boom(touching(telescope(THRUST, lateral), LAW, laws), OPTIONS, MPI.COMM_SELF)
 
 
 def sparse(matrix: PETSc.Mat) -> csr_array:

@@ -112,7 +112,7 @@ def test_a_uniform_approach_presses_as_the_stations_do(side: float) -> None:
     state = _rigid(system, {"tip": heave, "tail": heave})
     force = _forces(system, state)
     assert np.count_nonzero(force) == 8
-    assert force.sum() == pytest.approx(side * 2.0 * LAW.stiffness * depth**2, rel=1.0e-6)
+    assert force.sum() == pytest.approx(side * 2.0 * LAW.law.stiffness * depth**2, rel=1.0e-6)
     # A turn about the middle of the overlap, whose ends are at 9, 10 and 19 m.
     turn = _rigid(system, {"tip": 9.5, "tail": -0.5})
     assert abs(force @ (system.rows @ turn)) < 1.0e-6 * abs(force.sum())
@@ -138,8 +138,8 @@ def test_every_point_has_its_share_of_the_penalty() -> None:
     """
     law = replace(LAW.law, stiffness_below=0.5e13).behind(LAW.above)
     system = _system(flat_boom(), law=law)
-    above = np.array([one.stiffness for one in system.laws])
-    below = np.array([one.below for one in system.laws])
+    above = np.array([one.law.stiffness for one in system.laws])
+    below = np.array([one.law.below for one in system.laws])
     assert ((above > 0.0) ^ (below > 0.0)).all()
     assert above.sum() == pytest.approx(2.0e13)
     assert below.sum() == pytest.approx(1.0e13)
@@ -186,7 +186,7 @@ def test_in_space_each_point_presses_one_corner() -> None:
     section = flat_boom().segments[1].section
     assert section is not None
     for walls, size in ((along_z, section.width), (~along_z, section.height)):
-        above = np.array([w.stiffness for w in system.laws])[walls]
+        above = np.array([w.law.stiffness for w in system.laws])[walls]
         assert above.sum() == pytest.approx(2.0e13)
         assert above @ arms[walls] ** 2 == pytest.approx(2.0e13 * size**2 / 12.0, rel=1.0e-6)
 
@@ -273,9 +273,8 @@ def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
     )
     boom = replace(boom, joints=(replace(boom.joints[0], pads=pads),))
     shells = assemble_segments(boom, ShellOptions(mesh_size=0.4), MPI.COMM_SELF)
-    rows = Touching.of(boom, shells, {"z": [LAW], "y": [LAW]}, "near webs", SurfaceOptions()).rows(
-        {}
-    )
+    touch = touching(boom, LAW.law)
+    rows = Touching.of(touch, shells, "near webs", SurfaceOptions()).rows({})
     inner, places = shells[1], places_of_pads(boom)
     corners = 1 if len(sides) == 2 else 2
     assert len(rows.contacts) == 2 * len(pads) * corners
@@ -288,4 +287,4 @@ def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
         mean = (far**3 - near**3) / (3.0 * (far - near))
         assert inner.row(contact.reading[1]) @ moved == pytest.approx(mean, rel=1e-9)
         share = (0.75 if pad.patch.offset == 0.0 else 0.25) / corners
-        assert contact.law.terms[0].stiffness == pytest.approx(share * LAW.stiffness)
+        assert contact.law.terms[0].stiffness == pytest.approx(share * LAW.law.stiffness)
