@@ -230,7 +230,7 @@ def sweep(
         if comm is None or comm.rank == 0:
             sweep_runs.prepare(folder, case)
         several = comm is not None and comm.size > 1
-        with members.workers(comm) if several else workers.workers(None) as pool:
+        with members.rank_executor(comm) if several else workers.workers(None) as pool:
             if pool is None:
                 return 0
             with progress.display() as tell:

@@ -51,7 +51,7 @@ _FINEST, _OF_PERIOD = -4, 0.25
 
 
 @contextmanager
-def workers(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
+def rank_executor(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
     """Who makes the runs of an ensemble: all ranks but the first, or None for our own threads.
 
     Collective. Other ranks than the first get None, once they have nothing to do any more.
@@ -86,7 +86,7 @@ def slow_below(boom: Boom, time: TimeTable) -> float | None:
     return cutoff
 
 
-def sum_up(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> EnsembleSummary:
+def sum_up_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> EnsembleSummary:
     """What the summary says of one model's ensemble.
 
     Args:
@@ -101,7 +101,7 @@ def sum_up(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> EnsembleSummary:
     )
 
 
-def gather(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
+def gather_ensembles(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
     """Tip and head of all ensembles in one dataset, in single precision; None without any.
 
     Args:

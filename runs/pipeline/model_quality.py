@@ -128,7 +128,7 @@ def quality_notes(summary: Summary, answers: Answers, duration: float) -> Iterat
     for line in _horizon(summary, duration):
         yield QualityNote("horizon", line)
     if errors := [model.step_error for model in models.values() if model.step_error]:
-        most = percent(max(errors))
+        most = _percent(max(errors))
         yield QualityNote("step", f"The time step changes the tip by {most} of its range at most.")
     for name, model in models.items():
         if (error := model.reduction_errors.get("contact_compliance")) is not None:
@@ -142,7 +142,7 @@ def quality_notes(summary: Summary, answers: Answers, duration: float) -> Iterat
             yield QualityNote(
                 "mesh",
                 f"{name}: where something presses, its walls give way by "
-                f"{percent(model.mesh_error)} more or less than on an infinitely fine mesh.",
+                f"{_percent(model.mesh_error)} more or less than on an infinitely fine mesh.",
             )
     name, worst = max(models.items(), key=lambda entry: entry[1].energy_residual)
     yield QualityNote(
@@ -152,7 +152,7 @@ def quality_notes(summary: Summary, answers: Answers, duration: float) -> Iterat
     )
 
 
-def percent(part: float) -> str:
+def _percent(part: float) -> str:
     """With two digits, or one that is not 0."""
     return f"{TO_PERCENT * part:.2g} %"
 
@@ -166,12 +166,12 @@ def _agreement(answers: Answers) -> Iterator[str]:
     for name, matches in answers.modes.matches.items():
         other, parts = answers.models[name], []
         if (off := off_at_rest(own, other)) is not None:
-            parts.append(f"{percent(abs(off))} in the tip at rest")
+            parts.append(f"{_percent(abs(off))} in the tip at rest")
         if (first := matches[0]) is not None:
-            parts.append(f"{percent(abs(first.off))} in the first frequency")
+            parts.append(f"{_percent(abs(first.off))} in the first frequency")
         if own.moved is not None and other.moved is not None and own.moved.peaks[0].largest:
             ratio = other.moved.peaks[0].largest / own.moved.peaks[0].largest
-            parts.append(f"{percent(abs(ratio - 1.0))} in the largest deflection of the tip")
+            parts.append(f"{_percent(abs(ratio - 1.0))} in the largest deflection of the tip")
         if parts:
             yield f"{name} is off {reference} by {listed(parts)}."
 
@@ -196,7 +196,7 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
         which = listed([f"{name} {time:.2f} s" for name, time in parted.items()])
         yield (
             "The motion is chaotic: runs whose data differ by less than can be known are "
-            f"{percent(_PARTED)} of the tip's range apart from here on: {which}. Later curves are "
+            f"{_percent(_PARTED)} of the tip's range apart from here on: {which}. Later curves are "
             "samples; the heights and times of slow peaks hold longer."
         )
     regular = [name for name, time in times.items() if time is None]

@@ -104,7 +104,7 @@ def run_model(
                 raise
             raise SharedFailure(failure_reason(error)) from error
         stages.seconds |= built.seconds
-    with members.workers(comm if case.ensemble else None) as executor:
+    with members.rank_executor(comm if case.ensemble else None) as executor:
         if not means.first_rank:
             return None
         alone = case.unjudged().model_copy(update={"models": (model,), "title": ""})
@@ -170,7 +170,7 @@ def _move(
             )
         tips, time = ensemble["tip"].values, ensemble["time"].values
         peaks = None if cutoff is None else SlowPeaks.of(tips, time, cutoff)
-        summary.ensemble = members.sum_up(ensemble, peaks)
+        summary.ensemble = members.sum_up_ensemble(ensemble, peaks)
         with stages.stage("horizons") as told:
             summary.horizons = members.measure_predictability(
                 motion, plan.integrator, table.vary, trajectory, executor, told

@@ -145,7 +145,7 @@ def _results(
     # Every file says which case it is of, so that a folder cannot mix two runs unnoticed.
     trajectories = {name: one.trajectory for name, one in moved.items()}
     data = label(boom, trajectories).assign_attrs(case_hash=summary.case_hash)
-    ensembles = members.gather(
+    ensembles = members.gather_ensembles(
         {name: one.ensemble for name, one in moved.items() if one.ensemble is not None}
     )
     if ensembles is not None:
