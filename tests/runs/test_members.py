@@ -273,7 +273,9 @@ def peaks_of(system: GapSystem, cutoff: float, spread: float) -> SlowPeaks:
 def test_counts_the_fewest_of_the_trials_that_hold(five_terms: tuple[GapSystem, float]) -> None:
     """Reference: by hand. Slow peaks scatter by some percent from the second on."""
     system, cutoff = five_terms
-    found = steps_for_peaks(Motion(system, 4.0, STEP), peaks_of(system, cutoff, 0.03), cutoff)
+    # Beside a dashpot of no strength every step is made on its own.
+    single = replace(system, dashpots=np.zeros((1, system.num_modes)))
+    found = steps_for_peaks(Motion(single, 4.0, STEP), peaks_of(system, cutoff, 0.03), cutoff)
     assert found is not None
     sizes = [trial.step for trial in found.trials]
     assert sizes == pytest.approx([STEP * 2.0**i for i in range(-4, len(sizes) - 4)])
