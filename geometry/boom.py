@@ -15,12 +15,11 @@ from geometry.axial import passed_over
 from geometry.cylinder import Cylinder, forces
 from geometry.drawing import check_drives, drives_of, places, reach
 from geometry.fault import BoomError
-from geometry.fit import check_flats, check_room
+from geometry.fit import check_flats, check_pads, check_room
 from geometry.holding import check_held
 from geometry.joint import Joint, PadSize, SlidePad, Stop
 from geometry.load import Load
 from geometry.observation import IN_SPACE, KINDS, Observation, Quantity
-from geometry.pad_checks import check_pads
 from geometry.section import Direction
 from geometry.segment import (
     SAME_PLACE,

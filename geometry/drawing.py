@@ -12,9 +12,8 @@ import numpy as np
 
 from geometry.drive import Drive
 from geometry.fault import BoomError
-from geometry.fit import check_drawn_room
+from geometry.fit import check_drawn_pads, check_drawn_room
 from geometry.joint import Joint
-from geometry.pad_checks import check_drawn_pads
 from geometry.segment import SAME_PLACE, Segment
 
 if TYPE_CHECKING:

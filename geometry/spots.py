@@ -16,8 +16,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.boom import Boom
-from geometry.contact_places import ContactLine, Pad, Stretch
-from geometry.rests import Rest
+from geometry.contact_places import ContactLine, Pad, Rest, Stretch
 from geometry.section import Direction, Face, Section
 
 # The tolerance at which the parts below were measured.

@@ -15,16 +15,14 @@ from dynamics.stages import Stages
 from geometry.arrays import Array
 from geometry.axial import pin_moments
 from geometry.boom import Boom, BoomError, Direction
-from geometry.contact_places import ContactLine, pads
+from geometry.contact_places import ContactLine, pads, rests
 from geometry.cylinder import GroundLine, ground_lines
 from geometry.grading import graded_mesh
 from geometry.load import Load
 from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.observation import Quantity, Read
-from geometry.plating import PlatedMesh, plated
-from geometry.rests import rests
+from geometry.plating import PlatedMesh, plated, tapered_mesh
 from geometry.spots import spots
-from geometry.tapered_mesh import tapered_mesh
 from shell_model.contact.rows import Touching, ties
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.reduction.krylov import KrylovOptions

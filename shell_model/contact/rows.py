@@ -22,9 +22,8 @@ import numpy as np
 from dynamics.gap_builder import Contact, GapBuilder
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Direction
-from geometry.contact_places import ContactLine, Pad, Patch, Stretch, pads
+from geometry.contact_places import ContactLine, Pad, Patch, Rest, Stretch, pads, rests
 from geometry.drawing import drives_below
-from geometry.rests import Rest, rests
 from geometry.section import Section, Side
 from shell_model.contact.surface import SurfaceOptions, SurfacePoint, surface_points
 from shell_model.contact.wall_rows import CornerLines, Wall, WallPoints, gauss

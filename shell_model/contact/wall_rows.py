@@ -17,7 +17,7 @@ import numpy as np
 from geometry.arrays import Array, Indices
 from geometry.contact_places import Stretch
 from geometry.section import COMPONENT, Direction
-from geometry.walls_along import WallsAlong
+from geometry.walls import WallsAlong
 from shell_model import compat
 from shell_model.segment.cross_section import Row, quadratic
 from shell_model.segment.segment_shell import SegmentShell
