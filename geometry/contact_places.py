@@ -18,7 +18,7 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction, Joint, Stop
 from geometry.drawing import drives_of, reach
-from geometry.drive import Carrier
+from geometry.joint import Carrier
 from geometry.section import Face, Offset, Side
 from geometry.segment import Segment
 

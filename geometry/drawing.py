@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.drive import Drive
 from geometry.fault import BoomError
 from geometry.fit import check_drawn_pads, check_drawn_room
-from geometry.joint import Joint
+from geometry.joint import Drive, Joint
 from geometry.segment import SAME_PLACE, Segment
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@
 # What a boom is made of
 from geometry.boom import Boom as Boom
 from geometry.cylinder import Cylinder as Cylinder
-from geometry.drive import Drive as Drive
+from geometry.joint import Drive as Drive
 from geometry.joint import Joint as Joint
 from geometry.joint import PadSize as PadSize
 from geometry.joint import SlidePad as SlidePad

@@ -22,7 +22,7 @@ from dynamics.drive.travel import SCurve
 from geometry.arrays import Array
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, Joint, Segment
-from geometry.drive import Drive
+from geometry.joint import Drive
 from geometry.section import BoxSection
 from studies.second_order import (
     BOX,

@@ -12,7 +12,7 @@ from dynamics.drive.travel import SCurve, Stroke
 from dynamics.excitation import History, followed
 from dynamics.excitation import Table as TimeTable
 from geometry.boom import BoomError
-from geometry.drive import Carrier, Drive
+from geometry.joint import Carrier, Drive
 from runs.case.limits import MOST_TIMES, In, NotNegative, Number, Positive, Table, Text, described
 from runs.case.places import PlaceTable
 

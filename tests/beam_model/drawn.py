@@ -21,7 +21,7 @@ from dynamics.drive.travel import SCurve
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, Segment
-from geometry.drive import Drive
+from geometry.joint import Drive
 
 LAW = PowerContact(1.0e6, 1.0).behind(7.0e-3)
 DRAWN = Drive(SCurve(4.0, 5.0), ("inner", "outer"))

@@ -18,7 +18,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, BoomError, Joint, Stop, Support
-from geometry.drive import Drive
+from geometry.joint import Drive
 from tests.beam_model.drawn import DRAWN, LAW, LONGEST, runge_kutta, shifted, telescope, tips
 from tests.beam_model.systems import finite_element_system, kantorovich_system
 from tests.touching import touching

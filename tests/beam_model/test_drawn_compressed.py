@@ -24,7 +24,7 @@ from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, PointMass
-from geometry.drive import Carrier, Drive
+from geometry.joint import Carrier, Drive
 from tests.beam_model.drawn import DRAWN, LAW, LONGEST, runge_kutta, telescope, tips
 from tests.beam_model.systems import finite_element_system
 from tests.touching import touching

@@ -22,7 +22,7 @@ from geometry.boom import (
     Support,
 )
 from geometry.compression import UNPRESSED
-from geometry.drive import Carrier, Drive
+from geometry.joint import Carrier, Drive
 from geometry.section import BoxSection
 
 STEEL = Material(2.1e11, 0.3, 7850.0)

@@ -20,8 +20,8 @@ from geometry.boom import (
     SlidePad,
     Support,
 )
-from geometry.drive import Drive
 from geometry.fit import room
+from geometry.joint import Drive
 from geometry.section import BoxSection
 
 BASE = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)

@@ -14,7 +14,7 @@ from dynamics.drive.travel import SCurve
 from dynamics.line import Line
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Material, Segment, Stop, Support
-from geometry.drive import Drive
+from geometry.joint import Drive
 from geometry.section import BoxSection
 from runs import CASES
 from runs.case.build import build_boom

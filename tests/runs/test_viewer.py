@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from dynamics.drive.travel import SCurve
-from geometry.drive import Drive
+from geometry.joint import Drive
 from runs.report.viewer import LEFT, Shown, few_shapes, of_shell, packed
 from tests.runs.moving_segments import BOOM, TIME, moving_scene
 

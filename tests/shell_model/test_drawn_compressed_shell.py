@@ -19,7 +19,7 @@ from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom
-from geometry.drive import Drive
+from geometry.joint import Drive
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
 from tests.shell_model.booms import flat_boom

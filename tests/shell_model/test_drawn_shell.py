@@ -19,7 +19,7 @@ from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom
-from geometry.drive import Drive
+from geometry.joint import Drive
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.local_compliance import compliance, local_compliance
 from shell_model.reduced_shell import ReducedShell, reduce_boom
