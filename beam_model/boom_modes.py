@@ -3,15 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy.linalg import block_diag, null_space
 
-from beam_model.component import Component, Modes, Motion, SegmentModel, natural_modes
-from beam_model.drawn_rows import moving_thrusts
-from dynamics.drive.row_table import MovingThrust
+from beam_model.component import (
+    BeamMember,
+    Component,
+    Modes,
+    Motion,
+    Rule,
+    SegmentModel,
+    natural_modes,
+)
+from beam_model.telescoping import moving_thrusts
 from dynamics.second_order import buckling_factor, softened
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
@@ -80,7 +86,7 @@ class BoomModes:
 
         ``offset`` is (y, z) of the point from the axis in m.
         """
-        row = self._expand(segment, direction, self._component(segment, direction).at(x))
+        row = self.member(segment).at(direction, x)
         # A small turn θ about x moves (y, z) by (−θ z, θ y).
         arm = offset[0] if direction == "z" else -offset[1]
         if arm != 0.0:
@@ -89,84 +95,59 @@ class BoomModes:
 
     def twist(self, segment: int, x: float) -> Array:
         """(num_modes,) row that reads the turn of a segment's cross-section about x in rad."""
-        return self._expand(segment, "twist", self._component(segment, "twist").at(x))
-
-    def unit_load(self, segment: int, direction: Direction) -> Array:
-        """(num_modes,) modal load of one N/m along a segment, in 1/(N/m) of N/√kg."""
-        return self._expand(segment, direction, self._component(segment, direction).unit_load)
-
-    def inertia(self, segment: int, direction: Direction) -> Array:
-        """(num_modes,) an acceleration that a segment feels as 1 N/m on average."""
-        return self._expand(segment, direction, self._component(segment, direction).inertia)
+        return self.member(segment).torque(x)
 
     def rotation(self, segment: int, x: float, direction: Direction) -> Array:
         """(num_modes,) row that reads the rotation of a segment's cross-section at x in m."""
-        rotation = self._component(segment, direction).rotation_at(x)
-        return self._expand(segment, direction, rotation)
+        return self.member(segment).moment(x, direction)
 
     def curvature(self, segment: int, x: float, direction: Direction) -> Array:
         """(num_modes,) row that reads the curvature of a segment at x in m."""
-        curvature = self._component(segment, direction).curvature_at(x)
-        return self._expand(segment, direction, curvature)
+        return self.member(segment).read(direction, lambda component: component.curvature_at(x))
 
-    def turning(self, segment: int, direction: Direction) -> Array:
-        """(num_modes,) modal momentum of a segment that turns about x = 0 by 1 rad/s."""
-        return self._expand(segment, direction, self._component(segment, direction).turning)
+    def member(self, segment: int) -> BeamMember:
+        """Return a segment as loads push it, over all modal coordinates."""
 
-    def load_between(self, segment: int, direction: Direction, start: float, end: float) -> Array:
-        """(num_modes,) modal load of one N/m between two x in m of a segment."""
-        load = self._component(segment, direction).uniform_load(start, end)
-        return self._expand(segment, direction, load)
+        def read(motion: Motion, rule: Rule) -> Array:
+            columns, shapes = self._shapes[segment, motion]
+            whole = np.zeros(self.omega2.size)
+            whole[columns] = rule(self._models[segment].components[motion]) @ shapes
+            return whole
 
-    def _component(self, segment: int, motion: Motion) -> Component:
-        return self._models[segment].components[motion]
-
-    def _expand(self, segment: int, motion: Motion, row: Array) -> Array:
-        """A component's row or load over all modal coordinates."""
-        columns, shapes = self._shapes[segment, motion]
-        whole = np.zeros(self.omega2.size)
-        whole[columns] = row @ shapes
-        return whole
+        return BeamMember(read)
 
 
 def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
     """Of the axial forces of the play-free boom, see :mod:`dynamics.second_order`.
 
-    Infinite without such forces; None where something moves that nothing holds. Of a boom that is
-    drawn out the smallest at some places of its way, its ends among them.
+    Infinite without such forces; None where something moves that nothing holds. Of a telescoping
+    boom the smallest at several extensions, the ends of its stroke among them.
     """
     tied = boom.play_free
+    drives = [number for number, joint in enumerate(boom.joints) if joint.drive is not None]
     smallest = np.inf
     for group in _groups(tied):
         components = [models[i].components[motion] for i, motion in group]
         first = block_diag(*(component.softening for component in components))
-        bodies = [_Body(group, components, number) for number in range(len(boom.segments))]
-        passing = _passing(boom, models, bodies)
+        members = _members(boom, group, components)
+        passing = {number: moving_thrusts(boom, models, members, number) for number in drives}
         if not (first.any() or any(passing.values())):
             continue
         if (_group_modes(tied, group, components).omega2 == 0.0).any():
             return None
-        for ways in stands(boom):
-            drawn = (one.softening(ways[n]) for n, thrusts in passing.items() for one in thrusts)
-            geometric = sum(drawn, first)
-            moved = {n: places(boom.joints[n], way) for n, way in ways.items()}
+        for extensions in stands(boom):
+            moving = (
+                thrust.softening(extensions[number])
+                for number, thrusts in passing.items()
+                for thrust in thrusts
+            )
+            geometric = sum(moving, first)
+            moved = {n: places(boom.joints[n], extension) for n, extension in extensions.items()}
             ties, pulled = _holds(tied, group, components, moved)
             stiffness, free = _held_stiffness(components, pulled), _free(ties, len(geometric))
             factor = buckling_factor(free.T @ stiffness @ free, free.T @ geometric @ free)
             smallest = min(smallest, factor)
     return smallest
-
-
-def _passing(
-    boom: Boom, models: Sequence[SegmentModel], bodies: Sequence[_Body]
-) -> dict[int, list[MovingThrust]]:
-    """The axial forces that go along as joints are drawn out, on the components of a group."""
-
-    def reads(segment: int, x: float, direction: Direction) -> Array:
-        return bodies[segment].at(direction, x)
-
-    drives = [number for number, joint in enumerate(boom.joints) if joint.drive is not None]
-    return {number: moving_thrusts(boom, models, reads, number) for number in drives}
 
 
 def _groups(boom: Boom) -> list[list[_Part]]:
@@ -193,34 +174,22 @@ def _groups(boom: Boom) -> list[list[_Part]]:
     ]
 
 
-@dataclass(frozen=True, slots=True)
-class _Body:
-    """A segment as single forces push it, on the components of a group."""
+def _members(
+    boom: Boom, group: Sequence[_Part], components: Sequence[Component]
+) -> list[BeamMember]:
+    """Each segment as forces push it, on the components of a group; 0 where it has none of them."""
 
-    group: Sequence[_Part]
-    components: Sequence[Component]
-    segment: int
+    def member(segment: int) -> BeamMember:
+        def read(motion: Motion, rule: Rule) -> Array:
+            parts = zip(group, components, strict=True)
+            own = (segment, motion)
+            return np.concatenate(
+                [rule(c) if part == own else np.zeros(len(c.load)) for part, c in parts]
+            )
 
-    def force(self, x: float, direction: Direction) -> Array:
-        return self.at(direction, x)
+        return BeamMember(read)
 
-    def moment(self, x: float, direction: Direction) -> Array:
-        return self._spread(direction, [component.rotation_at for component in self.components], x)
-
-    def torque(self, x: float) -> Array:
-        return self.at("twist", x)
-
-    def at(self, motion: Motion, x: float) -> Array:
-        """(num_dofs,) row that reads a deflection or the twist."""
-        return self._spread(motion, [component.at for component in self.components], x)
-
-    def _spread(self, motion: Motion, rows: Sequence[Callable[[float], Array]], x: float) -> Array:
-        """The row of one component, 0 in the others; all 0 where the group has none of it."""
-        parts = zip(self.group, self.components, rows, strict=True)
-        own = (self.segment, motion)
-        return np.concatenate(
-            [row(x) if part == own else np.zeros(len(c.load)) for part, c, row in parts]
-        )
+    return [member(number) for number in range(len(boom.segments))]
 
 
 def _holds(
@@ -231,18 +200,18 @@ def _holds(
 ) -> tuple[list[Array], list[GroundLine]]:
     """Of a group: rows (num_dofs,) that ties keep at zero, and the cylinders that pull at it.
 
-    Joints that are drawn out are tied where they have ``moved`` to, x in m on both segments.
+    Telescoping joints are tied where they have ``moved`` to, x in m on both segments.
     """
-    bodies = [_Body(group, components, number) for number in range(len(boom.segments))]
+    members = _members(boom, group, components)
     ties = [
-        bodies[joint.inner].at(motion, on_inner) - bodies[joint.outer].at(motion, on_outer)
+        members[joint.inner].at(motion, on_inner) - members[joint.outer].at(motion, on_outer)
         for number, joint in enumerate(boom.joints)
         if joint.tied
         for motion in dict.fromkeys(motion for _, motion in group)
         if (joint.outer, motion) in group
         for on_outer, on_inner in moved.get(number, [(x, x) for x in joint.stations])
     ]
-    lines = ground_lines(boom, bodies)
+    lines = ground_lines(boom, members)
     return ties, [line for line in lines if line.stiffness > 0.0 and line.push.any()]
 
 

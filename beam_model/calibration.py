@@ -183,13 +183,7 @@ def _component(
     segment: Segment, far: FarField, motion: Bent, factors: Array
 ) -> tuple[Component, int]:
     """A motion of the segment with so many times its stiffness, and its rigid motions."""
-    model = _model(segment, far, factors, twisted=motion == "twist")
-    component = model.components["twist" if motion == "twist" else "z"]
-    return component, component.rigid_modes
-
-
-def _model(segment: Segment, far: FarField, factors: Array, twisted: bool) -> SegmentModel:
-    if twisted:
+    if motion == "twist":
         assert segment.lateral is not None
         torsion = factors[0] * segment.lateral.torsion_constant
         changed = replace(segment, lateral=replace(segment.lateral, torsion_constant=torsion))
@@ -204,7 +198,9 @@ def _model(segment: Segment, far: FarField, factors: Array, twisted: bool) -> Se
             shear_stiffnesses=(factors[1] * stiffness, stiffness),
         )
     length = segment.length / _ELEMENTS
-    return finite_element_segment(changed, length, far.places, "timoshenko", True)
+    model = finite_element_segment(changed, length, far.places, "timoshenko", True)
+    component = model.components["twist" if motion == "twist" else "z"]
+    return component, component.rigid_modes
 
 
 def _probes(component: Component, far: FarField, motion: Bent) -> Array:

@@ -16,6 +16,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from geometry.arrays import Array
+from geometry.section import Direction
 
 # Deflection along z or along y in m, rotation about x in rad.
 Motion = Literal["z", "y", "twist"]
@@ -78,8 +79,17 @@ class Component:
         assert self.curvature is not None
         return self.curvature(x)
 
-    def uniform_load(self, start: float, end: float) -> Array:
-        """(num_dofs,) a uniform load of 1 N/m between two x in m."""
+    @property
+    def member(self) -> BeamMember:
+        """A segment that moves along z alone as loads push it, by this component of it."""
+        nothing = np.zeros(len(self.load))
+        return BeamMember(lambda motion, rule: rule(self) if motion == "z" else nothing)
+
+    def uniform(self, span: tuple[float, float] | None) -> Array:
+        """(num_dofs,) a uniform load of 1 N/m between two x in m, or along the whole segment."""
+        if span is None:
+            return self.unit_load
+        start, end = span
         inside = self.breaks[(self.breaks > start) & (self.breaks < end)]
         # Gauss points are exact for polynomials of each degree that a piece can have.
         points, weights = np.polynomial.legendre.leggauss(
@@ -91,6 +101,43 @@ class Component:
                 x = 0.5 * (a + b + point * (b - a))
                 total += 0.5 * (b - a) * weight * self.at(x)
         return total
+
+
+# What a component reads, or what is pushed of it: (num_dofs,) of its own.
+Rule = Callable[[Component], Array]
+
+
+@dataclass(frozen=True, slots=True)
+class BeamMember:
+    """A segment as loads push it, see :class:`geometry.load.Member`, in any coordinates.
+
+    Args:
+        read: (num_coordinates,) what a rule takes of the component of a motion.
+    """
+
+    read: Callable[[Motion, Rule], Array]
+
+    def at(self, motion: Motion, x: float) -> Array:
+        """(num_coordinates,) row that reads a deflection in m or the twist in rad at x in m."""
+        return self.read(motion, lambda component: component.at(x))
+
+    def force(self, x: float, direction: Direction) -> Array:
+        return self.at(direction, x)
+
+    def moment(self, x: float, direction: Direction) -> Array:
+        return self.read(direction, lambda component: component.rotation_at(x))
+
+    def torque(self, x: float) -> Array:
+        return self.at("twist", x)
+
+    def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
+        return self.read(direction, lambda component: component.uniform(span))
+
+    def inertia(self, direction: Direction, force: float) -> Array:
+        return force * self.read(direction, lambda component: component.inertia)
+
+    def turning(self, direction: Direction) -> Array:
+        return self.read(direction, lambda component: component.turning)
 
 
 @dataclass(frozen=True, slots=True)

@@ -140,22 +140,13 @@ class TaperedElement:
     shear: Polynomial
 
     def deflection(self, xi: Array) -> Array:
-        zero, one = np.zeros_like(xi), np.ones_like(xi)
-        _, _, deflections = self._of_moments()
-        rigid = np.array([one, self.h * xi, zero, zero])
-        return np.asarray(rigid + self._moments().T @ _at(deflections, xi))
+        return self._shapes((1.0, self.h * xi), self._of_moments()[2], xi)
 
     def slope(self, xi: Array) -> Array:
-        zero, one = np.zeros_like(xi), np.ones_like(xi)
-        _, slopes, _ = self._of_moments()
-        rigid = np.array([zero, one, zero, zero])
-        return np.asarray(rigid + self._moments().T @ _at(slopes, xi))
+        return self._shapes((0.0, 1.0), self._of_moments()[1], xi)
 
     def rotation(self, xi: Array) -> Array:
-        zero, one = np.zeros_like(xi), np.ones_like(xi)
-        rotations, _, _ = self._of_moments()
-        rigid = np.array([zero, one, zero, zero])
-        return np.asarray(rigid + self._moments().T @ _at(rotations, xi))
+        return self._shapes((0.0, 1.0), self._of_moments()[0], xi)
 
     def curvature(self, xi: Array) -> Array:
         return np.asarray(self._moments().T @ (self.bending(xi) * np.array([np.ones_like(xi), xi])))
@@ -166,6 +157,11 @@ class TaperedElement:
         flexibility = products(moments, self.bending(xi) * weights) + sheared
         moved = self._moments()
         return np.asarray(moved.T @ flexibility @ moved)
+
+    def _shapes(self, rigid: tuple[float | Array, ...], bent: _Pair, xi: Array) -> Array:
+        """(4, num_points) what the first node's w and θ move rigidly, and what moments bend."""
+        moved = np.array([np.broadcast_to(one, xi.shape) for one in (*rigid, 0.0, 0.0)])
+        return np.asarray(moved + self._moments().T @ np.array([one(xi) for one in bent]))
 
     def _of_moments(self) -> tuple[_Pair, _Pair, _Pair]:
         """Rotations, slopes and deflections under the moments 1 and ξ, clamped at ξ = 0."""
@@ -189,10 +185,6 @@ def _powers(xi: Array) -> tuple[Any, Any, Any]:
 
 _Pair = tuple[Polynomial, Polynomial]
 _ONE, _XI = Polynomial([1.0]), Polynomial([0.0, 1.0])
-
-
-def _at(pair: _Pair, xi: Array) -> Array:
-    return np.array([one(xi) for one in pair])
 
 
 def _parabola(values: list[float]) -> Polynomial:

@@ -7,7 +7,7 @@ the stretching of the axis.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
 from operator import attrgetter
@@ -15,19 +15,39 @@ from operator import attrgetter
 import numpy as np
 
 from beam_model.component import Component, Motion, SegmentModel, products
-from beam_model.elements import Element, Theory, element
+from beam_model.elements import Theory, element
+from beam_model.segment_model import gap_system
+from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import SAME_PLACE, Boom, BoomError, Segment
 from geometry.segment import APART
-
-# An element and ξ to shape functions (4, num_points).
-_Shapes = Callable[[Element, Array], Array]
 
 # Exact for products of the cubics.
 _GAUSS = np.polynomial.legendre.leggauss(4)
 
 _MASS, _ROTARY = map(attrgetter, ("mass_per_length", "rotary_inertia"))
 _TORSION, _POLAR = map(attrgetter, ("lateral.torsion_constant", "lateral.polar_inertia"))
+
+
+def finite_element_system(
+    boom: Boom,
+    element_length: float = 0.5,
+    theory: Theory = "euler-bernoulli",
+    rotary_inertia: bool = True,
+) -> GapSystem:
+    """A boom by beam finite elements.
+
+    Args:
+        boom: flat or in space.
+        element_length: largest length of an element in m.
+        theory: ``timoshenko`` needs the segments' sections.
+        rotary_inertia: keep I_p of (3).
+
+    Raises:
+        BoomError: the boom lacks what the theory needs.
+    """
+    models = finite_element_segments(boom, element_length, theory, rotary_inertia)
+    return gap_system(boom, models)
 
 
 def finite_element_segments(
@@ -113,21 +133,20 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
             held.append(dof + 1)
         else:
             stiffness[dof + 1, dof + 1] += support.rotation_stiffness or 0.0
-    for point in segment.masses:
+    for point in (*segment.masses, *segment.stiffener_masses):
         dof = 2 * _nearest(nodes, point.x)
         mass[dof, dof] += point.mass
     for point in segment.stiffener_masses:
         dof = 2 * _nearest(nodes, point.x)
-        mass[dof, dof] += point.mass
         turning[dof] += point.mass * point.x
         felt[dof] += point.mass / segment.mass_per_length
     free = np.setdiff1d(np.arange(num_dofs), held)
 
-    def read(shapes: _Shapes, x: float) -> Array:
+    def read(shapes: str, x: float) -> Array:
         k, h = _element(nodes, x)
         row = np.zeros(num_dofs)
         here = element(segment, theory, nodes[k], h)
-        row[2 * k : 2 * k + 4] = shapes(here, np.array((x - nodes[k]) / h))
+        row[2 * k : 2 * k + 4] = getattr(here, shapes)(np.array((x - nodes[k]) / h))
         return np.asarray(row[free])
 
     block = np.ix_(free, free)
@@ -138,9 +157,9 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         load=segment.load * unit_load[free],
         unit_load=unit_load[free],
         felt=felt[free],
-        at=partial(read, _deflection),
-        rotation=partial(read, _rotation),
-        curvature=partial(read, _curvature),
+        at=partial(read, "deflection"),
+        rotation=partial(read, "rotation"),
+        curvature=partial(read, "curvature"),
         turning=turning[free],
         breaks=nodes,
         rigid_modes=segment.rigid_modes,
@@ -208,15 +227,3 @@ def _element(nodes: Array, x: float) -> tuple[int, float]:
     """The element that holds x, and its length in m."""
     k = min(max(int(nodes.searchsorted(x, side="right")) - 1, 0), nodes.size - 2)
     return k, float(nodes[k + 1] - nodes[k])
-
-
-def _deflection(here: Element, xi: Array) -> Array:
-    return here.deflection(xi)
-
-
-def _rotation(here: Element, xi: Array) -> Array:
-    return here.rotation(xi)
-
-
-def _curvature(here: Element, xi: Array) -> Array:
-    return here.curvature(xi)

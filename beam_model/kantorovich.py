@@ -19,6 +19,8 @@ from numpy.polynomial import Legendre, Polynomial
 from scipy.linalg import null_space, rq
 
 from beam_model.component import Component, Motion, SegmentModel, products
+from beam_model.segment_model import gap_system
+from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Segment
 from geometry.compression import Compression
@@ -27,6 +29,27 @@ from geometry.compression import Compression
 _TAPERING = 6
 
 Base = Literal["as printed", "pinned", "complete"]
+
+
+def kantorovich_system(
+    boom: Boom,
+    terms: Sequence[int],
+    base: Base = "complete",
+    rotary_inertia: bool = True,
+) -> GapSystem:
+    """A boom by Kantorovich series.
+
+    Args:
+        boom: flat or in space.
+        terms: number of functions of each segment.
+        base: which reading of (29) and (31).
+        rotary_inertia: keep I_p of (3) and (9), or drop it as (21) does.
+
+    Raises:
+        BoomError: the boom has what the base cannot take.
+    """
+    models = kantorovich_segments(boom, terms, base, rotary_inertia)
+    return gap_system(boom, models)
 
 
 def kantorovich_segments(
@@ -122,13 +145,12 @@ def kantorovich_bending(
         if support.rotation_stiffness is not None:
             row = basis.slope_at(support.x)
             stiffness += support.rotation_stiffness * np.outer(row, row)
-    for point in segment.masses:
+    for point in (*segment.masses, *segment.stiffener_masses):
         row = basis.at(point.x)
         mass += point.mass * np.outer(row, row)
     felt = basis.value @ heavy
     for point in segment.stiffener_masses:
         row = basis.at(point.x)
-        mass += point.mass * np.outer(row, row)
         turning += point.mass * point.x * row
         felt += point.mass / segment.mass_per_length * row
     return Component(

@@ -21,7 +21,7 @@ from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
 from dynamics.line import Line, Quantity
 from geometry.arrays import Array
-from geometry.boom import Boom, Direction, Segment
+from geometry.boom import Boom, Direction
 
 # Pieces of a segment between places where something acts, at least.
 _PIECES = 40
@@ -43,8 +43,16 @@ def lines(boom: Boom, models: Sequence[SegmentModel]) -> list[Line]:
 
 def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Line:
     segment = boom.segments[number]
-    acting = _acting(boom, number)
-    breaks = _breaks(segment, acting, model.components["z"].breaks)
+    # The ends of the segment, and where something acts on it.
+    acting = {*segment.ends, *boom.stations_of(number), *segment.compression.places}
+    acting |= {held.x for held in segment.supports} | {mass.x for mass in segment.carried}
+    # The ends of all pieces: those of the elements, or even ones between places.
+    breaks = model.components["z"].breaks
+    if not breaks.size:
+        even = np.linspace(segment.start, segment.end, _PIECES + 1)
+        breaks = np.unique(np.concatenate([even, sorted(acting)]).round(9))
+    starts, lengths = breaks[:-1], np.diff(breaks)
+    middles = 0.5 * (breaks[1:] + breaks[:-1])
     rows: dict[Quantity, Array] = {}
     for direction in boom.directions:
         deflection, moment, shear = _NAMES[direction]
@@ -53,8 +61,19 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
         )
         if model.components[direction].curvature is not None:
             plane = segment if direction == "z" else segment.turned()
-            rows[moment] = _at_ends(breaks, partial(_moment, modes, number, plane, direction))
-            pressed = segment.compression(0.5 * (breaks[1:] + breaks[:-1]))[:, None]
+            early, late = (
+                # By the local E J of the segment as it bends in its plane.
+                np.array(
+                    [
+                        -plane.local(x).bending_stiffness * modes.curvature(number, x, direction)
+                        for x in starts + part * lengths
+                    ]
+                )
+                for part in (_EARLY, _LATE)
+            )
+            ends = [1.5 * early - 0.5 * late, 1.5 * late - 0.5 * early]
+            rows[moment] = np.stack(ends, axis=1).reshape(2 * starts.size, -1)
+            pressed = segment.compression(middles)[:, None]
             across = _slope(breaks, rows[moment]) - pressed * _slope(breaks, rows[deflection])
             rows[shear] = _to_ends(breaks, across, acting)
     if boom.spatial:
@@ -63,46 +82,15 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
         rows["twist"] = _both_ends(breaks, partial(modes.twist, number))
         if model.components["z"].curvature is not None:
             stiffness = segment.material.shear_modulus * lateral.torsion_constant
-            middles = 0.5 * (breaks[1:] + breaks[:-1])
             local = segment.relative(attrgetter("lateral.torsion_constant"), middles)
             twisted = stiffness * local[:, None] * _slope(breaks, rows["twist"])
             rows["torque"] = _to_ends(breaks, twisted, acting)
     return Line(np.repeat(breaks, 2)[1:-1], rows, paired=True)
 
 
-def _moment(modes: BoomModes, number: int, plane: Segment, direction: Direction, x: float) -> Array:
-    """(num_modes,) at x, by the local E J of the segment as it bends in its plane."""
-    return -plane.local(x).bending_stiffness * modes.curvature(number, x, direction)
-
-
-def _acting(boom: Boom, number: int) -> set[float]:
-    """x in m of the ends of a segment, and of where something acts on it."""
-    segment = boom.segments[number]
-    places = {*segment.ends, *boom.stations_of(number), *segment.compression.places}
-    places |= {support.x for support in segment.supports}
-    return places | {mass.x for mass in segment.carried}
-
-
-def _breaks(segment: Segment, acting: set[float], nodes: Array) -> Array:
-    """x in m of the ends of all pieces: those of the elements, or even ones between places."""
-    if nodes.size:
-        return nodes
-    even = np.linspace(segment.start, segment.end, _PIECES + 1)
-    return np.asarray(np.unique(np.concatenate([even, sorted(acting)]).round(9)))
-
-
 def _both_ends(breaks: Array, read: Callable[[float], Array]) -> Array:
     """(2 num_pieces, num_modes) of what is continuous, at both ends of each piece."""
     return np.asarray(np.repeat([read(x) for x in breaks], 2, axis=0)[1:-1])
-
-
-def _at_ends(breaks: Array, read: Callable[[float], Array]) -> Array:
-    """(2 num_pieces, num_modes) of what is straight in each piece."""
-    found = []
-    for a, b in pairwise(breaks):
-        early, late = (read(a + part * (b - a)) for part in (_EARLY, _LATE))
-        found += [1.5 * early - 0.5 * late, 1.5 * late - 0.5 * early]
-    return np.array(found)
 
 
 def _slope(breaks: Array, rows: Array) -> Array:

@@ -23,8 +23,7 @@ from beam_model.segment_model import gap_system, standing_system
 from dynamics.equilibrium import rest_at
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
-from geometry.boom import Boom, Direction
-from geometry.load import Member
+from geometry.boom import Boom
 
 # Of the longest segment, where axial forces soften it.
 COMPRESSED_ELEMENTS = 20
@@ -73,12 +72,29 @@ class Elements:
     @cached_property
     def segments(self) -> list[SegmentModel]:
         """As their supports hold them."""
-        return _segments(self.boom)
+        return finite_element_segments(self.boom, *self._kind, rotary_inertia=False)
 
     @cached_property
     def unsupported(self) -> list[Component]:
-        """What bends along z without their supports."""
-        return [_unsupported(self.boom, number) for number in range(len(self.boom.segments))]
+        """What bends along z without their supports, with nodes where they may be held."""
+        size, theory = self._kind
+        found = []
+        for number, segment in enumerate(self.boom.segments):
+            breaks = [*_held_places(self.boom, number), *self.boom.stations_of(number)]
+            alone = replace(segment, supports=())
+            model = finite_element_segment(alone, size, breaks, theory, rotary_inertia=False)
+            found.append(model.components["z"])
+        return found
+
+    @property
+    def _kind(self) -> tuple[float, Theory]:
+        """Length in m, the longest but for axial forces and tapers, and theory."""
+        segments = self.boom.segments
+        longest = max(segment.length for segment in segments)
+        if self.boom.compressed or any(one.head_section is not None for one in segments):
+            longest /= COMPRESSED_ELEMENTS
+        known = all(segment.section is not None for segment in segments)
+        return longest, "timoshenko" if known else "euler-bernoulli"
 
 
 def static_state(
@@ -106,18 +122,9 @@ def static_state(
     return StaticState(boom, system, position, holds)
 
 
-def drawn_out(boom: Boom) -> GapSystem:
+def telescoping_system(boom: Boom) -> GapSystem:
     """The beams of :func:`static_state`, and all that its drives move."""
-    return gap_system(boom, _segments(boom)).gathered()
-
-
-def _segments(boom: Boom) -> list[SegmentModel]:
-    return finite_element_segments(boom, _size(boom), _theory(boom), rotary_inertia=False)
-
-
-def _theory(boom: Boom) -> Theory:
-    known = all(segment.section is not None for segment in boom.segments)
-    return "timoshenko" if known else "euler-bernoulli"
+    return gap_system(boom, Elements(boom).segments).gathered()
 
 
 def handed_on(boom: Boom, holds: Sequence[Hold]) -> list[Hold]:
@@ -138,21 +145,6 @@ def handed_on(boom: Boom, holds: Sequence[Hold]) -> list[Hold]:
                 force=outer.force + inner.force, moment=outer.moment + inner.moment
             )
     return [whole[hold[:2]] for hold in holds]
-
-
-def _size(boom: Boom) -> float:
-    """Of elements in m: the longest are exact in statics but for axial forces and tapers."""
-    longest = max(segment.length for segment in boom.segments)
-    tapers = any(segment.head_section is not None for segment in boom.segments)
-    return longest / COMPRESSED_ELEMENTS if boom.compressed or tapers else longest
-
-
-def _unsupported(boom: Boom, number: int) -> Component:
-    """A segment as it bends along z without its supports, with nodes where it may be held."""
-    alone = replace(boom.segments[number], supports=())
-    breaks = [*_held_places(boom, number), *boom.stations_of(number)]
-    model = finite_element_segment(alone, _size(boom), breaks, _theory(boom), rotary_inertia=False)
-    return model.components["z"]
 
 
 def _held_places(boom: Boom, number: int) -> set[float]:
@@ -178,36 +170,10 @@ def _holds(
     for given in boom.loads:
         # What is over by t = 0 has no values.
         if given.segment == number and given.direction == "z" and callable(given.history):
-            load += given.history(np.zeros(1))[0] * given.push(_Bare(component))
+            load += given.history(np.zeros(1))[0] * given.push(component.member)
     stiffness = component.stiffness - component.softening
     left = (stiffness @ np.array(bent) - load).reshape(-1, 2)
     return [
         Hold(number, x, *map(float, left[np.abs(nodes - x).argmin()]))
         for x in sorted(_held_places(boom, number))
     ]
-
-
-@dataclass(frozen=True, slots=True)
-class _Bare(Member):
-    """A segment's own coordinates along z as loads push them."""
-
-    component: Component
-
-    def force(self, x: float, direction: Direction) -> Array:
-        return self.component.at(x)
-
-    def moment(self, x: float, direction: Direction) -> Array:
-        assert self.component.rotation is not None
-        return self.component.rotation(x)
-
-    def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
-        return self.component.unit_load if span is None else self.component.uniform_load(*span)
-
-    def inertia(self, direction: Direction, force: float) -> Array:
-        return force * self.component.inertia
-
-    def torque(self, x: float) -> Array:
-        return np.zeros(len(self.component.load))
-
-    def turning(self, direction: Direction) -> Array:
-        return np.zeros(len(self.component.load))

@@ -16,7 +16,6 @@ from typing import Any
 
 import dolfinx.fem.petsc as fem_petsc
 import numpy as np
-import numpy.typing as npt
 import ufl
 from dolfinx import cpp, fem, jit, mesh
 from mpi4py import MPI
@@ -108,33 +107,25 @@ def _apart(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[str, Any]:
         return joined
     if comm.size == 1:
         return {}
-    together = _joined_cells(triangles)
-    if not comm.bcast(together.size):
-        return {}
-    # Without that argument an edge with two cells on one rank counts as known to no other rank
-    # (FEniCS/dolfinx issue 3063): its cells must stay together.
-    ranks = _slices(comm.size, points, triangles)
-    ranks[together] = ranks[together[:, :1]]
-    destinations = cpp.graph.AdjacencyList_int32(ranks[:, None])
-    return {"partitioner": lambda *_: destinations}
-
-
-def _joined_cells(triangles: Indices) -> Indices:
-    """(num_edges, 3) the cells on each edge that has three."""
+    # (num_edges, 3) the cells on each edge that has three.
     sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     edges = sides[:, 0] * (triangles.max(initial=0) + 1) + sides[:, 1]
     by_edge = np.argsort(edges, kind="stable")
     _, first, count = np.unique(edges[by_edge], return_index=True, return_counts=True)
     begins = first[count == _CELLS_OF_AN_EDGE]
-    return np.asarray(by_edge[begins[:, None] + np.arange(_CELLS_OF_AN_EDGE)] // 3)
-
-
-def _slices(ranks: int, points: Array, triangles: Indices) -> npt.NDArray[np.int32]:
-    """(num_triangles,) the rank of each cell: equal numbers, one after another along x."""
+    together = by_edge[begins[:, None] + np.arange(_CELLS_OF_AN_EDGE)] // 3
+    if not comm.bcast(together.size):
+        return {}
+    # Without that argument an edge with two cells on one rank counts as known to no other rank
+    # (FEniCS/dolfinx issue 3063): its cells must stay together.
+    # Equal numbers on each, one after another along x.
     middles = points[triangles].mean(axis=1)
     place = np.empty(len(triangles), dtype=np.int64)
     place[np.lexsort(middles.T[::-1])] = np.arange(len(triangles))
-    return (ranks * place // max(1, len(triangles))).astype(np.int32)
+    ranks = (comm.size * place // max(1, len(triangles))).astype(np.int32)
+    ranks[together] = ranks[together[:, :1]]
+    destinations = cpp.graph.AdjacencyList_int32(ranks[:, None])
+    return {"partitioner": lambda *_: destinations}
 
 
 def create_hexahedron_mesh(comm: MPI.Comm, points: Array, hexahedra: Indices) -> Any:

@@ -152,7 +152,16 @@ def _resting(_: Boom, full: BoomShell, options: ShellOptions, stages: Stages) ->
     with stages.stage("rows"):
         loads = _own_loads(full, coordinates)
         system = _gap_system(full, coordinates, loads)
-    pressed, lost = _compliance(full, reduced), _lost_compliance(full, reduced)
+    apart = BoomCoordinates(full.comm, full.shells, reduced, ())
+    contacts = full.rows.contacts
+    rows = np.array([apart.row(contact.reading) for contact in contacts])
+    pressed, lost = (
+        compliance(apart.omega2, rows.reshape(-1, apart.omega2.size)),
+        np.zeros(len(contacts)),
+    )
+    for number, segment in enumerate(reduced):
+        touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
+        lost[touching] += segment.lost_compliance[: len(touching)]
     return _Reduction(reduced, coordinates, system, loads, pressed, lost)
 
 
@@ -211,22 +220,6 @@ def _gap_system(full: BoomShell, coordinates: BoomCoordinates, own_loads: Array)
             for line in full.lines
         ],
     )
-
-
-def _compliance(full: BoomShell, reduced: Sequence[ReducedSegment]) -> Array:
-    """(num_contacts, num_contacts) of the contacts, the segments apart."""
-    apart = BoomCoordinates(full.comm, full.shells, reduced, ())
-    rows = np.array([apart.row(contact.reading) for contact in full.rows.contacts])
-    return compliance(apart.omega2, rows.reshape(-1, apart.omega2.size))
-
-
-def _lost_compliance(full: BoomShell, reduced: Sequence[ReducedSegment]) -> Array:
-    """(num_contacts,) what the reduction takes from it at most, in m/N."""
-    lost = np.zeros(len(full.rows.contacts))
-    for number, segment in enumerate(reduced):
-        touching = [i for i, row in enumerate(full.rows.contacts) if number in row.reading]
-        lost[touching] += segment.lost_compliance[: len(touching)]
-    return lost
 
 
 def _largest(parts: Array) -> float:

@@ -31,7 +31,12 @@ def standard_boom(boom: Boom) -> Boom:
         boom,
         segments=tuple(map(_unit_segment, boom.segments)),
         joints=joints,
-        loads=tuple(map(_unit_load, boom.loads)),
+        loads=tuple(
+            replace(load, magnitude=float(load.magnitude != 0.0), history=Step())
+            if _changing(load)
+            else load
+            for load in boom.loads
+        ),
     )
 
 
@@ -81,12 +86,6 @@ def _unit_segment(segment: Segment) -> Segment:
 def _changing(load: Load) -> bool:
     """Whether it follows a history, and is not over at t = 0."""
     return not isinstance(load.history, Released | Thrown)
-
-
-def _unit_load(load: Load) -> Load:
-    if not _changing(load):
-        return load
-    return replace(load, magnitude=float(load.magnitude != 0.0), history=Step())
 
 
 def _shimmed(joint: Joint) -> bool:

@@ -55,7 +55,9 @@ def study(tell: Tell) -> Iterator[Proof]:
     answers = answered()
     for name in MODELS:
         yield from _at_rest(name, answers.models[name])
-    yield from _reactions(answers)
+    for held, force in zip(answers.reactions, support_forces(), strict=True):
+        what = f"reaction at {held.x:g} m"
+        yield Proof(what, 1e-3 * held.force, 1e-3 * force, "kN", *LEVERS)
     tell("a cantilever")
     yield from _cantilever()
     yield from _cycles()
@@ -114,12 +116,6 @@ def _at_rest(name: str, own: ModelAnswers) -> Iterator[Proof]:
 def read(diagram: Diagram, what: str, place: float) -> float:
     """A curve at a place in m."""
     return float(np.interp(place, diagram.x, diagram.curves[what]))
-
-
-def _reactions(answers: Answers) -> Iterator[Proof]:
-    for held, force in zip(answers.reactions, support_forces(), strict=True):
-        what = f"reaction at {held.x:g} m"
-        yield Proof(what, 1e-3 * held.force, 1e-3 * force, "kN", *LEVERS)
 
 
 def _cantilever() -> Iterator[Proof]:

@@ -24,11 +24,9 @@ from runs.process.terminal import show_notices
 from runs.report.numerals import NONE, number
 from runs.report.tables import Cell, Table, wide_console, write
 from studies.study import Piece, Plot, Tell, titled
-from studies.then.general_solver import METHODS
-from studies.then.modal_integrators import NEWMARK, WILSON
+from studies.then.modal_integrators import NEWMARK, WILSON, proofs
 from studies.then.samples import MEMBERS, MODES, SERIES, THEN, Moved, Numerics
-from studies.then.scheme_errors import proofs
-from studies.then.survey import ABOUT, TOLERANCES, WITH, WITHOUT, Survey, lost_then, share
+from studies.then.survey import ABOUT, METHODS, TOLERANCES, WITH, WITHOUT, Survey, lost_then, share
 
 OUT = Path("runs/out/then")
 TITLE = "Statements of the paper as they were computed then"
@@ -183,7 +181,12 @@ def plots(survey: Survey) -> Iterator[Plot]:
             f"{what}: energy from nowhere",
             "time (s)",
             "% of the energy put in",
-            {label: _cut(run.time, TO_PERCENT * run.balance) for label, run in runs.items()},
+            {
+                # Until the cut is passed.
+                label: _curve(run.time[shown], TO_PERCENT * run.balance[shown])
+                for label, run in runs.items()
+                for shown in [np.cumsum(~(TO_PERCENT * run.balance < CUT)) == 0]
+            },
             f"Gained above, lost below zero; cut at {CUT:g} %.",
             logarithmic=False,
         )
@@ -217,12 +220,6 @@ def _curve(time: Array, values: Array) -> tuple[list[float], list[float]]:
     """For a figure, as many points as can be seen."""
     shown = slice(None, None, max(1, time.size // POINTS))
     return time[shown].tolist(), values[shown].tolist()
-
-
-def _cut(time: Array, values: Array) -> tuple[list[float], list[float]]:
-    """The same until ``CUT`` is passed."""
-    shown = np.cumsum(~(values < CUT)) == 0
-    return _curve(time[shown], values[shown])
 
 
 def leave(survey: Survey, made: Sequence[Table], folder: Path) -> None:

@@ -32,8 +32,7 @@ from shell_model.segment.solver import ShiftedSolver, times
 from studies.motions import SLOW
 from studies.reference_models.lone_segment import shell_alone
 from studies.reference_models.plates import STEEL
-from studies.reference_models.solid import assemble_solid
-from studies.reference_models.solid_mesh import mesh_quarter
+from studies.reference_models.solid import assemble_solid, mesh_quarter
 
 # Distances in m of the mid-lines, which stay where they are as walls become thicker.
 OUTER = (0.40, 0.30)

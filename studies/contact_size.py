@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from mpi4py import MPI
@@ -23,9 +23,6 @@ from studies.motions import finer, friction_case, gap_system, move, shell_of
 from studies.pads import with_pads
 from studies.refined import Refined, refined_table
 from studies.study import Held, Piece, Proof, Tell, titled
-
-if TYPE_CHECKING:
-    from shell_model.segment.segment_shell import SegmentShell
 
 # Allowed of the local compliance and of a pressed wall.
 ALLOWED = 0.01
@@ -118,7 +115,8 @@ def supported(case: Case, parts: Sequence[float]) -> list[float]:
         options = finer(shell_of(case), part).options()
         held = replace(boom, segments=(elastic, *boom.segments[1:]))
         shell, *_ = assemble_segments(held, options, MPI.COMM_SELF)
-        there = there or _lines_beside(shell, x)
+        lines = np.unique(shell.nodes[:, 0])
+        there = there or tuple(lines[np.abs(lines - x - far).argmin()] for far in (-BESIDE, BESIDE))
         before, at, after = (
             shell.row(shell.outline(line).wall_deflection("z")) for line in (there[0], x, there[1])
         )
@@ -126,12 +124,6 @@ def supported(case: Case, parts: Sequence[float]) -> list[float]:
         squeeze = at - share * before - (1.0 - share) * after
         found.append(float(shell_compliance(Folding(shell), squeeze[:, None])[0, 0]))
     return found
-
-
-def _lines_beside(shell: SegmentShell, x: float) -> tuple[float, float]:
-    lines = np.unique(shell.nodes[:, 0])
-    before, after = (lines[np.abs(lines - x - far).argmin()] for far in (-BESIDE, BESIDE))
-    return float(before), float(after)
 
 
 def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
@@ -144,7 +136,7 @@ def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
 
 def plate_proofs(sizes: Sizes) -> Iterator[Proof]:
     """A wall under a patch beside its edge."""
-    from studies.reference_models.pressed_plate import flange
+    from studies.reference_models.plates import flange
 
     held: Held = ("analytic", "Reissner and Mindlin's plate, by Ritz's method", ALLOWED)
     for edges in ("simply supported", "clamped"):

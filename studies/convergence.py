@@ -13,19 +13,118 @@ import sys
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from functools import partial
 from importlib import import_module
 from pathlib import Path
 from time import perf_counter
 
+from matplotlib import rc_context
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure as Sheet
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 from rich.console import Console
 
 from runs.folder.files import whole_folder, write_whole
 from runs.process.terminal import show_notices
+from runs.report import theme
+from runs.report.figure_context import Figure
+from runs.report.numerals import fixed, number
 from runs.report.pages import page
-from runs.report.tables import wide_console, write
-from studies import plots, verification
-from studies.study import Study
+from runs.report.tables import Table, wide_console, write
+from studies.study import Plot, Proof, Study
+
+MARKERS = "osD^vPX"
+
+
+def draw(plot: Plot, folder: Path) -> Figure:
+    """Draw a plot.
+
+    Args:
+        plot: of a study.
+        folder: gets ``NAME.png``.
+    """
+    with rc_context(theme.RC):
+        sheet = Sheet(figsize=(theme.WIDTH, 4.2 + 0.16 * len(plot.curves)))
+        FigureCanvasAgg(sheet)
+        axes = sheet.add_subplot()
+        strokes = theme.strokes(list(plot.curves), [])
+        for i, (label, (x, y)) in enumerate(plot.curves.items()):
+            # Many points are a curve, few are measurements.
+            marker = MARKERS[i % len(MARKERS)] if len(x) <= 20 else ""
+            stroke = strokes[label]
+            axes.plot(
+                x,
+                y,
+                color=stroke.color,
+                linestyle=stroke.linestyle,
+                marker=marker,
+                markersize=5.0,
+                label=label,
+            )
+        axes.set(xlabel=plot.x, ylabel=plot.y)
+        if plot.logarithmic:
+            axes.set(xscale="log", yscale="log")
+            # Sizes span a decade or less: their own values say more than powers of ten.
+            sizes = sorted({float(value) for x, _ in plot.curves.values() for value in x})
+            if len(sizes) <= 8:
+                axes.xaxis.set_major_locator(FixedLocator(sizes))
+                axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axes.xaxis.set_minor_formatter(NullFormatter())
+        if len(plot.curves) > 1:
+            sheet.legend(loc="outside lower left", ncols=1 if len(plot.curves) < 4 else 2)
+        sheet.suptitle(plot.title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
+        path = folder / f"{plot.name}.png"
+        sheet.savefig(path)
+    return Figure(path, plot.title, plot.caption)
+
+
+INTRODUCTION = """\
+<!-- SPDX-License-Identifier: LGPL-3.0-or-later -->
+# Verification
+
+Each row holds a value against a reference. *Analytic* is a formula; *external*, a published value;
+*other code*, another model or method of this project, or the limit of a refinement;
+*non-regression*, the value that an earlier release had. The order is the one observed as a mesh or
+a step refines. The command that measures all of them, draws their convergence and writes this
+table to `runs/out/convergence/verification.md` is
+
+    make convergence
+
+`make test` holds what can be had in seconds to the same references.
+"""
+
+
+def proof_table(study: Study) -> Table:
+    """The proofs of one study."""
+    return Table.of_rows(
+        f"proofs-{study.name}",
+        study.title,
+        ("what", "value", "reference", "error (%)", "allowed", "", "order", "kind", "source"),
+        [_row(proof) for proof in study.proofs],
+    )
+
+
+def markdown(studies: Sequence[Study]) -> str:
+    """The page of all studies that prove something."""
+    proving = [study for study in studies if study.proofs]
+    return "\n".join([INTRODUCTION, *(proof_table(study).markdown() for study in proving)])
+
+
+def _row(proof: Proof) -> tuple[str, ...]:
+    unit = f" {proof.unit}" if proof.unit else ""
+    # As many digits as show the error.
+    digits = 6 if proof.error < 1.0e-3 else 5
+    return (
+        proof.what,
+        f"{number(proof.value, digits)}{unit}",
+        f"{number(proof.reference, digits)}{unit}",
+        number(100.0 * proof.error, 2),
+        number(100.0 * proof.allowed, 2),
+        "✓" if proof.holds else "✗",
+        fixed(proof.order, 2),
+        proof.kind,
+        proof.source,
+    )
+
 
 OUT = Path("runs/out/convergence")
 TITLE = "What proves the models"
@@ -51,7 +150,7 @@ STUDIES = (
     "as_computed_then",
     "supports",
     "second_order",
-    "drawn_column",
+    "telescoping_column",
     "sections",
     "taper",
     "answers",
@@ -61,7 +160,9 @@ STUDIES = (
 def run(name: str) -> tuple[Study, float]:
     """One study, and the seconds that it takes; it tells of its steps on stdout."""
     start = perf_counter()
-    study: Study = import_module(f"studies.{name}").study(partial(_tell, name))
+    study: Study = import_module(f"studies.{name}").study(
+        lambda what: print(f"{name}: {what} ...", flush=True)
+    )
     return study, perf_counter() - start
 
 
@@ -87,10 +188,10 @@ def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
     studies = [found[name] for name in names]
     proving = [study for study in studies if study.proofs]
     for study in proving:
-        verification.table(study).show(console)
+        proof_table(study).show(console)
     tables = [table for study in studies for table in study.tables]
     write(folder, "convergence", TITLE, {one.name: one.data for one in studies}, tables)
-    write_whole(folder / "verification.md", verification.markdown(studies))
+    write_whole(folder / "verification.md", markdown(studies))
     _write_report(studies, folder)
     return studies
 
@@ -118,19 +219,15 @@ def main() -> None:
 
 def _write_report(studies: Sequence[Study], folder: Path) -> None:
     with whole_folder(folder / "figures") as pictures:
-        drawn = {one.name: [plots.draw(plot, pictures) for plot in one.plots] for one in studies}
+        drawn = {one.name: [draw(plot, pictures) for plot in one.plots] for one in studies}
         content = page(
             "convergence.html",
             title=TITLE,
             studies=studies,
             figures=drawn,
-            proofs={one.name: verification.table(one) for one in studies if one.proofs},
+            proofs={one.name: proof_table(one) for one in studies if one.proofs},
         )
     write_whole(folder / "report.html", content)
-
-
-def _tell(study: str, what: str) -> None:
-    print(f"{study}: {what} ...", flush=True)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 from scipy.signal import find_peaks
@@ -96,7 +95,7 @@ def study(tell: Tell) -> Iterator[Piece]:
     for (boom, file), model in product(BOOMS.items(), MODELS):
         name = f"{boom}, {model}"
         tell(name)
-        pressed = PressedBoom.of(_system(CASES / file, model))
+        pressed = PressedBoom.of(_system(file, model))
         farthest = f"damping ratio of {name}: the mode of the first {MODES} that is farthest off"
         for ratio in RATIOS:
             swings = np.array([pressed.measured(ratio, mode) for mode in range(MODES)])
@@ -112,8 +111,8 @@ def study(tell: Tell) -> Iterator[Piece]:
     yield Table.of_rows("damping", "Damping ratios of pressed booms", columns, rows, (NOTE,))
 
 
-def _system(path: Path, name: str) -> GapSystem:
-    case = case_file.load(str(path))
+def _system(file: str, name: str) -> GapSystem:
+    case = case_file.load(str(CASES / file))
     model = model_of(case, name)
     if model.meshed:
         model = model.model_copy(update={"mesh_size": MESH_SIZE})

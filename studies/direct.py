@@ -79,7 +79,7 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, tell: Tell) -> lis
     """
     from shell_model.boom_shell import ShellOptions, assemble_boom
     from shell_model.reduced_shell import reduce_boom
-    from shell_model.reduction.segment import KrylovOptions
+    from shell_model.reduction.krylov import KrylovOptions
     from studies.reference_models.unreduced import integrate_directly
 
     case = lasting(case, sizes.duration)

@@ -7,9 +7,6 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from runs.case.kinds.kantorovich import Kantorovich
-from runs.case.kinds.model import of_kind
-from runs.case.kinds.shell import Shell
 from runs.case.schema import Case, Model
 from runs.report.tables import Cell, Table
 from studies.motions import finer, friction_case, model_of, trajectories
@@ -67,10 +64,15 @@ def study(tell: Tell) -> Iterator[Table]:
     rows: list[Sequence[Cell]] = []
     for what, name, sizes, unit, at in (
         *(("step", name, STEPS, " (s)", with_step) for name in STEPPED),
-        ("terms of each segment", "kantorovich-24", TERMS, "", _with_terms),
-        ("element length", "beam-fe", ELEMENTS, " (m)", _with_elements),
-        ("element length", "timoshenko", ELEMENTS, " (m)", _with_elements),
-        ("mesh size", "shell", MESHES, " (m)", _with_mesh),
+        ("terms of each segment", "kantorovich-24", TERMS, "",
+         lambda model, terms: model.model_copy(update={"terms": (round(terms),) * 2})),
+        *(
+            ("element length", name, ELEMENTS, " (m)",
+             lambda model, length: model.model_copy(update={"element_length": length}))
+            for name in ("beam-fe", "timoshenko")
+        ),
+        ("mesh size", "shell", MESHES, " (m)",
+         lambda model, size: finer(model, size / model.mesh_size)),
     ):  # fmt: skip
         tell(f"{name}: {what}")
         model = model_of(case, name)
@@ -87,17 +89,3 @@ def study(tell: Tell) -> Iterator[Table]:
 def with_step(model: Model, step: float) -> Model:
     """The model by steps in s."""
     return model.model_copy(update={"step": step})
-
-
-def _with_terms(model: Model, terms: float) -> Model:
-    (series,) = of_kind(Kantorovich, [model])
-    return series.model_copy(update={"terms": (round(terms),) * len(series.terms)})
-
-
-def _with_elements(model: Model, length: float) -> Model:
-    return model.model_copy(update={"element_length": length})
-
-
-def _with_mesh(model: Model, size: float) -> Model:
-    (shell,) = of_kind(Shell, [model])
-    return finer(shell, size / shell.mesh_size)

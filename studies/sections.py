@@ -15,11 +15,8 @@ from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
-from geometry.arrays import Array
-from geometry.boom import Boom, Collar, Joint, Material, Segment, Support
+from geometry.boom import Boom, Collar, Joint, Segment, Support
 from geometry.contact_places import Stretch
-from geometry.mesh import mesh_segment
-from geometry.plating import plated
 from geometry.polygon import PolygonSection
 from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import Direction, Section
@@ -28,11 +25,10 @@ from runs.report.tables import Table
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.wall_rows import CornerLines
 from shell_model.reduced_shell import reduce_boom
-from shell_model.segment.segment_shell import SegmentShell, assemble_segment
-from shell_model.segment.solver import ShiftedSolver
+from studies.reference_models.lone_segment import compliances, shell_alone
+from studies.reference_models.plates import STEEL
 from studies.study import Held, Piece, Proof, Tell, titled
 
-STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 LAW = PowerContact(stiffness=1.0e9, exponent=1.0)
 
 # Outer and inner sections in the paper's place.
@@ -167,29 +163,18 @@ def ring_of_bars(section: Section, length: float) -> float:
 def ring_of_shell(section: Section, length: float, size: float) -> float:
     """The same of a shell with edges of a size in m."""
     segment = Segment.of_section("ring", 0.0, length, STEEL, section)
-    mesh = mesh_segment(section, {"start": 0.0, "end": length}, size)
-    shell = assemble_segment(MPI.COMM_SELF, segment, plated(segment, mesh))
-    stretch = Stretch.on(segment, 0.5 * length, length)
+    shell, stretch = shell_alone(segment, size), Stretch.on(segment, 0.5 * length, length)
     corners = CornerLines(shell)
     top, bottom = (corners.deflection(stretch, "z", 0.0, side) for side in (1, -1))
-    return gives_way(shell, shell.row(top - bottom))
+    return compliances(shell, top - bottom)[0]
 
 
 def tip_of_shell(section: Section, direction: Direction, size: float) -> float:
     """How the tip of a cantilever of shell gives way along a direction, in m/N."""
     clamp = Support(0.0, "clamped")
     segment = Segment.of_section("arm", 0.0, ARM, STEEL, section, supports=(clamp,))
-    mesh = mesh_segment(section, {"start": 0.0, "end": ARM}, size)
-    shell = assemble_segment(MPI.COMM_SELF, segment, plated(segment, mesh))
-    return gives_way(shell, shell.force(ARM, direction))
-
-
-def gives_way(shell: SegmentShell, force: Array) -> float:
-    """In m/N along a force of 1 N, (num_dofs,)."""
-    solve = ShiftedSolver(shell, 0.01)
-    moved = float(force @ solve(force[:, None])[:, 0])
-    solve.destroy()
-    return moved
+    shell = shell_alone(segment, size)
+    return compliances(shell, shell.outline(ARM).wall_deflection(direction))[0]
 
 
 @titled("sections", "Polygons of flat plates")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a drive of a given stiffness draws: cycles of sticking and slipping, and what lags behind.
+"""What a drive of a given stiffness moves: cycles of sticking and slipping, and what lags behind.
 
 The motion across the boom goes by the drive as asked: how far that is off is told by moving it
-again along the way that what is drawn has gone.
+again along the extension that the segment has reached.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def study(tell: Tell) -> Iterator[Piece]:
     yield Table.of_rows("one-way", "What lags behind its drive", columns, rows, notes)
 
 
-def _drawn(pulled: Pulled, speed: float, time: Array) -> Followed:
+def _followed(pulled: Pulled, speed: float, time: Array) -> Followed:
     way = Stroke(2.0 * speed * float(time[-1]), speed)
     return follow(pulled, way, time, np.full(time.size, FRICTION))
 
@@ -76,7 +76,7 @@ def _cycle() -> Iterator[Proof]:
     slipping = 2.0 / omega * (np.pi - np.arctan(slack * omega / SPEED))
     period = 2.0 * slack / SPEED + slipping
     time = np.linspace(0.0, first + 9.99 * period, 40_001)
-    found = _drawn(ROPE, SPEED, time)
+    found = _followed(ROPE, SPEED, time)
     still = found.drawn_speed == 0.0
     begins = time[1:][still[:-1] & ~still[1:]]
     told = found.told
@@ -100,7 +100,7 @@ def _critical(ratio: float) -> Proof:
     while high - low > 1.0e-5 * expected:
         middle = 0.5 * (low + high)
         lasting = 5.0 * FRICTION / STIFFNESS / middle + 20.0 * np.pi * np.sqrt(MASS / STIFFNESS)
-        sticks = _drawn(pulled, middle, np.linspace(0.0, lasting, 2001)).told.sticks
+        sticks = _followed(pulled, middle, np.linspace(0.0, lasting, 2001)).told.sticks
         low, high = (middle, high) if sticks else (low, middle)
     held: Held = ("analytic", "the swing that just comes back to it", 1.0e-4)
     return Proof(f"critical speed at ζ = {ratio:g}", high, expected, "m/s", *held)
@@ -144,7 +144,7 @@ def _moved(plan: MotionPlan) -> Trajectory:
 
 
 def _weighing(stiffness: float) -> Case:
-    """The paper's boom under its weight, at rest until it is drawn out by a rope."""
+    """The paper's boom under its weight, at rest until a rope telescopes it."""
     case = reading.load(str(CASES / "drawn-out.toml"))
     masses = [one.mass_per_length or 0.0 for one in case.segments]
     rope = {

@@ -20,11 +20,9 @@ from geometry.section import BoxSection
 from runs.case.build import build_boom
 from runs.report.tables import Cell, Table
 from shell_model.segment.cross_section import Outline, Row
-from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import quadratic_form
 from studies.motions import friction_case
-from studies.reference_models.eigenmodes import natural_frequencies
-from studies.reference_models.lone_segment import compliances, shell_alone
+from studies.reference_models.lone_segment import compliances, natural_frequencies, shell_alone
 from studies.study import Held, Piece, Proof, Tell, titled
 
 # The error of the mesh; what the walls beside a plate, and the force on a short thick ring, add.
@@ -92,7 +90,12 @@ def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes
         held = replace(segment, supports=tuple(Support(x) for x in sizes.pins))
         standing = shell_alone(held, sizes.mesh, stations)
     tops, bottoms = (
-        [_corners(standing.outline(x), side) for x in stations] for side in (1.0, -1.0)
+        # Above its webs, where pads near the webs press.
+        [
+            outline.flange_deflection(side, 0.5 * outline.section.size("y"))
+            for outline in map(standing.outline, stations)
+        ]
+        for side in (1.0, -1.0)
     )
     both = [0.5 * top + 0.5 * bottom for top, bottom in zip(tops, bottoms, strict=True)]
     together, alone = 1.0e9 * np.reshape(compliances(standing, *both, *tops), (2, -1))
@@ -100,12 +103,11 @@ def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes
     free = shell.rigid_motions().shape[1]
     frequencies = natural_frequencies(shell, free + sizes.frequencies)[free:]
     name = f"{segment.name}, {what}"
-    return Variant(name, _mass(shell), together - beam, alone - together, frequencies)
-
-
-def _corners(outline: Outline, side: float) -> Row:
-    """A flange's deflection above its webs, where pads near the webs press."""
-    return outline.flange_deflection(side, 0.5 * outline.section.size("y"))
+    # What a slide along x carries.
+    slide = np.zeros(shell.free.size)
+    slide[shell.node_dofs[:, 0]] = 1.0
+    mass = quadratic_form(shell.mass, slide)
+    return Variant(name, mass, together - beam, alone - together, frequencies)
 
 
 def _timoshenko(segment: Segment, x: float) -> float:
@@ -116,13 +118,6 @@ def _timoshenko(segment: Segment, x: float) -> float:
     a, span = abs(x - near), abs(far - near)
     bending = a**2 * (span + a) / (3.0 * material.youngs_modulus * section.second_moment_of_area)
     return bending + (a + a**2 / span) / (material.shear_modulus * section.shear_area)
-
-
-def _mass(shell: SegmentShell) -> float:
-    """What a slide along x carries, in kg."""
-    slide = np.zeros(shell.free.size)
-    slide[shell.node_dofs[:, 0]] = 1.0
-    return quadratic_form(shell.mass, slide)
 
 
 def racking(outline: Outline) -> Row:

@@ -10,9 +10,8 @@ from functools import partial
 import numpy as np
 from scipy.optimize import brentq
 
-from beam_model.elements import Theory
-from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import kantorovich_segments
+from beam_model.finite_element import finite_element_system
+from beam_model.kantorovich import kantorovich_system
 from beam_model.rigid import rigid_segment
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
@@ -21,11 +20,11 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
-from geometry.boom import Boom, Cylinder, Joint, Load, Material, Segment, Support
+from geometry.boom import Boom, Cylinder, Joint, Load, Segment, Support
 from geometry.section import BoxSection
+from studies.second_order import STEEL
 from studies.study import Held, Proof, Tell, titled
 
-STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 # Thick walls: the section hardly distorts.
 BOX = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
 LENGTH = 10.0
@@ -134,7 +133,7 @@ def _turning(tell: Tell) -> Iterator[Proof]:
     boom = Boom((slender,), (), (_PUSHED,))
     blevins: Held = ("analytic", "Blevins 1979", 1e-5)
     theory = first_frequency(slender, ROTATION), blevins
-    beam = _elements(Boom((thick,), ()), "timoshenko").frequencies[0]
+    beam = _MODELS["Timoshenko's elements"](Boom((thick,), ())).frequencies[0]
     references: Mapping[str, tuple[float, Held]] = {
         "elements": theory,
         "a series of 24 terms": theory,
@@ -168,7 +167,8 @@ def _swinging(tell: Tell) -> Iterator[Proof]:
         ("joint", Boom((held, fly), (joint,)), np.sqrt(2.0), mass / LENGTH),
     ):
         tell(f"a dashpot at a {what}")
-        system = _rigid(stands)
+        models = [rigid_segment(one) for one in stands.segments]
+        system = gap_system(stands, models)
         omega = arm * np.sqrt(stiffness / effective)
         ratio = 0.5 * DASHPOT * arm / np.sqrt(stiffness * effective)
         if not system.laws:
@@ -191,18 +191,6 @@ def _segment() -> Segment:
     return Segment.of_section("boom", 0.0, LENGTH, STEEL, BOX, supports=(Support(0.0),))
 
 
-def _rigid(boom: Boom) -> GapSystem:
-    return gap_system(boom, [rigid_segment(one) for one in boom.segments])
-
-
-def _elements(boom: Boom, theory: Theory = "euler-bernoulli") -> GapSystem:
-    return gap_system(boom, finite_element_segments(boom, 0.5, theory, rotary_inertia=True))
-
-
-def _series(boom: Boom) -> GapSystem:
-    return gap_system(boom, kantorovich_segments(boom, [24], "complete", rotary_inertia=True))
-
-
 def _shell(boom: Boom) -> GapSystem:
     from mpi4py import MPI
 
@@ -213,8 +201,8 @@ def _shell(boom: Boom) -> GapSystem:
 
 
 _MODELS: Mapping[str, Callable[[Boom], GapSystem]] = {
-    "elements": _elements,
-    "Timoshenko's elements": partial(_elements, theory="timoshenko"),
-    "a series of 24 terms": _series,
+    "elements": finite_element_system,
+    "Timoshenko's elements": partial(finite_element_system, theory="timoshenko"),
+    "a series of 24 terms": lambda boom: kantorovich_system(boom, [24]),
     "a shell": _shell,
 }

@@ -97,7 +97,11 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     lines, padded = stations[0], stations[2]
     default = surfaces.get(DEFAULT_POINTS) or next(iter(surfaces.values()))
     softer = [
-        Contact(f"{default.name}, {part:g} of the penalty", case, _scaled(default.system, part))
+        Contact(
+            f"{default.name}, {part:g} of the penalty",
+            case,
+            replace(default.system, laws=[law.shared(part) for law in default.system.laws]),
+        )
         for part in sizes.penalties
     ]
     tell("motions with friction")
@@ -130,10 +134,6 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
         "over the whole overlap.",
         logarithmic=False,
     )
-
-
-def _scaled(system: GapSystem, part: float) -> GapSystem:
-    return replace(system, laws=[law.shared(part) for law in system.laws])
 
 
 def _upper_stiffness(system: GapSystem) -> float:

@@ -94,18 +94,14 @@ def study(tell: Tell) -> Iterator[Proof]:
     """Every model."""
     for name, model in MODELS.items():
         tell(name)
-        yield _deflection(name, model)
+        source = "∫ (L − x)²/(E J) dx" + (" + ∫ dx/(G A_s)" if model.in_shear else "")
+        system, _ = model.of(arm())
+        found = system.observers["tip"].row @ system.static_response(system.excitations[0].load)
+        held: Held = ("analytic", source, OF_SHELL if name == "shell" else CLOSE)
+        what, bent = f"tip of a tapered cantilever, {name}", tip(model.in_shear)
+        yield Proof(what, 1e6 * float(found), 1e6 * bent, "1e-6 m/N", *held)
         if name != ELEMENTS:
             yield from _swing_and_force(name, model)
-
-
-def _deflection(name: str, model: Model) -> Proof:
-    source = "∫ (L − x)²/(E J) dx" + (" + ∫ dx/(G A_s)" if model.in_shear else "")
-    system, _ = model.of(arm())
-    found = system.observers["tip"].row @ system.static_response(system.excitations[0].load)
-    held: Held = ("analytic", source, OF_SHELL if name == "shell" else CLOSE)
-    what, bent = f"tip of a tapered cantilever, {name}", tip(model.in_shear)
-    return Proof(what, 1e6 * float(found), 1e6 * bent, "1e-6 m/N", *held)
 
 
 def _swing_and_force(name: str, model: Model) -> Iterator[Proof]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from studies.then.modal_integrators import NEWMARK
-from studies.then.scheme_errors import own_root
+from studies.then.modal_integrators import NEWMARK, own_root
 from tests import rubbing
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beam_model.statics import drawn_out
+from beam_model.statics import telescoping_system
 from dynamics.drive.stick_slip import Pulled
 from dynamics.drive.travel import Travel
 from dynamics.gap_system import GapSystem
@@ -82,7 +82,7 @@ def slippings(case: Case, boom: Boom) -> Iterator[Slipping]:
     joints = pulled_by(case, boom)
     if not joints or statics(case, boom) is None:
         return
-    system = with_pulled(drawn_out(with_play_seen(case, boom)), case, boom)
+    system = with_pulled(telescoping_system(with_play_seen(case, boom)), case, boom)
     travels = (travel for travel in system.travels if travel.pulled is not None)
     for (number, pulled), travel in zip(joints.items(), travels, strict=True):
         joint = boom.joints[number]

@@ -23,7 +23,6 @@ from dynamics.excitation import Released, Thrown
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError
 from geometry.contact_places import Pad, pads
-from geometry.section import Direction
 from runs.case.build import build_boom
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.kinds.model import Joined, Workshop, of_kind
@@ -65,24 +64,6 @@ class Part(NamedTuple):
         whole[self.free] = row
         pairs = whole.reshape(-1, 2)
         return [[int(n), *map(float, pairs[n])] for n in np.flatnonzero(pairs.any(axis=1))]
-
-    def force(self, x: float, direction: Direction) -> Array:
-        return self.component.at(x)
-
-    def moment(self, x: float, direction: Direction) -> Array:
-        return self.component.rotation_at(x)
-
-    def torque(self, x: float) -> Array:
-        raise AssertionError("a flat boom has no torque")
-
-    def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
-        return self.component.unit_load if span is None else self.component.uniform_load(*span)
-
-    def inertia(self, direction: Direction, force: float) -> Array:
-        return force * self.component.inertia
-
-    def turning(self, direction: Direction) -> Array:
-        return self.component.turning
 
 
 def script(case: Case, joined: Joined, model: BeamElements, calibration: Calibration | None) -> str:
@@ -269,7 +250,7 @@ def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, 
         part = parts[load.segment]
         values = np.asarray(load.history(times), dtype=float)
         constant = bool(np.ptp(values) == 0.0)
-        nodes = part.nodal((values[0] if constant else 1.0) * load.push(part))
+        nodes = part.nodal((values[0] if constant else 1.0) * load.push(part.component.member))
         yield {
             "segment": load.segment,
             "nodes": nodes,

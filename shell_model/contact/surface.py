@@ -9,7 +9,7 @@ touches comes from the joint, never from a facet's normal.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -93,83 +93,57 @@ def surface_points(
                 continue
             law = joint.law(direction)
             for side in (1, -1):
-                one_sided = law.one_sided(side)
-                if one_sided is not None:
-                    patch = _Patch.of(boom, joint, Wall(direction, side), options.points)
-                    share = patch.share(law, options.stiffness)
-                    found += patch.points(walls, one_sided.shared(share), first, boom.spatial)
+                wall = Wall(direction, side)
+                found += _on_wall(boom, walls, joint, wall, law, options, first)
             first += len(joint.stations)
     return found
 
 
-@dataclass(frozen=True, slots=True)
-class _Patch:
-    """The overlap on one wall of the inner segment.
+def _on_wall(
+    boom: Boom,
+    walls: Sequence[WallPoints],
+    joint: Joint,
+    wall: Wall,
+    law: ContactLaw,
+    options: SurfaceOptions,
+    first: int,
+) -> Iterator[SurfacePoint]:
+    """Those of one wall of the inner segment; ``first`` is the joint's first station."""
+    one_sided = law.one_sided(wall.side)
+    if one_sided is None:
+        return
+    section = boom.segments[joint.inner].section
+    assert section is not None
+    width, (start, end) = section.face(wall.normal, wall.side).width, boom.overlap(joint)
+    # The penalty of the whole wall over the joint's stiffness at one station.
+    share = float(len(joint.stations))
+    if options.stiffness is not None:
+        area = width * (end - start)
+        share = options.stiffness * area / max(term.stiffness for term in law.terms)
+    pressing = one_sided.shared(share)
+    along, across = gauss(start, end, options.points[0]), gauss(0.0, 0.5 * width, options.points[1])
+    # Mirrored pairs stand for parts of the wall's area.
+    weights = np.outer(along[1], across[1]).ravel()
+    x, beside = np.repeat(along[0], across[0].size), np.tile(across[0], along[0].size)
+    stations = np.abs(np.subtract.outer(x, joint.stations)).argmin(axis=1) + first
 
-    Args:
-        joint: whose.
-        wall: that touches.
-        x, across: (num_points,) places on the half of the wall where the other coordinate is
-            positive, in m.
-        weights: (num_points,) parts of the wall's area that the mirrored pairs stand for.
-        area: of the wall in m².
-    """
-
-    joint: Joint
-    wall: Wall
-    x: Array
-    across: Array
-    weights: Array
-    area: float
-
-    @classmethod
-    def of(cls, boom: Boom, joint: Joint, wall: Wall, points: tuple[int, int]) -> _Patch:
-        section = boom.segments[joint.inner].section
-        assert section is not None
-        width = section.face(wall.normal, wall.side).width
-        start, end = boom.overlap(joint)
-        x, along = gauss(start, end, points[0])
-        across, over = gauss(0.0, 0.5 * width, points[1])
-        return cls(
-            joint=joint,
-            wall=wall,
-            x=np.repeat(x, across.size),
-            across=np.tile(across, x.size),
-            weights=np.outer(along, over).ravel(),
-            area=width * (end - start),
-        )
-
-    def share(self, law: ContactLaw, stiffness: float | None) -> float:
-        """The penalty of the whole wall over the joint's stiffness at one station."""
-        if stiffness is None:
-            return float(len(self.joint.stations))
-        return stiffness * self.area / max(term.stiffness for term in law.terms)
-
-    def points(
-        self, walls: Sequence[WallPoints], law: ContactLaw, first: int, spatial: bool
-    ) -> list[SurfacePoint]:
-        """Those of the wall, under its law. ``first`` is the joint's first station."""
-        right, left = (self._approaches(walls, half) for half in (1, -1))
-        stations = np.abs(np.subtract.outer(self.x, self.joint.stations)).argmin(axis=1) + first
-        found = []
-        for i, (weight, station) in enumerate(zip(self.weights, stations.tolist(), strict=True)):
-            if not spatial:
-                mean = 0.5 * right[i] + 0.5 * left[i]
-                found.append(SurfacePoint(mean, law.shared(weight), station, self.wall.side, 0))
-                continue
-            part = law.shared(0.5 * weight)
-            found.append(SurfacePoint(right[i], part, station, self.wall.side, 1))
-            found.append(SurfacePoint(left[i], part, station, self.wall.side, -1))
-        return found
-
-    def _approaches(self, walls: Sequence[WallPoints], half: int) -> list[Reading]:
+    def approaches(half: int) -> list[Reading]:
         """u − w along the wall's normal at the places on one half of it."""
-        places = np.column_stack([self.x, half * self.across])
-        ends = self.joint.inner, self.joint.outer
-        rows = (walls[number].rows(self.wall, places, self.wall.normal) for number in ends)
+        places, ends = np.column_stack([x, half * beside]), (joint.inner, joint.outer)
+        rows = (walls[number].rows(wall, places, wall.normal) for number in ends)
         return [
             Reading({ends[0]: inner, ends[1]: -outer}) for inner, outer in zip(*rows, strict=True)
         ]
+
+    points = zip(approaches(1), approaches(-1), weights, stations.tolist(), strict=True)
+    for right, left, weight, station in points:
+        if boom.spatial:
+            part = pressing.shared(0.5 * weight)
+            yield SurfacePoint(right, part, station, wall.side, 1)
+            yield SurfacePoint(left, part, station, wall.side, -1)
+        else:
+            mean = 0.5 * right + 0.5 * left
+            yield SurfacePoint(mean, pressing.shared(weight), station, wall.side, 0)
 
 
 def without_stiff_modes(comm: MPI.Comm, reduced: ReducedSegment, rows: Array) -> ReducedSegment:

@@ -62,16 +62,13 @@ class BoomCoordinates:
         self.critical_factor: float | None = np.inf
         geometric = block_diag(*(segment.geometric for segment in reduced))
         if geometric.any():
-            self._soften(geometric)
-
-    def _soften(self, geometric: Array) -> None:
-        """Go to the modes under the axial forces of the segments."""
-        tied = np.eye(self.omega2.size) if self._combination is None else self._combination
-        taken = tied.T @ geometric @ tied
-        held = not (self.omega2 == 0.0).any()
-        self.critical_factor = buckling_factor(np.diag(self.omega2), taken) if held else None
-        self.omega2, turn = self._comm.bcast(softened(self.omega2, taken))
-        self._combination = tied @ turn
+            # To the modes under the axial forces of the segments.
+            tied = np.eye(self.omega2.size) if self._combination is None else self._combination
+            taken = tied.T @ geometric @ tied
+            held = not (self.omega2 == 0.0).any()
+            self.critical_factor = buckling_factor(np.diag(self.omega2), taken) if held else None
+            self.omega2, turn = comm.bcast(softened(self.omega2, taken))
+            self._combination = tied @ turn
 
     def row(self, reading: Reading) -> Array:
         """(num_modes,) what a reading reads of each mode, the same on every rank."""

@@ -247,14 +247,12 @@ class _Basis:
         # moves it.
         moved = np.abs(rigid.T @ self._forces).max(axis=1, initial=0.0) > _DEPENDENT
         shapes = np.hstack([rigid[:, moved], elastic @ combination])
-        return np.concatenate([np.zeros(moved.sum()), omega2]), shapes * self._signs(shapes)
-
-    def _signs(self, shapes: Array) -> Array:
-        """Signs with which every shape goes along with an input that moves it much."""
+        # Every shape goes along with an input that moves it much.
         gains = shapes.T @ self._forces
         much = np.abs(gains) > 0.5 * np.abs(gains).max(axis=1, keepdims=True)
         first = gains[np.arange(len(gains)), much.argmax(axis=1)]
-        return np.where(first < 0.0, -1.0, 1.0)
+        signs = np.where(first < 0.0, -1.0, 1.0)
+        return np.concatenate([np.zeros(moved.sum()), omega2]), shapes * signs
 
     def _append(self, block: Array) -> Array:
         """Add what is new in a block, column by column; gives the orthonormal new part."""

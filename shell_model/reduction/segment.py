@@ -15,20 +15,16 @@ between the shifts.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from dynamics.failure import NumericsError
-from geometry.arrays import Array, Mask
+from geometry.arrays import Array
 from shell_model.reduction.krylov import FamilyCoordinates, KrylovOptions, reduce_family
 from shell_model.reduction.symmetry import Folding, Job, shared
-from shell_model.segment.solver import ShiftedSolver
-
-__all__ = ["KrylovOptions", "ReducedSegment", "ShiftedSolver", "reduce_segment"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,13 +79,20 @@ def reduce_segment(
     families = comm.bcast([job.family for job in jobs])
     if not families:
         raise NumericsError("nothing acts on a segment, and it has no motion: give it a load")
-    most = comm.bcast(_shares(options.most, jobs))
+    tell = progress or (lambda part: None)
+    # A family may have as many coordinates to each of its forces as the others.
+    counts = comm.bcast([np.count_nonzero(job.forces.any(axis=0)) for job in jobs])
 
     def reduce_one(number: int, job: Job) -> FamilyCoordinates:
         mine = range(comm.rank, len(families), comm.size)
-        tell = partial(_tell, progress, mine.index(number), len(mine))
-        limited = replace(options, most=most[number])
-        return reduce_family(job.shell(folding.part), job.forces, job.readings, limited, tell)
+        done, most = mine.index(number), options.most
+        return reduce_family(
+            job.shell(folding.part),
+            job.forces,
+            job.readings,
+            replace(options, most=most and most * counts[number] // sum(counts)),
+            lambda part: tell((done + part) / len(mine)),
+        )
 
     parts = []
     shapes = []
@@ -99,33 +102,17 @@ def reduce_segment(
     omega2 = np.concatenate([part.omega2 for part in parts])
     right = np.concatenate([part.right for part in parts])
     order = np.argsort(omega2, kind="stable")
-    if progress is not None:
-        progress(1.0)
+    tell(1.0)
+    # Up to where all of the rising frequencies are right.
+    right = right[order]
+    first_wrong = right.size if right.all() else int(np.argmin(right))
+    limit = np.sqrt(omega2[order][first_wrong - 1]) / (2.0 * np.pi) if first_wrong else 0.0
     return ReducedSegment(
         omega2=omega2[order],
         shapes=np.hstack(shapes)[:, order],
         compliance_error=max(part.compliance_error for part in parts),
         reading_error=max(part.reading_error for part in parts),
         lost_compliance=np.sum([part.lost_compliance for part in parts], axis=0),
-        frequency_limit=_limit(omega2[order], right[order]),
+        frequency_limit=float(limit),
         geometric=block_diag(*(part.geometric for part in parts))[np.ix_(order, order)],
     )
-
-
-def _shares(most: int | None, jobs: Sequence[Job]) -> list[int | None]:
-    """How many coordinates each family may have: as many to each of its forces as the others."""
-    if most is None:
-        return [None] * len(jobs)
-    counts = [np.count_nonzero(job.forces.any(axis=0)) for job in jobs]
-    return [most * count // sum(counts) for count in counts]
-
-
-def _tell(progress: Callable[[float], None] | None, done: int, count: int, part: float) -> None:
-    if progress is not None:
-        progress((done + part) / count)
-
-
-def _limit(omega2: Array, right: Mask) -> float:
-    """Hz up to which all of the rising frequencies are right."""
-    first_wrong = int(np.argmin(right)) if not right.all() else right.size
-    return float(np.sqrt(omega2[first_wrong - 1]) / (2.0 * np.pi)) if first_wrong else 0.0

@@ -156,16 +156,14 @@ class Outline:
         """u_z of a flange, ``side`` 1 the top, −1 the bottom, averaged over the points ±y, in m."""
         face = self.section.face("z", side)
         nodes, along = self._along(self.section.plates[face.plate])
-        right, left = (self._interpolated(nodes, along, place) for place in (y, -y))
-        return 0.5 * right + 0.5 * left
-
-    def _interpolated(self, nodes: Indices, along: Array, place: float) -> Row:
-        """u_z at one place along a plate."""
-        # Nodes 2k, 2k+1, 2k+2 are the ends and the middle of edge k.
-        edge = int(np.clip(np.searchsorted(along[::2], place) - 1, 0, nodes.size // 2 - 1))
-        left, _, right = along[2 * edge : 2 * edge + 3]
-        shapes = quadratic(np.asarray((place - left) / (right - left)))
-        return Row.of(self.dofs[nodes[2 * edge : 2 * edge + 3], COMPONENT["z"]], shapes)
+        rows = []
+        for place in (y, -y):
+            # Nodes 2k, 2k+1, 2k+2 are the ends and the middle of edge k.
+            edge = int(np.clip(np.searchsorted(along[::2], place) - 1, 0, nodes.size // 2 - 1))
+            left, _, right = along[2 * edge : 2 * edge + 3]
+            shapes = quadratic(np.asarray((place - left) / (right - left)))
+            rows.append(Row.of(self.dofs[nodes[2 * edge : 2 * edge + 3], COMPONENT["z"]], shapes))
+        return 0.5 * rows[0] + 0.5 * rows[1]
 
     def _slide(self, plate: Plate) -> Row:
         """Mean displacement along one plate, in m."""

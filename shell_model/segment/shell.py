@@ -161,8 +161,14 @@ class Shell:
             motions[:, 3 + i] = self.turn(axis, middle)
         held = np.concatenate(self.comm.allgather(motions[~self.free]))
         held = np.concatenate([held, self.comm.allreduce(self.springs.rows.T @ motions)])
-        # One rank decides on the basis of what is left, for all.
-        return np.asarray(motions @ self.comm.bcast(_unheld(held)))
+        # One rank decides on the basis of what is left, for all. Where nothing slides along x the
+        # slide comes first and by itself, since nothing pushes it.
+        unheld = np.eye(6)
+        if held.size:
+            slides = 0 if held[:, 0].any() else 1
+            others = null_space(qr(held[:, slides:], mode="r")[0][:6])
+            unheld = block_diag(np.eye(slides), others)
+        return np.asarray(motions @ self.comm.bcast(unheld))
 
     def turn(self, axis: Array, x: float) -> Array:
         """(num_owned,) motion of turning by 1 rad about an axis (3,) through x in m."""
@@ -171,20 +177,6 @@ class Shell:
         motion[self.node_dofs - first] = np.cross(axis, self.nodes - [x, 0.0, 0.0])
         motion[self.rotation_dofs - first] = axis
         return motion
-
-
-def _unheld(held: Array) -> Array:
-    """(6, num_free) orthonormal combinations of rigid motions that leave all of ``held`` at zero.
-
-    Args:
-        held: (num_held, 6) what each motion does to it. Where none slides along x the slide comes
-            first and by itself, since nothing pushes it.
-    """
-    slides = 0 if held[:, 0].any() else 1
-    if held.size == 0:
-        return np.eye(6)
-    others = null_space(qr(held[:, slides:], mode="r")[0][:6])
-    return np.asarray(block_diag(np.eye(slides), others))
 
 
 def free_rows(space: Any, holds: list[Any]) -> Mask:

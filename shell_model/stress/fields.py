@@ -63,8 +63,10 @@ def wall_frame(domain: Any) -> tuple[Any, Any, Any]:
     """Unit vectors x, s and the outward normal of each triangle, see the module."""
     _, _, e3 = facet_frame(domain)
     place = ufl.SpatialCoordinate(domain)
+    # A length beside which no section is large, so that the normal of a diaphragm decides.
+    far = fem.Constant(domain, PETSc.ScalarType(1.0e6))
     # Of the two one is zero: the place's distance from the axis, or the slope to the axis.
-    side = place[1] * e3[1] + place[2] * e3[2] + _far(domain) * e3[0]
+    side = place[1] * e3[1] + place[2] * e3[2] + far * e3[0]
     outward = ufl.conditional(ufl.gt(side, 0.0), 1.0, -1.0) * e3
     across = ufl.gt(abs(e3[0]), 0.5)
     axis = [ufl.conditional(across, float(i == 1), float(i == 0)) for i in range(3)]
@@ -72,11 +74,6 @@ def wall_frame(domain: Any) -> tuple[Any, Any, Any]:
     along = axis - ufl.dot(axis, outward) * outward
     along = along / ufl.sqrt(ufl.dot(along, along))
     return along, ufl.cross(outward, along), outward
-
-
-def _far(domain: Any) -> Any:
-    """A length beside which no section is large, so that the normal of a diaphragm decides."""
-    return fem.Constant(domain, PETSc.ScalarType(1.0e6))
 
 
 def _stress_form(space: Any, segment: Segment) -> tuple[Any, Any]:

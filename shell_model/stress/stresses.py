@@ -137,7 +137,9 @@ class ShellStress:
             modes=[fields[f"stress_{k}"].values for k in numbers],
             states=[(state @ combination.T).astype(np.float32) for combination in own],
             time=np.asarray(fields["time"].values, dtype=float),
-            axial=_axial(fields),
+            axial=np.asarray(fields["axial_stress"].values, dtype=np.float32)
+            if "axial_stress" in fields
+            else np.zeros(fields.sizes["triangle"], dtype=np.float32),
         )
 
     @classmethod
@@ -296,13 +298,6 @@ def within(part: Indices, reach: Array, strength: Array, place: Array) -> Array:
     flat = reach[part] < SAME_LINE
     missing = whole[part] * reach[part] ** 2 / 12.0 - second
     return np.where(flat, 0.0, strength * about * missing / np.where(flat, 1.0, second))
-
-
-def _axial(fields: xr.Dataset) -> npt.NDArray[np.float32]:
-    """(num_triangles,) in Pa; none in folders of booms without axial forces."""
-    if "axial_stress" in fields:
-        return np.asarray(fields["axial_stress"].values, dtype=np.float32)
-    return np.zeros(fields.sizes["triangle"], dtype=np.float32)
 
 
 def _stress(values: npt.NDArray[np.float32]) -> Stress:

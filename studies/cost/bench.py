@@ -16,8 +16,10 @@ from dataclasses import asdict, dataclass
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
+from resource import RUSAGE_CHILDREN, RUSAGE_SELF, getrusage
 from statistics import median
-from time import process_time
+from tempfile import TemporaryDirectory
+from time import perf_counter, process_time
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -33,10 +35,14 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case
+from runs.folder.cache import Cache
+from runs.pipeline.means import Means
+from runs.pipeline.run import run_case
 from runs.process.terminal import show_notices
+from runs.report import output
+from runs.report.pages import Addition
 from runs.report.tables import Table, wide_console
 from studies.cost import scaling
-from studies.cost.drawing import MODELS, drawing
 from studies.cost.generic_solvers import (
     TOLERANCES,
     array_rates,
@@ -44,11 +50,11 @@ from studies.cost.generic_solvers import (
     generic,
     matched,
 )
-from studies.cost.leaving import leaving
+from studies.cost.telescoping import MODELS, telescoping
 from studies.cost.timing import NOISE, by_turns, leave
 from studies.motions import OUTPUT_STEP, friction_case, gap_system, model_of
 
-PAPER = CASES / "paper.toml"
+PAPER, LIFT = CASES / "paper.toml", CASES / "lift.toml"
 OUT = Path("runs/out/bench")
 
 # Goal: wall s of the ensemble of series.
@@ -79,7 +85,7 @@ STEP, MEMBERS_STEP = 1.0e-5, 1.0e-4
 class Sizes:
     """How much is measured."""
 
-    duration: float = 10.0  #: of ensembles and of booms that are drawn out, in s
+    duration: float = 10.0  #: of ensembles and of telescoping booms, in s
     #: Models with friction, their motion in s, its steps in s and the step of the converged one.
     models: Sequence[str] = ("kantorovich-5", "beam-fe", "timoshenko", "shell")
     regular: float = 5.0
@@ -99,7 +105,7 @@ class Sizes:
     shell_members: int = 32  #: of the ensemble of shells, 0 for none
     #: Models of a run whose leaving is timed.
     left: Sequence[str] = ("series", "timoshenko", "shell")
-    drawn: Sequence[str] = MODELS  #: models that are drawn out
+    telescoping: Sequence[str] = MODELS  #: models that telescope
 
 
 class Method(NamedTuple):
@@ -288,6 +294,45 @@ def ensembles(case: Case, sizes: Sizes) -> Table:
     )
 
 
+def leaving(models: Sequence[str]) -> Table:
+    """Wall and processor time of what comes after the motion, with snapshots and without.
+
+    Args:
+        models: of the lift; its shell is left out where there is no FEniCSx.
+    """
+    asked = [name for name in models if name != "shell" or find_spec("dolfinx")]
+    case = case_file.select(case_file.load(str(LIFT)), str(LIFT), asked)
+    comm = None
+    if "shell" in asked:
+        from mpi4py import MPI
+
+        comm = MPI.COMM_SELF
+    run = run_case(case, str(LIFT), Means(comm, cache=Cache.of_user()))
+    assert run is not None
+    run.answer()
+    rows = []
+    with TemporaryDirectory() as folder:
+        for what, drawn in (("without snapshots", False), ("with snapshots", True)):
+            out = Path(folder) / what
+            out.mkdir()
+            begin, spent = perf_counter(), _processor_time()
+            output.write(run, Addition(), out, drawn)
+            rows.append((what, perf_counter() - begin, _processor_time() - spent))
+    return Table.of_rows(
+        "leaving",
+        f"Leaving a run of the lift: {', '.join(asked)}",
+        {"what": "", "wall s": ".1f", "processor s": ".1f"},
+        rows,
+        ("Snapshots are drawn by a process beside the one that does all else.",),
+    )
+
+
+def _processor_time() -> float:
+    """Of this process and of those that it has ended, in s."""
+    used = getrusage(RUSAGE_SELF), getrusage(RUSAGE_CHILDREN)
+    return sum(each.ru_utime + each.ru_stime for each in used)
+
+
 def bench(sizes: Sizes, folder: Path, console: Console) -> None:
     """Measure, print, and write ``bench.json`` and ``bench.md``."""
     case = case_file.load(str(PAPER))
@@ -297,7 +342,7 @@ def bench(sizes: Sizes, folder: Path, console: Console) -> None:
         partial(steps, sizes),
         partial(ensembles, case, sizes),
         partial(leaving, sizes.left),
-        partial(drawing, sizes.drawn, sizes.duration),
+        partial(telescoping, sizes.telescoping, sizes.duration),
     ]
     machine = {"cores": len(os.sched_getaffinity(0)), "python": platform.python_version()}
     data: dict[str, Any] = {"sizes": asdict(sizes), "machine": machine}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""One segment alone as a shell, and what it gives way at rest."""
+"""One segment alone as a shell: what it gives way at rest, and its natural frequencies."""
 
 from __future__ import annotations
 
@@ -7,13 +7,17 @@ from collections.abc import Sequence
 
 import numpy as np
 from mpi4py import MPI
+from petsc4py import PETSc
+from slepc4py import SLEPc
 
+from dynamics.failure import NumericsError
 from geometry.arrays import Array
 from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.plating import plated
 from geometry.segment import Segment
 from shell_model.segment.cross_section import Row
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from shell_model.segment.shell import Shell
 from shell_model.segment.solver import ShiftedSolver, gram
 
 # In Hz, in place of zero, where nothing holds a segment along x: far below all elastic modes.
@@ -49,3 +53,40 @@ def compliances(shell: SegmentShell, *rows: Row) -> list[float]:
         float(gram(shell.comm, force[:, None], way[:, None])[0, 0])
         for force, way in zip(forces.T, moved.T, strict=True)
     ]
+
+
+def natural_frequencies(shell: Shell, count: int) -> Array:
+    """The lowest natural frequencies in Hz, rising, rigid motions included. Collective.
+
+    Shift-and-invert at a negative shift: K − σ M is then positive definite also for a free
+    segment, and held degrees of freedom, at infinite frequency, stay out of the way.
+
+    Args:
+        shell: the full model.
+        count: how many.
+
+    Raises:
+        NumericsError: fewer converged.
+    """
+    shift = -((2.0 * np.pi * 5.0) ** 2)
+    solver = SLEPc.EPS().create(shell.comm)
+    solver.setOperators(shell.stiffness, shell.mass)
+    solver.setProblemType(SLEPc.EPS.ProblemType.GHEP)
+    solver.setTarget(shift)
+    solver.setWhichEigenpairs(SLEPc.EPS.Which.TARGET_MAGNITUDE)
+    solver.setDimensions(count)
+    solver.setTolerances(tol=1.0e-12)
+    transform = solver.getST()
+    transform.setType(SLEPc.ST.Type.SINVERT)
+    transform.setShift(shift)
+    factor = transform.getKSP().getPC()
+    transform.getKSP().setType(PETSc.KSP.Type.PREONLY)
+    factor.setType(PETSc.PC.Type.CHOLESKY)
+    factor.setFactorSolverType("mumps")
+    solver.solve()
+    found = solver.getConverged()
+    values = np.sort([solver.getEigenvalue(i).real for i in range(found)])[:count]
+    solver.destroy()
+    if found < count:
+        raise NumericsError(f"{found} of {count} natural frequencies converged; refine the mesh")
+    return np.asarray(np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi))

@@ -8,7 +8,7 @@ over the square in which two walls meet. A force is spread the same way.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -21,14 +21,117 @@ from petsc4py import PETSc
 from scipy.sparse import csr_matrix, diags, vstack
 
 from geometry.arrays import Array, Indices
-from geometry.boom import Material, Segment, Support
+from geometry.boom import Material, Segment
 from geometry.section import BoxSection
 from shell_model import compat
 from shell_model.reduction.mirror import Family, on_plane
 from shell_model.segment.attachments import Attached
 from shell_model.segment.cross_section import Outline, Row
 from shell_model.segment.shell import ON_LINE, Matrices, Shell
-from studies.reference_models.solid_mesh import SolidMesh
+
+# Of an edge over the one before it: what ends at a place fades slower than what ends in a corner.
+_GROWTH_ALONG = 3.0
+_GROWTH_AROUND = 4.0
+
+
+@dataclass(frozen=True, slots=True)
+class SolidMesh:
+    """Hexahedra of a quarter of one segment, on a lattice of planes.
+
+    Args:
+        points: (num_points, 3) in m, x along the boom, the axis at y = z = 0.
+        hexahedra: (num_hexahedra, 8) point numbers; those of a cell run along x first, then along
+            y, then along z.
+        planes: rising coordinates in m of the lattice's planes across x, y and z.
+        layers: of hexahedra through each wall, an even number.
+    """
+
+    points: Array
+    hexahedra: Indices
+    planes: tuple[Array, Array, Array]
+    layers: int
+
+
+def mesh_quarter(
+    section: BoxSection,
+    places: Sequence[float],
+    along: tuple[float, float],
+    around: float,
+    splits: int = 1,
+    layers: int = 2,
+) -> SolidMesh:
+    """Mesh the walls of a box where y and z are positive.
+
+    Args:
+        section: mid-lines and thicknesses.
+        places: x in m at which there must be mesh planes; the smallest and the largest are the
+            ends of the segment.
+        along: edge lengths in m along x, about: at the places, where forces and supports act, and
+            the largest away from them.
+        around: largest edge length in m around the section, about; edges grow to it from the
+            corners, where they are as long as the wall is thick.
+        splits: into how many each edge around the section is split, to refine the mesh evenly.
+        layers: of hexahedra through a wall, an even number.
+
+    Raises:
+        ValueError: the lengths are not positive and rising, edges are not split into whole ones,
+            the layers are no even number, there are no two distinct places.
+    """
+    if not 0.0 < along[0] <= along[1] < np.inf:
+        raise ValueError(f"the lengths along x must be positive numbers of m, rising, got {along}")
+    if not 0.0 < around < np.inf:
+        raise ValueError(f"the length around must be a positive number of m, got {around}")
+    if splits < 1:
+        raise ValueError(f"an edge must be split into 1 or more, got {splits}")
+    if layers < 2 or layers % 2:
+        raise ValueError(f"the layers must be an even number from 2 on, got {layers}")
+    ends = np.unique(places)
+    if ends.size < 2:
+        raise ValueError("a segment needs two distinct places at least, its ends")
+    spans = []
+    for length in np.diff(ends):
+        half = _growing(0.5 * length, *along, _GROWTH_ALONG)
+        spans += [half, half[::-1]]
+    planes = (
+        ends[0] + np.concatenate([[0.0], np.cumsum(np.concatenate(spans))]),
+        _across(section.width, section.web, around, splits, layers),
+        _across(section.height, section.flange, around, splits, layers),
+    )
+    points, hexahedra = _walls(planes, layers)
+    return SolidMesh(points, hexahedra, planes, layers)
+
+
+def _growing(length: float, smallest: float, largest: float, growth: float) -> Array:
+    """Edges of a length, each longer than the one before until they are the largest."""
+    edges = [min(smallest, largest)]
+    while sum(edges) < length:
+        edges.append(min(growth * edges[-1], largest))
+    return np.array(edges) * (length / sum(edges))
+
+
+def _across(distance: float, wall: float, size: float, splits: int, layers: int) -> Array:
+    """Planes from the middle to the outside of a wall, whose mid-line is at half the distance."""
+    clear = _growing(0.5 * (distance - wall), wall, size, _GROWTH_AROUND)[::-1]
+    edges = [np.repeat(clear / splits, splits), np.full(layers, wall / layers)]
+    return np.concatenate([[0.0], np.cumsum(np.concatenate(edges))])
+
+
+def _walls(planes: tuple[Array, Array, Array], layers: int) -> tuple[Array, Indices]:
+    """Points and cells of a lattice that lie in the outermost layers."""
+    shape = tuple(plane.size for plane in planes)
+    number = np.arange(np.prod(shape)).reshape(shape)
+    j, k = np.indices((shape[1] - 1, shape[2] - 1))
+    filled = (j >= shape[1] - 1 - layers) | (k >= shape[2] - 1 - layers)
+    j, k = j[filled], k[filled]
+    corners = [
+        number[dx : shape[0] - 1 + dx, j + dy, k + dz].ravel()
+        for dz in (0, 1)
+        for dy in (0, 1)
+        for dx in (0, 1)
+    ]
+    lattice = np.stack(np.meshgrid(*planes, indexing="ij"), axis=-1).reshape(-1, 3)
+    used, hexahedra = np.unique(np.column_stack(corners), return_inverse=True)
+    return lattice[used], hexahedra.reshape(-1, 8)
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,16 +255,19 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: Family) -> SolidFa
     space = compat.solid_space(compat.create_hexahedron_mesh(comm, mesh.points, mesh.hexahedra))
     nodes = space.tabulate_dof_coordinates()
     node_dofs = np.arange(nodes.size).reshape(-1, 3)
-    held = np.unique(
-        np.concatenate([_in_mirrors(family, nodes), *_on_supports(segment.supports, nodes)])
-    )
-    free = np.ones(nodes.size, dtype=bool)
-    free[held] = False
+    free = np.ones(nodes.shape, dtype=bool)
+    for axis in (1, 2):
+        for part, component in family.held(axis):
+            if part == 0:
+                free[on_plane(nodes, axis), component] = False
+    for support in segment.supports:
+        fixed = slice(0 if support.kind == "clamped" else 1, None)
+        free[np.abs(nodes[:, 0] - support.x) < ON_LINE, fixed] = False
     middles, means = _means(mesh, nodes, family)
     return SolidFamily(
         comm=comm,
-        matrices=SolidMatrices(solid_forms(space, segment.material), held),
-        free=free,
+        matrices=SolidMatrices(solid_forms(space, segment.material), np.flatnonzero(~free)),
+        free=free.ravel(),
         springs=Attached.of([], [], free.size),
         nodes=nodes,
         node_dofs=node_dofs,
@@ -172,25 +278,6 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: Family) -> SolidFa
         middles=middles,
         means=means,
     )
-
-
-def _in_mirrors(family: Family, nodes: Array) -> Indices:
-    """Degrees of freedom that the family holds in the planes y = 0 and z = 0."""
-    return np.concatenate(
-        [
-            3 * np.flatnonzero(on_plane(nodes, axis)) + component
-            for axis in (1, 2)
-            for part, component in family.held(axis)
-            if part == 0
-        ]
-    )
-
-
-def _on_supports(supports: tuple[Support, ...], nodes: Array) -> Iterator[Indices]:
-    for support in supports:
-        at = np.flatnonzero(np.abs(nodes[:, 0] - support.x) < ON_LINE)
-        components = np.arange(0 if support.kind == "clamped" else 1, 3)
-        yield (3 * at[:, None] + components).ravel()
 
 
 def _means(mesh: SolidMesh, nodes: Array, family: Family) -> tuple[Array, csr_matrix]:

@@ -21,7 +21,7 @@ from dynamics.predictability.ensemble import changed, perturbations
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from runs.case.build import build_boom
-from runs.case.schema import Case, Model
+from runs.case.schema import Case
 from runs.paper.reading import LITERAL
 from runs.paper.rules import CONFORMITY, DIVERGENCE
 from runs.paper.run_query import peaks_apart
@@ -136,7 +136,9 @@ class Sample:
 
     def apart(self) -> tuple[float, float]:
         """Largest distance of two tips up to six seconds and after, of the largest range (S7)."""
-        return self._early_and_late(_apart([one.tip for one in self.models]))
+        distance = _apart([one.tip for one in self.models])
+        early = self.elements.time <= CONFORMITY
+        return float(distance[early].max()), float(distance[~early].max())
 
     def stratifies(self) -> bool:
         """Whether it shows S7, as the rule on trajectories asks it."""
@@ -144,10 +146,6 @@ class Sample:
         head = float(_apart([one.head for one in self.models]).max())
         without = min(float(_apart([one.tip, self.tied.tip]).max()) for one in self.models)
         return early < DIVERGENCE < without and early < late < head
-
-    def _early_and_late(self, distance: Array) -> tuple[float, float]:
-        early = self.elements.time <= CONFORMITY
-        return float(distance[early].max()), float(distance[~early].max())
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,8 +166,12 @@ class Example:
         cutoff = slow_below(boom, case.time)
         assert cutoff is not None
         runs = side_by_side(
-            lambda one: Moved.of(_well(case, systems[one[1]], model_of(case, one[1]), one[0])),
-            list(product(factors(members), names)),
+            # As a run of the case moves the model.
+            lambda one: Moved.of(one[1].integrator(changed(one[1].motion, "load", one[0]))),
+            [
+                (factor, MotionPlan.of(systems[name], case, model_of(case, name)))
+                for factor, name in product(factors(members), names)
+            ],
         )
         well = [Sample(runs[i : i + 3], runs[i + 3]) for i in range(0, len(runs), len(names))]
         return cls(case, systems, cutoff, well)
@@ -216,12 +218,6 @@ class Example:
 def factors(members: int) -> Array:
     """(members,) of the loads."""
     return 1.0 + perturbations(members, RELATIVE, SEED)
-
-
-def _well(case: Case, system: GapSystem, model: Model, factor: float) -> Trajectory:
-    """As a run of the case moves the model."""
-    plan = MotionPlan.of(system, case, model)
-    return plan.integrator(changed(plan.motion, "load", factor))
 
 
 def _then(how: Numerics, duration: float, system: GapSystem, put_in: float, factor: float) -> Moved:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Closed solutions of beams, to hold the models against.
 
-Nothing here is shared with the library: statics by Macaulay's brackets, natural frequencies
+Nothing of them is shared with the library: statics by Macaulay's brackets, natural frequencies
 by the transcendental determinant of Euler-Bernoulli spans.
 """
 
@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq
 
+from beam_model.component import Component, natural_modes
 from geometry.arrays import Array
 from geometry.boom import Boom, Segment, Support
 
@@ -173,3 +174,9 @@ def tied_frequencies(boom: Boom, highest: float) -> Array:
         for k in changes
     ]
     return np.array(roots) / (2.0 * np.pi)
+
+
+def frequencies(model: Component) -> Array:
+    """ω of the elastic modes in rad/s."""
+    modes = natural_modes(model.stiffness, model.mass, model.rigid_modes)
+    return np.sqrt(modes.omega2[model.rigid_modes :])

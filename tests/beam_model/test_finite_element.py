@@ -9,9 +9,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pytest
 
-from beam_model.component import Component, natural_modes
+from beam_model.component import Component
 from beam_model.finite_element import Theory, finite_element_segment
-from geometry.arrays import Array
 from geometry.boom import BoomError, PointMass, Segment
 from tests.beam_model.exact import (
     FREE_FREE,
@@ -19,6 +18,7 @@ from tests.beam_model.exact import (
     PINNED_PINNED,
     OverhangingBeam,
     angular_frequencies,
+    frequencies,
 )
 
 Beam = Callable[..., Segment]
@@ -31,12 +31,6 @@ def bending(
 ) -> Component:
     """The deflection along z alone."""
     return finite_element_segment(segment, length, breaks, theory, rotary_inertia).components["z"]
-
-
-def frequencies(model: Component) -> Array:
-    """ω of the elastic modes in rad/s."""
-    modes = natural_modes(model.stiffness, model.mass, model.rigid_modes)
-    return np.sqrt(modes.omega2[model.rigid_modes :])
 
 
 def shear_stiffness(segment: Segment, theory: Theory) -> float:

@@ -20,15 +20,10 @@ from tests.beam_model.exact import (
     PINNED_FREE,
     PINNED_PINNED,
     angular_frequencies,
+    frequencies,
 )
 
 Beam = Callable[..., Segment]
-
-
-def frequencies(model: Component) -> Array:
-    """ω of the elastic modes in rad/s."""
-    modes = natural_modes(model.stiffness, model.mass, model.rigid_modes)
-    return np.sqrt(modes.omega2[model.rigid_modes :])
 
 
 def outside_of_span(model: Component, function: Array, x: Array) -> float:

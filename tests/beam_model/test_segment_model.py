@@ -249,25 +249,6 @@ def test_ties_between_free_segments_leave_them_rigid(steel: Material) -> None:
     assert system.observers["head"].row @ motion == pytest.approx(1.0, rel=1e-9)
 
 
-def test_a_longer_chain_has_modes_in_proportion(paper_boom: Boom) -> None:
-    """Reference: analytic. As many modes as the segments have unknowns, for any number of them."""
-    outer, inner = (replace(segment, section=None) for segment in paper_boom.segments)
-    (joint,) = paper_boom.joints
-    counts = []
-    for number in (1, 2, 3, 4):
-        chain = [replace(inner, start=9.0 * k, end=9.0 * k + 10.0) for k in range(1, number + 1)]
-        joints = [
-            replace(joint, outer=k, inner=k + 1, stations=(9.0 * (k + 1), 9.0 * (k + 1) + 1.0))
-            for k in range(number)
-        ]
-        boom = Boom((outer, *chain), tuple(joints))
-        models = finite_element_segments(boom, 0.5, "euler-bernoulli", False)
-        system = gap_system(touching(boom, PowerContact(1e9, 1.0).behind(7e-3)), models)
-        assert len(system.laws) == 2 * number
-        counts.append(system.num_modes)
-    assert np.diff(counts).tolist() == [42, 42, 42]
-
-
 @pytest.mark.parametrize("kind", ["series", "elements"])
 def test_viscous_damping_is_exact(paper_boom: Boom, kind: str, paper_law: PowerContact) -> None:
     """Reference: analytic. Every mode of a segment decays with c = μ̄/m̄."""

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.component import Component, SegmentModel, natural_modes
+from beam_model.component import SegmentModel
 from beam_model.finite_element import Theory, finite_element_segment, finite_element_segments
 from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system, tied_system
@@ -22,6 +22,7 @@ from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom, Joint, Segment, Stop, Support
 from geometry.section import BoxSection
+from tests.beam_model.exact import frequencies
 from tests.space import in_space
 from tests.touching import touching
 
@@ -53,12 +54,6 @@ def rolled(boom: Boom) -> Boom:
         assert joint.lateral_play is not None
         joints.append(replace(joint, play=joint.lateral_play, lateral_play=joint.play))
     return replace(boom, segments=tuple(s.turned() for s in boom.segments), joints=tuple(joints))
-
-
-def frequencies(component: Component) -> Array:
-    """ω of the elastic modes in rad/s."""
-    modes = natural_modes(component.stiffness, component.mass, component.rigid_modes)
-    return np.sqrt(modes.omega2[component.rigid_modes :])
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Load, PointMass, Segment, Stop, Support
-from tests.beam_model.exact import CLAMPED_FREE, OverhangingBeam, angular_frequencies
+from tests.beam_model.exact import CLAMPED_FREE, OverhangingBeam, angular_frequencies, frequencies
 from tests.touching import touching
 
 Beam = Callable[..., Segment]
@@ -41,12 +41,6 @@ def terms(segment: Segment) -> Component:
 
 
 KINDS = pytest.mark.parametrize("model_of", [elements, terms])
-
-
-def frequencies(model: Component) -> Array:
-    """ω of the elastic modes in rad/s."""
-    modes = natural_modes(model.stiffness, model.mass, model.rigid_modes)
-    return np.sqrt(modes.omega2[model.rigid_modes :])
 
 
 @KINDS

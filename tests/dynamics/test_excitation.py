@@ -6,7 +6,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,10 +13,11 @@ import pytest
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
 from dynamics.excitation import Excitation, History, Ramp, Sine, Step, Table, followed
-from dynamics.gap_system import GapSystem, Observer
+from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from dynamics.time_step import moments
+from studies.histories import KINKED, OMEGAS, masses, response
 from tests.dynamics.reference import slopes
 
 OneMass = Callable[..., GapSystem]
@@ -63,53 +63,17 @@ def test_a_step_is_a_load(one_mass: OneMass) -> None:
     assert two.data.identical(one.data)
 
 
-# ω of masses of 1 kg on springs in rad/s: free, of a boom, of the plates of a shell.
-OMEGAS = (0.0, 2.0, 19.0, 300.0, 5.0e3)
-_MANY = np.linspace(0.011, 2.9, 1500)
-KINKED = {
-    "ramp": Ramp(0.71),
-    "two kinks": Table((0.0, 0.7, 1.2), (0.5, 1.0, -0.5)),
-    "near kinks": Table((0.0, 0.303, 0.311, 0.7), (0.0, 1.0, -2.0, 0.3)),
-    "1500 points": Table(_MANY.tolist(), np.sin(40.0 * _MANY).tolist()),
-    "within 1 ms": Table((0.507, 0.508), (0.0, 1.0)),
-    "jump": Table((0.507, 0.507 + 1.0e-6), (0.0, 1.0)),
-}
-
-
-def masses(history: History) -> GapSystem:
-    """A mass for each of ``OMEGAS`` under 1 N times a history."""
-    n = len(OMEGAS)
-    none: dict[str, Any] = {"rows": np.zeros((0, n)), "laws": [], "stations": []}
-    return GapSystem(
-        omega2=np.square(OMEGAS), load=np.zeros(n), station_of_row=np.zeros(0, dtype=np.int64),
-        observers={f"{w:g}": Observer(row) for w, row in zip(OMEGAS, np.eye(n), strict=True)},
-        excitations=[Excitation(np.ones(n), history)], **none,
-    )  # fmt: skip
-
-
-def response(omega: float, history: Table | Ramp, time: Array) -> Array:
-    """(num_times,) closed form from rest: a ramp from each kink on, by the change of the slope."""
-    kinks = np.array(history.kinks)
-    values = history(kinks)
-    rates = np.diff(values) / np.diff(kinks)
-    way = values[0] * 0.5 * time**2 * np.sinc(0.5 * omega * time / np.pi) ** 2
-    for begin, change in zip(kinks, np.diff(rates, prepend=0.0, append=0.0), strict=True):
-        since = np.maximum(time - begin, 0.0)
-        if omega == 0.0:
-            way = way + change * since**3 / 6.0
-        else:
-            way = way + change * (since - np.sin(omega * since) / omega) / omega**2
-    return np.asarray(way)
+KINKS = {**KINKED, "a jump": Table((0.507, 0.507 + 1.0e-6), (0.0, 1.0))}
 
 
 @pytest.mark.parametrize("step", [2.0e-2, 1.0e-3, 1.0e-4])
-@pytest.mark.parametrize("where", KINKED)
+@pytest.mark.parametrize("where", KINKS)
 def test_kinks_are_followed_wherever_they_are(where: str, step: float) -> None:
     """Reference: analytic, for each mode by its range. Within a step the history is a line with its
     mean and first moment: what that leaves of a mode is of fourth order in ω h."""
-    run = FixedStep(step)(Motion(masses(KINKED[where]), 4.0, output_step=0.02))
+    run = FixedStep(step)(Motion(masses(KINKS[where]), 4.0, output_step=0.02))
     for omega in OMEGAS:
-        expected = response(omega, KINKED[where], run.time)
+        expected = response(omega, KINKS[where], run.time)
         error = np.abs(run.data[f"{omega:g}"].values - expected).max()
         assert error < (1e-8 + min(1.0, (omega * step) ** 4 / 2.0)) * np.ptp(expected), omega
 

@@ -50,7 +50,7 @@ SIZES = Sizes(
     members=3,
     shell_members=0,
     left=("series",),
-    drawn=("kantorovich-5",),
+    telescoping=("kantorovich-5",),
 )
 
 

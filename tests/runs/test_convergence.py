@@ -15,7 +15,7 @@ import pytest
 from rich.console import Console
 
 from runs.report.tables import Table
-from studies import convergence, verification
+from studies import convergence
 from studies.study import Plot, Proof, Study
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "verification.md"
@@ -34,7 +34,7 @@ def test_a_proof_holds_within_its_bar() -> None:
 
 def test_the_page_of_proofs_marks_what_fails() -> None:
     study = Study("shells", "Shells", proofs=[proof(0.3030), proof(0.4)])
-    lines = verification.markdown([study]).splitlines()
+    lines = convergence.markdown([study]).splitlines()
     rows = [line for line in lines if line.startswith("| roof")]
     assert rows[0] == (
         "| roof | 0.303 m | 0.3024 m | 0.2 | 1 | ✓ | 1.90 | external | MacNeal and Harder 1985 |"

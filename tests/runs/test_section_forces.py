@@ -20,7 +20,7 @@ from geometry.compression import Compression
 from geometry.section import BoxSection
 from runs.pipeline.answers import Answers
 from runs.pipeline.section_forces import section_forces
-from studies.drawn_column import END, LAW, LENGTH, STIFFNESS, column
+from studies.telescoping_column import END, LAW, LENGTH, STIFFNESS, column
 from tests.runs.case_texts import read_case
 from tests.runs.summaries import answers_of
 from tests.touching import touching

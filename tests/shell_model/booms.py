@@ -47,14 +47,20 @@ def box_segment(
     )
 
 
+def two_segments(outer: Section, inner: Section) -> tuple[Segment, Segment]:
+    """Under the paper's loads, in its places."""
+    return (
+        box_segment("outer", 0.0, 10.0, outer, 83.16, HELD),
+        box_segment("inner", 9.0, 19.0, inner, 55.07),
+    )
+
+
 def flat_boom(friction: float = 0.0) -> Boom:
     """The paper's two segments in their plane, with its normal forces where there is friction."""
     outer = infer_outer_section(83.16 / STEEL.density, 3.7986e-4, 1.5)
-    inner = infer_inner_section(55.07 / STEEL.density, 2.1829e-4, outer, LAW.above)
     return Boom(
-        (
-            box_segment("outer", 0.0, 10.0, outer, 83.16, HELD),
-            box_segment("inner", 9.0, 19.0, inner, 55.07),
+        two_segments(
+            outer, infer_inner_section(55.07 / STEEL.density, 2.1829e-4, outer, LAW.above)
         ),
         (
             Joint(

@@ -17,9 +17,9 @@ from geometry.boom import PointMass, Support
 from geometry.mesh import mesh_segment
 from geometry.plating import plated
 from geometry.section import BoxSection, Section
-from shell_model.reduction.segment import ShiftedSolver
 from shell_model.segment.cross_section import Row
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from shell_model.segment.solver import ShiftedSolver
 from tests.shell_model.booms import box_segment
 
 BOX = BoxSection(height=0.4889, width=0.3259, flange=0.0065, web=0.0065)

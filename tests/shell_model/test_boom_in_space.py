@@ -4,35 +4,24 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 
 from beam_model.finite_element import finite_element_segments
-from beam_model.segment_model import gap_system, tied_system
+from beam_model.segment_model import gap_system
 from dynamics.excitation import Step
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Load
-from shell_model.boom_shell import ShellOptions
-from shell_model.reduced_shell import reduce_boom
-from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
+from tests.shell_model.models import reduced, tied_beams
 from tests.touching import touching
 
 # σ in rad²/s² of the compliances that are compared: below and above the lowest ω².
 SHIFTS = (10.0, 1.0e4, 1.0e6)
-
-
-@cache
-def _system(boom: Boom, moments: int = 1) -> GapSystem:
-    options = ShellOptions(0.5, krylov=KrylovOptions(moments=moments))
-    lateral = [LATERAL_LAW] if boom.spatial else ()
-    return reduce_boom(touching(boom, LAW, lateral), options, MPI.COMM_WORLD).system
 
 
 def _compliance(system: GapSystem, rows: Array, sigma: float) -> Array:
@@ -55,7 +44,7 @@ def test_without_lateral_load_the_boom_moves_as_the_flat_one() -> None:
     compliances to 1e-9. Until the first press the motions agree to 1e-9; after it the
     micro-impacts amplify the different local modes, to less than 1 % of the range in 0.3 s.
     """
-    flat, space = _system(flat_boom(), moments=2), _system(boom_in_space(), moments=2)
+    flat, space = (reduced(one, 0.5, moments=2).system for one in (flat_boom(), boom_in_space()))
     for sigma in SHIFTS:
         expected = _compliance(flat, flat.rows, sigma)
         assert _differ(_compliance(space, _walls(space, "z"), sigma), expected) < 1.0e-9
@@ -83,9 +72,8 @@ def test_a_boom_on_its_side_is_the_same_boom() -> None:
         tuple(segment.turned() for segment in upright.segments),
         (replace(joint, play=joint.lateral_play, lateral_play=joint.play),),
     )
-    options = ShellOptions(0.5, krylov=KrylovOptions(moments=1))
     first, second = (
-        reduce_boom(touching(boom, [laws[0]], [laws[1]]), options, MPI.COMM_WORLD).system
+        reduced(boom, 0.5, law=laws[0], lateral=laws[1]).system
         for boom, laws in ((upright, (LAW, LATERAL_LAW)), (lying, (LATERAL_LAW, LAW)))
     )
     assert second.frequencies == pytest.approx(first.frequencies, rel=1.0e-6, abs=1.0e-9)
@@ -105,7 +93,7 @@ def test_corners_that_roll_together_do_not_part() -> None:
     """Reference: analytic. Turned rigidly by φ about the axis, the free inner segment's pads read
     the lever arms of geometry's pads: φ y of a flange's, −φ z of a web's.
     """
-    system = _system(boom_in_space(friction=0.2))
+    system = reduced(boom_in_space(friction=0.2), 0.5).system
     rigid = np.flatnonzero(system.omega2 == 0.0)
     names = ("tip", "tail", "tip_lateral", "tail_lateral", "tip_twist")
     rows = np.array([system.observers[name].row[rigid] for name in names])
@@ -128,7 +116,7 @@ def test_corners_that_roll_together_do_not_part() -> None:
 @pytest.mark.slow
 def test_each_pad_rubs_where_it_presses() -> None:
     """Reference: (11). Every pad's own contact row presses it; it slides across its normal."""
-    system = _system(boom_in_space(friction=0.2))
+    system = reduced(boom_in_space(friction=0.2), 0.5).system
     assert len(system.frictions) == len(system.laws) == 16
     for row, (friction, station) in enumerate(
         zip(system.frictions, system.station_of_row, strict=True)
@@ -149,7 +137,9 @@ def test_each_pad_rubs_where_it_presses() -> None:
 def test_friction_in_space_takes_energy_and_gives_none_back() -> None:
     """Reference: analytic. Pressed sideways the boom loses energy at each station, gains
     none, and rubs with less than μ times the largest blow."""
-    motion = AdaptiveStep()(Motion(_system(boom_in_space(friction=0.2, sideways=0.5)), 0.3))
+    motion = AdaptiveStep()(
+        Motion(reduced(boom_in_space(friction=0.2, sideways=0.5), 0.5).system, 0.3)
+    )
     loss = motion.data["friction_loss"].values
     assert (np.diff(loss) > -1.0e-9 * loss[-1]).all()
     assert loss[-1] > 1.0e-3 * float(motion.data["work"][-1])
@@ -173,7 +163,7 @@ def test_lateral_motion_is_that_of_beams() -> None:
     )
     boom = replace(flat, segments=segments)
     elements = finite_element_segments(boom, 0.5, "timoshenko", True)
-    systems = [_system(boom), gap_system(touching(boom, LAW, LATERAL_LAW), elements)]
+    systems = [reduced(boom, 0.5).system, gap_system(touching(boom, LAW, LATERAL_LAW), elements)]
     shell, beam = (AdaptiveStep()(Motion(system, 0.25)) for system in systems)
     assert shell.first_contact == pytest.approx(beam.first_contact, rel=2.0e-3)
     tips = [motion.data["tip_lateral"].values for motion in (shell, beam)]
@@ -188,14 +178,13 @@ def test_the_tied_boom_vibrates_as_beams_in_both_planes() -> None:
     """
     boom = boom_in_space()
     boom = replace(boom, joints=(replace(boom.joints[0], tied=True),))
-    elements = finite_element_segments(boom, 0.5, "timoshenko", True)
-    expected = tied_system(boom, elements).frequencies[:6]
-    assert _system(boom).frequencies[:6] == pytest.approx(expected, rel=0.01)
+    expected = tied_beams(boom, 0.5).frequencies[:6]
+    assert reduced(boom, 0.5).system.frequencies[:6] == pytest.approx(expected, rel=0.01)
 
 
 def test_a_load_along_y_pushes_along_y() -> None:
     boom = replace(boom_in_space(), loads=(Load(1, "y", 50.0, 19.0, Step()),))
-    system = _system(boom)
+    system = reduced(boom, 0.5).system
     (excitation,) = system.excitations
     rest = excitation.load / (system.omega2 + 1.0)
     assert system.observers["tip_lateral"].row @ rest > 0.1
@@ -207,6 +196,5 @@ def test_contact_across_the_flanges_is_for_flat_booms() -> None:
         "contact_line: 'across' spreads the force over the flanges of a flat boom; in space the "
         "pads sit in the corners: give 'near webs' or 'surface'"
     )
-    options = ShellOptions(0.5, contact_line="across")
     with pytest.raises(BoomError, match=f"^{message}$"):
-        reduce_boom(touching(boom_in_space(), LAW, LATERAL_LAW), options, MPI.COMM_WORLD)
+        reduced(boom_in_space(), 0.5, "across")

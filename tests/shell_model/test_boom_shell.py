@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -15,16 +14,11 @@ from dynamics.motion import Motion
 from geometry.boom import BoomError
 from geometry.contact_places import ContactLine
 from shell_model.boom_shell import ShellOptions
-from shell_model.reduced_shell import ReducedShell, reduce_boom
-from shell_model.reduction.segment import KrylovOptions
+from shell_model.reduced_shell import reduce_boom
+from shell_model.reduction.krylov import KrylovOptions
 from tests.shell_model.booms import LAW, flat_boom
+from tests.shell_model.models import reduced
 from tests.touching import touching
-
-
-@cache
-def _shell(line: ContactLine) -> ReducedShell:
-    options = ShellOptions(0.25, contact_line=line, krylov=KrylovOptions(moments=2))
-    return reduce_boom(touching(flat_boom(), LAW), options, MPI.COMM_WORLD)
 
 
 @pytest.mark.slow
@@ -33,7 +27,7 @@ def test_a_uniform_approach_gives_the_law_of_the_paper_exactly(line: ContactLine
     """Reference: analytic, (4). Lift the free inner segment without strain, beyond its play:
     every station carries F(y) once, on the top; sunk, on the bottom.
     """
-    system = _shell(line).system
+    system = reduced(flat_boom(), 0.25, line, moments=2).system
     rigid = np.flatnonzero(system.omega2 == 0.0)
     tip, tail = (system.observers[name].row for name in ("tip", "tail"))
     for lift in (7.3e-3, -7.3e-3):
@@ -50,7 +44,7 @@ def test_a_uniform_approach_gives_the_law_of_the_paper_exactly(line: ContactLine
 @pytest.mark.slow
 def test_the_load_lifts_the_boom_by_its_weight() -> None:
     """Reference: analytic. The free segment's centre moves with q/m̄ = 1 m/s²."""
-    system = _shell("near webs").system
+    system = reduced(flat_boom(), 0.25, moments=2).system
     rigid = system.omega2 == 0.0
     tip, tail = (system.observers[name].row[rigid] for name in ("tip", "tail"))
     acceleration = 0.5 * (tip + tail) @ system.load[rigid]
@@ -62,7 +56,7 @@ def test_the_first_press_is_that_of_the_beam() -> None:
     """Reference: other code, this project's beams: the first contact of stiff thin beams is at
     0.1195 s; shear and distortion delay it by less than 1 %. Energy is kept.
     """
-    trajectory = AdaptiveStep()(Motion(_shell("near webs").system, 0.4))
+    trajectory = AdaptiveStep()(Motion(reduced(flat_boom(), 0.25, moments=2).system, 0.4))
     assert trajectory.first_contact == pytest.approx(0.1195, rel=0.01)
     assert trajectory.energy_residual < 1.0e-4
     assert float(trajectory.data["contact_force"].sel(station=10.0).max()) > 0.0
@@ -72,7 +66,7 @@ def test_the_first_press_is_that_of_the_beam() -> None:
 @pytest.mark.slow
 def test_fields_add_up_to_what_the_observers_read() -> None:
     """The mean of u_z over the tip's vertices follows the tip's observer within distortion."""
-    shell = _shell("near webs")
+    shell = reduced(flat_boom(), 0.25, moments=2)
     assert shell.fields is not None
     state = AdaptiveStep()(Motion(shell.system, 0.1)).states[-1]
     displacement = np.tensordot(state, shell.fields["modes"].values, axes=1)
@@ -90,14 +84,13 @@ def test_a_shell_needs_a_section() -> None:
         "section"
     )
     with pytest.raises(BoomError, match=message):
-        reduce_boom(touching(bare, LAW), ShellOptions(0.5), MPI.COMM_WORLD)
+        reduced(bare, 0.5)
 
 
 def test_a_side_without_stiffness_never_touches() -> None:
     """One station, pressing up alone: one row, one-sided, above."""
     law = replace(LAW.law, stiffness_below=0.0).behind(LAW.above)
-    options = ShellOptions(0.5, krylov=KrylovOptions(moments=1))
-    system = reduce_boom(touching(flat_boom(), law), options, MPI.COMM_WORLD).system
+    system = reduced(flat_boom(), 0.5, law=law).system
     assert system.station_of_row.tolist() == [0, 1]
     assert all(row.one_sided(-1) is None for row in system.laws)
 

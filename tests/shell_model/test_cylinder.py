@@ -22,7 +22,7 @@ from geometry.boom import Boom, Cylinder, Load, Stop, Support
 from geometry.section import BoxSection
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
-from shell_model.reduction.segment import KrylovOptions
+from shell_model.reduction.krylov import KrylovOptions
 from shell_model.stress.stresses import ShellStress, wall_forces
 from tests.lowered_pin import level, raised
 from tests.shell_model.booms import boom_in_space, box_segment

@@ -4,36 +4,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 
 from beam_model.finite_element import finite_element_segments
-from beam_model.segment_model import gap_system, tied_system
+from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.excitation import Ramp, Step
 from dynamics.friction import DryFriction
-from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
-from geometry.arrays import Array
 from geometry.boom import Boom, Load, Stop
 from geometry.contact_places import ContactLine
-from shell_model.boom_shell import ShellOptions
-from shell_model.reduced_shell import reduce_boom
-from shell_model.reduction.segment import KrylovOptions
 from shell_model.segment.cross_section import Reading, Row
-from tests.shell_model.booms import LAW, STEEL, flat_boom, three_segments
+from tests.shell_model.booms import LAW, flat_boom, three_segments
+from tests.shell_model.models import assert_rests_as_beams, pressed_rest, reduced, tied_beams
 from tests.touching import touching
-
-
-@cache
-def _system(boom: Boom, size: float = 0.5, line: ContactLine = "near webs") -> GapSystem:
-    options = ShellOptions(size, contact_line=line, krylov=KrylovOptions(moments=1))
-    return reduce_boom(touching(boom, LAW), options, MPI.COMM_WORLD).system
-
 
 DASHPOT = 2.0e3
 
@@ -49,8 +36,8 @@ def test_a_station_slides_as_the_mean_of_its_contact_rows(line: ContactLine) -> 
     """Reference: analytic. Of webs to webs, one top and one bottom row; of points across, each
     with its weight. Friction needs no coordinates that contact has not asked for.
     """
-    system = _system(flat_boom(friction=0.2), line=line)
-    assert system.num_modes == _system(flat_boom(), line=line).num_modes
+    system = reduced(flat_boom(friction=0.2), 0.5, line).system
+    assert system.num_modes == reduced(flat_boom(), 0.5, line).system.num_modes
     assert [(f.station, f.normal_force) for f in system.frictions] == [(0, 4500.0), (1, 5000.0)]
     assert all(f == DryFriction(0.2, f.station, f.normal_force) for f in system.frictions)
     for station, row in enumerate(system.friction_rows):
@@ -66,8 +53,8 @@ def test_a_station_slides_as_the_mean_of_its_contact_rows(line: ContactLine) -> 
 @pytest.mark.parametrize("line", ["near webs", "across"])
 def test_a_dashpot_resists_the_mean_of_its_stations_contact_rows(line: ContactLine) -> None:
     """Reference: analytic. √c of what friction reads there, for no coordinate more."""
-    system = _system(_dragged(flat_boom(friction=0.2)), line=line)
-    assert system.num_modes == _system(flat_boom(), line=line).num_modes
+    system = reduced(_dragged(flat_boom(friction=0.2)), 0.5, line).system
+    assert system.num_modes == reduced(flat_boom(), 0.5, line).system.num_modes
     expected = np.sqrt(DASHPOT) * system.friction_rows
     np.testing.assert_allclose(system.dashpots, expected, atol=1e-9 * np.abs(expected).max())
 
@@ -82,7 +69,7 @@ def test_dashpots_take_of_the_shell_what_they_take_of_beams(line: ContactLine) -
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     beam, shell = (
         AdaptiveStep()(Motion(system, 0.4))
-        for system in (gap_system(touching(boom, LAW), models), _system(boom, line=line))
+        for system in (gap_system(touching(boom, LAW), models), reduced(boom, 0.5, line).system)
     )
     taken, expected = (float(run.data["damping_loss"][-1]) for run in (shell, beam))
     assert expected > 0.02 * float(beam.data["work"][-1])
@@ -96,7 +83,8 @@ def test_friction_takes_energy_and_gives_none_back() -> None:
     nothing.
     """
     rough, smooth = (
-        AdaptiveStep()(Motion(_system(flat_boom(friction)), 0.25)) for friction in (0.2, 0.0)
+        AdaptiveStep()(Motion(reduced(flat_boom(friction), 0.5).system, 0.25))
+        for friction in (0.2, 0.0)
     )
     loss = rough.data["friction_loss"].values
     assert (np.diff(loss) > -1.0e-9 * loss[-1]).all()
@@ -115,7 +103,7 @@ def test_loads_act_where_and_when_they_say() -> None:
     boom = flat_boom()
     ramp = Ramp(0.1)
     loads = (Load(1, "z", 55.07, None, Step()), Load(1, "z", 100.0, 14.0, ramp))
-    system = _system(replace(boom, loads=loads))
+    system = reduced(replace(boom, loads=loads), 0.5).system
     uniform, point = (excitation.load for excitation in system.excitations)
     assert system.excitations[1].history is ramp
     free = system.omega2 == 0.0
@@ -123,14 +111,8 @@ def test_loads_act_where_and_when_they_say() -> None:
     inner[: np.flatnonzero(free)[0]] = 0.0
     assert uniform == pytest.approx(inner, rel=1.0e-9, abs=1.0e-12 * np.abs(inner).max())
     tip, tail = (system.observers[name].row[free] for name in ("tip", "tail"))
-    mass = STEEL.density * boom.segments[1].length * _area(boom, 1)
+    mass = boom.segments[1].mass_per_length * boom.segments[1].length
     assert 0.5 * (tip + tail) @ point[free] == pytest.approx(100.0 / mass, rel=1.0e-9)
-
-
-def _area(boom: Boom, number: int) -> float:
-    section = boom.segments[number].section
-    assert section is not None
-    return section.area
 
 
 def test_readings_add_up_over_the_segments_of_either() -> None:
@@ -143,21 +125,14 @@ def test_readings_add_up_over_the_segments_of_either() -> None:
 def test_a_stop_reads_the_flange_that_it_meets() -> None:
     """Reference: analytic. One-sided at 8 m: the row is the deflection there, read from below."""
     stop = Stop(0, 8.0, 0.02, PowerContact(0.0, 1.0, stiffness_below=1.0e8))
-    system = _system(replace(flat_boom(), stops=(stop,)))
+    system = reduced(replace(flat_boom(), stops=(stop,)), 0.5).system
     assert list(system.stations) == [9.0, 10.0, 8.0]
     assert system.station_of_row.tolist() == [0, 0, 1, 1, 2]
     assert system.laws[-1] == PowerContact(0.0, 1.0, stiffness_below=1.0e8).behind(0.01)
-    rest = _rest(system, [2])
+    rest = pressed_rest(system, system.station_of_row != 2)
     observed = system.observers["head"].row @ rest
     # From the support at 2 m the outer segment rises in a line that bends a little.
     assert 0.6 * observed < system.rows[-1] @ rest < 0.8 * observed
-
-
-def _rest(system: GapSystem, stations: list[int], spring: float = 1.0e12) -> Array:
-    """Rest position with springs in place of contact, at all stations but those left out."""
-    kept = ~np.isin(system.station_of_row, stations)
-    rows = system.rows[kept]
-    return np.asarray(np.linalg.solve(np.diag(system.omega2) + spring * rows.T @ rows, system.load))
 
 
 @pytest.mark.slow
@@ -168,16 +143,7 @@ def test_rest_of_the_pressed_boom_is_that_of_beams(boom: Boom) -> None:
     They are up to 0.25 % apart, for the corners that take the forces in the overlaps; shear is
     3 %. The middle one of three segments has two joints.
     """
-    system = _system(boom, size=0.25)
-    rest = _rest(system, [])
-    elements = finite_element_segments(boom, 0.25, "timoshenko", True)
-    beams = tied_system(boom, elements)
-    expected = beams.static_response(beams.load)
-    assert set(beams.observers) <= set(system.observers)
-    for name, observer in beams.observers.items():
-        assert system.observers[name].row @ rest == pytest.approx(
-            observer.row @ expected, rel=5.0e-3
-        )
+    assert_rests_as_beams(reduced(boom, 0.25).system, boom, 5.0e-3)
 
 
 @pytest.mark.slow
@@ -186,13 +152,10 @@ def test_a_tied_joint_has_no_play() -> None:
     lowest frequency agree within 0.2 %, and no motion is free.
     """
     boom = three_segments(tied=True)
-    options = ShellOptions(0.25, krylov=KrylovOptions(moments=1))
-    shell = reduce_boom(boom, options, MPI.COMM_WORLD)
-    system = shell.system
+    shell = reduced(boom, 0.25)
+    system, beams = shell.system, tied_beams(boom)
     assert system.rows.shape == (0, system.num_modes)
     assert not (system.omega2 == 0.0).any()
-    elements = finite_element_segments(boom, 0.25, "timoshenko", True)
-    beams = tied_system(boom, elements)
     assert system.frequencies[0] == pytest.approx(beams.frequencies[0], rel=2.0e-3)
     rest, expected = (one.static_response(one.load) for one in (system, beams))
     tip = system.observers["tip"].row @ rest

@@ -4,82 +4,158 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from mpi4py import MPI
 
+from beam_model.calibration import Stiffness, effective_stiffness
 from dynamics.contact import PowerContact
-from geometry.boom import Boom, Stop
-from shell_model.boom_shell import ShellOptions
-from shell_model.contact.local_compliance import SLOW, compliance
-from shell_model.reduced_shell import ReducedShell, reduce_boom
-from shell_model.reduction.segment import KrylovOptions
-from tests.shell_model.booms import LAW, flat_boom, three_segments
+from geometry.boom import Boom, PadSize, Stop, Support
+from shell_model.boom_shell import ShellOptions, assemble_segments
+from shell_model.contact.local_compliance import SLOW, compliance, far_field
+from shell_model.contact.rows import Touching
+from shell_model.contact.surface import SurfaceOptions
+from shell_model.reduction.symmetry import Folding
+from tests.shell_model.booms import LAW, boom_in_space, flat_boom, three_segments
+from tests.shell_model.conftest import compliance as given_way
+from tests.shell_model.models import reduced
 from tests.touching import touching
-
-pytestmark = pytest.mark.slow
-
 
 SIZES = (0.8, 0.4, 0.2)
 
 
-@cache
-def _reduced(boom: Boom, size: float, moments: int = 2) -> ReducedShell:
-    options = ShellOptions(size, krylov=KrylovOptions(moments=moments))
-    return reduce_boom(touching(boom, LAW), options, MPI.COMM_WORLD)
-
-
+@pytest.mark.slow
 def test_no_rigid_motion_fills_it() -> None:
     """Reference: analytic. A rigid motion opens no squeezed station: its rows above and below are
     the same in the rigid modes, and a hundredth of the shift, a hundred times the rigid compliance,
     leaves the local one.
     """
-    reduced = _reduced(flat_boom(), 0.4)
-    system = reduced.system
+    shell = reduced(flat_boom(), 0.4, moments=2)
+    system = shell.system
     rigid = system.rows[:, system.omega2 == 0.0]
     assert np.abs(rigid).max() > 0.01
     assert np.abs(rigid[::2] - rigid[1::2]).max() < 1.0e-12 * np.abs(rigid).max()
     slower = system.omega2 + (0.1 * 2.0 * np.pi * SLOW) ** 2
     whole = (system.rows / slower) @ system.rows.T
-    assert whole[0, 0] > 200.0 * reduced.local_compliance[0]
+    assert whole[0, 0] > 200.0 * shell.local_compliance[0]
     squeezed = 0.5 * (whole[0, 0] + whole[1, 1] - 2.0 * whole[0, 1])
-    assert reduced.local_compliance[:2] == pytest.approx(2 * [squeezed], rel=1.0e-3)
+    assert shell.local_compliance[:2] == pytest.approx(2 * [squeezed], rel=1.0e-3)
 
 
+@pytest.mark.slow
 def test_a_mesh_tells_how_far_the_next_finer_one_is() -> None:
     """Reference: other code, meshes of half and of a quarter the edge length. What a mesh says of
     itself is the change from its coarser companion, found without reducing it.
     """
-    for coarse, fine in pairwise(_reduced(flat_boom(), size) for size in SIZES):
+    for coarse, fine in pairwise(reduced(flat_boom(), size, moments=2) for size in SIZES):
         change = 1.0 - coarse.local_compliance / fine.local_compliance
         assert fine.mesh_error == pytest.approx(change.max(), rel=1.0e-4)
 
 
+@pytest.mark.slow
 def test_a_poor_reduction_is_told_on_the_same_scale() -> None:
     """Reference: other code, more moments."""
-    rich, poor = (_reduced(flat_boom(), 0.4, moments) for moments in (3, 1))
+    rich, poor = (reduced(flat_boom(), 0.4, moments=moments) for moments in (3, 1))
     full, own = (np.diag(compliance(r.system.omega2, r.system.rows)) for r in (rich, poor))
     off = float(np.max((full - own) / rich.local_compliance))
     assert rich.errors["contact_compliance"] < 1.0e-3 * poor.errors["contact_compliance"]
     assert 0.0 < off < 2.0 * poor.errors["contact_compliance"]
 
 
+@pytest.mark.slow
 def test_a_tied_joint_leaves_the_others_their_measure() -> None:
     boom = three_segments()
     tied = replace(boom, joints=(replace(boom.joints[0], tied=True), *boom.joints[1:]))
-    free, held = _reduced(boom, 0.8, 1), _reduced(tied, 0.8, 1)
+    free, held = reduced(boom, 0.8), reduced(tied, 0.8)
     assert held.local_compliance == pytest.approx(free.local_compliance[4:], rel=1.0e-3)
     assert held.mesh_error <= free.mesh_error * (1.0 + 1.0e-6)
 
 
+@pytest.mark.slow
 def test_what_has_no_other_side_has_none() -> None:
     rest = Stop(1, 19.0, 0.2, PowerContact(0.0, 1.0, stiffness_below=1.0e7))
     boom = replace(flat_boom(), stops=(rest,))
-    reduced = _reduced(boom, 0.8, 1)
-    assert np.isnan(reduced.local_compliance).tolist() == [False] * 4 + [True]
-    assert np.isfinite(reduced.mesh_error)
+    shell = reduced(boom, 0.8)
+    assert np.isnan(shell.local_compliance).tolist() == [False] * 4 + [True]
+    assert np.isfinite(shell.mesh_error)
     tied = replace(boom, stops=(), joints=(replace(boom.joints[0], tied=True),))
-    assert np.isnan(_reduced(tied, 0.8, 1).mesh_error)
+    assert np.isnan(reduced(tied, 0.8).mesh_error)
+
+
+def stiffness(boom: Boom, contact_tolerance: float | None = None) -> list[Stiffness]:
+    options = ShellOptions(0.25, contact_tolerance=contact_tolerance)
+    shells = assemble_segments(boom, options, MPI.COMM_WORLD)
+    return [
+        effective_stiffness(segment, far_field(boom, number, Folding(shells[number])))
+        for number, segment in enumerate(boom.segments)
+    ]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("boom", [flat_boom(), boom_in_space()])
+def test_plates_are_nearly_the_beam_of_their_section(boom: Boom) -> None:
+    """Reference: analytic, E J of the section and G A_s of its shear flow, and Bredt's G J_t.
+
+    Folds, Poisson's effect and shear lag of short stretches make what is allowed.
+    """
+    for segment, found in zip(boom.segments, stiffness(boom), strict=True):
+        planes = (segment, segment.turned())[: len(found.bending)]
+        for plane, bending, shear in zip(planes, found.bending, found.shear, strict=True):
+            assert plane.shear_stiffness is not None
+            assert bending == pytest.approx(plane.bending_stiffness, rel=5e-3)
+            assert shear == pytest.approx(plane.shear_stiffness, rel=0.3)
+        if boom.spatial:
+            assert segment.lateral is not None
+            bredt = segment.material.shear_modulus * segment.lateral.torsion_constant
+            assert found.torsion == pytest.approx(bredt, rel=0.01)
+
+
+@pytest.mark.slow
+def test_a_mesh_that_is_fine_where_something_presses_finds_the_same() -> None:
+    """Reference: other code, a uniform mesh; the far field does not know of contacts."""
+    for coarse, fine in zip(stiffness(flat_boom()), stiffness(flat_boom(), 0.01), strict=True):
+        assert coarse.bending == pytest.approx(fine.bending, rel=2e-3)
+        assert coarse.shear == pytest.approx(fine.shear, rel=0.02)
+
+
+PADS = {"corners": None, "pads": PadSize(0.1, 0.06)}
+
+
+def _short_boom(pad: PadSize | None) -> Boom:
+    """The paper's boom with segments of 2 m."""
+    boom = flat_boom()
+    outer, inner = boom.segments
+    return Boom(
+        (
+            replace(outer, end=2.0, supports=(Support(0.0), Support(0.5))),
+            replace(inner, start=1.0, end=3.0),
+        ),
+        (replace(boom.joints[0], stations=(1.0, 2.0), pad=pad),),
+    )
+
+
+def _squeezed(boom: Boom, tolerance: float | None) -> float:
+    """By how much the first station closes under equal forces from above and below, in m/N."""
+    options = ShellOptions(0.1, contact_tolerance=tolerance)
+    shells = assemble_segments(boom, options, MPI.COMM_WORLD)
+    contacts = (
+        Touching.of(touching(boom, LAW), shells, "near webs", SurfaceOptions()).rows({}).contacts
+    )
+    up, down = (contact.reading for contact in contacts if contact.station == 0)
+    return sum(given_way(shell, up[k] - down[k]) for k, shell in enumerate(shells))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", PADS)
+def test_a_tolerance_is_kept(kind: str) -> None:
+    """Reference: the mesh of a quarter of the tolerance, extrapolated as errors of the square of
+    the size (Richardson 1911). A uniform mesh of the same size is far off.
+    """
+    boom = _short_boom(PADS[kind])
+    uniform, coarse, fine = (_squeezed(boom, tolerance) for tolerance in (None, 0.16, 0.04))
+    limit = fine + (fine - coarse) / 3.0
+    assert fine == pytest.approx(limit, rel=0.04)
+    assert coarse == pytest.approx(limit, rel=0.16)
+    assert uniform < 0.95 * limit

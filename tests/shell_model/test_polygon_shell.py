@@ -8,11 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 
-from beam_model.component import natural_modes
-from beam_model.finite_element import finite_element_segment, finite_element_segments
-from beam_model.segment_model import tied_system
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep
@@ -25,37 +21,28 @@ from geometry.boom import (
     Direction,
     PadSize,
     PointMass,
-    Segment,
     Stop,
     Support,
 )
 from geometry.contact_places import ContactLine, Stretch
 from geometry.polygon import PolygonSection
 from geometry.section import BoxSection, Section
-from shell_model.boom_shell import ShellOptions
 from shell_model.contact.wall_rows import CornerLines, Wall, WallPoints
-from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import reduce_segment
 from shell_model.reduction.symmetry import Folding
 from shell_model.segment.cross_section import Row
 from shell_model.segment.segment_shell import SegmentShell
 from studies import sections
-from tests.shell_model.booms import HELD, LATERAL_LAW, STEEL, box_segment, flat_boom
+from tests.shell_model.booms import LATERAL_LAW, STEEL, flat_boom, two_segments
 from tests.shell_model.conftest import UNEQUAL
-from tests.touching import touching
+from tests.shell_model.models import assert_rests_as_beams, frequencies_off, reduced
 
 Shells = Callable[..., SegmentShell]
 
 LINEAR = sections.LAW
 (HEXAGON, INNER_HEXAGON), (OCTAGON, INNER_OCTAGON), (U, INNER_U) = sections.SHAPES.values()
 SECTIONS = {"hexagon": HEXAGON, "octagon": OCTAGON, "u": U}
-
-
-def reduced(boom: Boom, size: float, line: ContactLine = "near webs") -> ReducedShell:
-    options = ShellOptions(size, contact_line=line, krylov=KrylovOptions(moments=1))
-    lateral = [LATERAL_LAW] if boom.spatial else ()
-    return reduce_boom(touching(boom, LINEAR, lateral), options, MPI.COMM_WORLD)
 
 
 def _read(row: Row, field: Array) -> float:
@@ -105,19 +92,6 @@ def test_contacts_read_the_true_faces(box_shell: Shells, section: Section) -> No
         assert _read(row, field) == pytest.approx(face.offset, rel=1.0e-9)
 
 
-def _apart(shell: SegmentShell, direction: Direction = "z") -> float:
-    """How far the first elastic frequency is from that of the Timoshenko beam."""
-    tip = shell.row(shell.outline(10.0).wall_deflection(direction))
-    inputs = np.column_stack([shell.unit_loads[direction], tip])
-    found = reduce_segment(Folding(shell), inputs, KrylovOptions())
-    beam = finite_element_segment(shell.segment, 0.25, (), "timoshenko", True)
-    part = beam.components[direction]
-    modes = natural_modes(part.stiffness, part.mass, part.rigid_modes)
-    assert np.count_nonzero(found.omega2 == 0.0) == part.rigid_modes
-    first = (one.omega2[part.rigid_modes] for one in (found, modes))
-    return float(np.sqrt(next(first) / next(first)) - 1.0)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "direction"),
@@ -129,7 +103,8 @@ def test_a_free_segment_vibrates_as_its_beam(
     """Reference: other code, Timoshenko elements with the section's own numbers. The box is 0.3 %
     apart; a tenth less of J would be 5 %.
     """
-    assert _apart(box_shell(0.25, section=SECTIONS[name]), direction) == pytest.approx(0, abs=6e-3)
+    off = frequencies_off(box_shell(0.25, section=SECTIONS[name]), direction)
+    assert off == pytest.approx(0, abs=6e-3)
 
 
 @pytest.mark.slow
@@ -169,17 +144,12 @@ def test_a_box_written_as_a_polygon_is_the_box() -> None:
         for box in boxes
     ]
     assert polygons[0].shear_area != boxes[0].shear_area
-    box, polygon = (replace(flat_boom(), segments=_segments(*pair)) for pair in (boxes, polygons))
-    first, second = (reduced(boom, 0.5).system for boom in (box, polygon))
+    box, polygon = (
+        replace(flat_boom(), segments=two_segments(*pair)) for pair in (boxes, polygons)
+    )
+    first, second = (reduced(boom, 0.5, law=LINEAR).system for boom in (box, polygon))
     assert second.omega2 == pytest.approx(first.omega2, rel=1e-9, abs=1e-6)
     assert _compliance(second) == pytest.approx(_compliance(first), rel=1e-9)
-
-
-def _segments(outer: Section, inner: Section) -> tuple[Segment, ...]:
-    return (
-        box_segment("outer", 0.0, 10.0, outer, 83.16, HELD),
-        box_segment("inner", 9.0, 19.0, inner, 55.07),
-    )
 
 
 def _compliance(system: GapSystem) -> Array:
@@ -228,9 +198,8 @@ def test_octagons_on_their_side_are_the_same_boom() -> None:
         joints=(replace(joint, play=joint.lateral_play, lateral_play=joint.play),),
     )
     laws = LINEAR, LATERAL_LAW
-    options = ShellOptions(0.5, krylov=KrylovOptions(moments=1))
     first, second = (
-        reduce_boom(touching(boom, one, other), options, MPI.COMM_WORLD).system
+        reduced(boom, 0.5, law=one, lateral=other).system
         for boom, (one, other) in ((upright, laws), (lying, laws[::-1]))
     )
     assert second.frequencies == pytest.approx(first.frequencies, rel=1e-6, abs=1e-9)
@@ -261,7 +230,7 @@ def test_a_mirrored_boom_moves_the_other_way() -> None:
             for one, section in zip(upright.segments, (U, INNER_U), strict=True)
         ),
     )
-    systems = [reduced(boom, 0.25).system for boom in (upright, mirrored)]
+    systems = [reduced(boom, 0.25, law=LINEAR).system for boom in (upright, mirrored)]
     first, second = ([law.terms[0].side for law in system.laws] for system in systems)
     assert first == [1.0, -1.0, 1.0, -1.0]
     assert first == second
@@ -286,14 +255,7 @@ def _upside_down(section: PolygonSection) -> PolygonSection:
 def test_a_pressed_boom_rests_as_its_beams_do(pair: tuple[Section, Section]) -> None:
     """Reference: other code, tied Timoshenko elements; boxes are 0.25 % apart without collars."""
     plain = sections.boom_of(*pair)
-    system = reduced(plain, 0.25).system
-    pressed = np.diag(system.omega2) + 1.0e12 * system.rows.T @ system.rows
-    rest = np.linalg.solve(pressed, system.load)
-    beams = tied_system(plain, finite_element_segments(plain, 0.25, "timoshenko", True))
-    expected = beams.static_response(beams.load)
-    for name, observer in beams.observers.items():
-        found = system.observers[name].row @ rest
-        assert found == pytest.approx(observer.row @ expected, rel=1.5e-2), name
+    assert_rests_as_beams(reduced(plain, 0.25, law=LINEAR).system, plain, 1.5e-2)
 
 
 @pytest.mark.slow
@@ -308,10 +270,7 @@ def test_all_that_a_segment_may_have(pair: tuple[Section, Section], line: Contac
     outline: the masses of a rigid motion along z are those of all parts.
     """
     boom = _laden(sections.boom_of(*pair), line)
-    options = ShellOptions(
-        0.5, contact_line=line, contact_tolerance=1.0, krylov=KrylovOptions(moments=1)
-    )
-    found = reduce_boom(touching(boom, LINEAR), options, MPI.COMM_WORLD)
+    found = reduced(boom, 0.5, line, law=LINEAR, contact_tolerance=1.0)
     assert np.isfinite(found.local_compliance[:-2]).all() or line == "surface"
     inner = boom.segments[1]
     section = inner.section

@@ -3,22 +3,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array
-from shell_model.reduction.segment import (
-    KrylovOptions,
-    ReducedSegment,
-    ShiftedSolver,
-    reduce_segment,
-)
+from shell_model.reduction.coordinates import exact_product
+from shell_model.reduction.krylov import KrylovOptions
+from shell_model.reduction.segment import ReducedSegment, reduce_segment
 from shell_model.reduction.symmetry import Folding
 from shell_model.segment.segment_shell import SegmentShell
-from studies.reference_models.eigenmodes import natural_frequencies
+from shell_model.segment.solver import ShiftedSolver
+from studies.reference_models.lone_segment import natural_frequencies
 from tests.shell_model.booms import HELD
 
 Shells = Callable[..., SegmentShell]
@@ -172,3 +172,32 @@ def test_a_tolerance_that_is_not_met_is_said(box_shell: Shells) -> None:
     )
     with pytest.raises(NumericsError, match=message):
         reduce_segment(Folding(shell), _inputs(shell), KrylovOptions(tolerance=1.0e-9, most=20))
+
+
+def _terms() -> tuple[np.ndarray, np.ndarray]:
+    generator = np.random.default_rng(3)
+    sizes = 10.0 ** generator.uniform(-8.0, 8.0, (50_000, 1))
+    return generator.standard_normal(50_000), sizes * generator.standard_normal((50_000, 3))
+
+
+def test_products_are_rounded_once() -> None:
+    """Reference: analytic, Python's exact sum of the same terms."""
+    left, right = _terms()
+    found = exact_product(MPI.COMM_SELF, left, right)
+    assert found.tolist() == [math.fsum(left * column) for column in right.T]
+
+
+def test_the_order_of_rows_does_not_show() -> None:
+    left, right = _terms()
+    order = np.random.default_rng(4).permutation(left.size)
+    found = exact_product(MPI.COMM_SELF, left[order], right[order])
+    assert np.array_equal(found, exact_product(MPI.COMM_SELF, left, right))
+    assert not np.array_equal(left[order] @ right[order], left @ right)
+
+
+def test_what_cancels_is_zero() -> None:
+    """Reference: analytic. A force against its mirror's, but for the last bit of one term."""
+    left, right = _terms()
+    mirrored = np.concatenate([right, -right])
+    mirrored[0] *= 1.0 + 2.3e-16
+    assert not exact_product(MPI.COMM_SELF, np.concatenate([left, left]), mirrored).any()

@@ -12,15 +12,20 @@ import xarray as xr
 from mpi4py import MPI
 
 from geometry.arrays import Array
-from geometry.boom import Boom, Diaphragm, PadSize, Support
+from geometry.boom import Boom, Collar, Diaphragm, PadSize, Support
 from geometry.mesh import diaphragm_breaks, mesh_segment
 from geometry.plating import PlatedMesh, plated
 from geometry.profiles import octagon
+from geometry.section import BoxSection, Section
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from shell_model.stress.fields import gather_stress_modes
-from shell_model.stress.stresses import Modes, ShellStress, Stress, wall_forces
+from shell_model.stress.history import near_places, sum_up
+from shell_model.stress.stresses import Modes, ShellStress, Stress, WallForces, wall_forces
+from studies.second_order import BOX as COLUMN_BOX
+from studies.second_order import CLAMP, CRITICAL, LENGTH, column
+from studies.taper import arm
 from tests.shell_model.booms import LAW, STEEL, box_segment, flat_boom, three_segments
 from tests.shell_model.conftest import BOX, UNEQUAL
 from tests.touching import touching
@@ -145,11 +150,29 @@ def at_rest(
     return fields, ShellStress.of(fields)
 
 
+def clamped(section: Section, size: float) -> ShellStress:
+    """10 m of a section under 100 N/m."""
+    segment = box_segment("box", 0.0, 10.0, section, 100.0, (Support(0.0, kind="clamped"),))
+    return at_rest(Boom((segment,), ()), size)[1]
+
+
+def carried_at(shell: ShellStress, x: float) -> dict[str, WallForces]:
+    """Of each wall at a row of a clamped one, whose moment and shear are those of statics."""
+    forces, row = wall_forces(shell, 0.0, 0, x), shell.row(0, x)
+    arm = 10.0 - 0.5 * (shell.spans[row].min() + shell.spans[row].max())
+    assert sum(f.moment for f in forces.values()) == pytest.approx(-50.0 * arm**2, rel=5e-3)
+    if {"left", "right"} <= set(forces) and len(forces) == 4:
+        shear = forces["left"].shear + forces["right"].shear
+        assert shear == pytest.approx(100.0 * arm, rel=0.02)
+        assert abs(forces["top"].shear) < 1e-2 * shear
+        axial = sum(f.axial for f in forces.values())
+        assert axial == pytest.approx(0.0, abs=2e-3 * abs(forces["top"].axial))
+    return forces
+
+
 @pytest.fixture(scope="module")
 def cantilever() -> ShellStress:
-    """A clamped box of 10 m under 100 N/m."""
-    segment = box_segment("box", 0.0, 10.0, BOX, 100.0, (Support(0.0, kind="clamped"),))
-    return at_rest(Boom((segment,), ()), 0.1)[1]
+    return clamped(BOX, 0.1)
 
 
 @pytest.mark.slow
@@ -178,16 +201,8 @@ def test_away_from_supports_the_stress_is_that_of_a_beam(cantilever: ShellStress
 @pytest.mark.slow
 def test_walls_carry_what_equilibrium_asks(cantilever: ShellStress) -> None:
     """Reference: analytic. M = -q (L - x)² / 2, Q = q (L - x), N = 0; the webs carry the shear."""
-    forces = wall_forces(cantilever, 0.0, 0, 4.01)
-    middle = 4.05
-    arm = 10.0 - middle
-    assert sum(f.moment for f in forces.values()) == pytest.approx(-50.0 * arm**2, rel=5e-3)
-    shear = forces["left"].shear + forces["right"].shear
-    assert shear == pytest.approx(100.0 * arm, rel=0.02)
-    top = forces["top"].axial
-    assert sum(f.axial for f in forces.values()) == pytest.approx(0.0, abs=1e-3 * abs(top))
-    assert top == pytest.approx(-forces["bottom"].axial, rel=1e-3)
-    assert abs(forces["top"].shear) < 1e-2 * shear
+    forces = carried_at(cantilever, 4.01)
+    assert forces["top"].axial == pytest.approx(-forces["bottom"].axial, rel=1e-3)
 
 
 @pytest.mark.slow
@@ -211,16 +226,7 @@ def test_a_row_goes_all_around_where_pads_refine_some_walls() -> None:
 @pytest.mark.slow
 def test_walls_of_unequal_flanges_carry_what_equilibrium_asks() -> None:
     """Reference: analytic. As above, about the centroid; the thicker flange has less stress."""
-    segment = box_segment("box", 0.0, 10.0, UNEQUAL, 100.0, (Support(0.0, kind="clamped"),))
-    _, shell = at_rest(Boom((segment,), ()), 0.2)
-    forces = wall_forces(shell, 0.0, 0, 5.01)
-    row = shell.row(0, 5.01)
-    arm = 10.0 - 0.5 * (shell.spans[row].min() + shell.spans[row].max())
-    assert sum(f.moment for f in forces.values()) == pytest.approx(-50.0 * arm**2, rel=5e-3)
-    shear = forces["left"].shear + forces["right"].shear
-    assert shear == pytest.approx(100.0 * arm, rel=0.02)
-    top = forces["top"].axial
-    assert sum(f.axial for f in forces.values()) == pytest.approx(0.0, abs=2e-3 * abs(top))
+    forces = carried_at(clamped(UNEQUAL, 0.2), 5.01)
     stresses = [forces[p.name].axial / (p.length * p.thickness) for p in UNEQUAL.plates[::2]]
     middles = [plate.middle[1] for plate in UNEQUAL.plates[::2]]
     assert stresses[0] / stresses[1] == pytest.approx(middles[0] / middles[1], rel=5e-3)
@@ -230,12 +236,7 @@ def test_walls_of_unequal_flanges_carry_what_equilibrium_asks() -> None:
 def test_sloping_walls_carry_what_equilibrium_asks() -> None:
     """Reference: analytic, M = -q (L - x)² / 2, of which walls at 45° carry 70 %."""
     section = octagon(0.5, 0.5, chamfer=0.2, top=0.006, bottom=0.006, web=0.006)
-    segment = box_segment("box", 0.0, 10.0, section, 100.0, (Support(0.0, kind="clamped"),))
-    _, shell = at_rest(Boom((segment,), ()), 0.2)
-    forces = wall_forces(shell, 0.0, 0, 5.01)
-    row = shell.row(0, 5.01)
-    arm = 10.0 - 0.5 * (shell.spans[row].min() + shell.spans[row].max())
-    assert sum(f.moment for f in forces.values()) == pytest.approx(-50.0 * arm**2, rel=5e-3)
+    carried_at(clamped(section, 0.2), 5.01)
 
 
 @pytest.mark.slow
@@ -252,3 +253,114 @@ def test_a_tied_boom_keeps_each_segments_stresses() -> None:
     moment = -83.16 * (10.0 - middle) ** 2 / 2.0
     moment -= sum(s.load * s.length * (0.5 * (s.start + s.end) - middle) for s in boom.segments[1:])
     assert sum(f.moment for f in forces.values()) == pytest.approx(moment, rel=0.01)
+
+
+def stressed(boom: Boom) -> ShellStress:
+    """Where it has not moved."""
+    fields = reduce_boom(boom, ShellOptions(mesh_size=0.4), MPI.COMM_SELF).fields
+    assert fields is not None
+    still = np.zeros((1, fields.sizes["mode"]))
+    moving = fields.assign(state=(("time", "mode"), still), time=("time", np.zeros(1)))
+    return ShellStress.of(moving)
+
+
+def carried(shell: ShellStress, x: float) -> float:
+    """By all walls through a section, in N."""
+    return sum(forces.axial for forces in wall_forces(shell, 0.0, 0, x).values())
+
+
+def test_a_column_is_pressed_by_its_load_and_its_weight() -> None:
+    """Reference: by hand, −P/A in every wall, with m̄ g (L − x) of weight at the middle of a row;
+    a collar takes its share of the same force.
+    """
+    force, gravity = 0.1 * CRITICAL, 9.80665
+    boom = column((CLAMP,), force)
+    shell = stressed(boom)
+    np.testing.assert_allclose(shell.at(0.0).membrane[:, 0], -force / COLUMN_BOX.area, rtol=1e-6)
+    assert np.abs(shell.at(0.0).membrane[:, 1:]).max() == 0.0
+    (segment,) = boom.segments
+    doubled = replace(segment, collars=(Collar(3.0, 4.0, 0.006),))
+    collared = stressed(replace(boom, segments=(doubled,)))
+    assert collared.at(0.0).membrane[:, 0].max() == pytest.approx(-0.5 * force / COLUMN_BOX.area)
+    assert carried(collared, 3.5) == pytest.approx(-force, rel=1e-6)
+    weighing = stressed(column((CLAMP,), force, gravity))
+    row = weighing.row(0, 2.0)
+    middle = 0.5 * (weighing.spans[row, 0].min() + weighing.spans[row, 1].max())
+    above = COLUMN_BOX.mass_per_length(STEEL.density) * gravity * (LENGTH - middle)
+    assert carried(weighing, 2.0) == pytest.approx(-force - above, rel=1e-4)
+    every = np.arange(weighing.segment.size)
+    ((_, over_time),) = weighing.over_time(every)
+    np.testing.assert_array_equal(over_time.membrane[0], weighing.at(0.0).membrane)
+
+
+def test_a_taper_is_pressed_most_at_its_slender_end() -> None:
+    """Reference: by hand, −P/A of the local section, four times as much at the head as at the tail,
+    and the same force in each.
+    """
+    shell = stressed(arm(1000.0))
+    stress, x = shell.at(0.0).membrane[:, 0], shell.centroids[:, 0]
+    (segment,) = arm().segments
+    local = np.array([segment.section_at(place).area for place in x.tolist()])
+    np.testing.assert_allclose(stress, -1000.0 / local, rtol=1e-5)
+    assert stress.min() / stress.max() > 3.0
+    for place in (1.0, 4.0, 7.0):
+        assert carried(shell, place) == pytest.approx(-1000.0, rel=2e-3)
+
+
+THIN = BoxSection(height=0.4, width=0.3, flange=0.005, web=0.005)
+TIME = np.linspace(0.0, 1.0, 1001)
+
+
+@pytest.fixture
+def shell() -> ShellStress:
+    """A box of 4 m: a bending of all of it in one coordinate, a spot near 3 m in the other.
+
+    The spot is one triangle of the top, whose faces bend; it shows at 0.701 s for an instant,
+    between those at which every triangle is looked at.
+    """
+    mesh = mesh_segment(THIN, {"start": 0.0, "end": 4.0}, 0.1)
+    mesh = plated(box_segment("box", 0.0, 4.0, THIN), mesh)
+    centroids = mesh.points[mesh.triangles].mean(axis=1)
+    modes = np.zeros((2, len(mesh.triangles), 6), dtype=np.float32)
+    modes[0, :, 0] = 5.0e6 * centroids[:, 2]
+    spot = np.abs(centroids - [3.05, 0.05, 0.2]).sum(axis=1)
+    spot[mesh.walls != mesh.plates.index("top")] = np.inf
+    modes[1, spot.argmin(), 3] = 8.0e6
+    states = np.stack([np.sin(np.pi * TIME) ** 2, TIME[701] == TIME], axis=1).astype(np.float32)
+    still = ShellStress.still(mesh, modes[:1])
+    return replace(still, modes=[modes], states=[states], time=TIME)
+
+
+def test_bands_see_the_spot_and_patches_its_mean(shell: ShellStress) -> None:
+    """Reference: analytic. The bending is 1 MPa at the flanges at its height; a spot in a patch
+    of thirty triangles raises their mean by a thirtieth of it.
+    """
+    history = near_places(shell, [1.0, 3.0, 9.0], ["box"])
+    near = history["von_mises"].sel(segment="box")
+    assert near.sel(place=1.0).max() == pytest.approx(1.0e6, rel=1e-5)
+    assert float(near["time"][int(near.sel(place=1.0).argmax("time"))]) == pytest.approx(0.5)
+    assert float(near["time"][int(near.sel(place=3.0).argmax("time"))]) == pytest.approx(0.701)
+    bending = 1.0e6 * np.sin(0.701 * np.pi) ** 2
+    assert near.sel(place=3.0).max() == pytest.approx(bending + 8.0e6, rel=1e-5)
+    patch = history["von_mises_patch"].sel(segment="box", place=3.0)
+    top = np.flatnonzero((shell.wall == 2) & (np.abs(shell.centroids[:, 0] - 3.0) <= 0.25))
+    half = top[shell.centroids[top, 1] > 0.0]
+    share = 8.0e6 / half.size
+    assert float(patch[701]) == pytest.approx(bending + share, rel=1e-3)
+    assert history["von_mises"].sel(place=9.0).isnull().all()
+
+
+@pytest.mark.parametrize("places", [[1.0, 3.0], []])
+def test_the_largest_is_found(shell: ShellStress, places: list[float]) -> None:
+    """With a band it is the spot; without, what all triangles have at some instants."""
+    found = sum_up(shell, near_places(shell, places, ["box"]))
+    if not places:
+        assert found.von_mises == pytest.approx(1.0e6, rel=1e-3)
+        assert found.patch is None
+        return
+    assert found.time == pytest.approx(0.701)
+    assert (found.segment, found.wall, found.face) == ("box", "top", "outer")
+    assert found.x == pytest.approx(3.05, abs=0.05)
+    assert len(found.history.time) == 80
+    spotted = next(row for row in found.history.places if row.x == 3.0)
+    assert max(spotted.von_mises) == pytest.approx(found.von_mises, rel=1e-3)

@@ -13,7 +13,8 @@ from beam_model.component import natural_modes
 from beam_model.finite_element import finite_element_segment
 from geometry.boom import Direction, PointMass, Support
 from geometry.section import BoxSection
-from shell_model.reduction.segment import KrylovOptions, reduce_segment
+from shell_model.reduction.krylov import KrylovOptions
+from shell_model.reduction.segment import reduce_segment
 from shell_model.reduction.symmetry import Folding
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import times

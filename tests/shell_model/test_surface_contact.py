@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -25,27 +24,25 @@ from shell_model.contact.rows import Touching
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.contact.wall_rows import Wall, WallPoints
 from shell_model.reduced_shell import reduce_boom
-from shell_model.reduction.segment import KrylovOptions
+from shell_model.reduction.krylov import KrylovOptions
 from shell_model.segment.cross_section import COMPONENT
 from shell_model.segment.segment_shell import SegmentShell
-from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
+from tests.shell_model.booms import LAW, boom_in_space, flat_boom
 from tests.shell_model.conftest import BOX
+from tests.shell_model.models import reduced
 from tests.touching import touching
 
 PAD = PadSize(length=0.1, width=0.06)
 FEW = SurfaceOptions(points=(4, 2))
 
 
-@cache
 def _system(
     boom: Boom,
     line: ContactLine = "surface",
     surface: SurfaceOptions = FEW,
     law: PowerContact = LAW,
 ) -> GapSystem:
-    options = ShellOptions(0.5, line, surface, krylov=KrylovOptions(moments=1))
-    lateral = [LATERAL_LAW] if boom.spatial else ()
-    return reduce_boom(touching(boom, law, lateral), options, MPI.COMM_WORLD).system
+    return reduced(boom, 0.5, line, law=law, surface=surface).system
 
 
 def _with_pads(boom: Boom, pad: PadSize = PAD) -> Boom:
@@ -206,13 +203,10 @@ def test_contact_over_a_surface_keeps_energy() -> None:
 def compliances(comm: MPI.Comm) -> list[float]:
     """What each contact row gives way under its own force, in m/N at 10 Hz."""
     found = []
-    for line, boom in (("surface", flat_boom()), ("near webs", _with_pads(flat_boom()))):
-        options = ShellOptions(
-            0.5,
-            "surface" if line == "surface" else "near webs",
-            FEW,
-            krylov=KrylovOptions(moments=1),
-        )
+    cases: list[tuple[ContactLine, Boom]]
+    cases = [("surface", flat_boom()), ("near webs", _with_pads(flat_boom()))]
+    for line, boom in cases:
+        options = ShellOptions(0.5, line, FEW, krylov=KrylovOptions(moments=1))
         system = reduce_boom(touching(boom, LAW), options, comm).system
         slow = (2.0 * np.pi * 10.0) ** 2
         found += (system.rows**2 / (system.omega2 + slow)).sum(axis=1).tolist()
@@ -273,8 +267,8 @@ def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
     )
     boom = replace(boom, joints=(replace(boom.joints[0], pads=pads),))
     shells = assemble_segments(boom, ShellOptions(mesh_size=0.4), MPI.COMM_SELF)
-    touch = touching(boom, LAW.law)
-    rows = Touching.of(touch, shells, "near webs", SurfaceOptions()).rows({})
+    seen = touching(boom, LAW, LAW)
+    rows = Touching.of(seen, shells, "near webs", SurfaceOptions()).rows({})
     inner, places = shells[1], places_of_pads(boom)
     corners = 1 if len(sides) == 2 else 2
     assert len(rows.contacts) == 2 * len(pads) * corners

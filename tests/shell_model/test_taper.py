@@ -134,8 +134,8 @@ def tapered_boom(pad: PadSize | None, lateral: float | None) -> Boom:
 def test_a_boom_that_tapers_moves_as_its_beam(lateral: float | None) -> None:
     """Reference: other code, Timoshenko elements: first peak of the tip within 2 %."""
     boom = tapered_boom(None, lateral)
-    law = [LAW.behind(4e-3)]
-    sides = [LAW.behind(5e-3)] if lateral else []
+    law = [LAW.law.behind(4e-3)]
+    sides = [LAW.law.behind(5e-3)] if lateral else []
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     shell = reduce_boom(
         touching(boom, law, sides), ShellOptions(0.2, contact_tolerance=0.05), MPI.COMM_SELF
@@ -174,8 +174,7 @@ def test_pads_lie_on_tapered_walls(pad: PadSize | None, lateral: float | None) -
     """
     boom = tapered_boom(pad, lateral)
     shells = assemble_segments(boom, ShellOptions(mesh_size=0.3), MPI.COMM_SELF)
-    touch = touching(boom, LAW)
-    rows = Touching.of(touch, shells, "near webs", SurfaceOptions()).rows({})
+    rows = Touching.of(touching(boom, LAW, LAW), shells, "near webs", SurfaceOptions()).rows({})
     inner = shells[1]
     directions = [boom.stations[contact.station][1] for contact in rows.contacts]
     assert len(directions) == (4 if lateral is None else 16)

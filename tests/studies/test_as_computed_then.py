@@ -16,10 +16,9 @@ from geometry.arrays import Array
 from runs.case import reading as case_file
 from runs.paper.verdicts import Verdict, beside
 from studies.as_computed_then import leave, tables
-from studies.then.general_solver import METHODS, solve
+from studies.then.modal_integrators import oscillator
 from studies.then.samples import SERIES, STEPS, Example, Moved, Numerics, Sample, all_numerics
-from studies.then.scheme_errors import oscillator
-from studies.then.survey import TOLERANCES, WITH, WITHOUT, Survey, lost_then
+from studies.then.survey import METHODS, TOLERANCES, WITH, WITHOUT, Survey, lost_then, solve
 
 TIME = np.arange(0.0, 10.0, 1.6e-3)
 CUTOFF = 1.7

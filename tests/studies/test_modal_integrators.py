@@ -14,10 +14,15 @@ from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
-from studies.then.modal_integrators import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
-from studies.then.scheme_errors import (
+from studies.then.modal_integrators import (
+    CENTRAL,
+    NEWMARK,
+    WILSON,
+    Scheme,
+    integrate,
     longer_period,
     lost_amplitude,
+    lowest,
     oscillator,
     own_root,
     proofs,

@@ -17,10 +17,10 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from studies import direct, supports, taper, verification, working_load
-from studies.convergence import STUDIES
+from studies import direct, supports, taper, working_load
+from studies.convergence import STUDIES, proof_table
 from studies.motions import friction_case
-from studies.reference_models import pressed_plate
+from studies.reference_models import plates
 from studies.study import Study
 
 ROOT = Path(__file__).parents[2]
@@ -77,10 +77,13 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "damping": {"PressedBoom.of": swung, "_system": one},
     "histories": {},
     "second_order": {},
-    "drawn_column": {},
+    "telescoping_column": {},
     "stick_slip": {"_one_way": lambda _: [1.0] * 6},
     "answers": {},
-    "supports": {"_MODELS": dict.fromkeys(supports._MODELS, supports._elements), "decrement": one},
+    "supports": {
+        "_MODELS": dict.fromkeys(supports._MODELS, supports._MODELS["elements"]),
+        "decrement": one,
+    },
     "sections": {"ring_of_shell": one, "beam_peak": one, "shell_peak": one, "tip_of_shell": one},
     "taper": {"MODELS": taper.MODELS | {"shell": replace(taper.MODELS["shear-flexible elements"])}},
 }
@@ -118,8 +121,8 @@ def test_rows_are_those_of_the_study(name: str, monkeypatch: pytest.MonkeyPatch)
     for what, stand_in in STAND_INS[name].items():
         monkeypatch.setattr(f"studies.{name}.{what}", stand_in)
     for what in ("shell", "theory"):
-        monkeypatch.setattr(pressed_plate.PressedPlate, what, one)
+        monkeypatch.setattr(plates.PressedPlate, what, one)
     study: Study = import_module(f"studies.{name}").study(lambda what: None)
-    assert sections()[study.title] == [row(cells) for cells in verification.table(study).rows]
+    assert sections()[study.title] == [row(cells) for cells in proof_table(study).rows]
     if not STAND_INS[name]:
         assert [proof.what for proof in study.proofs if not proof.holds] == []

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Refinements of a regular motion, and the orders that they show."""
+"""Refinements of a regular motion, the orders that they show, and a closed form of loads."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
+from dynamics.excitation import Table
 from runs.case.schema import Case
+from studies.histories import response
 from studies.model_ladder import LADDER
 from studies.motions import friction_case, lasting, model_of
 from studies.refinement import orders, refine, with_step
@@ -40,3 +43,17 @@ def test_a_finer_step_settles_with_its_order(case: Case) -> None:
 def test_the_ladder_has_its_models(case: Case) -> None:
     names = [model.name for model in case.models]
     assert [name for _, name in LADDER] == names
+
+
+@pytest.mark.parametrize("omega", [0.0, 3.0])
+def test_the_closed_form_is_duhamel_s_integral(omega: float) -> None:
+    """Reference: other code, scipy's quadrature of ∫ g(s) sin(ω (t − s))/ω ds."""
+    table = Table((0.2, 0.5, 1.1), (0.4, -1.0, 2.0))
+    (found,) = response(omega, table, np.array([1.7]))
+    expected, _ = quad(
+        lambda s: float(table(np.array(s))) * (1.7 - s) * np.sinc(omega * (1.7 - s) / np.pi),
+        0.0,
+        1.7,
+        points=[0.2, 0.5, 1.1],
+    )
+    assert found == pytest.approx(expected, rel=1e-10)

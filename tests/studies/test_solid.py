@@ -8,20 +8,22 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="the study needs DOLFINx")
 
-from studies.box_errors import (
+from studies.box_pair import Blow
+from studies.refined import Refined
+from studies.solid import (
     COMPLIANCES,
     EVERY,
     FREQUENCIES,
     Comparison,
     Sizes,
     compare,
+    error_table,
     order,
+    refinements,
+    shell_proofs,
     slenderness_at,
+    solid_proofs,
 )
-from studies.box_pair import Blow
-from studies.refined import Refined
-from studies.solid import error_table, refinements, shell_proofs
-from studies.solid_itself import solid_proofs
 
 TINY = Sizes(
     walls=(0.04,), triangles=(0.2, 0.1, 0.05), splits=(1, 2, 4), along=(0.1, 0.5), around=0.3

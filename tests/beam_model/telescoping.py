@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Booms that are drawn out, and an integration of their motion that shares nothing with ours."""
+"""Booms that telescope, and an integration of their motion that shares nothing with ours."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from geometry.boom import Boom, Segment
 from geometry.joint import Drive
 
 LAW = PowerContact(1.0e6, 1.0).behind(7.0e-3)
-DRAWN = Drive(SCurve(4.0, 5.0), ("inner", "outer"))
+DRIVE = Drive(SCurve(4.0, 5.0), ("inner", "outer"))
 
 
 def shifted(segment: Segment, way: float) -> Segment:

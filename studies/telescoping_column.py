@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A cantilever that is pressed ever farther, as far as a segment has been drawn out in it.
+"""A cantilever that is pressed ever farther as a segment telescopes in it.
 
 What a force presses up to a, beyond which the column is straight, buckles as a column of the length
 a; under a load across the head it bends by what is known of a beam-column, and goes on straight but
@@ -19,7 +19,6 @@ from beam_model.kantorovich import kantorovich_segments
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.drive.travel import SCurve
-from geometry.arrays import Array
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, Joint, Segment
 from geometry.joint import Drive
@@ -39,7 +38,7 @@ from studies.study import Held, Proof, Tell, titled
 INNER = BoxSection(height=0.16, width=0.11, flange=0.006, web=0.006)
 LAW = PowerContact(1e8, 1.0)
 TERMS = 16
-# x in m of the inner segment's tail at the start, and where it is drawn to.
+# x in m of the inner segment's tail at the start and at the end.
 START, END = 2.0, 5.0
 ALLOWED = 1e-4
 
@@ -53,7 +52,7 @@ MODELS: Mapping[str, Callable[[Boom], list[SegmentModel]]] = {
 
 
 def column(force: float) -> Boom:
-    """The cantilever, and what is drawn out in it, whose tail hands a force in N on."""
+    """The cantilever, and the segment that telescopes in it, whose tail hands a force in N on."""
     outer = Segment.of_section("column", 0.0, LENGTH, STEEL, BOX, supports=(CLAMP,))
     inner = Segment.of_section("drawn", START, START + LENGTH, STEEL, INNER)
     drive = Drive(SCurve(END - START, 1.0), ("inner", "outer"))
@@ -62,7 +61,9 @@ def column(force: float) -> Boom:
     return Boom(pressed, (joint,))
 
 
-@titled("drawn_column", "A column that is pressed ever farther as a segment is drawn out in it")
+@titled(
+    "telescoping_column", "A column that is pressed ever farther as a segment is drawn out in it"
+)
 def study(tell: Tell) -> Iterator[Proof]:
     """Every model of beams."""
     for name, build in MODELS.items():
@@ -88,15 +89,13 @@ def _proofs(name: str, build: Callable[[Boom], list[SegmentModel]]) -> Iterator[
     system = gap_system(boom, models)
     held: Held = ("analytic", "beam-column, Timoshenko and Gere 1961", ALLOWED)
     for time, x in ((0.0, START), (1.0, END)):
-        head = _compliance(system.standing(time).stiffness, system.observers["head"].row)
+        row = system.observers["head"].row
+        # Of what one segment alone moves.
+        own = np.flatnonzero(row)
+        stiffness = system.standing(time).stiffness[np.ix_(own, own)]
+        head = float(row[own] @ np.linalg.solve(stiffness, row[own]))
         what = f"deflection of its head under {SHARE:g} P_cr over {x:g} m, {name}"
         yield Proof(what, head, _bent(x, SHARE * critical), "m/N", *held)
-
-
-def _compliance(stiffness: Array, row: Array) -> float:
-    """In m/N of what one segment alone moves."""
-    own = np.flatnonzero(row)
-    return float(row[own] @ np.linalg.solve(stiffness[np.ix_(own, own)], row[own]))
 
 
 def _bent(a: float, force: float) -> float:

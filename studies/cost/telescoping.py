@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What it costs to draw a boom out while it moves: ``python -m studies.cost.drawing``.
+"""What it costs to telescope a boom while it moves: ``python -m studies.cost.telescoping``.
 
 Models may be named behind it. The paper's boom is drawn out by 4 m through all of the motion,
 beside the same boom, pads and all, that stays where it begins.
@@ -51,8 +51,8 @@ class Cost(NamedTuple):
     moved: float
 
 
-def drawing(models: Sequence[str] = MODELS, duration: float = DURATION) -> Table:
-    """Processor time of motions that are drawn out, and of those at rest.
+def telescoping(models: Sequence[str] = MODELS, duration: float = DURATION) -> Table:
+    """Return the processor time of telescoping motions, and of those at rest.
 
     Args:
         models: of the case, and its ``shell``, which is left out where there is no FEniCSx.
@@ -62,11 +62,11 @@ def drawing(models: Sequence[str] = MODELS, duration: float = DURATION) -> Table
     rows, worst = [], {True: 0.0, False: 0.0}
     for name in asked:
         for resisted, values in RESISTED.items():
-            drawn, resting = (_cost(case, name) for case in _cases(duration, values))
-            ratio = drawn.moved / resting.moved
+            moving, resting = (_cost(case, name) for case in _cases(duration, values))
+            ratio = moving.moved / resting.moved
             worst[name == "shell"] = max(worst[name == "shell"], ratio)
-            costs = (resting.modes, drawn.modes, resting.moved, drawn.moved, ratio)
-            rows.append((name, resisted, *costs, resting.built, drawn.built))
+            costs = (resting.modes, moving.modes, resting.moved, moving.moved, ratio)
+            rows.append((name, resisted, *costs, resting.built, moving.built))
     columns = {
         "model": "", "resisted by": "", "modes at rest": ".0f", "drawn": ".0f", "at rest s": ".2f",
         "drawn out s": ".2f", "times": ".1f", "built at rest s": ".1f", "built drawn s": ".1f",
@@ -89,12 +89,12 @@ def drawing(models: Sequence[str] = MODELS, duration: float = DURATION) -> Table
 
 
 def _cases(duration: float, values: Mapping[str, Any]) -> tuple[Case, Case]:
-    """Drawn out, and at rest."""
+    """Telescoping, and at rest."""
     case = case_file.load(str(CASE))
     times = {"time.duration": duration, "joint.drive.time": duration}
-    drawn = change(case, **times, **values, **{"joint.contact_length": _PAD})
-    still = tuple(joint.model_copy(update={"drive": None}) for joint in drawn.joints)
-    return drawn, drawn.model_copy(update={"joints": still})
+    moving = change(case, **times, **values, **{"joint.contact_length": _PAD})
+    still = tuple(joint.model_copy(update={"drive": None}) for joint in moving.joints)
+    return moving, moving.model_copy(update={"joints": still})
 
 
 def _cost(case: Case, name: str) -> Cost:
@@ -111,4 +111,4 @@ def _cost(case: Case, name: str) -> Cost:
 
 if __name__ == "__main__":
     show_notices()
-    drawing(sys.argv[1:] or MODELS).show(wide_console())
+    telescoping(sys.argv[1:] or MODELS).show(wide_console())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Shells that are drawn out: rows and springs along the way, motion beside that of beams."""
+"""Shells that telescope: rows and springs along the way, motion beside that of beams."""
 
 from __future__ import annotations
 
@@ -9,47 +9,54 @@ from functools import cache
 import numpy as np
 import pytest
 from mpi4py import MPI
+from scipy.linalg import eigh
 
+from beam_model.finite_element import finite_element_system
 from dynamics.contact import PowerContact
-from dynamics.drive.travel import SCurve
+from dynamics.drive.travel import SCurve, Stroke
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
+from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom
 from geometry.joint import Drive
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.local_compliance import compliance, local_compliance
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.pad_springs import SLOW, springs, squared
-from tests.beam_model.systems import finite_element_system
 from tests.shell_model.booms import LATERAL_LAW, boom_in_space, flat_boom
 from tests.touching import touching
 
 LAW = PowerContact(1.0e8, 1.0).behind(7.0e-3)
-DRAWN = Drive(SCurve(2.0, 1.0), ("inner", "outer"))
+DRIVE = Drive(SCurve(2.0, 1.0), ("inner", "outer"))
 SIZE = 0.25
 
 
-def telescope(way: float, drive: Drive | None = None) -> Boom:
-    """The paper's boom with an overlap of 4 m less a way in m, and with dashpots.
+def telescope(
+    way: float, drive: Drive | None = None, pad: float = SIZE, dashpot: float = 0.0
+) -> Boom:
+    """The paper's boom with an overlap of 4 m less a way in m, and pads of a length in m.
 
-    Without these presses are chaotic, and runs part.
+    Without dashpots presses are chaotic, and runs part.
     """
     boom = flat_boom()
     outer, inner = boom.segments
     inner = replace(inner, start=6.0 + way, end=16.0 + way)
     stations = inner.start, outer.end
-    still = {"contact_length": SIZE, "dashpot": 3.0e3}
-    joint = replace(boom.joints[0], stations=stations, drive=drive, **still)
+    joint = replace(
+        boom.joints[0], stations=stations, drive=drive, contact_length=pad, dashpot=dashpot
+    )
     return replace(boom, segments=(outer, inner), joints=(joint,))
 
 
 @cache
 def shell(way: float, drive: Drive | None = None) -> ReducedShell:
-    return reduce_boom(touching(telescope(way, drive), LAW), ShellOptions(SIZE), MPI.COMM_WORLD)
+    return reduce_boom(
+        touching(telescope(way, drive, dashpot=3.0e3), LAW), ShellOptions(SIZE), MPI.COMM_WORLD
+    )
 
 
 def local(system: GapSystem) -> Array:
@@ -58,9 +65,8 @@ def local(system: GapSystem) -> Array:
     return local_compliance(whole, system.laws, system.station_of_row.tolist())
 
 
-def drawn_by(way: float) -> GapSystem:
-    """The shell that stands where it is drawn out by a way in m."""
-    system = shell(0.0, DRAWN).system
+def standing(system: GapSystem, way: float) -> GapSystem:
+    """The shell that stands where its drive has moved it by a way in m."""
     (travel,) = system.travels
     times = np.linspace(0.0, 1.0, 20001)
     return system.standing(float(np.interp(way, travel.history(times), times)))
@@ -87,11 +93,11 @@ def test_springs_give_way_and_weigh_as_what_they_stand_for() -> None:
 @pytest.mark.slow
 def test_where_it_stands_it_is_the_shell_that_rests_there() -> None:
     """Reference: other code, the shell reduced where it rests, with as many rings there."""
-    errors = shell(0.0, DRAWN).errors
+    errors = shell(0.0, DRIVE).errors
     assert 1.0e-4 < errors["contact_compliance"] < 0.01
     assert errors["readings"] < 0.02
     for way in (1.0, 2.0):
-        here, there = drawn_by(way), shell(way).system
+        here, there = standing(shell(0.0, DRIVE).system, way), shell(way).system
         tips = [
             float(one.observers["tip"].row @ equilibrium(one, one.load)) for one in (here, there)
         ]
@@ -116,12 +122,12 @@ def test_pads_of_a_boom_in_space_on_the_way() -> None:
         outer, inner = boom.segments
         inner = replace(inner, start=6.0 + way, end=16.0 + way)
         lateral = {"lateral_play": LATERAL_LAW.play, "friction": 0.2}
-        joint = replace(flat.joints[0], dashpot=0.0, **lateral)
+        joint = replace(flat.joints[0], **lateral)
         boom = replace(boom, segments=(outer, inner), joints=(joint,))
         options = ShellOptions(2.0 * SIZE)
         return reduce_boom(touching(boom, LAW, LAW), options, MPI.COMM_WORLD).system
 
-    here, there = built(0.0, DRAWN).standing(1.0), built(2.0, None)
+    here, there = built(0.0, DRIVE).standing(1.0), built(2.0, None)
     rests = [(one, equilibrium(one, one.load)) for one in (here, there)]
     for name in ("tip", "tip_lateral", "head", "head_lateral"):
         ends = [float(one.observers[name].row @ rest) for one, rest in rests]
@@ -137,10 +143,10 @@ def test_no_ring_of_the_mesh_is_felt() -> None:
     what pads give way is a straight line from ring to ring within 0.1 %; so is the drive's force.
     """
     ways = np.linspace(0.5, 2.0, 49)
-    (travel,) = shell(0.0, DRAWN).system.travels
+    (travel,) = shell(0.0, DRIVE).system.travels
     compliances, forces, pulls = [], [], []
     for way in ways:
-        system = drawn_by(way)
+        system = standing(shell(0.0, DRIVE).system, way)
         rest = equilibrium(system, system.load)
         forces.append(
             [law.force(y) for law, y in zip(system.laws, system.rows @ rest, strict=True)]
@@ -166,7 +172,7 @@ def moved(system: GapSystem, duration: float) -> Trajectory:
 @pytest.mark.slow
 def test_without_speed_it_moves_as_the_shell_that_rests() -> None:
     """Reference: other code, the shell reduced where it rests, over its first presses."""
-    still = replace(shell(0.0, DRAWN).system, travels=())
+    still = replace(shell(0.0, DRIVE).system, travels=())
     runs = [moved(system, 0.5) for system in (still, shell(0.0).system)]
     assert runs[1].data.attrs["contact_changes"] > 10
     tips = [run.data["tip"].values for run in runs]
@@ -180,8 +186,10 @@ def test_beams_are_as_near_as_where_it_rests() -> None:
     The ledger is closed, with the work of the drive.
     """
     apart = []
-    for drive in (None, DRAWN):
-        beam = finite_element_system(touching(telescope(0.0, drive), LAW), theory="timoshenko")
+    for drive in (None, DRIVE):
+        beam = finite_element_system(
+            touching(telescope(0.0, drive, dashpot=3.0e3), LAW), theory="timoshenko"
+        )
         runs = [moved(system, 0.5) for system in (beam, shell(0.0, drive).system)]
         assert max(run.energy_residual for run in runs) < 1.0e-4
         tips = [run.data["tip"].values for run in runs]
@@ -190,3 +198,37 @@ def test_beams_are_as_near_as_where_it_rests() -> None:
     works = [float(run.data["drive_work"][-1]) for run in runs]
     assert works[0] == pytest.approx(works[1], rel=0.1)
     assert abs(works[1]) > 0.01 * float(np.abs(runs[1].data["work"]).max())
+
+
+def told(system: GapSystem) -> Array:
+    """(5,) what tip and head read at rest, and the lowest frequencies of contacts as springs."""
+    rest = equilibrium(system, system.load)
+    stiffness = system.stiffness + 1.0e8 * system.rows.T @ system.rows
+    squares = eigh(stiffness, eigvals_only=True, subset_by_index=[0, 2])
+    seen = [system.observers[name].row @ rest for name in ("tip", "head")]
+    return np.array([*seen, *np.sqrt(squares)])
+
+
+@pytest.mark.slow
+def test_a_pressed_one_is_the_shell_that_rests_there() -> None:
+    """Reference: other code path, the shell with its axial forces that is reduced where it rests;
+    and analytic, the ledger of a motion.
+    """
+
+    def reduced(way: float, drive: Drive | None = None) -> GapSystem:
+        free = telescope(way, drive, 0.3)
+        ropes = [Thrust(1, free.tip, 1.0e5)]
+        segments = with_compression(free.segments, free.joints, ropes, gravity=8.0)
+        boom = replace(free, segments=segments)
+        return reduce_boom(touching(boom, LAW), ShellOptions(0.3), MPI.COMM_WORLD).system
+
+    system = reduced(0.0, Drive(Stroke(2.0, 4.0, 0.1), DRIVE.carriers))
+    for way in (0.0, 2.0):
+        here, there = standing(system, way), told(reduced(way))
+        assert told(here) == pytest.approx(there, rel=1e-4)
+    # Without the force that goes along it rests and swings by several times that elsewhere.
+    plain = replace(here, softening=np.zeros((0, 0)))
+    assert (np.abs(told(plain)[:4] / there[:4] - 1.0) > 5.0e-4).all()
+    run = FixedStep(5.0e-6)(Motion(system, 0.7, 1.0e-2))
+    assert run.energy_residual < 1.0e-4
+    assert abs(float(run.data["drive_work"][-1])) > 0.01 * float(np.abs(run.data["work"]).max())

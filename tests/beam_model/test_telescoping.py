@@ -1,0 +1,352 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Booms that telescope, some of them pressed: rows, statics on the way, motion, a ledger."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from beam_model.boom_modes import critical_factor
+from beam_model.component import SegmentModel
+from beam_model.finite_element import finite_element_segments, finite_element_system
+from beam_model.kantorovich import kantorovich_segments, kantorovich_system
+from beam_model.segment_model import gap_system
+from dynamics.arrays import Array
+from dynamics.contact import PowerContact
+from dynamics.drive.travel import SCurve, Stroke, Together
+from dynamics.equilibrium import equilibrium
+from dynamics.excitation import History, Table
+from dynamics.gap_system import GapSystem
+from dynamics.integrator import FixedStep
+from dynamics.motion import Motion
+from geometry.axial import Thrust, with_compression
+from geometry.boom import Boom, BoomError, Joint, PointMass, Stop, Support
+from geometry.joint import Carrier, Drive
+from tests.beam_model.telescoping import DRIVE, LAW, LONGEST, runge_kutta, shifted, telescope, tips
+from tests.touching import touching
+
+
+def three(boom: Boom, ways: tuple[float, float], drives: Sequence[Drive | None]) -> Boom:
+    """Three segments, a rest on the ground below the last one, dashpots across the first joint."""
+    outer, inner = boom.segments
+    middle = shifted(inner, ways[0] - 3.0)
+    last = replace(shifted(inner, sum(ways) + 3.0), name="last", section=None)
+    stops = (Stop(2, 16.0, 0.04, PowerContact(0.0, 1.0, stiffness_below=1.0e6)),)
+    stations = (middle.start, outer.end), (last.start, middle.end)
+    joints = (
+        Joint(0, 1, stations[0], play=0.014, dashpot=300.0, drive=drives[0]),
+        Joint(1, 2, stations[1], play=0.014, drive=drives[1]),
+    )
+    plain = (replace(outer, section=None), replace(middle, section=None))
+    return Boom((*plain, last), joints, stops=stops)
+
+
+SYSTEMS: dict[str, Callable[[Boom], GapSystem]] = {
+    "Euler-Bernoulli": lambda boom: finite_element_system(touching(boom, LAW), element_length=0.5),
+    "Timoshenko": lambda boom: finite_element_system(
+        touching(boom, LAW), element_length=0.5, theory="timoshenko"
+    ),
+    "series": lambda boom: kantorovich_system(touching(boom, LAW), (4, 6), base="complete"),
+}
+
+
+@pytest.mark.parametrize("kind", SYSTEMS)
+def test_standing_on_the_way_is_the_boom_built_there(paper_boom: Boom, kind: str) -> None:
+    """Reference: analytic, the boom whose segments lie there, with nodes at the same places."""
+    system = SYSTEMS[kind](telescope(paper_boom, 0.0, DRIVE))
+    for way, time in ((0.0, 0.0), (2.0, 2.5), (4.0, 5.0)):
+        there = SYSTEMS[kind](telescope(paper_boom, way))
+        assert tips(system.standing(time)) == pytest.approx(tips(there), rel=1e-7)
+    assert tips(system)[0] < 0.5 * tips(there)[0]
+
+
+def test_three_segments_a_stop_and_dashpots_on_the_way(paper_boom: Boom) -> None:
+    """Reference: analytic, the boom whose segments lie there; a stop reads the last segment where
+    both joints have drawn it to.
+    """
+    drives = (Drive(SCurve(1.0, 2.0), ("inner", "outer")), Drive(SCurve(2.0, 2.0), DRIVE.carriers))
+
+    def built(ways: tuple[float, float], drives: Sequence[Drive | None]) -> GapSystem:
+        return finite_element_system(touching(three(paper_boom, ways, drives), [LAW, LAW]))
+
+    system, there = built((0.0, 0.0), drives).standing(2.0), built((1.0, 2.0), (None, None))
+    assert [type(t.history) for t in built((0.0, 0.0), drives).travels] == [
+        SCurve, SCurve, Together,
+    ]  # fmt: skip
+    assert tips(system) == pytest.approx(tips(there), rel=1e-8)
+    for rows in ("rows", "dashpots"):
+        found, expected = ((r := getattr(s, rows)) @ r.T for s in (system, there))
+        assert found == pytest.approx(expected, rel=1e-8, abs=1e-12)
+
+
+def test_in_space_the_rows_turn_with_the_sections(spatial_boom: Boom) -> None:
+    """Reference: analytic, the boom in space whose segments lie there."""
+
+    def built(way: float, drive: Drive | None) -> GapSystem:
+        boom = telescope(spatial_boom, way, drive, friction=0.2)
+        return finite_element_system(touching(boom, LAW, LAW), element_length=0.5)
+
+    system, there = built(0.0, DRIVE).standing(5.0), built(4.0, None)
+    for rows in ("rows", "friction_rows"):
+        found, expected = ((r := getattr(s, rows)) @ r.T for s in (system, there))
+        assert found == pytest.approx(expected, rel=1e-8, abs=1e-10)
+    run = FixedStep(5.0e-5)(Motion(built(0.0, Drive(SCurve(4.0, 0.5), DRIVE.carriers)), 0.5))
+    assert run.energy_residual < 1.0e-3
+    assert float(np.abs(run.data["drive_work"]).max()) > 0.0
+
+
+@pytest.mark.slow
+def test_a_slow_drive_follows_the_statics(paper_boom: Boom) -> None:
+    """Reference: analytic, the rest of each position, within 0.1 % of the tip's deflection."""
+    boom = telescope(paper_boom, 1.0, Drive(SCurve(3.0, 80.0), DRIVE.carriers))
+    system = finite_element_system(touching(boom, LAW), element_length=1.0)
+    system = replace(system, damping=np.ones(system.num_modes))
+    rest = equilibrium(system, system.load)
+    run = FixedStep(1.0e-4)(Motion(system, 80.0, 0.1, position=rest))
+    for time in np.linspace(0.0, 80.0, 9):
+        there = tips(system.standing(time))[0]
+        found = float(run.data["tip"].sel(time=time, method="nearest"))
+        assert found == pytest.approx(there, rel=1.0e-3)
+    assert float(run.data["tip"][-1]) > 2.0 * float(run.data["tip"][0])
+    # Loads give twice what is stored; the rest goes to the drive, which a boom pushes out.
+    stored = sum(run.data[name] for name in ("strain_energy", "contact_energy"))
+    gained, work, drive = (
+        float(one[-1] - one[0]) for one in (stored, run.data["work"], run.data["drive_work"])
+    )
+    assert work + drive == pytest.approx(gained, rel=0.02)
+    assert drive < -0.2 * work
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("thrust", [0.0, 1.0e5], ids=["free", "pressed"])
+def test_an_integration_of_its_own(paper_boom: Boom, thrust: float) -> None:
+    """Reference: other code, Hermite elements with moving rows and a moving thrust by Runge and
+    Kutta's method (DOP853), assembled in the tests; a second-order approach to it.
+    """
+    history = SCurve(4.0, 0.6)
+    boom = telescope(paper_boom, 0.0, Drive(history, DRIVE.carriers))
+    segments = tuple(replace(segment, rotary_inertia=0.0) for segment in boom.segments)
+    if thrust:
+        ropes = [Thrust(1, segments[1].end, thrust)]
+        segments = with_compression(segments, boom.joints, ropes)
+    boom = replace(boom, segments=segments)
+    system = finite_element_system(
+        touching(boom, LAW), element_length=LONGEST, rotary_inertia=False
+    )
+    runs = [FixedStep(step)(Motion(system, 0.6, 5.0e-3)) for step in (2.0e-5, 1.0e-5)]
+    tip, work = runge_kutta(boom, history, runs[0].time, thrust)
+    assert runs[0].data.attrs["contact_changes"] > 2
+    errors = [np.abs(run.data["tip"].values - tip).max() / np.ptp(tip) for run in runs]
+    assert errors[1] < 1.0e-5
+    assert errors[1] < 0.4 * errors[0]
+    assert float(runs[1].data["drive_work"][-1]) == pytest.approx(work, rel=1e-4)
+    # Without the drive, or with a thrust that stays, the tip is elsewhere.
+    without = [replace(travel, thrusts=()) for travel in system.travels] if thrust else ()
+    still = FixedStep(2.0e-5)(Motion(replace(system, travels=without), 0.6, 5.0e-3))
+    off = np.abs(still.data["tip"].values - tip).max() / np.ptp(tip)
+    assert off > (3.0e-4 if thrust else 0.05)
+
+
+@pytest.mark.slow
+def test_the_ledger_of_the_papers_boom(paper_boom: Boom) -> None:
+    """Reference: analytic, the balance within 1e-5 of the load's work, with friction as well."""
+    for changes in ({}, RESISTED):
+        boom = telescope(paper_boom, 0.0, Drive(Stroke(4.0, 4.0, 0.2), DRIVE.carriers), **changes)
+        system = finite_element_system(touching(boom, LAW), element_length=1.0)
+        run = FixedStep(1.0e-5)(Motion(system, 1.5))
+        put_in = float(np.abs(run.data["work"]).max())
+        assert run.energy_residual < 1.0e-5
+        assert abs(float(run.data["drive_work"][-1])) > 0.01 * put_in
+        assert (float(run.data["friction_loss"][-1]) > 0.01 * put_in) == bool(changes)
+
+
+def test_out_and_in_again(paper_boom: Boom) -> None:
+    """Reference: analytic, the same boom at rest: what never touches swings on as it did."""
+    there_and_back = Table([0.0, 0.2, 0.4], [0.0, 4.0, 0.0])
+    boom = telescope(paper_boom, 0.0, Drive(there_and_back, DRIVE.carriers))
+    boom = replace(boom, segments=tuple(replace(one, load=0.0) for one in boom.segments))
+    system = finite_element_system(touching(boom, LAW), element_length=1.0)
+    speeds = 1.0e-3 * np.cos(np.arange(system.num_modes))
+    moved, rest = (
+        FixedStep(1.0e-4)(Motion(one, 0.4, 1.0e-2, velocity=speeds))
+        for one in (system, replace(system, travels=()))
+    )
+    assert moved.data.attrs["contact_changes"] == 0
+    assert np.abs(moved.states - rest.states).max() < 1.0e-9 * np.abs(rest.states).max()
+    gaps = moved.data["gap"].values
+    assert np.abs(gaps[20] - rest.data["gap"].values[20]).max() > 0.01 * np.abs(gaps[20]).max()
+    assert gaps[-1] == pytest.approx(rest.data["gap"].values[-1], rel=1e-6, abs=1e-12)
+
+
+def driven(history: History, least: float = 0.0) -> Drive:
+    return Drive(history, DRIVE.carriers, least)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda boom: telescope(boom, 0.0, driven(SCurve(4.5, 5.0), 1.0)),
+         "joint[1].drive: draws 'inner' out by 4.5 m until 0.5 m of overlap are left; it must "
+         "leave at least 1 m"),
+        (lambda boom: telescope(boom, 0.0, driven(SCurve(5.0, 5.0))),
+         "joint[1].drive: draws 'inner' out by 5 m until 0 m of overlap are left; it must leave "
+         "above 0 m"),
+        (lambda boom: telescope(boom, 0.0, driven(SCurve(-5.5, 5.0))),
+         "joint[1].drive: draws 'inner' in by 5.5 m; it must be at most 5 m, where it is wholly "
+         "in 'outer'"),
+        (lambda boom: telescope(boom, 0.0, driven(Table([0.0, 1.0], [0.0, 0.0]))),
+         "joint[1].drive: draws 'inner' nowhere; leave it out"),
+        (lambda boom: telescope(boom, 0.0, DRIVE, tied=True),
+         "joint[1].drive: the joint is tied, and nothing slides; leave it out"),
+        (lambda boom: replace(boom, joints=(Joint(0, 1, (9.3, 9.5), play=0.014,
+            drive=Drive(SCurve(0.3, 1.0), ("inner", "outer"))),)),
+         "joint[1].drive: stations pass one another as 'inner' is drawn by 0.3 m; make the travel "
+         "shorter, or move them"),
+        (lambda boom: replace(boom, joints=(Joint(0, 1, (9.5, 10.0), play=0.014,
+            drive=Drive(SCurve(0.6, 1.0), ("outer", "outer"))),)),
+         "joint[1].drive: the station at 9.5 m leaves the overlap as 'inner' is drawn by 0.6 m; "
+         "make the travel shorter, or move the station"),
+        (lambda boom: replace(telescope(boom, 0.0, DRIVE),
+            stops=(Stop(1, 6.0, 0.2, PowerContact(1e6, 1.0, stiffness_below=1e6)),)),
+         "stop[1].x: 'inner' is drawn past 6 m; it must be there all the way"),
+        (lambda boom: replace(telescope(boom, 0.0, DRIVE), segments=(
+            telescope(boom, 0.0).segments[0],
+            replace(telescope(boom, 0.0).segments[1], supports=(Support(12.0),)))),
+         "segment[2].supports: the ground holds 'inner', which a drive moves along; let it hold a "
+         "segment that stays, or leave drive out"),
+    ],
+)  # fmt: skip
+def test_drives_that_cannot_be(
+    paper_boom: Boom, make: Callable[[Boom], Boom], message: str
+) -> None:
+    """Reference: what cannot be drawn, in one line."""
+    with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
+        make(paper_boom)
+
+
+RESISTED = {"friction": 0.2, "normal_forces": (45.0, 50.0), "dashpot": 50.0}
+
+GRAVITY = 8.5
+THRUST = 1.5e4
+
+
+def pressed(
+    boom: Boom, way: float, drive: Drive | None = None, locked: float | None = None
+) -> Boom:
+    """The paper's boom drawn out by a way in m, with a payload, its weight along it and a rope."""
+    free = telescope(boom, way, drive, locked_at=locked)
+    outer, inner = free.segments
+    inner = replace(inner, masses=(PointMass(inner.end, 300.0),))
+    ropes = [Thrust(1, inner.end, THRUST)]
+    return replace(free, segments=with_compression((outer, inner), free.joints, ropes, GRAVITY))
+
+
+Build = Callable[[Boom], list[SegmentModel]]
+
+BUILDS: dict[str, Build] = {
+    "Euler-Bernoulli": lambda boom: finite_element_segments(boom, 0.5, "euler-bernoulli", True),
+    "Timoshenko": lambda boom: finite_element_segments(boom, 0.5, "timoshenko", True),
+    "series": lambda boom: kantorovich_segments(boom, (6, 8), "complete", True),
+}
+
+# On what the place sits where axial force passes, and its x in m: the inner tail, a place on the
+# inner segment, the outer head, a foot below the tail.
+LOCKS: list[tuple[Carrier, float | None]] = [
+    ("inner", None),
+    ("inner", 5.5),
+    ("outer", 10.0),
+    ("outer", 3.0),
+]
+
+
+def frequencies(system: GapSystem) -> Array:
+    """(3,) the lowest ones in Hz of the boom whose contacts are springs."""
+    stiffness = system.stiffness + 1.0e6 * system.rows.T @ system.rows
+    found = eigh(stiffness, eigvals_only=True, subset_by_index=[0, 2])
+    return np.asarray(np.sqrt(found) / (2.0 * np.pi))
+
+
+@pytest.mark.parametrize("kind", BUILDS)
+@pytest.mark.parametrize("lock", LOCKS)
+def test_a_pressed_boom_on_the_way_is_the_boom_built_there(
+    paper_boom: Boom, kind: str, lock: tuple[Carrier, float | None]
+) -> None:
+    """Reference: other code path, the boom whose segments lie there: its rest, its frequencies, and
+    the force under which it buckles, which is the smallest where it is farthest out.
+    """
+    build, (carrier, x) = BUILDS[kind], lock
+    boom = pressed(paper_boom, 0.0, replace(DRIVE, locked=carrier), x)
+    system = gap_system(touching(boom, LAW), build(boom))
+    factors = []
+    for way, time in ((0.0, 0.0), (2.0, 2.5), (4.0, 5.0)):
+        along = x + way if x is not None and carrier == "inner" else x
+        still = pressed(paper_boom, way, None, along)
+        there = gap_system(touching(still, LAW), build(still))
+        stands = system.standing(time)
+        assert tips(stands) == pytest.approx(tips(there), rel=1e-6)
+        assert frequencies(stands) == pytest.approx(frequencies(there), rel=1e-6)
+        factors.append(critical_factor(still, build(still)))
+    assert critical_factor(boom, build(boom)) == pytest.approx(factors[-1], rel=1e-6)
+    assert factors[-1] is not None
+    assert 1.5 < factors[-1] < 0.7 * float(factors[0] or 0.0)
+    # Without the force that goes along it would rest elsewhere.
+    first = replace(system, travels=[replace(t, thrusts=()) for t in system.travels])
+    moves = x is None or x > 4.0
+    off = abs(tips(first.standing(5.0))[0] / tips(there)[0] - 1.0)
+    assert (off > 3e-4) == moves
+
+
+def test_in_space_both_planes_soften(spatial_boom: Boom) -> None:
+    """Reference: other code path, the boom in space that lies there."""
+
+    def built(way: float, drive: Drive | None) -> GapSystem:
+        boom = pressed(spatial_boom, way, drive)
+        return finite_element_system(touching(boom, LAW, LAW), element_length=0.5)
+
+    here, there = built(0.0, DRIVE).standing(5.0), built(4.0, None)
+    assert frequencies(here) == pytest.approx(frequencies(there), rel=1e-6)
+    plain = replace(here, softening=np.zeros((0, 0)))
+    assert (frequencies(plain) > 1.0005 * frequencies(there)).sum() >= 2
+
+
+@pytest.mark.slow
+def test_a_slow_drive_follows_the_second_order_statics(paper_boom: Boom) -> None:
+    """Reference: other code path, the rest of the boom that lies there, within 0.1 %."""
+    boom = pressed(paper_boom, 2.0, Drive(SCurve(2.0, 60.0), DRIVE.carriers))
+    system = finite_element_system(touching(boom, LAW), element_length=1.0)
+    system = replace(system, damping=0.2 * np.ones(system.num_modes))
+    rest = equilibrium(system, system.load)
+    run = FixedStep(1.0e-4)(Motion(system, 60.0, 0.1, position=rest))
+    for way, time in ((2.0, 0.0), (3.0, 30.0), (4.0, 60.0)):
+        there = finite_element_system(touching(pressed(paper_boom, way), LAW), element_length=1.0)
+        found = float(run.data["tip"].sel(time=time, method="nearest"))
+        assert found == pytest.approx(tips(there)[0], rel=1.0e-3)
+        plain = telescope(paper_boom, way)
+        first = tips(finite_element_system(touching(plain, LAW), element_length=1.0))[0]
+        assert abs(found / first - 1.0) > 0.01
+
+
+@pytest.mark.slow
+def test_the_ledger_and_the_order(paper_boom: Boom) -> None:
+    """Reference: analytic, the balance to round-off, with friction and dashpots
+    as well, and errors that fall with the square of the step.
+    """
+    for changes in ({}, RESISTED):
+        boom = pressed(paper_boom, 0.0, Drive(Stroke(4.0, 4.0, 0.2), DRIVE.carriers))
+        boom = replace(boom, joints=(replace(boom.joints[0], **changes),))
+        system = finite_element_system(touching(boom, LAW), element_length=1.0)
+        steps = (4.0e-5, 2.0e-5, 1.0e-5)
+        runs = [FixedStep(step)(Motion(system, 1.5, 5.0e-3)) for step in steps]
+        assert max(run.energy_residual for run in runs) < 1.0e-11
+        ends = [run.data["tip"].values for run in runs]
+        first, then = (np.abs(b - a).max() for a, b in pairwise(ends))
+        assert then < 0.35 * first
+        passed = system.travels[0].thrusts[0].softening(4.0)
+        taken = 0.5 * runs[-1].states[-1] @ passed @ runs[-1].states[-1]
+        assert taken > 2.0e-4 * float(np.abs(runs[-1].data["work"]).max())

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Booms reduced as shells, each once, and beside their beams."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from beam_model.component import natural_modes
+from beam_model.finite_element import finite_element_segment, finite_element_segments
+from beam_model.segment_model import tied_system
+from dynamics.contact import ContactLaw
+from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
+from geometry.boom import Boom, Direction
+from geometry.contact_places import ContactLine
+from shell_model.boom_shell import ShellOptions
+from shell_model.reduced_shell import ReducedShell, reduce_boom
+from shell_model.reduction.krylov import KrylovOptions
+from shell_model.reduction.segment import reduce_segment
+from shell_model.reduction.symmetry import Folding
+from shell_model.segment.segment_shell import SegmentShell
+from tests.shell_model.booms import LATERAL_LAW, LAW
+from tests.touching import touching
+
+
+@cache
+def reduced(
+    boom: Boom,
+    size: float,
+    line: ContactLine = "near webs",
+    *,
+    law: ContactLaw = LAW,
+    lateral: ContactLaw = LATERAL_LAW,
+    moments: int = 1,
+    **options: Any,
+) -> ReducedShell:
+    """A boom as shells with edges of a size in m, all of whose joints have the same laws."""
+    return reduce_boom(
+        touching(boom, law, lateral),
+        ShellOptions(size, line, krylov=KrylovOptions(moments=moments), **options),
+        MPI.COMM_WORLD,
+    )
+
+
+def pressed_rest(system: GapSystem, at: Sequence[bool] | slice = slice(None)) -> Array:
+    """Rest position with springs of 1e12 N/m in place of contact, at some rows or at all."""
+    rows = system.rows[at]
+    return np.asarray(np.linalg.solve(np.diag(system.omega2) + 1.0e12 * rows.T @ rows, system.load))
+
+
+def assert_rests_as_beams(system: GapSystem, boom: Boom, rel: float) -> None:
+    """Against tied Timoshenko elements, in all that these observe."""
+    rest, beams = pressed_rest(system), tied_beams(boom)
+    expected = beams.static_response(beams.load)
+    assert set(beams.observers) <= set(system.observers)
+    for name, observer in beams.observers.items():
+        found = system.observers[name].row @ rest
+        assert found == pytest.approx(observer.row @ expected, rel=rel), name
+
+
+def tied_beams(boom: Boom, length: float = 0.25) -> GapSystem:
+    """Timoshenko elements of a length in m, without play."""
+    return tied_system(boom, finite_element_segments(boom, length, "timoshenko", True))
+
+
+def frequencies_off(shell: SegmentShell, direction: Direction = "z", count: int = 1) -> Array:
+    """(count,) how far the first elastic ones are from those of the Timoshenko beam."""
+    tip = shell.row(shell.outline(10.0).wall_deflection(direction))
+    inputs = np.column_stack([shell.unit_loads[direction], tip])
+    found = reduce_segment(Folding(shell), inputs, KrylovOptions())
+    part = finite_element_segment(shell.segment, 0.25, (), "timoshenko", True).components[direction]
+    modes = natural_modes(part.stiffness, part.mass, part.rigid_modes)
+    assert np.count_nonzero(found.omega2 == 0.0) == part.rigid_modes
+    first = slice(part.rigid_modes, part.rigid_modes + count)
+    return np.asarray(np.sqrt(found.omega2[first]) / np.sqrt(modes.omega2[first]) - 1.0)

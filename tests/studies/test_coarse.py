@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Studies on coarse meshes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from runs.case.build import build_boom
+from studies import answers, contact_size, direct, mesh, stiffeners, stress, surface_contact
+from studies.motions import friction_case
+
+CONTACT_SIZE = contact_size.Sizes(
+    meshes=(8.0, 4.0, 2.0),
+    default=4.0,
+    lengths=(0.1,),
+    pads=((0.2, 0.06),),
+    plate=(0.0125,),
+    loads=(10.0,),
+)
+
+
+@pytest.mark.slow
+def test_pads_beside_the_webs_give_way_more() -> None:
+    """Reference: other code, plate theory for the wall; a flange that bends is ten times softer
+    than a corner, on any mesh, and the boom's first peak is higher for it.
+    """
+    told: list[str] = []
+    found = contact_size.study(told.append, CONTACT_SIZE)
+    corner, pad = "corner of 0.1 m", "pad of 0.2 m x 0.06 m"
+    assert told == ["plates", "support", corner, pad]
+    meshes = found.data["local-compliance"]
+    local = np.array([[row[f"edges × {part:g}"] for part in CONTACT_SIZE.meshes] for row in meshes])
+    of_support, of_corner, of_pad = local[0], local[1:3], local[3:]
+    assert of_support[-1] == pytest.approx(of_support[-2], rel=0.01)
+    assert of_corner.shape == (2, 3)
+    assert (np.diff(of_corner, axis=1) > 0.0).all()
+    assert (of_pad > 10.0 * of_corner).all()
+    peaks = [row["first tip peak\nload × 10 (mm)"] for row in found.data["contact-size"]]
+    assert 350.0 < peaks[0] < 0.8 * peaks[1]
+    plates = [proof for proof in found.proofs if "plate" in proof.what]
+    assert len(plates) == 2
+    assert all(proof.holds for proof in plates)
+
+
+DIRECT = direct.Sizes(
+    mesh=2.0,
+    duration=0.37,
+    steps=(1.0e-3, 5.0e-4),
+    hard_steps=(2.5e-4, 1.25e-4),
+    shifts=(5.0, 50.0, 300.0, 1500.0, 8000.0),
+    moments=4,
+)
+
+
+@pytest.mark.slow
+def test_the_tip_is_that_of_the_unreduced_shell() -> None:
+    """Reference: other code, the unreduced shell by the generalised-α method."""
+    told: list[str] = []
+    found = direct.study(told.append, DIRECT)
+    assert told == [
+        "the reduced shell",
+        "the unreduced shell, step 0.001 s",
+        "the unreduced shell, step 0.0005 s",
+        "the reduced shell",
+        "the unreduced shell, step 0.00025 s",
+        "the unreduced shell, step 0.000125 s",
+    ]
+    assert list(found.data) == ["direct-webs", "direct-pads"]
+    own, larger, coarse, fine = found.data["direct-webs"]
+    assert own["unknowns"] < larger["unknowns"] < 0.1 * coarse["unknowns"]
+    off, off_larger = "off the reduced (%)", "off more coordinates (%)"
+    assert own[off] == larger[off_larger] == 0.0
+    assert 0.0 < fine[off_larger] < coarse[off_larger] < 0.2
+    impulse = "contact impulse (N s)"
+    assert fine[impulse] == pytest.approx(larger[impulse], rel=0.2)
+    assert len(found.proofs) == 6
+    assert all(proof.holds for proof in found.proofs)
+    tips = [np.array(curve[1]) for curve in found.plots[0].curves.values()]
+    assert np.abs(tips[0] - tips[1]).max() == pytest.approx(0.01 * fine[off] * np.ptp(tips[0]))
+
+
+MESH = mesh.Sizes(meshes=(8.0, 4.0, 2.0), default=4.0, duration=0.9, frequencies=2, peaks=1)
+
+
+@pytest.mark.slow
+def test_coarse_meshes_close_in() -> None:
+    """Reference: other code, the limit of uniform meshes.
+
+    Refinement softens: the lowest frequency falls, compliances rise.
+    """
+    told: list[str] = []
+    found = mesh.study(told.append, MESH)
+    assert told == ["edges x 8", "edges x 4", "edges x 2"]
+    values = {
+        row["quantity"]: [row[f"edges × {part:g}"] for part in MESH.meshes]
+        for row in found.data["meshes"]
+    }
+    lowest = values["natural frequency 1 (Hz)"]
+    assert lowest[0] > lowest[1] > lowest[2]
+    for what in ("local compliance at 9 m (m/N)", "local compliance at 10 m (m/N)"):
+        assert values[what][0] < values[what][1] < values[what][2]
+    proofs = {proof.what: proof for proof in found.proofs}
+    frequency = proofs["natural frequency 1, default mesh"]
+    assert frequency.holds
+    assert frequency.value == lowest[1]
+    assert frequency.order == pytest.approx(2.0, abs=0.5)
+    assert frequency.source.startswith("limit of its refinement")
+    assert lowest[2] == pytest.approx(7.2565, rel=1.0e-3)
+    assert values["tip peak 1 (mm)"][2] == pytest.approx(177.5, rel=0.005)
+
+
+STIFFENERS = stiffeners.Sizes(
+    mesh=0.3, collars=(0.010,), diaphragms=(0.008,), frequencies=2, plate_mesh=0.05
+)
+
+
+@pytest.mark.slow
+def test_stiffeners_act_where_they_are() -> None:
+    """Reference: analytic, for a plate in pure shear, for a ring, and for the masses; elsewhere
+    that a stiffener stiffens its own end of its segment, and leaves the other station as it was.
+    """
+    told: list[str] = []
+    found = stiffeners.study(told.append, STIFFENERS)
+    assert [line.split(":")[0] for line in told[:6]] == ["outer"] * 2 + ["inner"] * 4
+    for proof in found.proofs:
+        assert proof.holds, (proof.what, proof.error)
+    assert [proof.unit for proof in found.proofs] == ["N m", "m²/N", "m²/N"]
+
+    outer, collared, inner, banded, closed, both = found.data["variants"]
+    mass, more = "mass (kg)", "one flange more (nm/N)"
+    perimeter, opening = 2.0 * (0.488874 + 0.325916), 0.463596 * 0.270571
+    assert collared[mass] - outer[mass] == pytest.approx(
+        7850.0 * perimeter * 0.3 * 0.01, rel=1.0e-4
+    )
+    assert closed[mass] - inner[mass] == pytest.approx(7850.0 * opening * 0.008, rel=1.0e-3)
+    for stiff, plain, there, elsewhere in (
+        (collared, outer, "10 m", "9 m"),
+        (banded, inner, "9 m", "10 m"),
+        (closed, inner, "9 m", "10 m"),
+    ):
+        assert stiff[f"{there}: {more}"] < 0.6 * plain[f"{there}: {more}"]
+        together = f"{there}: both flanges (nm/N)"
+        assert stiff[together] < plain[together]
+        other = f"{elsewhere}: {more}"
+        assert stiff[other] == pytest.approx(plain[other], rel=0.05)
+    tail = [one[f"9 m: {more}"] for one in (banded, closed, both)]
+    assert tail[2] < min(tail[:2])
+    # The head's mass lowers what bends as a whole.
+    assert collared["f1 (Hz)"] < outer["f1 (Hz)"]
+    assert [len(rows) for rows in found.data.values()] == [6, 6]
+
+
+STRESS = stress.Sizes(meshes=(0.2, 0.1, 0.05), default=0.1, places=(14.0,))
+
+
+def test_contact_forces_hold_the_segment() -> None:
+    """Reference: analytic. 550.7 N of lift at 14 m on levers of 4 and 5 m."""
+    forces = stress.contact_forces(build_boom(friction_case()))
+    assert {x: side for x, (side, _) in forces.items()} == {9.0: -1, 10.0: 1}
+    assert forces[10.0][1] == pytest.approx(5.0 * 550.7)
+    assert forces[9.0][1] == pytest.approx(4.0 * 550.7)
+
+
+@pytest.mark.slow
+def test_the_contact_has_no_stress_of_its_own_and_a_patch_has() -> None:
+    """Reference: analytic away from contacts; near them the refinement itself. Half the mesh
+    would double the stress of the nearest triangle beside a force at a point; beside one along a
+    length it still grows.
+    """
+    found = stress.study(lambda what: None, STRESS)
+    assert all(proof.holds for proof in found.proofs)
+    beam = next(proof for proof in found.proofs if "top at 14 m" in proof.what)
+    assert beam.error < 2.0e-3
+    near = {what: values for what, (_, values) in found.plots[0].curves.items()}
+    for x in (9, 10):
+        triangle, patch = near[f"largest triangle at {x} m"], near[f"largest patch at {x} m"]
+        assert 1.2 < triangle[2] / triangle[1] < 1.7
+        assert patch[2] == pytest.approx(patch[1], rel=0.03)
+
+
+SURFACE_CONTACT = surface_contact.Sizes(
+    mesh=0.5, duration=0.3, peak=0.9, penalties=(1.0, 10.0), points=((8, 4),), pads=((0.1, 0.06),)
+)
+
+
+@pytest.mark.slow
+def test_a_surface_is_softer_than_webs_on_webs() -> None:
+    """Reference: sense, and what is proven by hand.
+
+    The outer flange gives way beside its web, so the tip goes higher than near webs; a stiffer
+    penalty lowers it. Forces of known approaches are their integrals.
+    """
+    told: list[str] = []
+    found = surface_contact.study(told.append, SURFACE_CONTACT)
+    assert "contact surface, 8 x 4 points" in told
+    assert all(proof.holds for proof in found.proofs)
+    assert len(found.proofs) == 6
+    rubbed = "first tip peak\nwith friction (mm)"
+    peaks = {row["contact"]: row[rubbed] for row in found.data["surface"]}
+    assert peaks["near webs"] == pytest.approx(177.5, rel=0.01)
+    assert 1.05 * peaks["near webs"] < peaks["surface, 8 x 4 points"]
+    assert 1.15 * peaks["near webs"] < peaks["pads of 0.1 m x 0.06 m"]
+    softer, stiffer = (peaks[f"surface, 8 x 4 points, {part} of the penalty"] for part in (1, 10))
+    assert softer == pytest.approx(peaks["surface, 8 x 4 points"], rel=1.0e-9)
+    assert peaks["near webs"] < stiffer < softer
+    near, across, pad = (
+        row["both flanges together\nat 9 m (m/N)"] for row in found.data["flexibility"]
+    )
+    assert near < pad < across
+
+
+def test_forces_by_hand_are_in_balance() -> None:
+    """Reference: analytic, the sum of all forces and of their moments about the origin."""
+    tail, head = answers.station_forces()
+    assert tail + head == pytest.approx(55.07 * 10.0)
+    assert tail * 9.0 + head * 10.0 == pytest.approx(55.07 * 10.0 * 14.0)
+    foot, far = answers.support_forces()
+    assert foot + far + 831.6 + tail + head == pytest.approx(0.0, abs=1e-9)
+    moments = far * 2.0 + 831.6 * 5.0 + tail * 9.0 + head * 10.0
+    assert moments == pytest.approx(0.0, abs=1e-9)
