@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from itertools import islice
+from itertools import chain, islice, repeat
 
 import numpy as np
 from rich.console import Console
@@ -216,7 +216,9 @@ def _damping_ratios(preview: Preview) -> Table:
         # A shell would have to be computed first.
         beam = model.stand_in(boom).beam if model.needs_shell else model.coarsened(boom)
         name = f"{model.name}, as beam elements" if model.needs_shell else model.name
-        rows.append((name, *islice(_ratios(preview, model, beam), SHOWN_MODES)))
+        # Some booms have fewer modes.
+        ratios = chain(_ratios(preview, model, beam), repeat(""))
+        rows.append((name, *islice(ratios, SHOWN_MODES)))
     return Table.of_rows("", "", ("damping, joints pressed", *shapes), rows)
 
 
