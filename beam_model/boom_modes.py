@@ -22,7 +22,7 @@ from dynamics.second_order import buckling_factor, softened
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.cylinder import GroundLine, ground_lines
-from geometry.drawing import places, stands
+from geometry.telescoping import places, stands
 
 # One component of one segment.
 _Part = tuple[int, Motion]

@@ -22,9 +22,9 @@ from geometry.axial import pin_moments
 from geometry.boom import Boom
 from geometry.contact_places import Pad, pads
 from geometry.cylinder import ground_lines
-from geometry.drawing import drives_below
 from geometry.observation import Observation, Quantity
 from geometry.section import Offset
+from geometry.telescoping import drives_below
 
 
 class Touch(NamedTuple):

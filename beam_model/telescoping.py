@@ -19,7 +19,7 @@ from dynamics.gap_builder import GapBuilder
 from geometry.arrays import Array
 from geometry.axial import borne, entry
 from geometry.boom import SAME_PLACE, Boom
-from geometry.drawing import Course, courses, drives_below
+from geometry.telescoping import Course, courses, drives_below
 
 # Rows of the boom at the extension of each joint in m, by positions of joints.
 RowsAt = Callable[[Mapping[int, float]], GapBuilder[Array]]

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.drive.stick_slip import FOLLOWED, follow
+from dynamics.drive.stick_slip import OF_ELASTIC_DRIVES, follow
 from dynamics.drive.travel import Travel
 from dynamics.energy import DRIVEN_ENERGIES, ENERGIES, check_energy
 from dynamics.excitation import History
@@ -159,7 +159,7 @@ class Integration:
         """Return the motion.
 
         With a drive, also the extension in m, the force of the drive against friction in N and its
-        power in W of each travel that has a suffix; of an elastic drive what ``FOLLOWED``
+        power in W of each travel that has a suffix; of an elastic drive what ``OF_ELASTIC_DRIVES``
         lists, and its ``StickSlip`` by name in the attribute ``stick_slip``.
 
         Args:
@@ -218,7 +218,7 @@ class Integration:
             if travel.pulled is not None:
                 followed = follow(travel.pulled, travel.history, found.time, friction)
                 told[f"drive_force{travel.suffix}"] = followed.told
-                for name, of in FOLLOWED.items():
+                for name, of in OF_ELASTIC_DRIVES.items():
                     added[f"{name}{travel.suffix}"] = ("time", getattr(followed, name), of)
         data = found.data.assign(added).assign_attrs({"stick_slip": told} if told else {})
         return Trajectory(data, found.states)

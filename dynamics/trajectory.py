@@ -155,7 +155,7 @@ class Trajectory:
             time: (num_times,) in s.
             output: at these times.
             step: in s.
-            steps: how many were made, several that are made at once counted as one.
+            steps: their number; joined steps count as one.
             first_contact: in s.
             contact_changes: how often a row opened or closed.
             least_energy: below which the energy put in is round-off, in J.
@@ -293,8 +293,8 @@ class Trajectory:
         """Return the differences of another motion.
 
         >>> fine, coarse = (pt.BeamElements(boom, element_length=l) for l in (0.5, 1.0))
-        >>> print(f"{100.0 * fine.simulate(0.5).compare(coarse.simulate(0.5)).largest:.1f} %")
-        0.5 %
+        >>> print(f"{100.0 * fine.simulate(0.1).compare(coarse.simulate(0.1)).largest:.1f} %")
+        0.3 %
 
         Args:
             other: at the same times.

@@ -13,7 +13,6 @@ from itertools import pairwise
 
 from geometry.axial import passed_over
 from geometry.cylinder import Cylinder, forces
-from geometry.drawing import check_drives, drives_of, places, reach
 from geometry.fault import BoomError
 from geometry.fit import check_flats, check_pads, check_room
 from geometry.holding import check_held
@@ -31,6 +30,7 @@ from geometry.segment import (
     Segment,
 )
 from geometry.support import Support
+from geometry.telescoping import check_drives, drives_of, places, reach
 
 __all__ = [
     "SAME_PLACE",
@@ -181,7 +181,7 @@ class Boom:
             for x in joint.stations
         ]
 
-    def drawn_over(self, segment: int) -> tuple[float, ...]:
+    def telescoped_over(self, segment: int) -> tuple[float, ...]:
         """x on a segment, rising, to and from which stations or axial forces move along it."""
         found = {
             place[joint.inner == segment]

@@ -17,10 +17,10 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction, Joint, Stop
-from geometry.drawing import drives_of, reach
 from geometry.joint import Carrier
 from geometry.section import Face, Offset, Side
 from geometry.segment import Segment
+from geometry.telescoping import drives_of, reach
 
 ContactLine = Literal["near webs", "across", "surface"]
 

@@ -50,7 +50,9 @@ def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
         )
 
 
-def check_drawn_room(where: str, joint: Joint, outer: Segment, inner: Segment, way: float) -> None:
+def check_room_on_the_way(
+    where: str, joint: Joint, outer: Segment, inner: Segment, way: float
+) -> None:
     """Whether the inner segment of a flat joint still has its play where it is drawn by ``way``.
 
     Raises:
@@ -152,7 +154,7 @@ def check_pads(where: str, joint: Joint, boom: Boom) -> None:
             _check_apart(f"{where}.pads", one, other)
 
 
-def check_drawn_pads(where: str, joint: Joint, boom: Boom) -> None:
+def check_pads_on_the_way(where: str, joint: Joint, boom: Boom) -> None:
     """Whether all pads of a joint with a drive stay on both of its segments.
 
     Raises:

@@ -118,8 +118,8 @@ def _measured(
         for end, of in enumerate((pad.joint.inner, pad.joint.outer)):
             if of == number:
                 for face in _faces(section, pad.direction):
-                    drawn_pads = (pad.drawn(boom, way) for way in pad.reach)
-                    yield _swept(_pressed(boom, one, end, face, line) for one in drawn_pads)
+                    telescoping_pads = (pad.drawn(boom, way) for way in pad.reach)
+                    yield _swept(_pressed(boom, one, end, face, line) for one in telescoping_pads)
 
 
 def _walls(boom: Boom, number: int) -> Iterator[float]:

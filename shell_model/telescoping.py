@@ -29,7 +29,7 @@ from dynamics.reduction import fewer, with_coordinates
 from geometry.arrays import Array, Mask
 from geometry.axial import borne, entry
 from geometry.boom import SAME_PLACE, Boom
-from geometry.drawing import Course, courses
+from geometry.telescoping import Course, courses
 from shell_model.boom_shell import BoomShell
 from shell_model.reduction.coordinates import BoomCoordinates, exact_product
 from shell_model.reduction.pad_springs import SLOW, Answers, answers, springs, squared

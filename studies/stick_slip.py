@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.drive.stick_slip import Followed, Pulled, follow
+from dynamics.drive.stick_slip import DriveMotion, ElasticDrive, follow
 from dynamics.drive.travel import SCurve, Stroke
 from dynamics.excitation import Table as Ways
 from dynamics.trajectory import Trajectory
@@ -37,7 +37,7 @@ RATIOS = (0.01, 0.1, 0.5)
 ROPES = (2.0e5, 1.0e6, 5.0e6)
 GRAVITY = 9.80665
 
-ROPE = Pulled(MASS, STIFFNESS, sticking=STICKING)
+ROPE = ElasticDrive(MASS, STIFFNESS, sticking=STICKING)
 CYCLE = "sticking until the spring is taut, slipping on a circle"
 
 
@@ -64,7 +64,7 @@ def study(tell: Tell) -> Iterator[Piece]:
     yield Table.of_rows("one-way", "What lags behind its drive", columns, rows, notes)
 
 
-def _followed(pulled: Pulled, speed: float, time: Array) -> Followed:
+def _followed(pulled: ElasticDrive, speed: float, time: Array) -> DriveMotion:
     way = Stroke(2.0 * speed * float(time[-1]), speed)
     return follow(pulled, way, time, np.full(time.size, FRICTION))
 
@@ -109,7 +109,7 @@ def _critical(ratio: float) -> Proof:
 def _stiff() -> Proof:
     """The force of a drive of 1e9 N/m in the middle of an S-curve's first half."""
     way, time = SCurve(travel=2.0, duration=4.0), np.linspace(0.0, 1.0, 1001)
-    pulled = Pulled(MASS, 1.0e9, dashpot=0.2 * np.sqrt(1.0e9 * MASS))
+    pulled = ElasticDrive(MASS, 1.0e9, dashpot=0.2 * np.sqrt(1.0e9 * MASS))
     found = follow(pulled, way, time, np.full(time.size, FRICTION))
     asked = FRICTION + MASS * 0.25 * np.pi
     held: Held = ("analytic", "friction and m s̈ of the drive", 1.0e-4)

@@ -15,8 +15,8 @@ from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.kernels.march import march
 from dynamics.motion import Motion
-from tests.dynamics.test_drawn_out import lossy
 from tests.dynamics.test_moving_thrust import pressed_along
+from tests.dynamics.test_telescoping import lossy
 
 
 def compiled_in(factory: pytest.TempPathFactory) -> Path:

@@ -27,7 +27,7 @@ _FARTHEST = 1.0e6
 
 
 # Variables of a trajectory; the suffix of the travel follows each name.
-FOLLOWED = {
+OF_ELASTIC_DRIVES = {
     "drive_force": {
         "units": "N",
         "long_name": "force of the drive as it gives way, mean of the output interval",
@@ -39,10 +39,10 @@ FOLLOWED = {
 
 
 @dataclass(frozen=True, slots=True)
-class Pulled:
+class ElasticDrive:
     """An elastic drive, and the mass that it moves.
 
-    >>> rope = Pulled(mass=500.0, stiffness=1e5, dashpot=1e3, sticking=1.5)
+    >>> rope = ElasticDrive(mass=500.0, stiffness=1e5, dashpot=1e3, sticking=1.5)
     >>> print(f"{rope.frequency:.2f} Hz, smooth from {rope.critical_speed(1000.0):.3f} m/s on")
     2.25 Hz, smooth from 0.062 m/s on
 
@@ -139,7 +139,7 @@ class StickSlip:
 
 
 @dataclass(frozen=True, slots=True)
-class Followed:
+class DriveMotion:
     """Motion of the segment that an elastic drive moves, (num_times,) each.
 
     Args:
@@ -156,7 +156,7 @@ class Followed:
     told: StickSlip
 
 
-def follow(pulled: Pulled, way: History, time: Array, friction: Array) -> Followed:
+def follow(pulled: ElasticDrive, way: History, time: Array, friction: Array) -> DriveMotion:
     """Return the motion of the segment, from rest with the axial load held.
 
     s_c and p are linear within steps, of which a period takes 63 at least; all else is exact.
@@ -192,10 +192,10 @@ def follow(pulled: Pulled, way: History, time: Array, friction: Array) -> Follow
         behind=float(lag[-1]),
         energy_residual=_unaccounted(pulled, lag, speed, sums),
     )
-    return Followed(force, lag, speed, acceleration, told)
+    return DriveMotion(force, lag, speed, acceleration, told)
 
 
-def _unaccounted(pulled: Pulled, lag: Array, speed: Array, sums: Array) -> float:
+def _unaccounted(pulled: ElasticDrive, lag: Array, speed: Array, sums: Array) -> float:
     """Return the unaccounted energy as a part of the largest energy put in."""
     work, pushed, damped, rubbed, _ = sums.T
     there = 0.5 * pulled.mass * speed**2 + 0.5 * pulled.stiffness * lag**2

@@ -17,7 +17,7 @@ import numpy as np
 
 from dynamics.arrays import Array
 from dynamics.drive.row_table import MovingThrust, RowTable
-from dynamics.drive.stick_slip import Pulled
+from dynamics.drive.stick_slip import ElasticDrive
 from dynamics.excitation import History
 
 # The rows of a gap system that may change with time, in the order in which loops stack them.
@@ -187,7 +187,7 @@ class Travel:
     suffix: str | None = None
     thrusts: Sequence[MovingThrust] = ()
     borne: float = 0.0
-    pulled: Pulled | None = None
+    pulled: ElasticDrive | None = None
 
     def __post_init__(self) -> None:
         rows = self.table.coefficients.shape[2]

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from dynamics.drive.stick_slip import FOLLOWED
+from dynamics.drive.stick_slip import OF_ELASTIC_DRIVES
 from dynamics.energy import DRIVEN_ENERGIES
 from dynamics.excitation import Released, Thrown
 from dynamics.trajectory import OF_DRIVES, OF_STATIONS
@@ -29,10 +29,10 @@ from geometry.section import Section, SectionError, infer_inner_section, infer_o
 from geometry.taper import check_alike, half_way, mean_area
 from runs.case import actions
 from runs.case.contact import JointTable
+from runs.case.elastic_drive import check_elastic_drives
 from runs.case.extension import spans
 from runs.case.limits import described
 from runs.case.places import at
-from runs.case.pulled import check_pulled
 from runs.case.schema import Case
 from runs.case.segment import SegmentTable, SupportTable
 
@@ -77,7 +77,7 @@ def build_boom(case: Case) -> Boom:
         actions.cylinders(case, segments),
     )
     check_pressed(boom)
-    check_pulled(case, boom)
+    check_elastic_drives(case, boom)
     return boom
 
 
@@ -116,7 +116,9 @@ def _loaded(boom: Boom) -> bool:
 def _observations(case: Case, segments: Sequence[Segment]) -> tuple[Observation, ...]:
     check_names("observe", [table.name for table in case.observe])
     found = []
-    of_drives = {name + suffix for suffix in case.driven for name in (*OF_DRIVES, *FOLLOWED)}
+    of_drives = {
+        name + suffix for suffix in case.driven for name in (*OF_DRIVES, *OF_ELASTIC_DRIVES)
+    }
     for number, table in enumerate(case.observe, start=1):
         index = actions.called(f"observe[{number}].segment", table.segment, segments)
         if table.name in _TAKEN | of_drives:

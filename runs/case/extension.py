@@ -48,7 +48,7 @@ def spans(
             if joint.outer in ends and joint.inner not in ends:
                 length = lengths[joint.inner]
                 assert length is not None
-                ends[joint.inner] = _drawn_out(where, joint, ends[joint.outer], length)
+                ends[joint.inner] = _extension(where, joint, ends[joint.outer], length)
     for number, segment in enumerate(segments, start=1):
         if segment.name not in ends:
             raise BoomError(
@@ -59,7 +59,7 @@ def spans(
     return [ends[segment.name] for segment in segments]
 
 
-def _drawn_out(
+def _extension(
     where: str, joint: JointTable, outer: tuple[float, float], length: float
 ) -> tuple[float, float]:
     """The ends of an inner segment in m."""

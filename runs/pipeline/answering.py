@@ -16,21 +16,21 @@ from dynamics.reduction import tied_system
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom
-from geometry.drawing import drawn
+from geometry.telescoping import drawn
 from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import Answers, ModelAnswers, added
-from runs.pipeline.at_rest import AtRest, at_rest, drawn_positions, instants, positions
+from runs.pipeline.at_rest import AtRest, at_rest, extended_positions, instants, positions
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.model_quality import quality_notes, reference_of
 from runs.pipeline.models import MotionPlan
 from runs.pipeline.modes import Mode, ModesBeside, matched, modes
 from runs.pipeline.moved import Motions, Moved, gone_through
+from runs.pipeline.residual_vibration import swing
 from runs.pipeline.section_forces import with_cylinders
 from runs.pipeline.statics import reactions, statics
 from runs.pipeline.strength import COUNTS, Life, life, wall_stresses
 from runs.pipeline.summary import Summary
-from runs.pipeline.swing import swing
 
 
 class _Model(NamedTuple):
@@ -85,7 +85,7 @@ def answer_model(
     system, shown = built.system.gathered(), boom.play_free if model.play_free else boom
     lines = with_cylinders(shown, system, model.lines(boom, built))
     played, times = _Model(shown, system, lines), instants(system, case.time.duration)
-    found, farthest = positions(system, times), drawn_positions(system, case.time.duration)
+    found, farthest = positions(system, times), extended_positions(system, case.time.duration)
     rests, drawn = played.rests(found), played.rests(farthest)
     moved, lives = played.moved(trajectory, found | farthest, [*rests, *drawn], case, model)
     walls = [] if shell is None else wall_stresses(shown, shell.stresses)

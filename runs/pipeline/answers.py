@@ -10,9 +10,9 @@ from runs.case.schema import Model
 from runs.pipeline.at_rest import AtRest
 from runs.pipeline.modes import Mode, ModesBeside
 from runs.pipeline.moved import Moved
+from runs.pipeline.residual_vibration import Swing
 from runs.pipeline.statics import Reaction
 from runs.pipeline.strength import Life
-from runs.pipeline.swing import Swing
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ from dynamics.line import Line
 from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.cylinder import forces
-from geometry.drawing import drawn, places
+from geometry.telescoping import drawn, places
 from runs.pipeline.pads import SIGNS, most_on_pad, one_sided_force
 from runs.pipeline.section_forces import rounded, section_forces
 
@@ -134,7 +134,7 @@ def instants(system: GapSystem, duration: float) -> list[float]:
     return _distinct(times, values, [0, *values.argmax(axis=1), *values.argmin(axis=1)])
 
 
-def drawn_instants(system: GapSystem, duration: float) -> list[float]:
+def extended_instants(system: GapSystem, duration: float) -> list[float]:
     """The times in s at which it first is drawn out, or in, farthest, and those at which a load is
     largest one way or the other while it is.
 
@@ -192,7 +192,7 @@ def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float,
     return found
 
 
-def drawn_positions(system: GapSystem, duration: float) -> dict[float, Array]:
+def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]:
     """Where it rests when it is drawn out, or in, farthest, beside :func:`positions`.
 
     Args:
@@ -201,7 +201,7 @@ def drawn_positions(system: GapSystem, duration: float) -> dict[float, Array]:
     """
     known = instants(system, duration)
     found: dict[float, Array] = {}
-    for time in drawn_instants(system, duration):
+    for time in extended_instants(system, duration):
         with suppress(*NUMERICS), np.errstate(all="ignore"):
             if time not in known:
                 found[time] = rest_at(system, time)

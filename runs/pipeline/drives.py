@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beam_model.statics import telescoping_system
-from dynamics.drive.stick_slip import Pulled
+from dynamics.drive.stick_slip import ElasticDrive
 from dynamics.drive.travel import Travel
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
 from geometry.typography import TO_KILO, TO_PERCENT
 from runs.case.drive import fastest
-from runs.case.pulled import pulled_by, with_pulled
+from runs.case.elastic_drive import elastic_drives, with_elastic_drives
 from runs.case.schema import Case
 from runs.case.units import System
-from runs.pipeline.at_rest import drawn_positions, instants, positions
+from runs.pipeline.at_rest import extended_positions, instants, positions
 from runs.pipeline.statics import statics, with_play_seen
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ class Slipping:
     """
 
     inner: str
-    pulled: Pulled
+    pulled: ElasticDrive
     friction: float
     fastest: float
 
@@ -79,10 +79,10 @@ class Slipping:
 
 def slippings(case: Case, boom: Boom) -> Iterator[Slipping]:
     """Yield each drive of a given stiffness, with the pads of beam elements at rest on its way."""
-    joints = pulled_by(case, boom)
+    joints = elastic_drives(case, boom)
     if not joints or statics(case, boom) is None:
         return
-    system = with_pulled(telescoping_system(with_play_seen(case, boom)), case, boom)
+    system = with_elastic_drives(telescoping_system(with_play_seen(case, boom)), case, boom)
     travels = (travel for travel in system.travels if travel.pulled is not None)
     for (number, pulled), travel in zip(joints.items(), travels, strict=True):
         joint = boom.joints[number]
@@ -96,7 +96,7 @@ def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
     from dynamics.time_step import axial_friction
 
     duration, most = case.time.duration, 0.0
-    rests = positions(system, instants(system, duration)) | drawn_positions(system, duration)
+    rests = positions(system, instants(system, duration)) | extended_positions(system, duration)
     for time, position in rests.items():
         gaps = system.standing(time).rows @ position
         forces = [law.force(gap) for law, gap in zip(system.laws, gaps, strict=True)]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """How numbers of a model are shown: declared once, beside the field of the record that holds one.
 
->>> from runs.pipeline.swing import Swing
+>>> from runs.pipeline.residual_vibration import Swing
 >>> metrics(Swing)["tip"].title
 'swing while drawn out'
 """

@@ -14,8 +14,8 @@ from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion, begin
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
+from runs.case.elastic_drive import with_elastic_drives
 from runs.case.kinds.model import Built, Joined, ModelTable, Workshop
-from runs.case.pulled import with_pulled
 from runs.case.schema import Case, Model
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def build_on(
 ) -> Built:
     """A model on the boom of a case; arguments and errors as of :func:`build`."""
     built = model.build(joined, workshop)
-    return replace(built, system=with_pulled(built.system, case, joined.boom))
+    return replace(built, system=with_elastic_drives(built.system, case, joined.boom))
 
 
 def begun(system: GapSystem, case: Case) -> Motion:

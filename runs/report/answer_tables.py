@@ -62,12 +62,16 @@ def rest_tables(results: Results) -> list[Table]:
     """Return tilts by play, contact forces and reactions, at rest under the largest loads."""
     farthest = {name: own.farthest_rest for name, own in results.summary.answers.models.items()}
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
-    as_drawn = of_rests(results.case, rests.values())
-    found = _tilt_table(rests, as_drawn), _pressed_table(rests, as_drawn), _reaction_table(results)
+    as_extended = of_rests(results.case, rests.values())
+    found = (
+        _tilt_table(rests, as_extended),
+        _pressed_table(rests, as_extended),
+        _reaction_table(results),
+    )
     return [table for table in found if table is not None]
 
 
-def _tilt_table(rests: dict[str, AtRest], as_drawn: str) -> Table | None:
+def _tilt_table(rests: dict[str, AtRest], as_extended: str) -> Table | None:
     tilts = [(name, tilt) for name, rest in rests.items() for tilt in rest.tilts]
     if not tilts:
         return None
@@ -79,10 +83,10 @@ def _tilt_table(rests: dict[str, AtRest], as_drawn: str) -> Table | None:
     )
     note = "By play and by what is pressed in: of a shell, also by its walls beside them."
     title = "At rest under the largest loads: what joints give way"
-    return Table(title, columns, (note + as_drawn,), "tilts")
+    return Table(title, columns, (note + as_extended,), "tilts")
 
 
-def _pressed_table(rests: dict[str, AtRest], as_drawn: str) -> Table | None:
+def _pressed_table(rests: dict[str, AtRest], as_extended: str) -> Table | None:
     places = dict.fromkeys(pressed.place for rest in rests.values() for pressed in rest.stations)
     if not places:
         return None
@@ -93,7 +97,7 @@ def _pressed_table(rests: dict[str, AtRest], as_drawn: str) -> Table | None:
             columns.append(Column(name, [forces.get(place) for place in places], ".4g", "kN"))
     note = "Forces of stations, positive where the inner segment presses up, or to larger y."
     title = "At rest under the largest loads: what presses"
-    return Table(title, columns, (note + as_drawn,), "pressed")
+    return Table(title, columns, (note + as_extended,), "pressed")
 
 
 def _reaction_table(results: Results) -> Table | None:

@@ -21,8 +21,8 @@ from matplotlib.typing import HashableList
 
 from geometry.arrays import Array
 from geometry.boom import Boom, Cylinder, Joint
-from geometry.drawing import farthest
 from geometry.section import Plate, Section
+from geometry.telescoping import farthest
 from geometry.typography import signed
 from runs.case.build import build_boom
 from runs.case.messages import BadInput

@@ -22,8 +22,8 @@ import xarray as xr
 
 from geometry.arrays import Array
 from geometry.boom import Boom, Segment
-from geometry.drawing import drives_below
 from geometry.section import Direction
+from geometry.telescoping import drives_below
 from geometry.typography import signed
 from runs.case.build import build_boom
 from runs.case.schema import Case

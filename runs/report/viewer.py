@@ -17,7 +17,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from geometry.arrays import Array
-from geometry.drawing import drives_below
+from geometry.telescoping import drives_below
 from geometry.typography import TO_MEGA
 from runs.pipeline.model_output import frames
 from runs.pipeline.model_quality import leading

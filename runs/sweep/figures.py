@@ -28,7 +28,7 @@ from runs.report import theme
 from runs.report.figure_context import new_sheet
 from runs.report.numerals import number
 from runs.sweep.quantities import DISTANCES, LEVELS, QUANTITIES, TIP_OFF, UNTIL
-from runs.sweep.swings import draw_swings
+from runs.sweep.residual_vibration import draw_swings
 
 CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
 # Numbers along axes are whole: none is to be added to another one at their end.

@@ -21,8 +21,8 @@ from runs.report.tables import Table
 from runs.sweep.figures import draw, draw_distances
 from runs.sweep.points import Plan
 from runs.sweep.quantities import DISTANCES, QUANTITIES, UNTIL
+from runs.sweep.residual_vibration import describe, swings
 from runs.sweep.run import Outcome
-from runs.sweep.swings import describe, swings
 
 NETCDF = "sweep.nc"
 CSV = "sweep.csv"

@@ -93,8 +93,8 @@ def measure(results: Results, model: str) -> Measured:
     lowest place. The dynamic factor is the largest deflection over the largest at rest. The contact
     force is the largest mean of an output interval at any station, the peak of a blow what no pad
     feels as long; the stress that of an outer fibre, of section forces, the wall stress a shell's
-    own over a patch, the damage that of a life at the worst place. Swings are those of
-    :class:`runs.pipeline.swing.Swing`; force and slip of drives of a given stiffness are those of
+    own over a patch, the damage that of a life at the worst place. Residual vibration is that of
+    :class:`runs.pipeline.residual_vibration.Swing`; force and slip of elastic drives are those of
     :class:`dynamics.drive.stick_slip.StickSlip`.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)

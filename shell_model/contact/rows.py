@@ -22,8 +22,8 @@ import numpy as np
 from dynamics.gap_builder import Contact, GapBuilder
 from geometry.boom import Boom, BoomError, Direction
 from geometry.contact_places import ContactLine, Pad, Patch, pads, rests
-from geometry.drawing import drives_below
 from geometry.section import Offset, Section, Side
+from geometry.telescoping import drives_below
 from shell_model.contact.surface import SurfaceOptions, SurfacePoint, surface_points
 from shell_model.contact.wall_rows import CornerLines, Wall, WallPoints, gauss
 from shell_model.segment.cross_section import Outline, Reading, Row

@@ -12,20 +12,20 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from dynamics.arrays import Array
-from dynamics.drive.stick_slip import Followed, Pulled, follow
+from dynamics.drive.stick_slip import DriveMotion, ElasticDrive, follow
 from dynamics.drive.travel import SCurve, Stroke
 from dynamics.excitation import Table
 
 MASS, STIFFNESS, FRICTION = 500.0, 1.0e5, 1000.0
 OMEGA = np.sqrt(STIFFNESS / MASS)
-ROPE = Pulled(MASS, STIFFNESS, sticking=1.5)
+ROPE = ElasticDrive(MASS, STIFFNESS, sticking=1.5)
 
 
-def damped(ratio: float) -> Pulled:
+def damped(ratio: float) -> ElasticDrive:
     return replace(ROPE, dashpot=2.0 * ratio * np.sqrt(STIFFNESS * MASS))
 
 
-def drawn(pulled: Pulled, speed: float, duration: float, outputs: int) -> Followed:
+def drawn(pulled: ElasticDrive, speed: float, duration: float, outputs: int) -> DriveMotion:
     """At a constant speed against a constant friction."""
     time = np.linspace(0.0, duration, outputs + 1)
     friction = np.full(time.size, FRICTION)
@@ -86,7 +86,7 @@ def test_a_stiff_drive_follows() -> None:
     inside = slice(20, 380)
     off = []
     for stiffness in (1.0e8, 1.0e9):
-        pulled = Pulled(MASS, stiffness, dashpot=0.4 * np.sqrt(MASS * stiffness))
+        pulled = ElasticDrive(MASS, stiffness, dashpot=0.4 * np.sqrt(MASS * stiffness))
         found = follow(pulled, way, time, friction)
         off.append(np.abs(found.drive_force[1:] - FRICTION - asked)[inside].max())
         lag = found.drive_force[1:] / stiffness
@@ -132,7 +132,7 @@ class Stops:
 
 
 def by_runge_kutta(
-    pulled: Pulled, way: SCurve, end: float, friction: Friction
+    pulled: ElasticDrive, way: SCurve, end: float, friction: Friction
 ) -> tuple[float, int]:
     """s in m at the end in s, and how often it sticks, from event to event."""
 

@@ -33,8 +33,8 @@ from tests.dynamics.reference import (
     two_modes,
     with_rates,
 )
-from tests.dynamics.test_drawn_out import lossy, rider
 from tests.dynamics.test_moving_thrust import pressed_along
+from tests.dynamics.test_telescoping import lossy, rider
 
 OneMass = Callable[..., GapSystem]
 

@@ -21,8 +21,8 @@ from runs.case.schema import LoadTable
 from runs.pipeline.answers import Answers
 from runs.pipeline.at_rest import (
     at_rest,
-    drawn_instants,
-    drawn_positions,
+    extended_instants,
+    extended_positions,
     instants,
     positions,
 )
@@ -99,8 +99,8 @@ def test_a_drawn_boom_rests_under_the_largest_loads_of_where_it_is() -> None:
     drawn = [Travel(ways, still, (("rows", 0),), "")]
     system = ball(Table([0.0, 0.5, 1.0, 1.5, 2.0], [0.0, 1.0, 0.2, 0.6, 0.3]))
     assert instants(system, 4.0) == [0.0, 0.5]
-    assert drawn_instants(replace(system, travels=drawn), 4.0) == [1.0, 1.5, 3.0]
-    assert drawn_instants(system, 4.0) == []
+    assert extended_instants(replace(system, travels=drawn), 4.0) == [1.0, 1.5, 3.0]
+    assert extended_instants(system, 4.0) == []
 
 
 def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
@@ -118,7 +118,7 @@ def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
     system, lines = built.system.gathered(), model.lines(boom, built)
     found = positions(system, instants(system, case.time.duration))
     assert list(found) == [0.0, 6.0]
-    assert list(drawn_positions(system, case.time.duration)) == [5.0]
+    assert list(extended_positions(system, case.time.duration)) == [5.0]
     rest = at_rest(boom, system, lines, 6.0, found[6.0])
     outer = rest.diagrams[0]
     moment = np.interp(2.0, outer.x, outer.curves["moment"])

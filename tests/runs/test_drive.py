@@ -19,8 +19,8 @@ from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
 from runs.case.declared import Declared
+from runs.case.elastic_drive import elastic_drives
 from runs.case.messages import BadInput
-from runs.case.pulled import pulled_by
 from runs.case.reading import load
 from runs.pipeline.drives import drive_lines
 from runs.pipeline.inferred import print_inferred
@@ -108,7 +108,10 @@ kind = "finite-element"
         encoding="utf-8",
     )
     case = load(str(path))
-    drive, (pulled,) = build_boom(case).joints[0].drive, pulled_by(case, build_boom(case)).values()
+    drive, (pulled,) = (
+        build_boom(case).joints[0].drive,
+        elastic_drives(case, build_boom(case)).values(),
+    )
     assert (pulled.mass, pulled.stiffness, pulled.dashpot) == pytest.approx((550.7, 2e5, 500.0))
     assert drive is not None
     assert drive.reach == pytest.approx((0.0, 4.0))

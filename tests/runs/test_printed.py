@@ -11,8 +11,8 @@ from runs.case import reading as case_file
 from runs.paper.statements import STATEMENTS
 from runs.paper.verdicts import Judgement, Verdict, decisive, print_verdicts
 from runs.pipeline.answers import Answers, ModelAnswers
+from runs.pipeline.residual_vibration import Swing
 from runs.pipeline.results import Results
-from runs.pipeline.swing import Swing
 from runs.report.document import print_models
 from tests.runs.summaries import model_summary, printed, summary_of
 

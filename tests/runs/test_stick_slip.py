@@ -14,7 +14,7 @@ from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
 from runs.case.declared import Declared
-from runs.case.pulled import pulled_by
+from runs.case.elastic_drive import elastic_drives
 from runs.case.reading import load
 from runs.case.schema import Case
 from runs.case.units import System
@@ -99,7 +99,7 @@ def test_a_drive_draws_all_that_is_beyond() -> None:
     case = change(crane, **{"joint.drive.stiffness": 4e6, "joint[2].drive.static_friction": 0.15})
     boom = build_boom(case)
     beyond = [sum(one.mass for one in boom.segments[number:]) for number in (1, 2, 3)]
-    found = pulled_by(case, boom)
+    found = elastic_drives(case, boom)
     assert [one.mass for one in found.values()] == pytest.approx(beyond)
     shared = [[mass for mass, _ in one.beside] for one in found.values()]
     assert shared == [
@@ -119,7 +119,7 @@ def test_a_drive_holds_what_weighs_along(tmp_path: Path) -> None:
     }
     rope = {"least_overlap = 1.0 }": ROPE + "\nlocked_at = 'tail'"}
     case = read_case(tmp_path, changed_text(rope | along))
-    (pulled,) = pulled_by(case, build_boom(case)).values()
+    (pulled,) = elastic_drives(case, build_boom(case)).values()
     assert pulled.thrust == pytest.approx(0.5 * 550.7 * 9.80665)
     later = change(case, **{"joint.drive.start": 0.1})
     results = run_case(later, models=["kantorovich-5"])

@@ -54,13 +54,13 @@ class CalibratedTable(BeamTable):
         return self.calibrated_by is not None
 
     @property
-    def not_drawn(self) -> str | None:
+    def cannot_telescope(self) -> str | None:
         if self.calibrated_by is not None:
             return (
                 f"the springs of {self.name!r} are those of the place where it rests, and cannot "
                 "be drawn out; leave calibrated_by out"
             )
-        return super().not_drawn
+        return super().cannot_telescope
 
     def with_shells(self, update: Mapping[str, object]) -> Self:
         if not isinstance(self.calibrated_by, Shell):

@@ -198,7 +198,7 @@ class ModelTable(Table):
         return False
 
     @property
-    def not_drawn(self) -> str | None:
+    def cannot_telescope(self) -> str | None:
         """Why it cannot be drawn out, and what to leave out instead; None where it can."""
         if self.play_free:
             return f"{self.name!r} is tied, and cannot be drawn out; leave the model out"
@@ -330,8 +330,8 @@ class ModelTable(Table):
 
     def _check_drives(self, where: str, boom: Boom) -> None:
         driven = [i for i, joint in enumerate(boom.joints, start=1) if joint.drive is not None]
-        if driven and self.not_drawn is not None:
-            raise BoomError(where, f"{self.not_drawn}, or joint[{driven[0]}].drive")
+        if driven and self.cannot_telescope is not None:
+            raise BoomError(where, f"{self.cannot_telescope}, or joint[{driven[0]}].drive")
 
     @abstractmethod
     def critical_factor(self, joined: Joined) -> float | None:

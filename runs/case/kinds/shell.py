@@ -100,7 +100,7 @@ class Shell(ModelTable):
                 )
 
     @property
-    def not_drawn(self) -> str | None:
+    def cannot_telescope(self) -> str | None:
         if self.contact_line == "surface":
             return (
                 f"the shell {self.name!r} touches over the whole overlap, which changes as it is "
@@ -111,7 +111,7 @@ class Shell(ModelTable):
                 f"the shell {self.name!r} takes the coordinates that all of its way asks for; "
                 "leave modes out"
             )
-        return super().not_drawn
+        return super().cannot_telescope
 
     def describe(self) -> str:
         return f"mesh {self.mesh_size:g} m, contact {self.contact_line}"

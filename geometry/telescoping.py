@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geometry.fault import BoomError
-from geometry.fit import check_drawn_pads, check_drawn_room
+from geometry.fit import check_pads_on_the_way, check_room_on_the_way
 from geometry.joint import Drive, Joint
 from geometry.segment import SAME_PLACE, Segment
 
@@ -144,7 +144,7 @@ def check_drives(boom: Boom) -> None:
     for number, joint in driven:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         _check_way(f"joint[{number}].drive", joint, outer, inner)
-        check_drawn_pads(f"joint[{number}]", joint, boom)
+        check_pads_on_the_way(f"joint[{number}]", joint, boom)
         _check_taper(f"joint[{number}].drive", boom, outer, inner)
         _check_lock(f"joint[{number}].locked_at", joint, outer, inner)
     _check_order(boom)
@@ -199,7 +199,7 @@ def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
                 f"stations pass one another as {inner.name!r} is drawn by {way:g} m; make the "
                 "travel shorter, or move them",
             )
-        check_drawn_room(where, joint, outer, inner, way)
+        check_room_on_the_way(where, joint, outer, inner, way)
 
 
 def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:

@@ -22,9 +22,9 @@ from dynamics.trajectory import Trajectory
 from protractile.cases import run_case
 from runs import CASES
 from runs.case.schema import Case
-from runs.pipeline.swing import Swing, farthest_from_rest
+from runs.pipeline.residual_vibration import Swing, farthest_from_rest
 from runs.report import theme
-from runs.sweep.swings import Swings, describe, draw_swings, fastest_within, swings
+from runs.sweep.residual_vibration import Swings, describe, draw_swings, fastest_within, swings
 from tests.runs.case_texts import read_case
 
 # No play and a load that ramps: no chaos, and swings that are no mere distance of the start.

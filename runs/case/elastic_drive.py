@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 from math import pi
 
-from dynamics.drive.stick_slip import Pulled
+from dynamics.drive.stick_slip import ElasticDrive
 from dynamics.drive.travel import Travel
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, BoomError
-from geometry.drawing import courses, drives_below
+from geometry.telescoping import courses, drives_below
 from runs.case.contact import JointTable
 from runs.case.drive import DriveTable
 from runs.case.schema import Case
@@ -20,7 +20,7 @@ from runs.case.schema import Case
 _FASTEST = 1.0e3
 
 
-def pulled_by(case: Case, boom: Boom) -> dict[int, Pulled]:
+def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
     """What each drive of a given stiffness draws, by the position of its joint.
 
     Args:
@@ -28,14 +28,14 @@ def pulled_by(case: Case, boom: Boom) -> dict[int, Pulled]:
         boom: of the case.
     """
     return {
-        number: Pulled(
-            _drawn_mass(boom, number),
+        number: ElasticDrive(
+            _moved_mass(boom, number),
             drive.stiffness,
             drive.dashpot,
             _sticking(joint, drive),
             boom.segments[boom.joints[number].inner].compression.handed,
             tuple(
-                (_drawn_mass(boom, number, other), beside.drive.history)
+                (_moved_mass(boom, number, other), beside.drive.history)
                 for other, beside in enumerate(boom.joints)
                 if other != number and beside.drive is not None
             ),
@@ -45,9 +45,9 @@ def pulled_by(case: Case, boom: Boom) -> dict[int, Pulled]:
     }
 
 
-def with_pulled(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
+def with_elastic_drives(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
     """A model's system, whose travels know what their drives draw."""
-    found = pulled_by(case, boom)
+    found = elastic_drives(case, boom)
     suffixes = {course.suffix: found.get(course.joints[0]) for course in courses(boom)}
 
     def pulling(travel: Travel) -> Travel:
@@ -56,7 +56,7 @@ def with_pulled(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
     return replace(system, travels=[pulling(travel) for travel in system.travels])
 
 
-def check_pulled(case: Case, boom: Boom) -> None:
+def check_elastic_drives(case: Case, boom: Boom) -> None:
     """Whether what drives are made of can be.
 
     Raises:
@@ -68,7 +68,7 @@ def check_pulled(case: Case, boom: Boom) -> None:
             _check_stiff(where, drive)
             continue
         _check_friction(where, joint, drive)
-        mass = _drawn_mass(boom, number) if boom.joints[number].drive is not None else 0.0
+        mass = _moved_mass(boom, number) if boom.joints[number].drive is not None else 0.0
         rates = 2.0 * pi * _FASTEST
         for key, value, most, unit in (
             ("stiffness", drive.stiffness, mass * rates**2, "N/m"),
@@ -114,7 +114,7 @@ def _drives(case: Case) -> Iterator[tuple[int, JointTable, DriveTable]]:
             yield number, joint, joint.drive
 
 
-def _drawn_mass(boom: Boom, *joints: int) -> float:
+def _moved_mass(boom: Boom, *joints: int) -> float:
     """Of the segments that the drives of all these joints move, in kg."""
     return sum(
         segment.mass
