@@ -249,15 +249,17 @@ def test_the_vertical_plane_is_the_flat_boom(
 
 def test_a_boom_on_its_side_does_the_same_on_its_side(spatial_boom: Boom) -> None:
     """Reference: analytic, the exchange of y and z. Loads, sections, plays and laws with it;
-    friction too, which couples the planes. The presses amplify round-off to 1e-13."""
+    friction too, which couples the planes. The presses amplify round-off to 1e-13; from 0.16 s on
+    steps with 16 pressed frictions may have several solutions, and round-off decides for one."""
     (joint,) = spatial_boom.joints
     boom = pushed(replace(spatial_boom, joints=(replace(joint, friction=0.2),)), 40.0, 30.0)
     upright = gap_system(touching(boom, LAW, LATERAL_LAW), beams(boom))
     side = rolled(boom)
     lying = gap_system(touching(side, LATERAL_LAW, LAW), beams(side))
     assert len(upright.frictions) == 16
-    one, other = (FixedStep(1.0e-4)(Motion(system, 0.25)) for system in (upright, lying))
-    assert one.data["friction_loss"].values[-1] > 0.3
+    one, other = (FixedStep(1.0e-4)(Motion(system, 0.15)) for system in (upright, lying))
+    assert one.data["friction_loss"].values[-1] > 0.1
+    assert one.data.attrs["contact_changes"] > 20
     names = ("tip", "head", "tail")
     same(one, other, {name: f"{name}_lateral" for name in names}, 1e-9)
     same(one, other, {f"{name}_lateral": name for name in names}, 1e-9)
