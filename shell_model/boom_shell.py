@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The boom as shells: meshed, assembled, with what acts on them and what is read of them."""
+"""Shell model of the boom: meshes, matrices, forces and observers."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 
 @dataclass(frozen=True, slots=True)
 class ShellOptions:
-    """How a boom becomes shells.
+    """Options of the shell model.
 
     Args:
-        mesh_size: edge length in m, of a graded mesh far from all that presses.
-        contact_line: ``near webs`` passes the force from the inner segment's webs to the outer
+        mesh_size: edge length in m; in a graded mesh, the one far from contacts and supports.
+        contact_line: ``near webs`` transfers the force from the inner segment's webs to the outer
             one's, as pads in the corners do; ``across`` spreads it over the width of the
             inner segment's flanges, which then bow, in a flat boom; ``surface`` touches over the
             whole overlap of facing walls.
         surface: its points and penalty, and its own shifts and moments of the reduction.
         krylov: the reduction.
-        contact_tolerance: relative error of what gives way where something presses, which grades
+        contact_tolerance: relative error of the local compliance where a force acts, which grades
             the mesh (:mod:`geometry.spots`); uniform unless given, and at a surface.
     """
 
@@ -55,12 +55,12 @@ class ShellOptions:
 
     @property
     def order(self) -> float:
-        """Of the local compliance in the edge length, at least."""
+        """Lower bound of the order of the local compliance in the edge length."""
         return 1.0 if self.contact_tolerance is None or self.contact_line == "surface" else 2.0
 
     @property
     def coarser(self) -> ShellOptions:
-        """With edges of twice the length, beside which a mesh tells its own error."""
+        """Options with edges of twice the length, for the estimate of the mesh error."""
         tolerance = self.contact_tolerance
         return replace(
             self,
@@ -71,19 +71,19 @@ class ShellOptions:
 
 @dataclass(frozen=True)
 class BoomShell:
-    """All degrees of freedom of a boom.
+    """Distributed shell model of a boom with all degrees of freedom.
 
     Args:
         comm: the ranks that share it.
-        shells: of its segments.
+        shells: one for each segment.
         stations: x in m and direction of each.
-        touching: what may press, rub and drag at any extension.
-        rows: that do at t = 0.
-        ties: what stays at zero.
+        touching: possible contacts, friction and dashpots at any extension.
+        rows: those at t = 0.
+        ties: constraints, whose rows stay at zero.
         own_loads: (num_owned,) of each segment in N, applied at t = 0 and kept.
-        loads: those that follow a history, and (num_owned,) what they push.
-        observed: what a motion records.
-        lines: to the ground, (num_owned,) each.
+        loads: those that follow a history, and their (num_owned,) load vectors.
+        observed: readings that a motion records.
+        lines: (num_owned,) each, connections to the ground.
         pin_moments: of axial forces, see :func:`geometry.axial.pin_moments`.
     """
 
@@ -101,7 +101,7 @@ class BoomShell:
 
     @cached_property
     def foldings(self) -> Sequence[Folding]:
-        """Of the segments, once for all that is solved of their families. Collective.
+        """Symmetry reductions of the segments, computed once for all solves. Collective.
 
         Raises:
             NumericsError: a segment is not its own mirror image.
@@ -110,33 +110,33 @@ class BoomShell:
 
     @property
     def num_dofs(self) -> int:
-        """Of all segments."""
+        """Number of degrees of freedom of all segments."""
         return sum(shell.num_dofs for shell in self.shells)
 
     @property
     def resisting(self) -> list[Reading]:
-        """What contacts read, then what friction does."""
+        """Rows of contacts, then of friction."""
         contacts = [contact.reading for contact in self.rows.contacts]
         return contacts + [friction.reading for friction in self.rows.frictions]
 
     def forces(self, number: int) -> Array:
-        """(num_owned, num_forces) all that acts on a segment, contacts first."""
+        """Return all forces that act on a segment (num_owned, num_forces), contacts first."""
         dragged = self.columns(number, self.rows.dragged)
         return np.column_stack([self.joined(number), dragged, self.pushed(number)])
 
     def pushed(self, number: int) -> Array:
-        """(num_owned, num_pushes) what acts on a segment in its own place."""
+        """Return the load vectors (num_owned, num_pushes) that act on a segment at fixed places."""
         own = [push for load, push in self.loads if load.segment == number]
         own += [push for segment, push in self.pin_moments if segment == number]
         own += [line.push for line in self.lines if line.segment == number]
         return np.column_stack([self.own_loads[number], *own])
 
     def joined(self, number: int) -> Array:
-        """(num_owned, num_rows) what contacts, friction and ties read of a segment."""
+        """Return the rows (num_owned, num_rows) of contacts, friction and ties on a segment."""
         return self.columns(number, [*self.resisting, *self.ties])
 
     def columns(self, number: int, readings: Iterable[Reading]) -> Array:
-        """(num_owned, num_rows) of those readings that read a segment. Collective."""
+        """Return the columns (num_owned, num_rows) of the rows that read a segment. Collective."""
         shell = self.shells[number]
         rows = [shell.row(reading[number]) for reading in readings if number in reading]
         return np.array(rows).reshape(-1, shell.free.size).T
@@ -148,13 +148,13 @@ def assemble_boom(
     comm: MPI.Comm,
     stages: Stages | None = None,
 ) -> BoomShell:
-    """The shells of a boom with what acts on them, not reduced. Collective.
+    """Assemble the unreduced shells of a boom with contacts, loads and observers. Collective.
 
     Args:
         boom: all its segments with sections.
         options: mesh and contact points.
         comm: the ranks that share the work.
-        stages: told how far it is.
+        stages: reports the progress.
 
     Raises:
         BoomError: a segment has no section, or the contact line does not suit the boom.
@@ -181,7 +181,7 @@ def assemble_boom(
 def assemble_segments(
     boom: Boom, options: ShellOptions, comm: MPI.Comm, stages: Stages | None = None
 ) -> list[SegmentShell]:
-    """The shells of all segments alone. Collective."""
+    """Assemble the shells of all segments alone. Collective."""
     watch = stages or Stages()
     shells, count = [], len(boom.segments)
     for number, segment in enumerate(boom.segments):
@@ -193,7 +193,7 @@ def assemble_segments(
 
 
 def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
-    """Mesh the walls of one segment, with mesh lines wherever something acts."""
+    """Mesh the walls of one segment, with mesh lines at all contacts, loads and supports."""
     segment = boom.segments[number]
     if segment.section is None:
         raise BoomError(
@@ -223,7 +223,7 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
 
 
 def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, Observed[Reading]]:
-    """What is reported of the boom's ends, and what is observed besides. Collective."""
+    """Return the observers of the boom's ends and all other observers. Collective."""
     ends: tuple[Quantity, ...] = ("deflection", "rotation", "distortion")
     if boom.spatial:
         ends += ("lateral", "twist")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The one place that knows that DOLFINx has versions (0.5.2 to 0.11).
+"""Compatibility layer for DOLFINx 0.5.2 to 0.11.
 
-Everything else in this room is written to today's interface.
+All other modules of this package use the current interface.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ try:
 except ImportError:
     _HAS_BASIX_UFL = False
 
-# All of DOLFINx asks for its compiler by this name.
+# All of DOLFINx calls its compiler by this name.
 _JIT_OPTIONS = getattr(jit, "get_options", None) or jit.get_parameters
 _JIT_DEFAULTS = getattr(jit, "DOLFINX_DEFAULT_JIT_OPTIONS", None) or (
     jit.DOLFINX_DEFAULT_JIT_PARAMETERS
@@ -42,10 +42,10 @@ _JIT_DEFAULTS["cache_dir"] = (Path(_FORMS) / "protractile", *_MEANING)
 def _compile_one_at_a_time(compile_form: Callable[..., Any]) -> Callable[..., Any]:
     """Wrap a compiler so that it waits until no other process compiles. Collective.
 
-    FFCx marks a form as begun before it compiles it. Another process that meets the mark waits ten
-    seconds at most, and fails: behind a slow process, and for ever behind one that was killed. So
-    this program's forms lie in a folder of their own, in which one process compiles at a time; a
-    form that is only begun there was left by a killed process, and is removed.
+    FFCx marks a form as started before it compiles it. Another process that finds the mark waits
+    ten seconds at most and then fails, behind a slow process or one that was killed. So this
+    program's forms have their own folder, in which one process compiles at a time. A form that is
+    started but not finished there was left by a killed process, and is removed.
     """
 
     @wraps(compile_form)
@@ -78,7 +78,7 @@ _ASSEMBLE_DIAGONAL = (
 
 
 def create_triangle_mesh(comm: MPI.Comm, points: Array, triangles: Indices) -> Any:
-    """A distributed mesh of flat triangles in space, up to three on an edge.
+    """Create a distributed mesh of flat triangles in space, up to three on an edge.
 
     Args:
         comm: the ranks that share the mesh.
@@ -97,7 +97,7 @@ def create_triangle_mesh(comm: MPI.Comm, points: Array, triangles: Indices) -> A
 
 
 def _apart(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[str, Any]:
-    """Arguments of ``create_mesh`` with which three cells on an edge stay joined on any ranks."""
+    """Return arguments of ``create_mesh`` that keep three cells on an edge joined on any ranks."""
     if "max_facet_to_cell_links" in _CREATE_MESH:
         joined: dict[str, Any] = {"max_facet_to_cell_links": _CELLS_OF_AN_EDGE}
         if comm.size > 1:
@@ -129,7 +129,7 @@ def _apart(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[str, Any]:
 
 
 def create_hexahedron_mesh(comm: MPI.Comm, points: Array, hexahedra: Indices) -> Any:
-    """A distributed mesh of hexahedra with straight edges.
+    """Create a distributed mesh of hexahedra with straight edges.
 
     Args:
         comm: the ranks that share the mesh.
@@ -146,19 +146,19 @@ def create_hexahedron_mesh(comm: MPI.Comm, points: Array, hexahedra: Indices) ->
 
 
 def _listed(cells: Indices) -> Any:
-    """As version 0.5 wants them: an array costs it an exception that prints the whole of it."""
+    """Return connectivity in the type that DOLFINx 0.5 expects; an array costs it an exception."""
     return cpp.graph.AdjacencyList_int64(cells.astype(np.int64))
 
 
 def solid_space(domain: Any) -> Any:
-    """Quadratic displacements with three components."""
+    """Return the space of quadratic displacements with three components."""
     if _HAS_BASIX_UFL:
         return fem.functionspace(domain, ("Lagrange", 2, (3,)))
     return fem.VectorFunctionSpace(domain, ("Lagrange", 2))
 
 
 def shell_space(domain: Any) -> Any:
-    """Quadratic displacements and Crouzeix-Raviart rotations, both with three components."""
+    """Return the space of quadratic displacements and Crouzeix-Raviart rotations in 3D."""
     if _HAS_BASIX_UFL:
         displacement = basix.ufl.element("Lagrange", "triangle", 2, shape=(3,))
         rotation = basix.ufl.element("CR", "triangle", 1, shape=(3,))
@@ -170,12 +170,12 @@ def shell_space(domain: Any) -> Any:
 
 
 def cellwise_space(domain: Any) -> Any:
-    """Functions that are constant on each cell."""
+    """Return the space of functions that are constant on each cell."""
     return getattr(fem, "functionspace", fem.FunctionSpace)(domain, ("DG", 0))
 
 
 def cellwise_function(domain: Any, values: Array) -> Any:
-    """A function that is constant on each cell of a mesh.
+    """Return a function that is constant on each cell of a mesh.
 
     ``values`` (num_cells,) have the order in which the cells were given to
     :func:`create_triangle_mesh`, the same on every rank.
@@ -186,14 +186,14 @@ def cellwise_function(domain: Any, values: Array) -> Any:
 
 
 def assemble_matrix(form: Any, bcs: list[Any], diagonal: float) -> PETSc.Mat:
-    """Assembled matrix with ``diagonal`` in the rows of held degrees of freedom."""
+    """Assemble a matrix with ``diagonal`` in the rows of constrained degrees of freedom."""
     matrix = fem_petsc.assemble_matrix(form, bcs, **{_ASSEMBLE_DIAGONAL: diagonal})
     matrix.assemble()
     return matrix
 
 
 def assemble_vector(form: Any) -> Array:
-    """This rank's rows of an assembled vector, the other ranks' parts added."""
+    """Assemble this rank's rows of a vector, with the contributions of other ranks."""
     vector = fem_petsc.assemble_vector(form)
     vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
     rows = vector.array.copy()
@@ -202,7 +202,7 @@ def assemble_vector(form: Any) -> Array:
 
 
 def cell_nodes(space: Any) -> Indices:
-    """(num_cells, num_nodes) this rank's nodes of each cell."""
+    """Return this rank's nodes of each cell (num_cells, num_nodes)."""
     nodes = space.dofmap.list
     return np.asarray(getattr(nodes, "array", nodes), dtype=np.int64).reshape(
         -1, space.dofmap.dof_layout.num_dofs
@@ -210,10 +210,10 @@ def cell_nodes(space: Any) -> Indices:
 
 
 def node_places(space: Any) -> Array:
-    """(num_nodes, 3) this rank's nodes of a quadratic or Crouzeix-Raviart space, in m.
+    """Return places (num_nodes, 3) of this rank's quadratic or Crouzeix-Raviart nodes, in m.
 
-    Corners are as they were given and middles of edges half their sum, so that a node has the
-    same place to the last bit on whatever rank; DOLFINx takes it from any of its cells.
+    Corners are as given and middles of edges are half their sum, so that a node has the same
+    place to the last bit on any rank; DOLFINx takes it from any of its cells.
     """
     geometry = space.mesh.geometry
     corners = geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""From plates to a gap system: the boom's shells reduced, with the errors of reduction and mesh."""
+"""Reduction of the boom's shells to a gap system, with the errors of reduction and mesh."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ from shell_model.telescoping import MOMENTS, TelescopingShell
 
 @dataclass(frozen=True, slots=True)
 class ReducedShell:
-    """A gap system and what it cost to get there.
+    """Gap system of the reduced shells, with errors and computing times.
 
     Args:
-        system: of all segments.
-        num_dofs: of the shells before the reduction.
+        system: gap system of all segments.
+        num_dofs: degrees of freedom of the shells before the reduction.
         fields: displacement of every mesh vertex for each mode, on rank 0 (see ``fields``).
         errors: measured reduction errors, the worst over the segments: ``contact_compliance`` as a
             part of the local one, NaN where there is none, ``readings`` relative, and
@@ -52,10 +52,10 @@ class ReducedShell:
         seconds: wall time of each stage: mesh, assembly, rows (of contacts and readings, their
             values for each coordinate), reduction, fields (of displacement and stress), mesh error,
             far field.
-        meshes: of the segments, on rank 0.
-        critical_factor: of the axial forces with the joints pressed, see
+        meshes: one for each segment, on rank 0.
+        critical_factor: that of the axial forces with closed joints, see
             :func:`dynamics.second_order.buckling_factor`; infinite without any.
-        far_fields: of the segments, which tell what beams they are.
+        far_fields: unit responses of the segments, to which beams are calibrated.
         own_loads: (num_segments, num_modes) the part of each in ``system.load``, in N/√kg.
     """
 
@@ -126,15 +126,15 @@ def reduce_boom(
 
 
 class _Reduction(NamedTuple):
-    """A boom in few coordinates.
+    """Boom in reduced coordinates.
 
     Args:
-        segments: in theirs.
-        coordinates: of all of it, less springs.
-        system: which these are.
-        own_loads: (num_segments, num_modes) what each segment's own loads push, in N/√kg.
+        segments: in their reduced coordinates.
+        coordinates: those of the boom, without springs.
+        system: gap system in these coordinates.
+        own_loads: (num_segments, num_modes) modal loads of each segment, in N/√kg.
         compliance: (num_contacts, num_contacts) of the contacts in m/N.
-        lost: (num_contacts,) the most by which they give way wrongly in m/N.
+        lost: (num_contacts,) largest error of the compliance of each in m/N.
     """
 
     segments: Sequence[ReducedSegment]
@@ -146,7 +146,7 @@ class _Reduction(NamedTuple):
 
 
 def _resting(_: Boom, full: BoomShell, options: ShellOptions, stages: Stages) -> _Reduction:
-    """Reduce a boom whose pads stay where they are."""
+    """Reduce a boom with pads at fixed places."""
     reduced = [_reduced(full, number, options, stages) for number in range(len(full.shells))]
     coordinates = BoomCoordinates(full.comm, full.shells, reduced, full.ties, full.lines)
     with stages.stage("rows"):
@@ -187,7 +187,7 @@ def _telescoping(boom: Boom, full: BoomShell, options: ShellOptions, stages: Sta
 def _reduced(
     full: BoomShell, number: int, options: ShellOptions, stages: Stages, *beside: Array
 ) -> ReducedSegment:
-    """A segment by the motions that its forces excite, and others, and its observers read."""
+    """Reduce a segment to the motions that its forces excite and its observers read."""
     krylov, joined = options.krylov, full.joined(number)
     at_surface = options.contact_line == "surface"
     if at_surface:
@@ -202,12 +202,12 @@ def _reduced(
 
 
 def _own_loads(full: BoomShell, coordinates: BoomCoordinates) -> Array:
-    """(num_segments, num_modes) what each segment's own loads push, in N/√kg."""
+    """Return the modal loads (num_segments, num_modes) of each segment's own loads, in N/√kg."""
     return np.array([coordinates.push(i, load) for i, load in enumerate(full.own_loads)])
 
 
 def _gap_system(full: BoomShell, coordinates: BoomCoordinates, own_loads: Array) -> GapSystem:
-    """The boom in its coordinates."""
+    """Return the gap system of the boom in its coordinates."""
     return full.rows.system(
         coordinates.row,
         coordinates.omega2,
@@ -223,12 +223,14 @@ def _gap_system(full: BoomShell, coordinates: BoomCoordinates, own_loads: Array)
 
 
 def _largest(parts: Array) -> float:
-    """Of those that are known; NaN where none is."""
+    """Return the largest of all finite values; NaN without any."""
     return float(np.nanmax(parts)) if np.isfinite(parts).any() else float("nan")
 
 
 def critical_factor(boom: Boom, full: BoomShell, reduced: Sequence[ReducedSegment]) -> float | None:
-    """Of the axial forces on the boom without play; infinite without any. Collective.
+    """Return the critical factor of the axial forces on the boom without play. Collective.
+
+        It is infinite without axial forces.
 
     Raises:
         NumericsError: it is 1 or less, and the boom buckles.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""One reduced shell for all booms that differ in plays and in how much they are loaded.
+"""Reduced shell shared by all booms that differ only in plays and magnitudes of loads.
 
-What a shell is reduced on are directions of forces, whatever their size, and a play is where a
-contact begins: neither has a part in the coordinates. So the shell of the boom without play and
+A shell is reduced on directions of forces of any magnitude, and a play is the gap of a contact:
+neither affects the coordinates. So the shell of the boom without play and
 under unit loads is reduced, and plays, loads and their histories are put into its system. In space
 the lateral lever of a contact goes with the play, and stays what it is.
 """
@@ -20,7 +20,7 @@ from shell_model.reduced_shell import ReducedShell
 
 
 def standard_boom(boom: Boom) -> Boom:
-    """The boom under unit loads, in the plane without play."""
+    """Return the boom under unit loads, in the plane without play."""
     joints = boom.joints
     if not boom.spatial:
         joints = tuple(
@@ -41,7 +41,7 @@ def standard_boom(boom: Boom) -> Boom:
 
 
 def with_plays_and_loads(shell: ReducedShell, boom: Boom) -> ReducedShell:
-    """The shell of a boom from that of its :func:`standard_boom`."""
+    """Return the shell of a boom from that of its :func:`standard_boom`."""
     system = shell.system
     more = [
         joint.clearances("z")
@@ -69,7 +69,7 @@ def with_plays_and_loads(shell: ReducedShell, boom: Boom) -> ReducedShell:
 
 
 def _own_load(segment: Segment) -> float:
-    """What its uniform loads are measured by in N/m."""
+    """Return the magnitude of a segment's uniform loads in N/m."""
     return segment.load or (0.0 if segment.lateral is None else segment.lateral.load)
 
 
@@ -84,7 +84,7 @@ def _unit_segment(segment: Segment) -> Segment:
 
 
 def _changing(load: Load) -> bool:
-    """Whether it follows a history, and is not over at t = 0."""
+    """Return whether the load follows a history and is not over at t = 0."""
     return not isinstance(load.history, Released | Thrown)
 
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Shells of telescoping booms: modes for every extension, and springs that go along with the pads.
+"""Shells of telescoping booms: modes for every extension, and springs that move with the pads.
 
-A basis of what forces at every place along the extension bend would be as long as the extension.
-But segments have few modes that pads feel anywhere, and what walls give way beyond these is springs
-(:mod:`shell_model.reduction.pad_springs`). Rows and springs are read where pads pass the rings of
-the mesh, and are splines between these, so that no ring is felt.
+A basis of the responses to forces at every place would grow with the length of the extension.
+But segments have few modes that pads excite, and springs represent the compliance of walls beyond
+these (:mod:`shell_model.reduction.pad_springs`). Rows and springs are sampled where pads pass the
+rings of the mesh, and are splines between these, so that no ring has an effect.
 
 An axial force that moves along with a segment softens by K_G of the sections as they move as a
 whole: of the slope of their mean deflection, which is a spline between the lines of the mesh that
@@ -53,7 +53,7 @@ _FEWEST = 4
 
 @dataclass(frozen=True, slots=True)
 class _SampledRows:
-    """Rows of a boom at some extensions of what its drives move together.
+    """Rows of a boom at some extensions of the joints that its drives move together.
 
     Args:
         course: the drives; None of rows that stay.
@@ -74,11 +74,11 @@ class _SampledRows:
 
     @property
     def count(self) -> int:
-        """Of the rows at all extensions."""
+        """Number of the rows at all extensions."""
         return self.extensions.size * len(self.moving)
 
     def columns(self, shell: SegmentShell, number: int, step: int = 1) -> Array:
-        """(num_owned, num_extensions · num_moving) of a segment, at every so many extensions."""
+        """Return columns (num_owned, num_extensions · num_moving), at every n-th extension."""
         nothing = np.zeros(shell.free.size)
 
         def read(reading: Reading) -> Array:
@@ -88,8 +88,9 @@ class _SampledRows:
         return np.asarray(np.concatenate(rows).T)
 
     def told_apart(self, comm: MPI.Comm, columns: Array) -> tuple[Mask, Mask]:
-        """(num_extensions · num_moving) whether rows read other places of a segment as it extends,
-        and the first of each of those that read the same place. Collective.
+        """Return which rows (num_extensions · num_moving) read other places as a segment extends.
+
+        Also return the first of each of those that read the same place. Collective.
         """
         rows = columns.T.reshape(self.extensions.size, len(self.moving), -1)
         same = comm.allreduce((rows[0] == rows[-1]).all(axis=1), MPI.LAND)
@@ -99,7 +100,7 @@ class _SampledRows:
         return np.tile(~same, size), np.tile(same & here, size) & first
 
     def rows(self, coordinates: BoomCoordinates) -> Array:
-        """(num_extensions, num_moving, num_modes)."""
+        """Return the rows (num_extensions, num_moving, num_modes)."""
         return np.array([one.some_rows(self.moving, coordinates.row) for one in self.touching])
 
 
@@ -122,7 +123,7 @@ def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]
 
 
 class _Readings(NamedTuple):
-    """What is read of a segment.
+    """Rows that read a segment.
 
     Args:
         columns: (num_owned, num_columns) of pads, at all extensions.
@@ -138,15 +139,15 @@ class _Readings(NamedTuple):
 
 
 class TelescopingShell:
-    """The shell of a telescoping boom. Collective.
+    """Shell of a telescoping boom. Collective.
 
     Args:
         boom: its joints have drives.
         full: its shells.
         size: edge length of their meshes in m.
-        reduce: of the position of a segment and (num_owned, num_columns) forces on it at several
-            extensions, the segment in coordinates that answer these.
-        test: Hz of the shift at which the answers of springs are measured.
+        reduce: returns the segment in reduced coordinates, from its position and the forces
+            (num_owned, num_columns) on it at several extensions.
+        test: Hz of the shift at which the responses of springs are checked.
 
     Attributes:
         reduced: the segments, without springs.
@@ -176,7 +177,7 @@ class TelescopingShell:
         self._springs = [springs(*self._left(k)) for k in range(len(self._sampled))]
 
     def lost(self, contacts: int) -> Array:
-        """(num_contacts,) the largest error of each compliance over the extension, in m/N."""
+        """Return the largest error (num_contacts,) of each compliance at any extension, in m/N."""
         sigma, found = squared(self._test), np.zeros(contacts)
         for k, sampled in enumerate(self._sampled):
             omega2, pulls = self._springs[k]
@@ -190,7 +191,7 @@ class TelescopingShell:
         return found
 
     def with_springs(self, system: GapSystem, coordinates: BoomCoordinates) -> GapSystem:
-        """A system in the coordinates of the boom, with its springs and its travels."""
+        """Return a system in the coordinates of the boom, with its springs and its travels."""
         first_of, stacked = {}, 0
         for kind in KINDS:
             first_of[kind] = stacked
@@ -234,10 +235,10 @@ class TelescopingShell:
         return _Readings(columns, moving, staying, self._full.columns(number, seen))
 
     def _kept(self, number: int, own: ReducedSegment, read: _Readings) -> ReducedSegment:
-        """Modes that pads feel somewhere, and what else all that stays in its place bends."""
+        """Select the modes that pads excite, and the responses to all forces at fixed places."""
 
         def modal(columns: Array) -> Array:
-            """(num_columns, num_modes) of the segment."""
+            """Return the modal values (num_columns, num_modes) of the segment."""
             rows = [exact_product(self._full.comm, column, own.shapes) for column in columns.T]
             return np.array(rows).reshape(-1, own.omega2.size)
 
@@ -264,7 +265,7 @@ class TelescopingShell:
         )
 
     def _transfer_error(self, many: tuple[Array, Array, Array], few: tuple[Array, Array]) -> float:
-        """Of what pads move at the readings, relative to the geometric mean of both compliances.
+        """Return the error of the response of readings to pads, relative to the geometric mean.
 
         ``many`` are ω², rows of the pads and of the readings; ``few`` ω², and shapes in these.
         """
@@ -278,13 +279,13 @@ class TelescopingShell:
         return float((np.abs(missed) / scale).max(initial=0.0))
 
     def _left(self, k: int) -> tuple[Array, Array]:
-        """What modes leave of the compliance of sampled rows, and of their inertia."""
+        """Return the residuals of compliance and inertia of sampled rows beyond the modes."""
         rows, shifted = self._rows[k], self._apart.omega2 + squared(SLOW)
         taken = [rows / shifted**power @ rows.swapaxes(1, 2) for power in (1, 2)]
         return self._answered(k, "compliance") - taken[0], self._answered(k, "inertia") - taken[1]
 
     def _answered(self, k: int, what: str) -> Array:
-        """(num_extensions, num_moving, num_moving) in the full model, by all segments."""
+        """Return the compliance (num_extensions, num_moving, num_moving) of all full segments."""
         first, sampled = sum(one.count for one in self._sampled[:k]), self._sampled[k]
         own = slice(first, first + sampled.count)
         whole = np.sum([getattr(one, what)[own, own] for one in self._answers], axis=0)
@@ -297,7 +298,7 @@ class TelescopingShell:
 def _moving_thrusts(
     boom: Boom, full: BoomShell, coordinates: BoomCoordinates, course: Course, behind: int
 ) -> list[MovingThrust]:
-    """The axial force, if there is one, that moves along with a telescoping joint. Collective.
+    """Return the axial force, if any, that moves along with a telescoping joint. Collective.
 
     Behind the coordinates come so many that sections do not move.
     """

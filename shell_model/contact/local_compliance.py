@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How much the walls give way where segments touch: what meshes and reductions are measured by.
+"""Local compliance of walls at contacts, to which errors of mesh and reduction are related.
 
 The compliance of a contact row, B (Ω² + σ)⁻¹ Bᵀ at a slow shift, is nearly all rigid motion: some
 1e-6 m/N around 3e-9 of wall. A squeeze of a station, equal and opposite forces on its two sides, is
 in balance. It moves no segment and bends no beam, and half of what the station opens is the *local
-compliance* of each side. Errors of the compliance are told as parts of it.
+compliance* of each side. Errors of the compliance are given as parts of it.
 """
 
 from __future__ import annotations
@@ -28,24 +28,26 @@ SLOW = 20.0
 
 
 def compliance(omega2: Array, rows: Array) -> Array:
-    """(num_rows, num_rows) B (Ω² + σ)⁻¹ Bᵀ in m/N at σ = (2π · ``SLOW``)²: B are the rows."""
+    """Return the compliance B (Ω² + σ)⁻¹ Bᵀ (num_rows, num_rows) in m/N of the rows B.
+
+    The shift is σ = (2π · ``SLOW``)²."""
     return np.asarray(rows / (omega2 + (2.0 * np.pi * SLOW) ** 2) @ rows.T)
 
 
 def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact[Reading]]) -> Array:
-    """(num_contacts, num_contacts) the same of shells that are not reduced. Collective."""
+    """Return the compliance (num_contacts, num_contacts) of unreduced shells. Collective."""
     found = np.zeros((len(contacts), len(contacts)))
     for number, shell in enumerate(shells):
         touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
         parts = [shell.row(contacts[i].reading[number]) for i in touching]
         rows = np.array(parts).reshape(-1, shell.free.size).T
-        # Each folding goes with its segment; nothing else is asked of these shells.
+        # Only the symmetry reductions of these shells are used.
         found[np.ix_(touching, touching)] += shell_compliance(Folding(shell), rows)
     return found
 
 
 def shell_compliance(folding: Folding, rows: Array, frequency: float = SLOW) -> Array:
-    """(num_rows, num_rows) in m/N what forces on the rows of a full shell do to each other.
+    """Return the compliance (num_rows, num_rows) in m/N of rows of an unreduced shell.
 
     Rows are (num_owned, num_rows); the shift is of a frequency in Hz. Collective.
     """
@@ -62,7 +64,7 @@ def shell_compliance(folding: Folding, rows: Array, frequency: float = SLOW) -> 
 def local_compliance(
     whole: Array, laws: Sequence[ContactLaw], station_of_row: Sequence[int]
 ) -> Array:
-    """(num_rows,) in m/N; NaN where nothing touches on the other side of the station.
+    """Return the local compliance (num_rows,) in m/N; NaN without a contact on the other side.
 
     Args:
         whole: (num_rows, num_rows) the compliance.
@@ -76,7 +78,7 @@ def local_compliance(
 
 
 def extrapolated_error(fine: Array, coarse: Array, order: float) -> Array:
-    """How far values of a mesh are from the limit of finer ones, as parts (Richardson 1911).
+    """Estimate the relative error of values of a mesh by extrapolation (Richardson 1911).
 
     Args:
         fine, coarse: of the mesh, and of one with edges of twice the length.
@@ -88,7 +90,7 @@ def extrapolated_error(fine: Array, coarse: Array, order: float) -> Array:
 def _opposite(
     laws: Sequence[ContactLaw], station_of_row: Sequence[int]
 ) -> Iterator[tuple[int, int]]:
-    """Rows that press up, and those that press down in the same place of their station.
+    """Pair the rows that press up with those that press down at the same place of their station.
 
     Where there are more pads on one side, several have the same one opposite.
     """
@@ -102,9 +104,9 @@ def _opposite(
 
 
 def far_field(boom: Boom, number: int, folding: Folding) -> FarField:
-    """Probe a segment, all degrees of freedom in. Collective.
+    """Compute the unit responses of a segment, with all degrees of freedom. Collective.
 
-    Of a boom in space sideways and about its axis, too; the mesh has lines at its places.
+    In space this includes lateral bending and torsion. The mesh has lines at the places used.
     """
     places, shell = far_places(boom, number), folding.shell
     probes: dict[Bent, list[Array]] = {

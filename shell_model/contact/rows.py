@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Where the boom's shells touch, rub and are tied: rows over the segments they concern.
+"""Rows of contacts, friction and ties between the shells of a boom.
 
 At a station the inner segment's top flange may press up against the outer one's, its bottom
 flange down, and in space its webs to the sides. Which side is which comes from the joint, never
@@ -40,7 +40,7 @@ _Point = tuple[Side, float, Reading]
 
 
 class _Touch(NamedTuple):
-    """The pairs of points of a pad, and how the pad slides."""
+    """Pairs of points of a pad, and the sliding of the pad."""
 
     points: Sequence[_Point]
     slide: Reading
@@ -48,11 +48,11 @@ class _Touch(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _PadReadings:
-    """How the two segments of a pad approach each other: readings of u − w.
+    """Relative displacements u − w of the two segments of a pad.
 
     Args:
-        pad: of which.
-        corners, walls: of its inner and its outer segment; no walls where nothing reads them.
+        pad: the pad.
+        corners, walls: those of its inner and its outer segment; no walls unless they are read.
     """
 
     pad: Pad
@@ -60,7 +60,7 @@ class _PadReadings:
     walls: Sequence[WallPoints]
 
     def at_corners(self, direction: Direction, inner: Offset, outer: Offset) -> Reading:
-        """Along the corners at offsets (y, z) in m."""
+        """Return the approach along the corners at offsets (y, z) in m."""
         rows = (
             lines.deflection(stretch, direction, *offset)
             for lines, stretch, offset in zip(
@@ -70,7 +70,7 @@ class _PadReadings:
         return self._approach(*rows)
 
     def across(self) -> Iterator[_Point]:
-        """Over the width of the inner section's faces. Collective."""
+        """Return the approach over the width of the inner section's faces. Collective."""
         for side in _SIDES:
             width = self._touching.face("z", side).width
             across, shares = gauss(-0.5 * width, 0.5 * width, 8)
@@ -85,7 +85,7 @@ class _PadReadings:
                 yield side, share, self._approach(*rows)
 
     def over_patch(self, patch: Patch, side: Side, half: int) -> Reading:
-        """Mean over a patch: read the other way round, a uniform pressure on both walls.
+        """Return the mean approach over a patch; its transpose is a uniform pressure on both walls.
 
         Collective.
         """
@@ -103,7 +103,7 @@ class _PadReadings:
 
     @property
     def _touching(self) -> Section:
-        """The section of the inner segment where the pad presses it."""
+        """Section of the inner segment at the pad."""
         return self.walls[0].segment.section_at(self.pad.x + self.pad.moved[0])
 
     def _approach(self, inner: Row, outer: Row) -> Reading:
@@ -112,13 +112,13 @@ class _PadReadings:
 
 @dataclass(frozen=True, slots=True)
 class Touching:
-    """What may touch, rub and drag of a boom's shells.
+    """Possible contacts, friction and dashpots of a boom's shells.
 
     Args:
-        boom: its joints and stops.
-        line: where walls touch.
-        corners, walls: of the segments; no walls where nothing reads them.
-        points: of a surface; none unless walls touch there.
+        boom: has the joints and stops.
+        line: contact line on the walls.
+        corners, walls: those of the segments; no walls unless they are read.
+        points: contact points of a surface; none without surface contact.
     """
 
     boom: Boom
@@ -135,12 +135,12 @@ class Touching:
         line: ContactLine,
         surface: SurfaceOptions,
     ) -> Touching:
-        """Of shells. Collective.
+        """Create the contacts of shells. Collective.
 
         Args:
             boom, line: see above.
-            shells: of its segments.
-            surface: how, where it is the whole overlap.
+            shells: one for each segment.
+            surface: options of surface contact, if it is used.
 
         Raises:
             BoomError: the contact line does not suit the boom.
@@ -152,7 +152,7 @@ class Touching:
         return cls(boom, line, [CornerLines(shell) for shell in shells], walls, points)
 
     def rows(self, extensions: Mapping[int, float]) -> GapBuilder[Reading]:
-        """Rows of every pad, surface, stop and dashpot at the extensions of joints in m.
+        """Return the rows of every pad, surface, stop and dashpot at the extensions of joints in m.
 
         Collective.
         """
@@ -186,7 +186,7 @@ class Touching:
 
 
 def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
-    """What the tied joints keep at zero: relative deflections, and in space the twist. Collective.
+    """Return the constraints of bonded joints: deflections, and in space the twist. Collective.
 
     Each is read in the walls that carry its force in their own plane.
     """
@@ -208,7 +208,7 @@ def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
 def _touch(
     pad: Pad, corners: Sequence[CornerLines], walls: Sequence[WallPoints], line: ContactLine
 ) -> _Touch:
-    """What a pad reads. Collective."""
+    """Return the rows of a pad. Collective."""
     ends = pad.joint.inner, pad.joint.outer
     read = _PadReadings(
         pad, [corners[number] for number in ends], [walls[number] for number in ends if walls]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Contact over the whole overlap: points on the facing walls of two segments.
+"""Surface contact over the whole overlap: points on the facing walls of two segments.
 
 Gauss's rule along the overlap, and across each half of the inner segment's wall, so that a wall's
 points mirror each other. A point carries the penalty k_A times its area, k_A in N/mⁿ⁺². Neither
@@ -36,10 +36,10 @@ POINTS = (8, 4)
 
 @dataclass(frozen=True, slots=True)
 class SurfaceOptions:
-    """How finely a surface touches, and how stiffly.
+    """Discretisation and stiffness of surface contact.
 
     Args:
-        points: how many along the overlap, and how many across each half of a wall.
+        points: number along the overlap, and number across each half of a wall.
         stiffness: k_A in N/mⁿ⁺² of the stiffer side of every joint. Unless given it is the law of
             all the joint's stations together over the area, so that segments that approach each
             other uniformly press as they would at the stations.
@@ -55,7 +55,7 @@ class SurfaceOptions:
 
 
 class SurfacePoint(NamedTuple):
-    """A point of a surface; in a flat boom a mirrored pair of points, which move alike.
+    """Contact point of a surface; in a flat boom a mirrored pair of points, which move alike.
 
     Args:
         reading: the mean approach.
@@ -72,7 +72,7 @@ class SurfacePoint(NamedTuple):
     half: int
 
     def presses(self, pad: Pad) -> bool:
-        """Whether it belongs to a pad: that of its station, in space of its corner."""
+        """Return whether the point belongs to a pad of its station, in space of its corner."""
         if self.station != pad.station:
             return False
         return pad.side == 0 or (self.side, self.half) == (pad.side, pad.half)
@@ -83,7 +83,7 @@ def surface_points(
     shells: Sequence[SegmentShell],
     options: SurfaceOptions,
 ) -> list[SurfacePoint]:
-    """All points of all joints that are not tied. Collective."""
+    """Return all contact points of all joints without a bond. Collective."""
     walls = [WallPoints(shell) for shell in shells]
     found: list[SurfacePoint] = []
     first = 0
@@ -108,7 +108,7 @@ def _on_wall(
     options: SurfaceOptions,
     first: int,
 ) -> Iterator[SurfacePoint]:
-    """Those of one wall of the inner segment; ``first`` is the joint's first station."""
+    """Return the points on one wall of the inner segment from the joint's ``first`` station on."""
     one_sided = law.one_sided(wall.side)
     if one_sided is None:
         return
@@ -128,7 +128,7 @@ def _on_wall(
     stations = np.abs(np.subtract.outer(x, joint.stations)).argmin(axis=1) + first
 
     def approaches(half: int) -> list[Reading]:
-        """u − w along the wall's normal at the places on one half of it."""
+        """Return u − w along the wall's normal at the places on one half of it."""
         places, ends = np.column_stack([x, half * beside]), (joint.inner, joint.outer)
         rows = (walls[number].rows(wall, places, wall.normal) for number in ends)
         return [
@@ -147,15 +147,15 @@ def _on_wall(
 
 
 def without_stiff_modes(comm: MPI.Comm, reduced: ReducedSegment, rows: Array) -> ReducedSegment:
-    """The segment without its highest modes, which hardly any row notices. Collective.
+    """Return the segment without its highest modes, which hardly affect any row. Collective.
 
     Many points leave modes up to the frequencies at which a plate shears through its thickness.
-    These would need short steps, and have no part in what the rows give way.
+    These would need short steps, and do not contribute to the compliance of the rows.
 
     Args:
         comm: the ranks that share the segment.
         reduced: its coordinates.
-        rows: (num_owned, num_rows) this rank's part of what contacts, frictions and ties read.
+        rows: (num_owned, num_rows) this rank's part of the rows of contacts, friction and ties.
     """
     gains = np.array([exact_product(comm, row, reduced.shapes) for row in rows.T])
     elastic = reduced.omega2 > 0.0

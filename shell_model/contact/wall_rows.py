@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rows that read a shell's walls: along the corners of a section, and at any point of a wall.
 
-A force at one point of a fold has no compliance: it grows with the logarithm of the mesh. One that
-is spread along the fold has. Corner rows are exact for any mesh, whose lines need not lie at their
-ends. For a point on a wall, the triangle that holds it is found on the rank that has it; its six
-quadratic shape functions there are the row. So the meshes of two segments need not match.
+The compliance under a force at one point of a fold does not converge: it grows with the logarithm
+of the edge length. A force that is spread along the fold has a finite one. Corner rows are exact
+for any mesh, whose lines need not lie at their ends. For a point on a wall, the triangle that holds
+it is found on the rank that has it; its six quadratic shape functions there are the row. So the
+meshes of two segments need not match.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from shell_model.segment.segment_shell import SegmentShell
 
 
 class _Line(NamedTuple):
-    """Displacement nodes along a corner, ends and middles of its edges in turn.
+    """Displacement nodes along a corner: ends and middles of its edges alternate.
 
     Args:
         x: (num_nodes,) in m, rising.
@@ -35,7 +36,7 @@ class _Line(NamedTuple):
     dofs: Indices
 
     def mean(self, stretch: Stretch, direction: Direction) -> Row:
-        """Displacement weighed by a unit force's density; Simpson's rule is exact for it."""
+        """Return the mean displacement weighted by a force's density; Simpson's rule is exact."""
         left, right = self.x[:-2:2], self.x[2::2]
         low, high = np.maximum(left, stretch.start), np.minimum(right, stretch.end)
         (edges,) = np.nonzero(low < high)
@@ -48,7 +49,7 @@ class _Line(NamedTuple):
 
 
 class CornerLines:
-    """The corners of a segment's section. Collective."""
+    """Corner lines of a segment's section. Collective."""
 
     def __init__(self, shell: SegmentShell) -> None:
         self._segment = shell.segment
@@ -63,16 +64,16 @@ class CornerLines:
             self._lines.append(_Line(x[order], dofs[order]))
 
     def deflection(self, stretch: Stretch, direction: Direction, y: float, z: float) -> Row:
-        """u_z or u_y of a face in m, on the straight line through its two corners.
+        """Return u_z or u_y of a face in m, on the straight line through its two corners.
 
-        A force there goes to the corners by the law of the lever, as through a flange that its
-        webs carry; no plate bows under it, and a turn of the section is read exactly.
+        A force there is shared by the corners by the law of the lever, as through a flange on
+        its webs. No plate bends under it, and a rotation of the section is read exactly.
 
         Args:
-            stretch: of the corners that is read.
-            direction: what is read.
-            y, z: offsets from the axis in m. Along z the sign of ``z`` tells which face is read,
-                along y the sign of ``y`` tells which one.
+            stretch: interval of x on the corners.
+            direction: component of the displacement.
+            y, z: offsets from the axis in m. The sign of ``z`` selects the face along z, the
+                sign of ``y`` the one along y.
         """
         side, across = (z, y) if direction == "z" else (y, z)
         section = self._segment.section_at(stretch.station)
@@ -93,29 +94,29 @@ _ON_EDGE = 1.0e-8
 
 @dataclass(frozen=True, slots=True)
 class Wall:
-    """A face of a section, on the positive side of the axis where ``side`` is 1, else −1."""
+    """Face of a section on the positive side of the axis if ``side`` is 1, else negative."""
 
     normal: Direction
     side: int
 
     @property
     def across(self) -> int:
-        """Position of the coordinate that runs across the wall, at right angles to x."""
+        """Index of the coordinate across the wall, perpendicular to x."""
         return COMPONENT["y" if self.normal == "z" else "z"]
 
 
 class _Candidate(NamedTuple):
-    """A triangle's corners, (6,) coordinates on the wall in m, and its row."""
+    """Corners of a triangle, (6,) coordinates on the wall in m, and the row."""
 
     corners: tuple[float, ...]
     row: Row
 
 
 class WallPoints:
-    """The triangles of a segment's walls with their nodes. Collective.
+    """Triangles of a segment's walls with their nodes. Collective.
 
     Attributes:
-        segment: whose walls these are.
+        segment: the one with these walls.
     """
 
     def __init__(self, shell: SegmentShell) -> None:
@@ -129,10 +130,10 @@ class WallPoints:
         self._along = WallsAlong(shell.segment, self._places[:, 0])
 
     def rows(self, wall: Wall, places: Array, direction: Direction) -> list[Row]:
-        """A row for each place, the same on every rank. Collective.
+        """Return a row for each place, the same on every rank. Collective.
 
         Args:
-            wall: that is read.
+            wall: the wall of the places.
             places: (num_places, 2) of x and the coordinate across the wall, in m.
             direction: of the displacement.
 
@@ -151,12 +152,12 @@ class WallPoints:
         return rows
 
     def mean(self, wall: Wall, places: Array, weights: Array, direction: Direction) -> Row:
-        """The sum of the rows of places, each with its weight. Collective."""
+        """Return the weighted sum of the rows of places. Collective."""
         rows = self.rows(wall, places, direction)
         return sum((w * row for w, row in zip(weights.tolist(), rows, strict=True)), Row())
 
     def _near(self, wall: Wall, x: Array) -> Indices:
-        """(num_cells, 6) nodes of the wall's triangles that may hold places at these x."""
+        """Return nodes (num_cells, 6) of the triangles that may contain places at these x."""
         margin = self._along.near
         plate = self.segment.widest.face(wall.normal, wall.side).plate
         flat = self._along.distance(plate, self._places[:, 1:]) < margin
@@ -167,14 +168,14 @@ class WallPoints:
     def _candidate(
         self, cells: Indices, wall: Wall, place: Array, direction: Direction
     ) -> _Candidate | None:
-        """The row of the first triangle that holds a place; None where this rank has none."""
+        """Return the row of the first triangle that contains a place; None without any."""
         if not len(cells):
             return None
         corners = self._places[cells[:, :3]][:, :, [0, wall.across]]
         holding = np.flatnonzero(_shares(corners, place).min(axis=1) > -_ON_EDGE)
         if not holding.size:
             return None
-        # An order that is that of the places, not of a rank: the same round-off on any number.
+        # This order depends on the places, not on a rank: round-off is the same on any number.
         orders = [np.lexsort(corners[cell].T[::-1]) for cell in holding]
         first = min(
             range(holding.size),
@@ -196,13 +197,15 @@ class WallPoints:
 
 
 def gauss(start: float, end: float, count: int) -> tuple[Array, Array]:
-    """Places of Gauss's rule on an interval, and weights that sum to one, (count,) each."""
+    """Return places of Gauss's rule on an interval and weights that sum to one, (count,) each."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return 0.5 * (start + end) + 0.5 * (end - start) * nodes, 0.5 * weights
 
 
 def _shares(corners: Array, place: Array) -> Array:
-    """(num_triangles, 3) barycentric coordinates of a place, of (num_triangles, 3, 2) corners."""
+    """Return barycentric coordinates (num_triangles, 3) of a place.
+
+    The corners are (num_triangles, 3, 2)."""
     sides = corners[:, 1:] - corners[:, :1]
     offset = place - corners[:, 0]
     area = sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Few coordinates for a shell: mirror families, Krylov bases, distributed products."""
+"""Model reduction of a shell: symmetry classes, Krylov bases, distributed products."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The modal coordinates of the whole boom: those of its segments side by side, less the ties."""
+"""Modal coordinates of the boom: those of its segments, without the constrained ones."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
 
-# What holds less than this part of what holds most, holds nothing.
+# Constraints with less than this part of the largest stiffness are neglected.
 ROUND_OFF = 1.0e-9
 
 # Rows whose products are in memory at once.
@@ -27,19 +27,19 @@ _CANCELLED = 1.0e-14
 
 
 class BoomCoordinates:
-    """Mass-normalised coordinates a of a boom whose ties and cylinders hold it. Collective.
+    """Mass-normalised coordinates a of a boom with its ties and cylinders. Collective.
 
     Args:
         comm: the ranks that share the shells.
-        shells, reduced: of the segments.
-        ties: what stays at zero.
-        lines: to the ground, of whose springs the shells do not know.
+        shells, reduced: one each for each segment.
+        ties: constraints, whose rows stay at zero.
+        lines: connections to the ground, whose springs the shells do not contain.
 
     Attributes:
-        omega2: (num_modes,) in rad²/s², rigid motions exactly 0; negative where an axial force
-            tips a segment over.
+        omega2: (num_modes,) in rad²/s², rigid motions exactly 0; negative if an axial force
+            makes a segment unstable.
         critical_factor: of the axial forces, see :func:`dynamics.second_order.buckling_factor`;
-            infinite without any, None where something moves that nothing holds.
+            infinite without any, None if there is an unconstrained rigid motion.
     """
 
     def __init__(
@@ -71,35 +71,35 @@ class BoomCoordinates:
             self._combination = tied @ turn
 
     def row(self, reading: Reading) -> Array:
-        """(num_modes,) what a reading reads of each mode, the same on every rank."""
+        """Return the modal values (num_modes,) of a reading, the same on every rank."""
         rows = [self.push(number, self._shells[number].row(row)) for number, row in reading.items()]
         return np.asarray(np.sum(rows, axis=0))
 
     def push(self, number: int, force: Array) -> Array:
-        """(num_modes,) modal load of a force (num_owned,), this rank's rows of it, on a segment."""
+        """Return the modal load (num_modes,) of this rank's part (num_owned,) of a force."""
         parts = [np.zeros(segment.omega2.size) for segment in self._reduced]
         parts[number] = exact_product(self._comm, force, self._reduced[number].shapes)
         return self.of_rows(np.concatenate(parts))
 
     def of_rows(self, apart: Array) -> Array:
-        """(…, num_modes) of rows in the segments' own modes."""
+        """Return rows (…, num_modes) in the boom's modes from rows in the segments' own modes."""
         if self._combination is None:
             return apart
         return np.asarray(apart @ self._combination.astype(apart.dtype, copy=False))
 
 
 def _held_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array, Array]:
-    """ω² and combinations (num_modes, num_held_modes) of modes that springs √k p pull at.
+    """Return ω² and modes (num_modes, num_held_modes) with springs of the row √k p each.
 
     Args:
-        omega2: (num_modes,) of those without.
-        tied: (num_ties, num_modes) what stays at zero.
+        omega2: (num_modes,) without springs.
+        tied: (num_ties, num_modes) constraints, whose rows stay at zero.
         pulls: (num_springs, num_modes) in 1/s.
     """
     free = null_space(tied) if tied.size else np.eye(omega2.size)
     held = pulls @ free
     held_omega2, combination = eigh(free.T @ (omega2[:, None] * free) + held.T @ held)
-    # What these leave of the segments' rigid motions is rigid still.
+    # The remaining rigid motions of the segments are still rigid.
     rigid = [rows[:, omega2 == 0.0] for rows in (tied, pulls) if rows.size]
     scaled = np.concatenate(
         [rows / np.abs(rows).max(initial=np.finfo(float).tiny) for rows in rigid]
@@ -111,10 +111,10 @@ def _held_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array, Array]
 
 
 def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
-    """(num_columns,) products with all columns, to the same bit on any number of ranks. Collective.
+    """Return products (num_columns,) with all columns, bitwise equal on any number of ranks.
 
-    Sums are carried with twice the digits, so that their order does not show; of (num_owned,) and
-    (num_owned, num_columns).
+    The factors are (num_owned,) and (num_owned, num_columns). Sums have twice the digits, so that
+    their order has no effect. Collective.
     """
     rows = np.flatnonzero(left != 0.0)
     parts = [np.zeros((1, right.shape[1]))]
@@ -129,13 +129,13 @@ def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
     gathered = comm.allgather((np.concatenate(parts), lost, size))
     total, off = _sum(np.concatenate([part for part, _, _ in gathered]))
     total += off + np.sum([lost for _, lost, _ in gathered], axis=0)
-    # What cancels but for the last bits of its terms is zero.
+    # A result that cancels but for the last bits of its terms is zero.
     total[np.abs(total) < _CANCELLED * np.sum([size for _, _, size in gathered], axis=0)] = 0.0
     return total
 
 
 def _sum(terms: Array) -> tuple[Array, Array]:
-    """Sums over the first axis and what is lost in them by rounding (Knuth 1969)."""
+    """Return sums over the first axis and their rounding errors (Knuth 1969)."""
     lost = np.zeros(terms.shape[1:])
     while len(terms) > 1:
         half = len(terms) // 2

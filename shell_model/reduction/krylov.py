@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Reduction of one family of motions: its Krylov basis, its errors, its coordinates."""
+"""Reduction of one symmetry class: its Krylov basis, errors and coordinates."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from geometry.arrays import Array, Mask
 from shell_model.segment.shell import Shell
 from shell_model.segment.solver import ShiftedSolver, times
 
-# A direction that is left with less than this part of its length is in the space already.
+# A direction of which less than this part of its length remains is in the space already.
 _DEPENDENT = 1.0e-9
 
-# Blocks at each shift, beyond which a tolerance that is not met will not be.
+# Blocks at each shift; a tolerance that is not met with these is not met with more.
 _MOST_MOMENTS = 12
 
 
 @dataclass(frozen=True, slots=True)
 class KrylovOptions:
-    """Shifts and moments of the basis, or the error that it may have.
+    """Shifts and moments of the basis, or its permitted error.
 
     Args:
         shifts: frequencies in Hz at which the response is matched.
-        moments: how many derivatives with respect to ω² are matched at each.
-        tolerance: largest relative error of the contact compliance, and of what the readings get
-            of it; moments are then matched, one at each shift in turn, until it is met.
+        moments: number of derivatives with respect to ω² that are matched at each.
+        tolerance: largest relative error of the contact compliance and of the transfer to the
+            readings; moments are then matched, one at each shift in turn, until it is met.
         most: largest number of coordinates of a segment; each of its families keeps its rigid
             motions and one coordinate at least.
     """
@@ -44,10 +44,10 @@ class KrylovOptions:
 
     @property
     def order(self) -> Iterator[float]:
-        """The shifts of the blocks, one after another.
+        """Shifts of the blocks, one after another.
 
-        Several blocks at a shift take one factorisation. But what may end early takes one block
-        at each shift first.
+        Several blocks at a shift take one factorisation. But a basis that may end early takes one
+        block at each shift first.
         """
         if self.tolerance is None and self.most is None:
             return chain.from_iterable(repeat(shift, self.moments) for shift in self.shifts)
@@ -56,14 +56,14 @@ class KrylovOptions:
 
     @property
     def tests(self) -> Sequence[float]:
-        """Frequencies in Hz, between the shifts, at which errors are measured; falling."""
+        """Frequencies in Hz between the shifts at which errors are measured, descending."""
         shifts = np.sort(self.shifts)
         between = np.sqrt(shifts[:-1] * shifts[1:]) if shifts.size > 1 else shifts
         return [float(frequency) for frequency in between[::-1]]
 
 
 class FamilyCoordinates(NamedTuple):
-    """Mass-normalised coordinates of a family.
+    """Mass-normalised coordinates of a symmetry class.
 
     Args:
         omega2: (num_modes,) in rad²/s², rising, rigid motions first and exactly 0.
@@ -89,7 +89,7 @@ def reduce_family(
     options: KrylovOptions,
     progress: Callable[[float], None],
 ) -> FamilyCoordinates:
-    """Reduce a shell that is on this rank alone.
+    """Reduce a shell that is stored on this rank alone.
 
     Args:
         shell: the full model.
@@ -147,13 +147,13 @@ def reduce_family(
 
 
 class _Full(NamedTuple):
-    """Answers of the full model at a frequency, with what they are measured by.
+    """Responses of the full model at a frequency, with their scales.
 
     Args:
         sigma: (2π frequency)² in rad²/s².
         compliance: (num_inputs, num_inputs) of the forces.
         scale: the geometric means of its diagonal.
-        transfer: (num_readings, num_inputs) what the forces move at the readings.
+        transfer: (num_readings, num_inputs) responses of the readings to the forces.
         transfer_scale: the geometric means of both compliances.
     """
 
@@ -198,20 +198,20 @@ class _Basis:
         return int(self._vectors.shape[1])
 
     def grow(self, solve: ShiftedSolver) -> bool:
-        """Add the next block; whether anything was new and found room."""
+        """Add the next block; return whether the basis has grown."""
         block = self._append(solve(self._pushes))
         self._pushes = times(self._shell.mass, block)
         return bool(block.shape[1])
 
     def follow(self, geometric: PETSc.Mat, solve: ShiftedSolver) -> None:
-        """Add what axial forces bend further of the rigid motions and of the first block."""
+        """Add the responses of the rigid motions and the first block to axial forces."""
         pushes = times(geometric, self._vectors[:, : self._rigid + self._pushed])
         sizes = np.linalg.norm(pushes, axis=0)
-        # What translates or twists is pushed by round-off alone.
+        # Only round-off excites a motion that translates or twists.
         self._append(solve(pushes[:, sizes > _DEPENDENT * sizes.max(initial=0.0)]))
 
     def errors(self, full: Sequence[_Full], rows: Array) -> tuple[float, float]:
-        """Relative error of the compliance, and of what the readings get."""
+        """Return the relative errors of the compliance and of the transfer to the readings."""
         gains, read = self._vectors.T @ self._forces, self._vectors.T @ rows
         compliance = transfer = 0.0
         for answer in full:
@@ -224,10 +224,10 @@ class _Basis:
         return compliance, transfer
 
     def lost(self, full: Sequence[_Full], parts: Array) -> Array:
-        """(num_inputs,) the most by which inputs give way less than in the full model, in m/N.
+        """Return the largest loss of compliance (num_inputs,) against the full model, in m/N.
 
         Args:
-            full: answers of the full model.
+            full: responses of the full model.
             parts: (num_forces, num_inputs) of the forces in the inputs.
         """
         gains = self._vectors.T @ self._forces @ parts
@@ -240,14 +240,14 @@ class _Basis:
         return lost
 
     def modes(self) -> tuple[Array, Array]:
-        """ω² and shapes in the space, rigid motions first."""
+        """Return ω² and shapes in the space, rigid motions first."""
         rigid, elastic = self._vectors[:, : self._rigid], self._vectors[:, self._rigid :]
         omega2, combination = eigh(self._stiffness[self._rigid :, self._rigid :])
         # The slide along x has to be in the basis, or round-off would find it; but nothing
         # moves it.
         moved = np.abs(rigid.T @ self._forces).max(axis=1, initial=0.0) > _DEPENDENT
         shapes = np.hstack([rigid[:, moved], elastic @ combination])
-        # Every shape goes along with an input that moves it much.
+        # Every shape gets the sign of an input that excites it strongly.
         gains = shapes.T @ self._forces
         much = np.abs(gains) > 0.5 * np.abs(gains).max(axis=1, keepdims=True)
         first = gains[np.arange(len(gains)), much.argmax(axis=1)]
@@ -255,7 +255,7 @@ class _Basis:
         return np.concatenate([np.zeros(moved.sum()), omega2]), shapes * signs
 
     def _append(self, block: Array) -> Array:
-        """Add what is new in a block, column by column; gives the orthonormal new part."""
+        """Add the new part of a block, column by column; return it orthonormalised."""
         before = self.size
         vectors = np.empty((len(block), before + block.shape[1]), order="F")
         vectors[:, :before] = self._vectors
@@ -287,7 +287,7 @@ class _Basis:
 
 
 def _independent(block: Array) -> Array:
-    """Orthonormal basis of a block, column by column."""
+    """Return an orthonormal basis of a block, column by column."""
     lengths = np.linalg.norm(block, axis=0)
     found = np.empty((len(block), 0))
     for column in (block[:, lengths > 0.0] / lengths[lengths > 0.0]).T[:, :, None]:
@@ -300,7 +300,7 @@ def _independent(block: Array) -> Array:
 
 
 def _right(shell: Shell, omega2: Array, shapes: Array, solve: ShiftedSolver) -> Mask:
-    """Whether each ω is within 0.1 % of a natural one, up to the first that may not be.
+    """Return whether each ω is within 0.1 % of a natural one, up to the first that may not be.
 
     With the residual r = (K − ω² M) x of a mass-normalised x, some eigenvalue λ satisfies
     (λ − ω²)² / (λ + σ) ≤ rᵀ (K + σ M)⁻¹ r (expand r in eigenvectors). It is a bound: the

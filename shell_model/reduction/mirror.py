@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The families of motions of a section that mirrors itself in y, in z, or in both.
+"""Symmetry classes of motions of a section with mirror planes in y, in z, or in both.
 
 Mirrored motions stay mirrored: bending along z, bending along y, twisting, and breathing with
-stretching do not know of each other within a segment that has both mirrors; with that of y alone,
-bending along z breathes and stretches, and bending along y twists. A family's motion is known from
-the part of the section on the positive side of its mirrors, a quarter or a half: it is that of the
-part with what the family does not do held on its cut edges, and its mirrors.
+stretching do not couple within a segment that has both mirrors; with that of y alone, bending
+along z couples with breathing and stretching, and bending along y with twist. A family's motion
+follows from the part of the section on the positive side of its mirrors, a quarter or a half: it is
+that of the part with what the family does not do held on its cut edges, and its mirrors.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ _ON_PLACE = 1.0e-8
 
 
 class Family(NamedTuple):
-    """1 where a motion is its own image in the mirror of an axis, −1 where it is its opposite.
+    """Symmetry class: 1 for a motion that equals its mirror image, −1 for its opposite.
 
-    0 where the section has no such mirror.
+    There is a number for each mirror, 0 if the section does not have it.
     """
 
     y: int
@@ -39,7 +39,7 @@ class Family(NamedTuple):
 
     @property
     def signs(self) -> Array:
-        """(4, 6) what a component of the positive part is times elsewhere.
+        """Factors (4, 6) of the components in each quarter relative to the positive part.
 
         Rows are the quarters (see :func:`quarter_of`), columns the components of the displacement,
         which mirrors as an arrow, then those of the rotation, which mirrors as an axis.
@@ -54,7 +54,9 @@ class Family(NamedTuple):
         return signs
 
     def held(self, axis: int) -> list[tuple[int, int]]:
-        """What stays at zero in a mirror: (0, i) of the displacement, (1, i) of the rotation."""
+        """Return the components that are zero in a mirror.
+
+        They are (0, i) of the displacement and (1, i) of the rotation."""
         signs = self.signs[1 if axis == 1 else 2]
         return [(int(i) // 3, int(i) % 3) for i in np.flatnonzero(signs < 0.0)]
 
@@ -71,13 +73,13 @@ BREATHING, ALONG_Z, ALONG_Y, TWISTING = (
 
 
 def families(mirrors: Sequence[Direction]) -> list[Family]:
-    """Those of a section with these mirrors."""
+    """Return the symmetry classes of a section with these mirrors."""
     parities = ((1, -1) if axis in mirrors else (0,) for axis in COMPONENT)
     return [Family(*parity) for parity in product(*parities)]
 
 
 def quarter_of(places: Array, mirrors: Sequence[Direction]) -> Indices:
-    """(num_places,) 1 at negative y, 2 at negative z, 3 at both, 0 at neither.
+    """Return the quarter (num_places,): 1 at negative y, 2 at negative z, 3 at both, 0 at neither.
 
     Of the mirrors' axes alone: without that of z there are the halves 0 and 1.
     """
@@ -86,7 +88,7 @@ def quarter_of(places: Array, mirrors: Sequence[Direction]) -> Indices:
 
 
 def folded(places: Array, mirrors: Sequence[Direction]) -> Array:
-    """(num_places, 3) the images of places (num_places, 3) on the positive side of the mirrors."""
+    """Return the images of places (num_places, 3) on the positive side of the mirrors."""
     images = places.copy()
     for axis in mirrors:
         images[:, COMPONENT[axis]] = np.abs(images[:, COMPONENT[axis]])
@@ -94,12 +96,12 @@ def folded(places: Array, mirrors: Sequence[Direction]) -> Array:
 
 
 def on_plane(places: Array, axis: int) -> Mask:
-    """(num_places,) which places (num_places, 3) lie in the mirror of an axis."""
+    """Return which (num_places,) of places (num_places, 3) lie in the mirror of an axis."""
     return np.asarray(np.abs(places[:, axis]) <= _near(places))
 
 
 def matches(places: Array, among: Array) -> Indices | None:
-    """(num_places,) numbers of the same places in a list; None where one has no match."""
+    """Return the numbers (num_places,) of the same places in a list; None if one has no match."""
     distance, number = cKDTree(among).query(places)
     if distance.max(initial=0.0) > _near(among):
         return None
@@ -107,7 +109,7 @@ def matches(places: Array, among: Array) -> Indices | None:
 
 
 def quarter_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
-    """The part of a segment's mesh on the positive side of its section's mirrors.
+    """Return the part of a segment's mesh on the positive side of its section's mirrors.
 
     Raises:
         NumericsError: the mesh or its thickness is not its own image.
@@ -139,7 +141,7 @@ def quarter_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
 
 
 class Rows(NamedTuple):
-    """What the rows of a quarter are.
+    """Components and places of the rows of a quarter.
 
     Args:
         component: (num_rows,) 0 to 2 of the displacement, 3 to 5 of the rotation.
@@ -165,7 +167,7 @@ def rows_of(quarter: Sequence[tuple[Array, Indices]]) -> Rows:
 
 
 def _sorted(triangles: Indices, thickness: Array) -> tuple[Indices, Array]:
-    """Triangles and their thickness in an order that does not depend on how they were given."""
+    """Return triangles and their thickness in an order that is independent of the input's."""
     corners = np.sort(triangles, axis=1)
     order = np.lexsort(corners.T)
     return corners[order], thickness[order]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Springs that go along with pads, for what walls give way beyond the modes of their segments.
+"""Springs that move with pads, for the compliance of walls beyond the modes of their segments.
 
 What forces at a place x move beyond the modes ω_k with the rows b_k(x),
 
@@ -26,16 +26,16 @@ from shell_model.segment.solver import ShiftedSolver, times
 # and of the fastest spring.
 SLOW, _FASTEST = 50.0, 10000.0
 
-# A pattern of forces that gives way by less than this part of what others do, does not.
+# A pattern of forces with less than this part of the largest compliance is taken as rigid.
 _NOTHING = 1.0e-4
 
 
 class Answers(NamedTuple):
-    """What rows of a segment do to each other in the full model, (num_columns, num_columns).
+    """Responses of the full model to rows of a segment, (num_columns, num_columns).
 
     Args:
         compliance: B (K + σ M)⁻¹ Bᵀ in m/N at ``SLOW``.
-        inertia: B (K + σ M)⁻¹ M (K + σ M)⁻¹ Bᵀ in m s²/N, what it loses with σ.
+        inertia: B (K + σ M)⁻¹ M (K + σ M)⁻¹ Bᵀ in m s²/N, its decrease with σ.
         tested: the compliance at another shift.
     """
 
@@ -45,12 +45,15 @@ class Answers(NamedTuple):
 
 
 def answers(folding: Folding, columns: Array, test: float) -> Answers:
-    """To columns (num_owned, num_columns), at ``SLOW`` and at ``test`` in Hz. Collective."""
+    """Return responses to columns (num_owned, num_columns) at ``SLOW`` and ``test`` Hz.
+
+    Collective.
+    """
 
     def of_family(_: int, job: Job) -> Array:
         shell = job.shell(folding.part)
         solve = ShiftedSolver(shell, SLOW)
-        # Of all places pads press few.
+        # Pads press at few of all places.
         pressed = np.flatnonzero((job.forces != 0.0).any(axis=1))
         forces = job.forces[pressed]
         moved = solve(job.forces)
@@ -65,9 +68,10 @@ def answers(folding: Folding, columns: Array, test: float) -> Answers:
 
 
 def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
-    """ω² (num_springs,) in rad²/s², and rows (num_extensions, num_rows, num_springs) in 1/√kg.
+    """Return ω² (num_springs,) and rows (num_extensions, num_rows, num_springs) of springs.
 
-    Of R (num_extensions, num_rows, num_rows) in m/N at the shift ``SLOW``, and R′ in m s²/N.
+    They represent R (num_extensions, num_rows, num_rows) in m/N at the shift ``SLOW``, and R′ in
+    m s²/N. Units of ω² are rad²/s², those of rows 1/√kg.
     """
     sizes = np.sqrt(np.einsum("wjj->j", residual) / len(residual))
     scale = np.outer(sizes, sizes)
@@ -86,5 +90,5 @@ def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
 
 
 def squared(frequency: float) -> float:
-    """ω² in rad²/s² of a frequency in Hz."""
+    """Return ω² in rad²/s² of a frequency in Hz."""
     return float((2.0 * np.pi * frequency) ** 2)

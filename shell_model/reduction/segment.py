@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Few coordinates for a shell: a block rational Krylov basis on its loads and contact points.
+"""Reduction of a segment: a block rational Krylov basis of its loads and contact points.
 
 The space holds (K + σ M)⁻¹ F and its moments for several shifts σ > 0, so the response to a
 contact force is right from statics to the frequencies of the shifts, its local flexibility
@@ -36,10 +36,10 @@ class ReducedSegment:
         shapes: (num_owned, num_modes) this rank's rows of each shape, in 1/√kg.
         compliance_error: largest relative error of the contact compliance matrix at the test
             frequencies between the shifts, against full solves.
-        reading_error: the same of what the inputs move at the readings, over the geometric mean of
-            the compliances of both.
-        lost_compliance: (num_inputs,) the most by which each input gives way less than in the full
-            model at these frequencies, in m/N; no pair of them loses more than the geometric mean
+        reading_error: the same of the response of the readings to the inputs, over the geometric
+            mean of the compliances of both.
+        lost_compliance: (num_inputs,) largest loss of the compliance of each input against the
+            full model at these frequencies, in m/N; no pair loses more than the geometric mean
             of both, since the space is a part of the full one (Galerkin).
         frequency_limit: Hz up to which every natural frequency is right within 0.1 %.
         geometric: (num_modes, num_modes) what axial forces take from diag(ω²).
@@ -64,12 +64,12 @@ def reduce_segment(
     """Reduce a segment to the space that its inputs excite. Collective.
 
     Args:
-        folding: of the full model.
+        folding: symmetry reduction of the full model.
         inputs: (num_owned, num_inputs) forces that act on it, in any order; zero and dependent
             ones cost nothing.
         options: shifts and moments, or a tolerance.
         progress: called with the part done, 0 to 1.
-        readings: (num_owned, num_readings) rows whose answer to the inputs is to be right too.
+        readings: (num_owned, num_readings) rows whose response has to be accurate too.
 
     Raises:
         NumericsError: a compliance is not finite, all inputs are zero, or the tolerance is not met.
@@ -103,7 +103,7 @@ def reduce_segment(
     right = np.concatenate([part.right for part in parts])
     order = np.argsort(omega2, kind="stable")
     tell(1.0)
-    # Up to where all of the rising frequencies are right.
+    # Up to this frequency all are accurate.
     right = right[order]
     first_wrong = right.size if right.all() else int(np.argmin(right))
     limit = np.sqrt(omega2[order][first_wrong - 1]) / (2.0 * np.pi) if first_wrong else 0.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The families of a segment's motions, each as a quarter, or half, of its shell on one rank.
+"""Symmetry classes of a segment's motions, each as a quarter or half of its shell on one rank.
 
 A family's matrices are those of a part of the segment, so they are small, a motion cannot drift
 into another family, and the numbers are the same to the last bit whichever rank computes them:
@@ -50,15 +50,15 @@ from shell_model.segment.shell import (
 
 _Found = TypeVar("_Found")
 
-# Part of its largest value below which a force has no part in a family.
+# A force with less than this part of its largest value in a class has no part in it.
 _NO_PART = 1.0e-9
 
 
 class _Compact(Matrices):
-    """Matrices of one rank without the zeros that the pattern of their forms has.
+    """Matrices of one rank without the zeros in the pattern of their forms.
 
-    A plane wall's motions in its plane and across it do not know of each other, nor does the mass
-    of one component of another: with these zeros factors would hold them too.
+    Motions of a plane wall in its plane and across it do not couple, nor do the masses of different
+    components. Factors would store these zeros too.
     """
 
     def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
@@ -74,14 +74,14 @@ class _Compact(Matrices):
 
 @dataclass(frozen=True)
 class FoldedPart:
-    """The part of a segment, a quarter of it or half, whose mirror images are the rest.
+    """Part of a segment, a quarter or half, whose mirror images are the rest.
 
     Each rank assembles it once for all families that it computes; what is assembled stays there.
 
     Args:
-        segment: the whole one.
-        mirrors: of its section.
-        mesh: of the part.
+        segment: the whole segment.
+        mirrors: those of its section.
+        mesh: that of the part.
     """
 
     segment: Segment
@@ -90,17 +90,17 @@ class FoldedPart:
 
     @cached_property
     def plates(self) -> Plates:
-        """On this rank alone."""
+        """Plates of the part, on this rank alone."""
         return assemble_plates(MPI.COMM_SELF, self.segment, self.mesh)
 
     @cached_property
     def nodes(self) -> Sequence[tuple[Array, Indices]]:
-        """Places in m and rows of the displacements, and of the rotations."""
+        """Places of the displacement nodes and of the rotation nodes, in m."""
         return [owned_nodes(self.plates.space, kind) for kind in (0, 1)]
 
     @cached_property
     def rows(self) -> Rows:
-        """What each row moves, and in which mirrors it lies."""
+        """Component of each row, and the mirrors in which the row lies."""
         return rows_of(self.nodes)
 
     def __reduce__(self) -> tuple[type[FoldedPart], tuple[Any, ...]]:
@@ -109,10 +109,10 @@ class FoldedPart:
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """What the rank that computes a family needs.
+    """Data for the rank that computes a symmetry class.
 
     Args:
-        family: of the motions.
+        family: the symmetry class.
         forces, readings: (num_rows, num_columns) on that part's rows, images added up.
         springs, masses: of the segment, on these rows.
     """
@@ -124,7 +124,7 @@ class Job:
     masses: Attached
 
     def shell(self, part: FoldedPart) -> Shell:
-        """A part of the segment, with the energies of the whole one."""
+        """Return the shell of the part of a segment, with the energies of the whole one."""
         plates, mirrors = part.plates, part.mirrors
         holds = [
             *plates.holds,
@@ -151,14 +151,14 @@ class Job:
 
 
 def _part_of(shell: SegmentShell) -> FoldedPart:
-    """Of a segment, on each rank; assembled on rank 0, which folds. Collective."""
+    """Assemble the part of a segment on each rank; rank 0 reduces by symmetry. Collective."""
     mirrors, comm = shell.section.mirrors, shell.comm
 
     def of_mesh() -> FoldedPart | None:
         if shell.mesh is None:
             return None
         part = FoldedPart(shell.segment, mirrors, quarter_mesh(shell.mesh, mirrors))
-        # Assembled here, where all ranks are told what fails.
+        # Assembled here, where all ranks receive an error.
         assert part.nodes
         return part
 
@@ -168,10 +168,10 @@ def _part_of(shell: SegmentShell) -> FoldedPart:
 
 
 class Folding:
-    """How the rows of a segment, distributed, are those of its quarter. Collective.
+    """Map between the distributed rows of a segment and those of its quarter. Collective.
 
     Args:
-        shell: of the whole segment.
+        shell: that of the whole segment.
 
     Raises:
         NumericsError: it is not its own mirror image.
@@ -195,7 +195,7 @@ class Folding:
             self._component[dofs - first] = components(number)
 
     def jobs(self, inputs: Array, readings: Array) -> list[Job]:
-        """One for each family that an input excites, on rank 0; none elsewhere. Collective.
+        """Return a job for each class that an input excites, on rank 0; none elsewhere. Collective.
 
         Inputs and readings are (num_owned, num_columns) of the whole segment.
         """
@@ -220,7 +220,7 @@ class Folding:
     def sum_families(
         self, columns: Array, total: Array, compute: Callable[[int, Job], Array]
     ) -> Array:
-        """Add what is computed of each family that columns (num_owned, num_columns) excite.
+        """Add the results of each class that columns (num_owned, num_columns) excite.
 
         ``total`` holds the sum. Collective.
         """
@@ -230,7 +230,7 @@ class Folding:
         return total
 
     def unfold(self, shapes: Array | None, family: Family, root: int) -> Array:
-        """(num_owned, num_shapes) shapes of a family on the whole segment. Collective.
+        """Return shapes (num_owned, num_shapes) of a class on the whole segment. Collective.
 
         On the quarter they are (num_rows, num_shapes) on the rank ``root``, None elsewhere.
         """
@@ -250,14 +250,14 @@ class Folding:
         return unfolded
 
     def _gather(self, block: Array) -> list[_Entries] | None:
-        """The numbers of a block that are not 0, on rank 0."""
+        """Gather the nonzero entries of a block on rank 0."""
         row, column = np.nonzero(block)
         value, columns = block[row, column], block.shape[1]
         mine = _Entries(self._row[row], self._quarter_of_row[row], column, value, columns)
         return self._comm.gather(mine)
 
     def _images(self, gathered: list[_Entries]) -> Array:
-        """(4, num_rows, num_columns) a block in each quarter; half in each of what lies between."""
+        """Return a block in each quarter (4, num_rows, num_columns), halved on mirror planes."""
         in_mirrors = self.part.rows.in_mirrors
         images = np.zeros((4, self.part.rows.component.size, gathered[0].columns))
         for entries in gathered:
@@ -273,7 +273,7 @@ class Folding:
 def shared(
     comm: MPI.Comm, jobs: Sequence[Job], compute: Callable[[int, Job], _Found]
 ) -> Iterator[tuple[int, _Found | None]]:
-    """The rank that computes each job of rank 0, and what it found; None elsewhere. Collective."""
+    """Compute each job of rank 0 on one rank; yield the rank and its result. Collective."""
     roots = [number % comm.size for number in range(comm.bcast(len(jobs)))]
     mine = {number: job for number, job in enumerate(_sent(comm, jobs, roots)) if job is not None}
     found = together(comm, lambda: {number: compute(number, job) for number, job in mine.items()})
@@ -282,7 +282,7 @@ def shared(
 
 
 def together(comm: MPI.Comm, work: Callable[[], _Found]) -> _Found:
-    """Each rank's result of its own work. Collective, but the work must not communicate.
+    """Return each rank's result of its own work. Collective, but the work must not communicate.
 
     Raises:
         NumericsError: on every rank, if the work of any raises it, or its memory does not suffice.
@@ -302,7 +302,7 @@ def together(comm: MPI.Comm, work: Callable[[], _Found]) -> _Found:
 
 
 def _sent(comm: MPI.Comm, jobs: Sequence[Job], roots: Sequence[int]) -> Iterator[Job | None]:
-    """Every job of rank 0 in turn, on the rank that is to do it; None elsewhere."""
+    """Send every job of rank 0 in turn to the rank that computes it; None on the others."""
     for number, root in enumerate(roots):
         if comm.rank == 0 and root != 0:
             comm.send(jobs[number], root)
@@ -314,7 +314,7 @@ def _sent(comm: MPI.Comm, jobs: Sequence[Job], roots: Sequence[int]) -> Iterator
 
 
 class _Entries(NamedTuple):
-    """Numbers of a block: (num_entries,) each, and how many columns the block has."""
+    """Entries of a block: (num_entries,) each, and the number of columns of the block."""
 
     row: Indices
     quarter: Indices
@@ -331,7 +331,7 @@ _IMAGES: Mapping[Direction, Sequence[tuple[int, int]]] = {
 
 
 def _added_up(images: Array, signs: Array) -> Array:
-    """(num_rows, num_columns) the part of a family; exactly 0 where it has none."""
+    """Return the part (num_rows, num_columns) of a symmetry class; exactly 0 if it has none."""
     part = np.zeros(images.shape[1:])
     for image, sign in zip(images, signs, strict=True):
         part += sign[:, None] * image

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""One segment as a shell of plates."""
+"""Shell model of one segment."""

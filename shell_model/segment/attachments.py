@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Springs and masses that act on a reading of the section, such as its mean deflection.
+"""Springs and masses attached to a reading of the section, such as its mean deflection.
 
 With the row r of the reading, a spring k adds k r rᵀ to the stiffness: its force is spread as r
 reads, and every other motion of the section stays as free as it was.
@@ -19,16 +19,16 @@ from geometry.arrays import Array
 from geometry.boom import Direction, Segment
 from shell_model.segment.cross_section import Outline, Row
 
-# What holds a turn of the section at a support, over G J_t / L or E J / L of its segment: no
-# segment can tell it from a rigid hold.
+# Stiffness of a support that fixes a rotation, over G J_t / L or E J / L of its segment: no
+# segment can tell it from a rigid one.
 RIGID_TURN = 1.0e5
 
 
 class Attached(NamedTuple):
-    """Springs, or masses, and what they act on.
+    """Springs or masses with the rows on which they act.
 
     Args:
-        rows: (num_owned, num_attached) this rank's part of what each reads.
+        rows: (num_owned, num_attached) this rank's part of the row of each.
         factors: (num_attached,) stiffness in N/m or N·m, or mass in kg.
     """
 
@@ -37,7 +37,7 @@ class Attached(NamedTuple):
 
     @classmethod
     def of(cls, rows: Sequence[Array], factors: Sequence[float], num_owned: int) -> Attached:
-        """One column for each of the rows (num_owned,)."""
+        """Create attachments with one column for each of the rows (num_owned,)."""
         return cls(np.array(rows).reshape(-1, num_owned).T, np.array(factors, dtype=np.float64))
 
     def add_to(self, comm: MPI.Comm, matrix: PETSc.Mat) -> None:
@@ -47,7 +47,7 @@ class Attached(NamedTuple):
 
 
 def springs(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
-    """Where supports pull that are elastic, or hold a turn, at what, and how stiffly."""
+    """Return the springs of elastic supports and of those that constrain a rotation."""
     for support in segment.supports:
         section = segment.section_at(support.x)
         torsion = segment.material.shear_modulus * section.torsion_constant
@@ -68,7 +68,7 @@ def springs(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row],
 
 
 def masses(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
-    """Where point masses are, what moves them, and how heavy they are."""
+    """Return the rows and values of point masses."""
     for mass in segment.masses:
         yield mass.x, partial(Outline.mean_displacement, component=0), mass.mass
         yield mass.x, partial(Outline.wall_deflection, direction="y"), mass.mass

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Rows that read a section of the shell: its mean deflection, rotation, distortion, points.
+"""Rows that read a section of the shell: mean deflection, rotation, distortion, points.
 
 An outline is a mesh line around the section; displacement is quadratic along each of its edges,
 so Simpson's rule and quadratic interpolation on the edges' nodes are exact. A row read the other
@@ -20,11 +20,11 @@ _X = 0
 
 
 class Row(dict[int, float]):
-    """A sum of degrees of freedom: global number → weight."""
+    """Linear combination of degrees of freedom: global number → weight."""
 
     @classmethod
     def of(cls, dofs: Indices, weights: Array) -> Row:
-        """Of degrees of freedom, each with its weight; one may come twice."""
+        """Create a row from degrees of freedom with their weights; one may occur twice."""
         row = cls()
         for dof, weight in zip(dofs.tolist(), weights.tolist(), strict=True):
             row[dof] = row.get(dof, 0.0) + weight
@@ -44,10 +44,10 @@ class Row(dict[int, float]):
 
 
 class Reading(dict[int, Row]):
-    """What is read of a boom's segments: number of a segment → row."""
+    """Reading of a boom's segments: number of a segment → row."""
 
     def __add__(self, other: Reading) -> Reading:
-        """What both read, of all segments of either, in their common unit: m, say."""
+        """Return the sum of both readings over all segments of either, in their common unit."""
         both = {number: self.get(number, Row()) + row for number, row in other.items()}
         return Reading(self | both)
 
@@ -56,13 +56,13 @@ class Reading(dict[int, Row]):
 
 
 def on_outline(places: Array, section: Section, x: float) -> Mask:
-    """(num_places,) whether places (num_places, 3) are on the walls at x."""
+    """Return which (num_places,) of places (num_places, 3) are on the walls at x."""
     at_x = np.abs(places[:, 0] - x) < section.near
     return np.asarray(section.on_plates(places[:, 1:]) & at_x)
 
 
 def quadratic(s: Array) -> Array:
-    """(..., 3) shape functions of an edge's first end, middle and last end at the parts s of it."""
+    """Return shape functions (..., 3) of an edge's first end, middle, last end at its parts s."""
     return np.stack([(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)], axis=-1)
 
 
@@ -74,7 +74,7 @@ class Outline:
         x: in m.
         places: (num_nodes, 3) in m.
         dofs: (num_nodes, 3) global rows of the displacement components.
-        section: the plates.
+        section: that of the plates.
     """
 
     x: float
@@ -86,7 +86,7 @@ class Outline:
     def around(
         cls, comm: MPI.Comm, nodes: Array, node_dofs: Indices, section: Section, x: float
     ) -> Outline:
-        """The same on every rank. Collective.
+        """Create the outline at x, the same on every rank. Collective.
 
         Args:
             comm: the ranks that share the nodes.
@@ -100,23 +100,23 @@ class Outline:
         return cls(x, places, dofs, section)
 
     def mean_deflection(self, direction: Direction = "z") -> Row:
-        """u_z or u_y averaged over the section's area: its neutral axis' deflection, in m."""
+        """Return u_z or u_y averaged over the area: the neutral axis' deflection, in m."""
         return self.mean_displacement(COMPONENT[direction])
 
     def mean_displacement(self, component: int) -> Row:
-        """One displacement component averaged over the section's area, in m."""
+        """Return the mean of one displacement component over the section's area, in m."""
         nodes, areas = self._area_weights()
         return Row.of(self.dofs[nodes, component], areas / areas.sum())
 
     def rotation(self, direction: Direction = "z") -> Row:
-        """Slope w′ of the plane that fits u_x = −w′ z best over the section's area, in rad."""
+        """Return the slope w′ of the best-fit plane u_x = −w′ z over the section's area, in rad."""
         nodes, areas = self._area_weights()
         z = self.places[nodes, COMPONENT[direction]]
         z = z - (areas @ z) / areas.sum()
         return Row.of(self.dofs[nodes, _X], -areas * z / (areas @ z**2))
 
     def distortion(self) -> Row:
-        """How much taller the section has become: mean u_z of the top less the bottom, in m.
+        """Return the increase of the section's height: mean u_z of the top less the bottom, in m.
 
         Where they are folds or bends, of the plates whose middles are the highest and the lowest.
         """
@@ -133,18 +133,20 @@ class Outline:
         return next(rows) - next(rows)
 
     def wall_deflection(self, direction: Direction) -> Row:
-        """u_z or u_y by the plates that carry its shear force in their own plane, in m.
+        """Return u_z or u_y of the plates that carry its shear force in their own plane, in m.
 
-        Each slides along itself, and counts as much as it carries: a force spread so bends none.
+        Each plate moves in its plane, with a weight by the force that it carries: such a force
+        bends none.
         """
         carriers = self.section.carriers(direction)
         plates = self.section.plates
         return sum((force * self._slide(plates[n]) for n, force in carriers), Row())
 
     def twist(self) -> Row:
-        """Turn about x in rad: the circulation of the displacement over twice the enclosed area.
+        """Return the twist about x in rad: the circulation of displacement over twice the area.
 
-        That of a rigid turn by Stokes' theorem; a box's distortion into a parallelogram, which
+        It is exact for a rigid rotation by Stokes' theorem; the area is the enclosed one. A box's
+        distortion into a parallelogram, which
         turns webs and flanges by opposite angles, is not read.
         """
         turn = Row()
@@ -153,7 +155,7 @@ class Outline:
         return turn
 
     def flange_deflection(self, side: float, y: float) -> Row:
-        """u_z of a flange, ``side`` 1 the top, −1 the bottom, averaged over the points ±y, in m."""
+        """Return u_z of the top (``side`` 1) or bottom (−1) averaged over the points ±y, in m."""
         face = self.section.face("z", side)
         nodes, along = self._along(self.section.plates[face.plate])
         rows = []
@@ -166,18 +168,18 @@ class Outline:
         return 0.5 * rows[0] + 0.5 * rows[1]
 
     def _slide(self, plate: Plate) -> Row:
-        """Mean displacement along one plate, in m."""
+        """Return the mean displacement along one plate, in m."""
         slopes = zip(COMPONENT, plate.tangent.tolist(), strict=True)
         parts = (slope * self._mean(plate, axis) for axis, slope in slopes if slope != 0.0)
         return sum(parts, Row())
 
     def _mean(self, plate: Plate, direction: Direction) -> Row:
-        """Mean displacement over one plate's line, in m."""
+        """Return the mean displacement over one plate's line, in m."""
         nodes, lengths = self._simpson(plate)
         return Row.of(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
 
     def _along(self, plate: Plate) -> tuple[Indices, Array]:
-        """Nodes of one plate's line, ends and middles in turn, and where they are along it in m.
+        """Return nodes of one plate's line, ends and middles in turn, and their places in m.
 
         They rise with y, or with z where the plate is steep.
         """
@@ -188,7 +190,7 @@ class Outline:
         return on_plate[order], along[order]
 
     def _simpson(self, plate: Plate) -> tuple[Indices, Array]:
-        """Nodes of one plate's line and their weights in m."""
+        """Return nodes of one plate's line and their weights in m."""
         nodes, along = self._along(plate)
         lengths = along[2::2] - along[:-2:2]
         weights = np.zeros(nodes.size)
@@ -198,7 +200,7 @@ class Outline:
         return nodes, weights
 
     def _area_weights(self) -> tuple[Indices, Array]:
-        """Nodes of all plates (corners twice) and the areas in m² that they stand for."""
+        """Return nodes of all plates (corners twice) and their shares of the area in m²."""
         parts = [(*self._simpson(plate), plate.thickness) for plate in self.section.plates]
         return (
             np.concatenate([nodes for nodes, _, _ in parts]),

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The shell in UFL: flat facets with displacement u and rotation θ, both vectors in space.
+"""Shell forms in UFL: flat facets with displacement u and rotation θ, both vectors in space.
 
 Reissner-Mindlin kinematics in the facet's own frame: membrane strain ε, bending strain κ,
 transverse shear γ. The rotation about the normal (drilling) has no stiffness of its own in
 this theory; it is tied to the rotation that the displacement has in the facet's plane (Hughes
-and Brezzi 1989), so that folded plates hand their bending moments over to one another.
+and Brezzi 1989), so that folded plates transfer their bending moments to one another.
 Displacement quadratic and rotation Crouzeix-Raviart (Campello, Pimenta and Wriggers 2003) do
 not lock as the wall becomes thin.
 """
@@ -32,14 +32,14 @@ SHEAR_CORRECTION = 5.0 / 6.0
 # and resists the shear flow around a box.
 DRILLING = 1.0e-2
 
-# Where facets approach a curved surface it must be stiff: a surface with the twist b (1/m) hands a
-# couple b M over about its normal, and a soft tie gives way to it by some (b t)² / DRILLING of the
-# bending. This is the modulus G, as the skew strain counts twice (Hughes and Brezzi 1989).
+# Where facets approach a curved surface it must be stiff: a surface with the twist b (1/m)
+# transfers a couple b M about its normal, and a soft tie gives way to it by some (b t)² / DRILLING
+# of the bending. This is the modulus G, as the skew strain counts twice (Hughes and Brezzi 1989).
 DRILLING_OF_CURVED = 2.0
 
 
 class Strains(NamedTuple):
-    """Of the mid-surface, in the facet's frame (e1, e2, e3).
+    """Strains of the mid-surface, in the facet's frame (e1, e2, e3).
 
     At the height ζ along e3 the strain in the facet is ``membrane`` + ζ ``bending``.
 
@@ -57,9 +57,9 @@ class Strains(NamedTuple):
 
 
 def facet_frame(domain: Any) -> tuple[Any, Any, Any]:
-    """Orthonormal e1, e2 in the facet and e3 normal to it, from the cell's Jacobian.
+    """Return orthonormal e1, e2 in the facet and e3 normal to it, from the cell's Jacobian.
 
-    e3 has no preferred side: every strain is even in it, so the energy does not care.
+    e3 has no preferred side: every strain is even in it, so the energy does not depend on it.
     """
     jacobian = ufl.Jacobian(domain)
     t1, t2 = (ufl.as_vector([jacobian[i, k] for i in range(3)]) for k in range(2))
@@ -70,7 +70,7 @@ def facet_frame(domain: Any) -> tuple[Any, Any, Any]:
 
 
 def strains(domain: Any, u: Any, theta: Any) -> Strains:
-    """Strains of a displacement u in m and a rotation θ in rad."""
+    """Return the strains of a displacement u in m and a rotation θ in rad."""
     e1, e2, e3 = facet_frame(domain)
     plane = ufl.as_matrix([[e1[i] for i in range(3)], [e2[i] for i in range(3)]])
     gradient = ufl.grad(u)
@@ -84,14 +84,14 @@ def strains(domain: Any, u: Any, theta: Any) -> Strains:
 
 
 def plane_stress(young: Any, nu: Any, strain: Any) -> Any:
-    """(2, 2) stress in Pa of a strain (2, 2) in a plate that is free of stress across."""
+    """Return the stress (2, 2) in Pa of a strain (2, 2) in a plate in plane stress."""
     return young / (1.0 - nu**2) * ((1.0 - nu) * strain + nu * ufl.tr(strain) * ufl.Identity(2))
 
 
 class ShellForms:
-    """Bilinear forms of one shell and the linear form of a unit load, compiled when asked for.
+    """Bilinear forms of one shell and the linear form of a unit load, compiled on first use.
 
-    The load is 1 N/m³ along ``load_direction`` on what carries it.
+    The load is 1 N/m³ along ``load_direction`` on the thickness that carries it.
 
     Args:
         space: displacement and rotation, see :func:`compat.shell_space`.
@@ -126,7 +126,7 @@ class ShellForms:
 
     @cached_property
     def stiffness(self) -> Any:
-        """Bilinear, to be assembled (num_dofs, num_dofs), in N/m, N and N·m between u and θ.
+        """Bilinear form of K (num_dofs, num_dofs), in N/m, N and N·m between u and θ.
 
         Twice the strain energy of a motion with itself.
         """
@@ -146,7 +146,7 @@ class ShellForms:
 
     @cached_property
     def mass(self) -> Any:
-        """Bilinear, to be assembled (num_dofs, num_dofs), in kg for u and kg·m² for θ.
+        """Bilinear form of M (num_dofs, num_dofs), in kg for u and kg·m² for θ.
 
         Twice the kinetic energy of velocities with themselves; u and θ do not couple.
         """
@@ -157,9 +157,9 @@ class ShellForms:
 
     @cached_property
     def geometric(self) -> Any:
-        """Bilinear, to be assembled (num_dofs, num_dofs), in N/m for u and 0 for θ.
+        """Bilinear form of K_G (num_dofs, num_dofs), in N/m for u and 0 for θ.
 
-        K_G: twice the work that the membrane forces do as a motion shortens the walls along x.
+        It is twice the work that the membrane forces do as a motion shortens the walls along x.
         """
         (u, _), (v, _) = self._trial_and_test()
         work = self._compression * ufl.dot(ufl.grad(u)[:, 0], ufl.grad(v)[:, 0])
@@ -167,15 +167,15 @@ class ShellForms:
 
     @cached_property
     def unit_load(self) -> Any:
-        """Linear, to be assembled (num_dofs,), in N for u and 0 for θ."""
+        """Linear form of the unit load (num_dofs,), in N for u and 0 for θ."""
         _, (v, _) = self._trial_and_test()
         load = self.loaded * ufl.dot(self.load_direction, v)
         return fem.form(load * ufl.dx(degree=2, domain=self._space.mesh))
 
     def _trial_and_test(self) -> tuple[Any, Any]:
-        """Displacement and rotation of either."""
+        """Return the displacement and rotation of the trial and the test function."""
         return ufl.split(ufl.TrialFunction(self._space)), ufl.split(ufl.TestFunction(self._space))
 
     def _constant(self, value: float) -> Any:
-        """Not a number: the compiled form then serves every material."""
+        """Return a form constant instead of a number: the compiled form serves every material."""
         return fem.Constant(self._space.mesh, PETSc.ScalarType(value))

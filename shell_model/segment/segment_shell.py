@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""One segment as a shell: distributed matrices, supports, and the nodes of its outlines."""
+"""Shell of one segment: distributed matrices, supports, and the nodes of its outlines."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ _ROUND_OFF = 1.0e-10
 
 @dataclass(frozen=True, slots=True)
 class SegmentShell(Shell):
-    """The shell of one segment, which loads push as they do a :class:`geometry.load.Member`.
+    """Shell of one segment, with the loads of a :class:`geometry.load.Member`.
 
     Args:
         unit_loads: direction → (num_owned,) a uniform load of 1 N/m along it, zero in held rows;
-            it is spread over the plain section, collars and diaphragms have no part in it.
-        plain_loads: direction → (num_owned,) what the plain section feels of an acceleration along
-            it, as 1 N/m on average; ``unit_loads`` unless it tapers.
-        stiffener_loads: direction → (num_owned,) what collars and diaphragms alone feel of an
+            it is spread over the plain section, without collars and diaphragms.
+        plain_loads: direction → (num_owned,) inertia of the plain section under an acceleration
+            along it, as 1 N/m on average; ``unit_loads`` unless it tapers.
+        stiffener_loads: direction → (num_owned,) inertia of collars and diaphragms alone under an
             acceleration of 1 m/s² along it, in N, zero in held rows.
-        masses: what the segment carries.
-        section: the plates.
-        segment: what it is made from.
+        masses: point masses on the segment.
+        section: that of the plates.
+        segment: its geometry and material.
         mesh: on rank 0.
     """
 
@@ -56,12 +56,12 @@ class SegmentShell(Shell):
     mesh: PlatedMesh | None
 
     def outline(self, x: float) -> Outline:
-        """The nodes at x, the same on every rank. Collective."""
+        """Return the outline at x, the same on every rank. Collective."""
         section = self.segment.section_at(x)
         return Outline.around(self.comm, self.nodes, self.node_dofs, section, x)
 
     def own_load(self, directions: Iterable[Direction]) -> Array:
-        """(num_owned,) the segment's uniform loads that are applied at t = 0 and kept, in N."""
+        """Return the uniform loads (num_owned,) that are applied at t = 0 and kept, in N."""
         kept = {"z": self.segment.load}
         if self.segment.lateral is not None:
             kept["y"] = self.segment.lateral.load
@@ -69,19 +69,21 @@ class SegmentShell(Shell):
         return np.asarray(np.sum(parts, axis=0))
 
     def force(self, x: float, direction: Direction) -> Array:
-        """(num_owned,) 1 N at x in m, spread over the walls that carry it in their own plane."""
+        """Return the vector (num_owned,) of 1 N at x in m, spread over the shear-carrying walls."""
         return self.row(self.outline(x).wall_deflection(direction))
 
     def moment(self, x: float, direction: Direction) -> Array:
-        """(num_owned,) 1 N·m at x in m, spread over all walls as bending stress is."""
+        """Return the vector (num_owned,) of 1 N·m at x in m, as bending stress of all walls."""
         return self.row(self.outline(x).rotation(direction))
 
     def torque(self, x: float) -> Array:
-        """(num_owned,) 1 N·m at x in m about the axis, spread along all walls."""
+        """Return the vector (num_owned,) of a torque of 1 N·m at x in m, spread along all walls."""
         return self.row(self.outline(x).twist())
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
-        """(num_owned,) 1 N/m between mesh lines at two x in m, or along all of it. Collective."""
+        """Return the load (num_owned,) of 1 N/m between mesh lines at two x in m, or all along.
+
+        Collective."""
         if span is None:
             return self.unit_loads[direction]
         start, end = span
@@ -93,34 +95,34 @@ class SegmentShell(Shell):
         return load / self.segment.area * self.free
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        """(num_owned,) an acceleration that the plain segment feels as so many N/m."""
+        """Return the load (num_owned,) of an acceleration, given in N/m on the plain segment."""
         acceleration = force / self.segment.mass_per_length
         whole = force * self.plain_loads[direction]
         return whole + acceleration * self.stiffener_loads[direction]
 
     def turning(self, direction: Direction) -> Array:
-        """(num_owned,) the inertia of all plates against 1 rad/s² about x = 0. Collective."""
+        """Return the inertia (num_owned,) of all plates under 1 rad/s² about x = 0. Collective."""
         axis = np.cross([1.0, 0.0, 0.0], np.eye(3)[COMPONENT[direction]])
-        # What is held takes part in the motion of what is not.
+        # Constrained degrees of freedom contribute to the inertia of the free ones.
         mass = compat.assemble_matrix(self.matrices.plates.forms.mass, [], 0.0)
         inertia = times(mass, self.turn(axis, 0.0)[:, None])[:, 0] * self.free
         mass.destroy()
         return np.asarray(inertia)
 
     def row(self, weights: Row) -> Array:
-        """(num_owned,) this rank's part of a row given as global dof → weight."""
+        """Return this rank's part (num_owned,) of a row given as global dof → weight."""
         return _local_row(self.owned[0], self.free, weights)
 
 
 def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) -> SegmentShell:
     """Assemble a segment's shell. Collective.
 
-    A rigid support holds the section's outline against y and z, which leaves it free to tilt; a
-    clamped one holds every displacement and rotation of it. An elastic support is a spring on
-    the mean deflection of the walls, along z and along y, with the twist held; what holds one slope
-    alone, or gives way to it, is a spring on the rotation of the section. Point masses move with
-    the same means. Nothing holds the segment along x, and nothing pushes it there. A diaphragm is
-    held, pushed and read through the outline to which it is welded alone.
+    A rigid support fixes the section's outline along y and z, which leaves it free to tilt; a
+    clamped one fixes every displacement and rotation of it. An elastic support is a spring on
+    the mean deflection of the walls, along z and along y, with the twist fixed. A support that
+    fixes or elastically restrains one slope alone is a spring on the rotation of the section.
+    Point masses move with the same means. The segment is neither fixed nor loaded along x. A
+    diaphragm is fixed, loaded and read through the outline to which it is welded alone.
 
     Args:
         comm: the ranks that share it.
@@ -181,11 +183,11 @@ def _local_row(first: int, free: Mask, weights: Row) -> Array:
 
 
 def _unit_loads(comm: MPI.Comm, plates: Plates, thickness: Array | None) -> dict[Direction, Array]:
-    """Direction → (num_owned,) 1 N/m³ along it on a thickness (num_triangles,) in m on rank 0.
+    """Return unit loads (num_owned,) by direction: 1 N/m³ on a thickness (num_triangles,) in m.
 
-    Collective. It has exact zeros at the vertices, where a quadratic function has no mean, and at
-    most two cells that carry it elsewhere, so that no order of summation is left in that of a plain
-    box.
+    The thickness is on rank 0. Collective. A load has exact zeros at the vertices, where a
+    quadratic function has no mean, and at most two cells that carry it elsewhere, so that no order
+    of summation is left in that of a plain box.
     """
     loaded = compat.cellwise_function(plates.space.mesh, comm.bcast(thickness))
     plates.forms.loaded.x.array[:] = loaded.x.array

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A shell as distributed matrices: what its plates weigh, what they resist, what holds them."""
+"""Distributed matrices of a shell: mass, stiffness, supports."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from shell_model.segment.forms import ShellForms
 ON_LINE = 1.0e-7
 
 
-# What a support holds: 0 of the displacement or 1 of the rotation, which component, and of places
-# (num_places, 3) in m where.
+# Constraint of a support: 0 of the displacement or 1 of the rotation, component, and a function
+# of places (num_places, 3) in m.
 Hold = tuple[int, int, Callable[[Array], Mask]]
 
 
 class Plates(NamedTuple):
-    """What plates are before they are matrices: function space, forms, supports.
+    """Plates before assembly: function space, forms, supports.
 
     ``compressed``: whether they carry an axial force.
     """
@@ -45,14 +45,14 @@ class Plates(NamedTuple):
 
 
 class Matrices:
-    """Matrices of plates with springs and masses, assembled when they are asked for. Collective.
+    """Matrices of plates with springs and masses, assembled on first use. Collective.
 
     Args:
         comm: the ranks that share them.
         plates: their forms.
         holds: Dirichlet conditions.
-        springs, masses: what is attached.
-        copies: of the plates.
+        springs, masses: attached ones.
+        copies: number of the plates.
     """
 
     def __init__(
@@ -91,7 +91,7 @@ class Matrices:
 
 @dataclass(frozen=True, slots=True)
 class Shell:
-    """K u = f and M ü, distributed by rows.
+    """Shell model K u = f and M ü, distributed by rows.
 
     Args:
         comm: the ranks that share it.
@@ -117,19 +117,20 @@ class Shell:
 
     @property
     def stiffness(self) -> PETSc.Mat:
-        """(num_dofs, num_dofs), decoupled and positive in held rows. Collective."""
+        """Stiffness (num_dofs, num_dofs), decoupled and positive in fixed rows. Collective."""
         return self.matrices.stiffness
 
     @property
     def mass(self) -> PETSc.Mat:
-        """(num_dofs, num_dofs), 0 on the diagonal of held rows, which puts these degrees of freedom
-        at infinite frequency. Collective.
+        """Mass matrix (num_dofs, num_dofs), with 0 on the diagonal of fixed rows.
+
+        These degrees of freedom are at infinite frequency. Collective.
         """
         return self.matrices.mass
 
     @property
     def geometric(self) -> PETSc.Mat | None:
-        """(num_dofs, num_dofs) K_G, what axial forces take from the stiffness; None without any.
+        """Matrix K_G (num_dofs, num_dofs), the softening by axial forces; None without any.
 
         Collective.
         """
@@ -147,7 +148,7 @@ class Shell:
         return int(first), int(last)
 
     def rigid_motions(self) -> Array:
-        """(num_owned, num_free) rigid motions that the supports leave, six for a free segment.
+        """Return the free rigid motions (num_owned, num_free), six for a segment without supports.
 
         Displacement nodes get ω × (x − middle), rotation nodes ω itself; combinations that
         move a held row or stretch a spring drop out. Collective.
@@ -171,7 +172,7 @@ class Shell:
         return np.asarray(motions @ self.comm.bcast(unheld))
 
     def turn(self, axis: Array, x: float) -> Array:
-        """(num_owned,) motion of turning by 1 rad about an axis (3,) through x in m."""
+        """Return the motion (num_owned,) of a turn by 1 rad about an axis (3,) through x in m."""
         first, _ = self.owned
         motion = np.zeros(self.free.size)
         motion[self.node_dofs - first] = np.cross(axis, self.nodes - [x, 0.0, 0.0])
@@ -180,7 +181,7 @@ class Shell:
 
 
 def free_rows(space: Any, holds: list[Any]) -> Mask:
-    """(num_owned,) False in the rows of a space that are held."""
+    """Return the mask (num_owned,) of the free rows of a space, False in fixed rows."""
     free = np.ones(space.dofmap.index_map.size_local, dtype=bool)
     for bc in holds:
         held, _ = bc.dof_indices()
@@ -189,9 +190,9 @@ def free_rows(space: Any, holds: list[Any]) -> Mask:
 
 
 def hold(space: Any, part: int, component: int, where: Callable[[Array], Mask]) -> Any:
-    """Dirichlet condition: zero of a component of displacements, part 0, or rotations, part 1.
+    """Return a Dirichlet condition: zero displacement (part 0) or rotation (part 1) component.
 
-    ``where`` tells of places (num_places, 3) in m which are held.
+    ``where`` returns which of places (num_places, 3) in m are fixed.
     """
     held = space.sub(part).sub(component)
     collapsed, _ = held.collapse()
@@ -202,7 +203,7 @@ def hold(space: Any, part: int, component: int, where: Callable[[Array], Mask]) 
 
 
 def owned_nodes(space: Any, part: int) -> tuple[Array, Indices]:
-    """Places of a vector part's nodes on this rank, and the global rows of their components."""
+    """Return places of a vector part's nodes on this rank, and global rows of their components."""
     collapsed, to_parent = space.sub(part).collapse()
     index_map = space.dofmap.index_map
     local = np.asarray(to_parent, dtype=np.int32).reshape(-1, 3)
@@ -212,7 +213,7 @@ def owned_nodes(space: Any, part: int) -> tuple[Array, Indices]:
 
 
 def assemble_plates(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) -> Plates:
-    """The plates of a mesh, a segment's whole one or a part of it. Collective."""
+    """Assemble the plates of a mesh, that of a whole segment or a part of it. Collective."""
     held = list(_held(segment))
     points, triangles, of_cells = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64), None
     if mesh is not None:
@@ -229,7 +230,7 @@ def assemble_plates(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) -
 
 
 def _held(segment: Segment) -> Iterator[Hold]:
-    """What rigid supports hold: the outline along y and z, every part of it where they clamp."""
+    """Return the conditions of rigid supports: y and z of the outline, all parts if clamped."""
     for support in segment.supports:
         if support.stiffness is not None:
             continue

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Solves with K + σ M."""
+"""Linear solvers for K + σ M."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from shell_model.segment.shell import Shell
 
 
 def dense(matrix: PETSc.Mat, block: Array) -> PETSc.Mat:
-    """A block (num_owned, num_columns) as a matrix that another one is multiplied with."""
+    """Return a block (num_owned, num_columns) as a dense matrix for products."""
     _, rows = matrix.getSizes()
     count = block.shape[1]
     columns = count if matrix.comm.rank == 0 else 0, count
@@ -20,7 +20,7 @@ def dense(matrix: PETSc.Mat, block: Array) -> PETSc.Mat:
 
 
 def times(matrix: PETSc.Mat, block: Array) -> Array:
-    """(num_owned, num_columns) matrix times block. Collective."""
+    """Return matrix times block (num_owned, num_columns). Collective."""
     right = dense(matrix, block)
     left = matrix.matMult(right)
     product: Array = left.getDenseArray().copy(order="F")
@@ -30,7 +30,7 @@ def times(matrix: PETSc.Mat, block: Array) -> Array:
 
 
 def quadratic_form(matrix: PETSc.Mat, vector: Array) -> float:
-    """uᵀ A u of a vector (num_owned,): twice an energy in J, say. Collective."""
+    """Return uᵀ A u of a vector (num_owned,): twice an energy in J, for example. Collective."""
     right, left = matrix.createVecs()
     right.array[:] = vector
     matrix.mult(right, left)
@@ -41,7 +41,7 @@ def quadratic_form(matrix: PETSc.Mat, vector: Array) -> float:
 
 
 def gram(comm: MPI.Comm, left: Array, right: Array) -> Array:
-    """(num_left, num_right) products of all columns, the same on every rank. Collective."""
+    """Return products (num_left, num_right) of all columns, the same on every rank. Collective."""
     product = np.ascontiguousarray(left.T @ right)
     comm.Allreduce(MPI.IN_PLACE, product)
     return product
@@ -55,7 +55,7 @@ _PREFIX, _ORDERING = "shifted_", "mat_mumps_icntl_7"
 
 
 class ShiftedSolver:
-    """(K + σ M)⁻¹ with σ = (2π frequency)², factorised for one frequency (Hz) after another.
+    """Solver (K + σ M)⁻¹ with σ = (2π frequency)², factorised for one frequency (Hz) at a time.
 
     Collective.
     """
@@ -82,7 +82,7 @@ class ShiftedSolver:
         options.delValue(_ORDERING)
 
     def move(self, frequency: float) -> None:
-        """Go to another frequency; what was analysed of the matrix's structure is kept."""
+        """Factorise at another frequency and reuse the symbolic analysis."""
         sigma = (2.0 * np.pi * frequency) ** 2
         if sigma == self.sigma:
             return
@@ -96,7 +96,7 @@ class ShiftedSolver:
         self._factors.setUp()
 
     def __call__(self, block: Array) -> Array:
-        """(num_owned, num_columns) the solutions for a block."""
+        """Return the solutions (num_owned, num_columns) for a block."""
         if block.shape[1] == 0:
             return block
         right, left = dense(self._matrix, block), dense(self._matrix, np.empty_like(block))
@@ -107,6 +107,6 @@ class ShiftedSolver:
         return solution
 
     def destroy(self) -> None:
-        """Give the memory of the factors back."""
+        """Free the memory of the factors."""
         for thing in (self._factors, self._matrix):
             thing.destroy()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Fields over time for ParaView: one ``.vtu`` for each time, and a ``.pvd`` that lists them."""
+"""Field series for ParaView: one ``.vtu`` for each time, and a ``.pvd`` that lists them."""
 
 from __future__ import annotations
 
@@ -34,21 +34,21 @@ _TRIANGLE = 5
 
 
 def series_times(fields: xr.Dataset) -> list[float]:
-    """As many as a series may have, evenly spread over the run, its ends included, in s."""
+    """Return the permitted number of times, evenly spread over the run with its ends, in s."""
     times = fields["time"].values
     frames = max(2, min(FRAMES, TRIANGLES // fields.sizes["triangle"]))
     return [float(t) for t in np.linspace(times[0], times[-1], frames)]
 
 
 def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float]) -> list[Path]:
-    """Write displacement and stresses at some times; a program opens them by the ``.pvd``.
+    """Write displacement and stresses at some times; ParaView opens them by the ``.pvd``.
 
     Each ``.vtu`` has at the points the displacement in m, and on the triangles the number of
     the segment, von Mises stresses of both faces and the middle, and the six ``COMPONENTS``,
     all in Pa. The times in the ``.pvd`` are those of the output that are next to the given ones.
 
     Args:
-        fields: what ``shell_model.stress.fields`` gathers, and the modal coordinates ``state``
+        fields: those of ``shell_model.stress.fields``, and the modal coordinates ``state``
             (time, mode); attribute ``model``.
         folder: gets ``MODEL.pvd`` and ``MODEL-NUMBER.vtu``.
         times: in s.
@@ -88,7 +88,7 @@ def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float])
 
 
 def _named(stress: Stress) -> dict[str, npt.NDArray[np.generic]]:
-    """What is on triangles, by its name."""
+    """Return the data on triangles by their names."""
     components = np.concatenate([stress.membrane, stress.bending], axis=1)
     return {f"von Mises, {face} (Pa)": stress.von_mises(face) for face in FACES} | {
         f"{name.replace('_', ' ')} (Pa)": values
@@ -97,7 +97,7 @@ def _named(stress: Stress) -> dict[str, npt.NDArray[np.generic]]:
 
 
 class TriangleFiles:
-    """Writes files of the same points (num_points, 3) in m and triangles (num_triangles, 3)."""
+    """Writer of files with common points (num_points, 3) in m, triangles (num_triangles, 3)."""
 
     def __init__(self, points: Array, triangles: npt.NDArray[np.int32]) -> None:
         count = len(triangles)
@@ -126,7 +126,7 @@ class TriangleFiles:
 
 
 def _packed(name: str, values: Values) -> str:
-    """An array as VTK has it: how long its packed blocks are, and the blocks, in base 64."""
+    """Return an array in VTK's format: sizes of compressed blocks, and the blocks, in base 64."""
     raw = np.ascontiguousarray(values).tobytes()
     blocks = [zlib.compress(raw[k : k + BLOCK], LEVEL) for k in range(0, len(raw), BLOCK)]
     last = len(raw) % BLOCK

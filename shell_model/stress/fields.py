@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Displacement and stress of a reduced shell: the data of pictures and field files."""
+"""Displacement and stress fields of a reduced shell: the data of pictures and field files."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from shell_model.stress.stresses import COMPONENTS, Modes, triangle_areas
 
 
 def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:
-    """(num_modes, num_triangles, 6) ``COMPONENTS`` in Pa of displacement shapes on rank 0.
+    """Return ``COMPONENTS`` (num_modes, num_triangles, 6) in Pa of displacement shapes on rank 0.
 
     Shapes are (num_owned, num_modes), this rank's rows. Collective; None elsewhere.
     """
@@ -54,13 +54,13 @@ def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:
     for triangles, values in gathered:
         modes[:, triangles, :] = values.transpose(2, 1, 0)
     modes /= triangle_areas(mesh.points, mesh.triangles)[:, None].astype(np.float32)
-    # The form knows the curvature; a face is half a thickness off.
+    # The form contains the curvature; a face is half a thickness away.
     modes[:, :, 3:] *= 0.5 * mesh.thickness[:, None].astype(np.float32)
     return modes
 
 
 def wall_frame(domain: Any) -> tuple[Any, Any, Any]:
-    """Unit vectors x, s and the outward normal of each triangle, see the module."""
+    """Return unit vectors x, s and the outward normal of each triangle, see the module."""
     _, _, e3 = facet_frame(domain)
     place = ufl.SpatialCoordinate(domain)
     # A length beside which no section is large, so that the normal of a diaphragm decides.
@@ -77,7 +77,7 @@ def wall_frame(domain: Any) -> tuple[Any, Any, Any]:
 
 
 def _stress_form(space: Any, segment: Segment) -> tuple[Any, Any]:
-    """Compiled (cell, dof) form of a component times the area, and which component it is.
+    """Compile the (cell, dof) form of a component times the area; return it and the component.
 
     The bending part is for a unit of the distance from the mid-surface.
     """
@@ -115,13 +115,13 @@ def gather_fields(
     coordinates: BoomCoordinates,
     system: GapSystem,
 ) -> xr.Dataset | None:
-    """Bring the shapes and their stresses to rank 0. Collective; None elsewhere.
+    """Gather the shapes and their stresses on rank 0. Collective; None elsewhere.
 
     Args:
-        boom: whose feet hold what its cylinders push.
-        shells, reduced: of its segments.
-        coordinates: the system's first ones.
-        system: whose observers read the cylinders' forces.
+        boom: its foot supports carry the forces of its cylinders.
+        shells, reduced: one each for each segment.
+        coordinates: the first ones of the system.
+        system: its observers read the cylinders' forces.
 
     Returns:
         ``points`` (point, component) in m, ``triangles`` (triangle, corner), ``segment`` and
@@ -171,7 +171,7 @@ def gather_fields(
 
 
 def _at_vertices(shell: SegmentShell, shapes: Array) -> _Numbers | None:
-    """(3 num_points, num_modes) displacements of a mesh's points on rank 0. Collective."""
+    """Return displacements (3 num_points, num_modes) of a mesh's points on rank 0. Collective."""
     points = shell.comm.bcast(None if shell.mesh is None else shell.mesh.points)
     distance, vertex = cKDTree(points).query(shell.nodes)
     at_vertex = distance < ON_LINE
@@ -187,15 +187,15 @@ def _at_vertices(shell: SegmentShell, shapes: Array) -> _Numbers | None:
 
 
 def _along(segment: Segment, mesh: PlatedMesh, force: Callable[[Array], Array]) -> Array:
-    """(num_triangles,) the stress along x in Pa of normal forces in N at x in m.
+    """Return the stress along x (num_triangles,) in Pa of normal forces in N at x in m.
 
-    The plain walls carry them, and hand them on to collars.
+    The plain walls carry them and transfer them to collars.
     """
     return force(mesh.along) / segment.area * mesh.even / mesh.thickness
 
 
 def _axial_stress(boom: Boom, meshes: Sequence[PlatedMesh]) -> dict[str, _Variable]:
-    """Where there are axial forces."""
+    """Return the stresses of axial forces, if there are any."""
     if not boom.compressed:
         return {}
     stresses = [
@@ -212,7 +212,7 @@ def _own_stresses(
     coordinates: BoomCoordinates,
     system: GapSystem,
 ) -> dict[str, _Variable]:
-    """The variables of every segment that give its stresses."""
+    """Return the variables of every segment that give its stresses."""
     modes = [one for one in stresses if one is not None]
     sizes = [len(one) for one in modes]
     every = coordinates.of_rows(np.eye(sum(sizes)))
@@ -230,8 +230,9 @@ def _own_stresses(
 
 
 def _pushed(boom: Boom, number: int, mesh: PlatedMesh) -> Iterator[tuple[str, Modes]]:
-    """The force of each luffing cylinder of a segment, and (1, num_triangles, 6) stresses in Pa of
-    what 1 N of it pushes along the boom.
+    """Return luffing cylinders' forces, and stresses (1, num_triangles, 6) in Pa per 1 N axial.
+
+    They are those of one segment; each 1 N acts along the boom.
     """
     segment = boom.segments[number]
     for k, cylinder in enumerate(boom.cylinders, start=1):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The largest stresses of a run: near stations and supports at every output time, and of all.
+"""Stress maxima of a run: near stations and supports at every output time, and overall.
 
 Where a force enters at a line, as beside a web, the stress of the nearest triangles grows as
-the mesh refines: it tells where and when, and is no design stress. The mean over a patch of
-fixed size settles.
+the mesh refines: it shows the place and time of the maximum, and is no design stress. The mean over
+a patch of fixed size converges.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from shell_model.stress.stresses import Face, ShellStress, WallForces, wall_forc
 
 @dataclass(frozen=True, slots=True)
 class LargestPatch:
-    """The largest mean stress of a patch in Pa, when in s, in which segment, near which x in m."""
+    """Largest mean stress of a patch in Pa, its time in s, segment, and nearest place x in m."""
 
     von_mises: float
     time: float
@@ -31,7 +31,7 @@ class LargestPatch:
 
 @dataclass(frozen=True, slots=True)
 class CarriedAt:
-    """What the walls of a segment carry through the cross-section at x in m, by their names."""
+    """Forces of a segment's walls at the cross-section x in m, by the names of the walls."""
 
     segment: str
     x: float
@@ -40,7 +40,7 @@ class CarriedAt:
 
 @dataclass(frozen=True, slots=True)
 class PlaceHistory:
-    """The largest stresses in Pa of a segment near x in m, in each part of the run."""
+    """Largest stresses in Pa of a segment near x in m, in each part of the run."""
 
     segment: str
     x: float
@@ -50,7 +50,7 @@ class PlaceHistory:
 
 @dataclass(frozen=True, slots=True)
 class StressHistory:
-    """The middles of the parts of a run in s, and what each place has in them."""
+    """Middles of the parts of a run in s, and the stresses of each place in them."""
 
     time: list[float]
     places: list[PlaceHistory]
@@ -58,17 +58,17 @@ class StressHistory:
 
 @dataclass(frozen=True, slots=True)
 class StressSummary:
-    """The largest stress of a run, and what the walls carry then.
+    """Largest stress of a run, and the wall forces at that time.
 
     Args:
-        von_mises: in Pa, of a triangle.
-        time: when, in s.
-        segment, wall, face: where.
-        x, y, z: of the triangle in m.
-        band: how far the places of ``history`` reach to each side, in m.
-        patch: None where no segment comes near a place.
-        walls: of each segment at each place.
-        history: over the run.
+        von_mises: largest stress of a triangle in Pa.
+        time: time of this stress in s.
+        segment, wall, face: its location.
+        x, y, z: coordinates of the triangle in m.
+        band: reach of the places of ``history`` to each side, in m.
+        patch: None if no segment comes near a place.
+        walls: forces of each segment at each place.
+        history: maxima over the run.
     """
 
     von_mises: float
@@ -85,18 +85,18 @@ class StressSummary:
     history: StressHistory
 
 
-# How far a band reaches to each side of its place, in m; a patch is half a wall of it.
+# Reach of a band to each side of its place, in m; a patch is half a wall of it.
 BAND = 0.25
 
-# A summary tells the history in so many parts of the run.
+# Number of parts of the run in the history of a summary.
 PARTS = 80
 
-# Away from the bands the stress changes with the slow motion; so many instants show it.
+# Away from the bands the stress changes with the slow motion; this many instants suffice.
 INSTANTS = 400
 
 
 class Largest(NamedTuple):
-    """A von Mises stress in Pa, the position of its output time, and its triangle."""
+    """Von Mises stress in Pa, the position of its output time, and its triangle."""
 
     von_mises: float
     step: int
@@ -104,7 +104,7 @@ class Largest(NamedTuple):
 
 
 def near_places(shell: ShellStress, places: Sequence[float], names: Sequence[str]) -> xr.Dataset:
-    """The largest stresses of each segment in a band around each place, over time.
+    """Return the largest stresses of each segment in a band around each place, over time.
 
     Args:
         shell: in motion.
@@ -152,7 +152,7 @@ def near_places(shell: ShellStress, places: Sequence[float], names: Sequence[str
 
 
 def sum_up(shell: ShellStress, history: xr.Dataset) -> StressSummary:
-    """The largest stress of :func:`near_places`, that of a patch, and what the walls carry then."""
+    """Return the maxima of :func:`near_places`, of triangles and patches, with wall forces."""
     names = [str(name) for name in history["segment"].values]
     places = [float(x) for x in history["place"].values]
     worst = _largest(shell, history)
@@ -195,7 +195,7 @@ def sum_up(shell: ShellStress, history: xr.Dataset) -> StressSummary:
 
 
 def _summed_history(history: xr.Dataset) -> StressHistory:
-    """The largest values of each part of the run."""
+    """Return the largest values of each part of the run."""
     time = history["time"].values
     parts = np.array_split(np.arange(time.size), min(PARTS, time.size))
     rows = []
@@ -212,7 +212,7 @@ def _summed_history(history: xr.Dataset) -> StressHistory:
 
 
 def _largest(shell: ShellStress, history: xr.Dataset) -> Largest:
-    """Of the bands at every output time, and of all triangles at some."""
+    """Return the largest stress of the bands at every output time, and of all triangles at some."""
     bands = history["von_mises"].values
     stride = max(1, shell.time.size // INSTANTS)
     segments = np.unique(shell.segment)
@@ -227,7 +227,7 @@ def _largest(shell: ShellStress, history: xr.Dataset) -> Largest:
 
 
 def _search(shell: ShellStress, triangles: Indices, first: int, stride: int) -> Largest:
-    """The largest of some triangles at every so many output times from one on."""
+    """Return the largest stress of some triangles at every n-th output time from a given one."""
     worst = Largest(-1.0, 0, 0)
     for part, stress in shell.over_time(triangles, slice(first, None, stride)):
         values = stress.largest()
@@ -239,7 +239,7 @@ def _search(shell: ShellStress, triangles: Indices, first: int, stride: int) -> 
 
 
 def _patches(shell: ShellStress, band: Indices) -> Array:
-    """(num_patches, num_triangles) area weights of the halves of the walls in a band."""
+    """Return area weights (num_patches, num_triangles) of the halves of the walls in a band."""
     wall, places = shell.wall[band], shell.centroids[band, 1:]
     # A flat wall is halved at its middle, a steep one or a diaphragm at half its height.
     flat = np.abs(shell.outward[band, 2]) > np.sqrt(0.5)

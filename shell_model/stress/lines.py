@@ -25,7 +25,7 @@ _BANDS = 60
 
 
 def lines(fields: xr.Dataset, boom: Boom) -> list[Line]:
-    """One for each segment, cut where something acts on the boom, too."""
+    """Return the lines of each segment, with cuts at all supports, loads and contacts."""
     still = fields.assign(
         state=(("time", "mode"), np.zeros((1, fields.sizes["mode"]))), time=("time", np.zeros(1))
     )
@@ -64,7 +64,7 @@ def _line(shell: ShellStress, fields: xr.Dataset, boom: Boom, number: int) -> Li
 
 
 def cuts_around(spans: Array, places: Sequence[float]) -> Array:
-    """x in m, rising, of mesh lines that no triangle crosses, with the ends of the segment.
+    """Return x in m, rising, of mesh lines that no triangle crosses, with the segment's ends.
 
     Args:
         spans: (num_triangles, 2) the smallest and the largest x of each in m.
@@ -85,7 +85,7 @@ def cuts_around(spans: Array, places: Sequence[float]) -> Array:
 def _moved(
     shell: ShellStress, fields: xr.Dataset, triangles: Indices, band: Indices, num_bands: int
 ) -> tuple[Array, Array, Array]:
-    """(num_bands, num_modes) deflections along y and z, and the turn about x: of all walls."""
+    """Return mean deflections along y and z and the twist (num_bands, num_modes) of all walls."""
     corners = fields["triangles"].values[triangles]
     y, z = (fields["points"].values[corners, way] for way in (1, 2))
     area = np.repeat(shell.areas[triangles, None] / 3.0, 3, axis=1)
@@ -112,7 +112,7 @@ def _moved(
 def _slopes(
     shell: ShellStress, fields: xr.Dataset, triangles: Indices, band: Indices, num_bands: int
 ) -> Array:
-    """(2, num_bands, num_modes) of deflections along y and z: mean of all walls by their volume."""
+    """Return mean slopes (2, num_bands, num_modes) along y and z of all walls, by volume."""
     corners = fields["triangles"].values[triangles]
     points = fields["points"].values[corners]
     across = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
@@ -128,7 +128,7 @@ def _slopes(
 
 
 def _reaches(corners: Array, part: Indices) -> tuple[Array, Array]:
-    """(num_parts,) how far a wall reaches along z and along y in m within each band."""
+    """Return the extents (num_parts,) of a wall along z and y in m within each band."""
     found = []
     for way in (2, 1):
         low, high = np.full((2, int(part.max()) + 1), [[np.inf], [-np.inf]])
@@ -147,7 +147,7 @@ def _forces(
     lengths: Array,
     reaches: tuple[Array, Array],
 ) -> Array:
-    """(5, num_bands, num_own) V, M, lateral V and M, torque for a unit of each coordinate."""
+    """Return V, M, lateral V and M, torque (5, num_bands, num_own) per unit of each coordinate."""
     strength = shell.thickness[triangles] * shell.areas[triangles] / lengths[band]
     y, z = shell.centroids[triangles, 1:].T
     slope, across, up = shell.outward[triangles].T

@@ -31,16 +31,16 @@ COMPONENTS = (
     "bending_xs",
 )
 
-# What a face adds of the bending stress.
+# Factor of the bending stress at each face.
 FACES: dict[Face, float] = {"outer": 1.0, "middle": 0.0, "inner": -1.0}
 
-# Lengths in m that are the same.
+# Lengths that differ by less are equal, in m.
 SAME_LINE = 1.0e-6
 
 # In m².
 _NOTHING = 1.0e-300
 
-# Numbers that are in memory at once when a history is computed: what a processor keeps at hand.
+# Numbers in memory at once when a history is computed, for the processor's cache.
 _AT_ONCE = 1_000_000
 
 # Instants that are computed together.
@@ -49,7 +49,7 @@ _TOGETHER = 10
 
 @dataclass(frozen=True, slots=True)
 class WallForces:
-    """What one wall carries through a cross-section, at the side towards the tip.
+    """Forces of one wall at a cross-section, on the side towards the tip.
 
     Args:
         axial: force along x in N, positive in tension.
@@ -69,29 +69,29 @@ class Stress(NamedTuple):
 
     Args:
         membrane: (..., 3) σ_x, σ_s, τ_xs of the mid-surface.
-        bending: (..., 3) what the outer face has beyond that, and the inner one lacks.
+        bending: (..., 3) excess of the outer face over that, and deficit of the inner face.
     """
 
     membrane: npt.NDArray[np.float32]
     bending: npt.NDArray[np.float32]
 
     def at(self, face: Face) -> npt.NDArray[np.float32]:
-        """(..., 3) σ_x, σ_s, τ_xs of a face in Pa."""
+        """Return σ_x, σ_s, τ_xs (..., 3) of a face in Pa."""
         return np.asarray(self.membrane + FACES[face] * self.bending)
 
     def von_mises(self, face: Face) -> npt.NDArray[np.float32]:
-        """(...) of the plane stress of a face, in Pa (Huber 1904, von Mises 1913)."""
+        """Return the stress (...) of a face in Pa by Huber (1904) and von Mises (1913)."""
         x, s, xs = np.moveaxis(self.at(face), -1, 0)
         return np.asarray(np.sqrt(x * x - x * s + s * s + 3.0 * xs * xs))
 
     def largest(self) -> npt.NDArray[np.float32]:
-        """(...) the larger von Mises stress of the two faces in Pa; the middle is never above."""
+        """Return the larger von Mises stress (...) of both faces in Pa; the middle is below it."""
         return np.maximum(self.von_mises("outer"), self.von_mises("inner"))
 
 
 @dataclass(frozen=True, slots=True)
 class ShellStress:
-    """The stresses of a shell in motion.
+    """Stresses of a shell in motion.
 
     Args:
         centroids: (num_triangles, 3) in m.
@@ -124,7 +124,7 @@ class ShellStress:
 
     @classmethod
     def of(cls, fields: xr.Dataset) -> ShellStress:
-        """From the fields that a run has written, see ``shell_model.stress.fields``."""
+        """Create the stresses from the fields of a run, see ``shell_model.stress.fields``."""
         segment, state = fields["segment"].values, fields["state"].values
         numbers = range(1, int(segment.max()) + 2)
         own = [fields[f"coordinates_{k}"].values for k in numbers]
@@ -144,7 +144,7 @@ class ShellStress:
 
     @classmethod
     def still(cls, mesh: PlatedMesh, modes: Modes) -> ShellStress:
-        """Of one segment in one state: (1, num_triangles, 6) ``COMPONENTS`` in Pa."""
+        """Return ``COMPONENTS`` (1, num_triangles, 6) of one segment in one state, in Pa."""
         return cls(
             **_geometry(mesh.points, mesh.triangles),
             thickness=mesh.thickness,
@@ -158,11 +158,11 @@ class ShellStress:
         )
 
     def at(self, t: float) -> Stress:
-        """Of all triangles, at the output time next to ``t`` (s)."""
+        """Return the stress of all triangles at the output time next to ``t`` (s)."""
         return next(self.instants([t]))
 
     def instants(self, times: Sequence[float]) -> Iterator[Stress]:
-        """Of all triangles, at the output times next to ``times`` (s), one after the other."""
+        """Yield the stress of all triangles at the output times next to ``times`` (s)."""
         steps = [int(np.abs(self.time - t).argmin()) for t in times]
         # The modes, which do not fit into a processor's memory, are read once for several times.
         for begin in range(0, len(steps), _TOGETHER):
@@ -178,7 +178,7 @@ class ShellStress:
     def over_time(
         self, triangles: Indices, steps: slice = slice(None), means: Array | None = None
     ) -> Iterator[tuple[slice, Stress]]:
-        """Stresses (num_of_these_times, num_triangles, 3) of some triangles, piece by piece.
+        """Yield stresses (num_of_these_times, num_triangles, 3) of some triangles, piece by piece.
 
         Args:
             triangles: numbers, all of one segment.
@@ -204,17 +204,17 @@ class ShellStress:
             yield part, _stress(values.transpose(0, 2, 1))
 
     def holds(self, segment: int, x: float) -> bool:
-        """Whether a segment comes to x (m)."""
+        """Return whether a segment contains x (m)."""
         spans = self.spans[self.segment == segment]
         return bool(spans[:, 0].min() - SAME_LINE <= x <= spans[:, 1].max() + SAME_LINE)
 
     def near(self, segment: int, x: float, reach: float) -> Indices:
-        """Numbers of a segment's triangles whose centroids are no farther from x than this (m)."""
+        """Return a segment's triangles whose centroids are no farther from x than this (m)."""
         close = np.abs(self.centroids[:, 0] - x) <= reach
         return np.flatnonzero(close & (self.segment == segment))
 
     def row(self, segment: int, x: float) -> Indices:
-        """Numbers of the triangles around a segment between the lines of its mesh next to x (m).
+        """Return the triangles around a segment between the lines of its mesh next to x (m).
 
         These lines go all around. At one of them, of the row towards the tip.
         """
@@ -225,13 +225,13 @@ class ShellStress:
         return np.flatnonzero(mine & (along > lines[after - 1]) & (along < lines[after]))
 
     def wall_name(self, triangle: int) -> str:
-        """What people call the wall or diaphragm of a triangle."""
+        """Return the common name of the wall or diaphragm of a triangle."""
         names, number = self.plates[self.segment[triangle]], int(self.wall[triangle])
         return names[number] if number < len(names) else f"diaphragm {number - len(names) + 1}"
 
 
 def lines_around(spans: Array) -> Array:
-    """x in m, rising, of mesh lines that none of the triangles' (num_triangles, 2) spans cross."""
+    """Return x in m, rising, of mesh lines that no triangle's span (num_triangles, 2) crosses."""
     first, last = np.sort(spans[:, 0]), np.sort(spans[:, 1])
     lines = np.unique(spans.round(6))
     begun = np.searchsorted(first, lines - SAME_LINE)
@@ -253,13 +253,13 @@ def _geometry(points: Array, triangles: Indices) -> dict[str, Array]:
 
 
 def triangle_areas(points: Array, triangles: Indices) -> Array:
-    """(num_triangles,) in m²."""
+    """Return the areas (num_triangles,) in m²."""
     a, b, c = np.moveaxis(points[triangles], 1, 0)
     return np.asarray(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1))
 
 
 def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[str, WallForces]:
-    """The forces of each wall at t in s, means over the row of elements that holds x in m."""
+    """Return the forces of each wall at t in s, means over the row of elements around x in m."""
     stress, row = shell.at(t), shell.row(segment, x)
     length = shell.spans[row, 1].max() - shell.spans[row, 0].min()
     forces = {}
@@ -284,11 +284,11 @@ def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[st
 
 
 def within(part: Indices, reach: Array, strength: Array, place: Array) -> Array:
-    """(num_triangles,) what a stress that is linear up a wall adds to its centroids' moment, in m³.
+    """Return the excess (num_triangles,) of a linear stress's moment over the centroids', in m³.
 
     Args:
         part: (num_triangles,) wall within a band of each triangle.
-        reach: (num_parts,) of walls from end to end in m.
+        reach: (num_parts,) extents of walls from end to end in m.
         strength: (num_triangles,) thickness times width in m².
         place: (num_triangles,) of the centroids in m.
     """
