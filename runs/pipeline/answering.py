@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""From models that have been built and have moved to what a designer asks."""
+"""Evaluation of built and integrated models: the design results of each model and of a run."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ from runs.pipeline.summary import Summary
 
 
 class _Model(NamedTuple):
-    """A model of a boom, all that stays constant in the load of its system, and along it."""
+    """A model of a boom, with all constant loads in the load of its system, and its lines."""
 
     boom: Boom
     system: GapSystem
     lines: Sequence[Line]
 
     def rests(self, found: Mapping[float, Array]) -> list[AtRest]:
-        """What is told of rests (num_modes,) by their time in s."""
+        """Return the static states at equilibria (num_modes,) by their time in s."""
         return [at_rest(*self, time, position) for time, position in found.items()]
 
     def modes(self, found: Mapping[float, Array]) -> list[Mode]:
-        """The first ones at the rest of t = 0."""
+        """Return the first modes at the equilibrium of t = 0."""
         return modes(*self, found[0.0]) if found else []
 
     def moved(
@@ -56,7 +56,7 @@ class _Model(NamedTuple):
         case: Case,
         model: Model,
     ) -> tuple[Moved, list[Life]]:
-        """What it has gone through, held against its rests."""
+        """Return the largest values of a motion beside those at rest, and the fatigue life."""
         still = np.array([*found.values()]).reshape(-1, self.system.num_modes)
         smooth = model.smooth
         motions = Motions(self.boom, self.lines, trajectory, still, rests, jumps=not smooth)
@@ -72,7 +72,7 @@ def answer_model(
     trajectory: Trajectory,
     shell: ShellOutput | None,
 ) -> ModelAnswers:
-    """Return what one model answers, on the first rank.
+    """Return the design results of one model, on the first rank.
 
     Args:
         boom: of the case.
@@ -103,12 +103,12 @@ def answer_model(
         tied = _tied(boom, model, played, found)
         return _beside_tied(answers, tied, positions(tied.system, times), boom, model, case)
     except NUMERICS:
-        # Rigid segments that are tied leave nothing to move, for one.
+        # For example, rigid segments without play leave no degree of freedom.
         return answers
 
 
 def _tied(boom: Boom, model: Model, played: _Model, found: Mapping[float, Array]) -> _Model:
-    """The same without play."""
+    """Return the same model without play."""
     without = boom.play_free
     if (own := model.without_play(boom)) is not None:
         system = own[0].gathered()
@@ -130,35 +130,35 @@ def _beside_tied(
     answers = replace(
         answers,
         tied=[rest for rest in rests if _as_begun(boom, rest.time)],
-        # Their shapes are those of the pressed boom to the eye.
+        # Their shapes look the same as those of the boom with play.
         tied_modes=[replace(mode, shapes=[]) for mode in tied.modes(found)],
     )
     if boom.driven:
-        # Tied it cannot be drawn out.
+        # The boom without play cannot extend.
         return answers
     try:
         motion = MotionPlan.of(tied.system, case, model).trajectory()
         moved, lives = tied.moved(motion, found, rests, case, model)
     except NUMERICS:
-        # What rests is known all the same.
+        # The static states are available all the same.
         return answers
     return replace(answers, tied_moved=moved, tied_life=lives)
 
 
 def _as_begun(boom: Boom, time: float) -> bool:
-    """Whether drives have all segments where they were at t = 0, at a time in s."""
+    """Return whether drives have all segments in their initial positions at a time in s."""
     return not any(drawn(boom, segment, time) for segment in range(len(boom.segments)))
 
 
 def answer_run(
     boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelAnswers]
 ) -> Answers:
-    """Return what all models answer together.
+    """Return the design results of all models of a run.
 
     Args:
-        boom: of the case.
-        case: of the run.
-        summary: of the run, without answers.
+        boom: that of the case.
+        case: the case of the run.
+        summary: that of the run, without design results.
         models: those that ran.
     """
     found = statics(case, boom)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a designer asks of a boom, answered: part of ``summary.json``; SI units."""
+"""Design results of a boom, part of ``summary.json``; SI units."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from runs.pipeline.strength import Life
 
 @dataclass(frozen=True, slots=True)
 class ModelAnswers:
-    """Of one model.
+    """Design results of one model.
 
     Args:
         rests: under the loads of t = 0, and where these change also those of the instants at which
@@ -48,13 +48,13 @@ class ModelAnswers:
 
     @property
     def farthest_rest(self) -> AtRest | None:
-        """That whose tip is farthest, wherever it is drawn to; None without any."""
+        """The static state with the farthest tip, at any extension; None without any."""
         return max([*self.rests, *self.drawn], key=lambda rest: abs(rest.tip), default=None)
 
 
 @dataclass(frozen=True, slots=True)
 class Added:
-    """What play adds to a number.
+    """The increase of a number by play.
 
     Args:
         what: as of :class:`Peak`, or ``deflection at rest``, ``first frequency``, ``stress``.
@@ -71,18 +71,18 @@ class Added:
 
     @property
     def added(self) -> float:
-        """In the unit."""
+        """Increase by play, in the unit."""
         return self.played - self.tied
 
     @property
     def share(self) -> float | None:
-        """Of the number without play; None where that is nothing."""
+        """Increase as a part of the number without play; None where that is zero."""
         return self.added / self.tied if self.tied else None
 
 
 @dataclass(frozen=True, slots=True)
 class PlayAdds:
-    """What play adds in one model.
+    """The increases of numbers by play in one model.
 
     Args:
         model: with play.
@@ -96,7 +96,7 @@ class PlayAdds:
 
 @dataclass(frozen=True, slots=True)
 class QualityNote:
-    """How far numbers can be trusted: one line.
+    """A statement of one line about the accuracy of the results.
 
     Args:
         what: ``agreement``, ``horizon``, ``reduction``, ``mesh``, ``energy`` or ``step``.
@@ -109,7 +109,7 @@ class QualityNote:
 
 @dataclass(frozen=True, slots=True)
 class Answers:
-    """Of a run.
+    """Design results of a run.
 
     Args:
         models: by their names.
@@ -130,7 +130,7 @@ class Answers:
 
 
 def added(models: list[Model], answers: Mapping[str, ModelAnswers]) -> list[PlayAdds]:
-    """Of each model with play.
+    """Return the increases by play of each model with play.
 
     Args:
         models: of the case, those that ran.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A model of the boom at rest, under the loads of the instants at which these are largest.
+"""Static states of a model of the boom, under the loads of the instants at which these are largest.
 
 Forces of a section are those of the part beyond it on the part before it: the normal force pulls
 where it is positive, a moment where it is positive pulls at the top (a lateral one at larger y).
@@ -27,13 +27,13 @@ from geometry.telescoping import drawn, places
 from runs.pipeline.pads import SIGNS, most_on_pad, one_sided_force
 from runs.pipeline.section_forces import rounded, section_forces
 
-# A part of the farthest way that is none.
+# Part of the largest travel below which a travel counts as zero.
 _SAME_WAY = 1.0e-12
 
 
 @dataclass(frozen=True, slots=True)
 class Diagram:
-    """A segment at rest, from its start to its end.
+    """Section forces and deflections of a segment at rest, from its start to its end.
 
     Args:
         segment: its name.
@@ -52,7 +52,7 @@ class Diagram:
 
 @dataclass(frozen=True, slots=True)
 class Tilt:
-    """What a joint gives way by its play and by what its contacts are pressed in.
+    """The rotation of a joint by its play and by the compression of its contacts.
 
     Args:
         inner, outer: names of the segments.
@@ -68,7 +68,7 @@ class Tilt:
 
 @dataclass(frozen=True, slots=True)
 class Pressed:
-    """A station.
+    """A station at rest: its contact force and compression.
 
     Args:
         place: its name, as trajectories have it.
@@ -90,7 +90,7 @@ class Pressed:
 
 @dataclass(frozen=True, slots=True)
 class AtRest:
-    """A model of the boom at rest.
+    """A static state of a model of the boom.
 
     Args:
         time: whose loads act, and as far drawn out as it is then, in s.
@@ -112,7 +112,7 @@ class AtRest:
 
 
 def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:
-    """A name for each station: its x in m, behind it ``y`` where it works to the sides.
+    """Return a name for each station: its x in m, followed by ``y`` for a lateral station.
 
     ``#2`` and so forth stands behind the name where others are at the same place.
     """
@@ -124,7 +124,7 @@ def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:
 
 
 def instants(system: GapSystem, duration: float) -> list[float]:
-    """0, and the times in s at which a load that changes is largest one way or the other.
+    """Return 0 and the times in s at which a variable load has an extreme value.
 
     Args:
         system: all that stays constant is in its ``load``.
@@ -135,8 +135,7 @@ def instants(system: GapSystem, duration: float) -> list[float]:
 
 
 def extended_instants(system: GapSystem, duration: float) -> list[float]:
-    """The times in s at which it first is drawn out, or in, farthest, and those at which a load is
-    largest one way or the other while it is.
+    """Return the times in s of the largest and least extension, and of the extreme loads meanwhile.
 
     Args:
         system: all that stays constant is in its ``load``.
@@ -157,7 +156,7 @@ def extended_instants(system: GapSystem, duration: float) -> list[float]:
 def _over_time(
     changes: Sequence[Excitation | Travel], system: GapSystem, duration: float
 ) -> tuple[Array, Array]:
-    """Times in s that follow all that changes, and (num_changes, num_times) of some of it."""
+    """Return times in s that resolve all changes, and values (num_changes, num_times) of some."""
     loads, ways = ([change.history for change in of] for of in (system.excitations, system.travels))
     times = followed([*loads, *ways], duration)
     values = np.array([change.history(times) for change in changes])
@@ -165,7 +164,7 @@ def _over_time(
 
 
 def _distinct(times: Array, values: Array, steps: Sequence[int]) -> list[float]:
-    """The first time in s of each of the different values among some steps."""
+    """Return the first time in s of each of the different values among some steps."""
     found: dict[tuple[float, ...], float] = {}
     for step in steps:
         found.setdefault(tuple(values[:, step]), float(times[step]))
@@ -173,7 +172,7 @@ def _distinct(times: Array, values: Array, steps: Sequence[int]) -> list[float]:
 
 
 def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float, Array]:
-    """Where it rests, (num_modes,), by the instants in s whose loads act.
+    """Return the equilibria (num_modes,) by the instants in s whose loads act.
 
     Instants under whose loads it has no rest are left out; there is none without the first one.
 
@@ -193,7 +192,7 @@ def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float,
 
 
 def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]:
-    """Where it rests when it is drawn out, or in, farthest, beside :func:`positions`.
+    """Return the equilibria at the largest and least extension, in addition to :func:`positions`.
 
     Args:
         system: of a model, all that stays constant in its ``load``.
@@ -211,7 +210,7 @@ def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]
 def at_rest(
     boom: Boom, system: GapSystem, lines: Sequence[Line], time: float, position: Array
 ) -> AtRest:
-    """Return what is told of a rest.
+    """Return the static state at an equilibrium.
 
     Args:
         boom: with the play that the system has.
@@ -246,7 +245,7 @@ def pressed(boom: Boom, system: GapSystem, position: Array) -> Iterator[Pressed]
     for k, ((x, direction), name, joint) in enumerate(
         zip_longest(boom.stations, place_names(boom.stations), joints)
     ):
-        # A tied model has stations, and no rows there.
+        # A model without play has stations, but no contact rows there.
         here = np.flatnonzero(system.station_of_row == k)
         sides = [
             sum(one_sided_force(system.laws[row], side, gaps[row]) for row in here)
@@ -263,7 +262,7 @@ def pressed(boom: Boom, system: GapSystem, position: Array) -> Iterator[Pressed]
 
 
 def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> Iterator[Tilt]:
-    """Yield those of joints with play and two stations at least, at a rest (num_modes,) in s."""
+    """Yield the tilts of joints with play and several stations, at (num_modes,) and time in s."""
     gaps, numbers = system.rows @ position, count()
     for joint in (joint for joint in boom.joints if not joint.tied):
         own = [float(gaps[system.station_of_row == next(numbers)].mean()) for _ in joint.stations]

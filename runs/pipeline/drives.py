@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a boom's drives do, and whether what they draw will stick and slip."""
+"""Descriptions of the drives of a boom, and the prediction of stick-slip."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Part of the least overlap beyond which what lags behind presses pads in other places.
+# Part of the smallest overlap. A larger lag moves the pads to other places.
 FAR_BEHIND = 0.01
 
 
 def drive_lines(boom: Boom, system: System) -> Iterator[str]:
-    """Yield a sentence for each drive: how far, when, how fast, and what overlap is left.
+    """Yield a sentence for each drive: travel, time, speed and remaining overlap.
 
     Args:
         boom: whose joints may have drives.
@@ -57,7 +57,7 @@ def drive_lines(boom: Boom, system: System) -> Iterator[str]:
 
 @dataclass(frozen=True, slots=True)
 class Slipping:
-    """What is known of a drive of a given stiffness before it draws.
+    """The stick-slip behaviour of a drive of finite stiffness, estimated before the motion.
 
     Args:
         inner: the name of the segment.
@@ -73,12 +73,12 @@ class Slipping:
 
     @property
     def critical(self) -> float:
-        """The speed in m/s from which on it does not stick again once it slips."""
+        """Speed in m/s above which the segment does not stick again once it slips."""
         return self.pulled.critical_speed(self.friction)
 
 
 def slippings(case: Case, boom: Boom) -> Iterator[Slipping]:
-    """Yield each drive of a given stiffness, with the pads of beam elements at rest on its way."""
+    """Yield the estimate for each drive of finite stiffness, from pad forces at rest."""
     joints = elastic_drives(case, boom)
     if not joints or statics(case, boom) is None:
         return
@@ -92,7 +92,7 @@ def slippings(case: Case, boom: Boom) -> Iterator[Slipping]:
 
 
 def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
-    """The largest R in N at rest, under the loads of t = 0 and where drives have drawn it to."""
+    """Return the largest friction R in N at rest along the travel, under the loads of t = 0."""
     from dynamics.time_step import axial_friction
 
     duration, most = case.time.duration, 0.0
@@ -105,7 +105,7 @@ def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
 
 
 def slip_lines(found: Iterable[Slipping], system: System) -> Iterator[str]:
-    """Yield a sentence for each drive of a given stiffness."""
+    """Yield a sentence for each drive of finite stiffness."""
     for one in found:
         if one.critical == 0.0:
             slips = "slips on once it slips"
@@ -122,7 +122,7 @@ def slip_lines(found: Iterable[Slipping], system: System) -> Iterator[str]:
 
 
 def slip_cautions(found: Iterable[Slipping], system: System) -> Iterator[str]:
-    """Yield a line for each drive that would stick and slip all the way."""
+    """Yield a caution for each drive with stick-slip along the whole travel."""
     for one in found:
         if one.critical <= one.fastest:
             continue
@@ -139,7 +139,7 @@ def slip_cautions(found: Iterable[Slipping], system: System) -> Iterator[str]:
 
 
 def lag_cautions(boom: Boom, data: xr.Dataset, system: System) -> Iterator[str]:
-    """Yield a line for each segment whose pads press in other places as it lags so far behind.
+    """Yield a caution for each segment whose lag moves its pads to other places.
 
     Args:
         boom: of a case.

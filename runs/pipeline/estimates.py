@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a run will take, told before it starts: memory and time from the numbers of its case.
+"""Estimates of the memory and time of a run, from the numbers of its case.
 
 Estimates are to be high by a factor of up to about four rather than low. Steps of beams are those
 that they will make; a shell has not been meshed yet, and its steps follow from a beam's. The
@@ -23,33 +23,33 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case, Model
 from runs.pipeline.models import begun, build_on
 
-# What runs without being asked twice, in bytes and in s.
+# Memory in bytes and time in s of runs that need no confirmation.
 ROOM, PATIENCE = 4.0e9, 3600.0
 
-# Libraries of a beam's run and of a shell's in bytes, what is compiled at a first run among them.
+# Memory in bytes of the libraries for a beam and for a shell, with the code compiled at first.
 _LIBRARIES, _SHELL_LIBRARIES = 1.3e9, 1.6e9
 
 # Numbers of 8 bytes for each output and model: columns, for each coordinate, for each station.
 _NUMBERS, _OF_COORDINATE, _OF_STATION = 160.0, 1.5, 12.0
-# s for each output and model: files and figures.
+# Time in s for each output and model: files and figures.
 _WRITING = 3.0e-5
 # Numbers for each output and member of an ensemble, and for each step of an output interval.
 _OF_MEMBER, _OF_STEP = 22.0, 24.0
 
-# s for a step, for a coordinate in it, and for a row that reads a coordinate.
+# Time in s for a step, for a coordinate in it, and for a row that reads a coordinate.
 _STEP, _OF_MODE, _OF_ROW = 0.4e-6, 1.0e-8, 1.0e-9
-# Steps of an output interval and windows made again, as a part, of a motion by its tolerance.
+# Steps per output interval, and the part of repeated windows, of a motion with error control.
 _SUBSTEPS, _AGAIN = 32.0, 2.0
-# Motions of a measurement of horizons.
+# Number of motions that measure the horizons.
 _HORIZONS = 24
 
-# Points of a sweep that are estimated; the others are taken to be like them.
+# Number of points of a sweep that are estimated; the others are assumed to be like them.
 _SAMPLE = 20
 
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """Memory in bytes and time in s on one core, about."""
+    """Approximate memory in bytes and time in s on one core."""
 
     memory: float
     seconds: float
@@ -65,7 +65,7 @@ class Cost:
 
 @dataclass(frozen=True, slots=True)
 class Preview:
-    """The motions that a case asks of its models, each built once, as beams before anything moves.
+    """The motions of the models of a case, each model built once as beams before the run.
 
     Args:
         declared: by the case.
@@ -75,7 +75,7 @@ class Preview:
     _motions: list[tuple[ModelTable, Motion]] = field(default_factory=list, init=False, repr=False)
 
     def motion(self, model: Model, beam: ModelTable) -> Motion:
-        """The motion that the case asks of a model.
+        """Return the motion of a model as the case defines it.
 
         Args:
             model: one of the case's.
@@ -94,16 +94,16 @@ class Preview:
 
 
 def of_run(case: Case) -> Cost:
-    """What a run of a checked case takes."""
+    """Return the cost of a run of a checked case."""
     return of_preview(Preview(Declared(case)))
 
 
 def of_preview(preview: Preview) -> Cost:
-    """What a run of a case takes, some of whose models may be built as beams already."""
+    """Return the cost of a run of a case, some of whose models may already be built as beams."""
     case = preview.declared.case
     shell = any(model.needs_shell for model in case.models)
     total = Cost(_SHELL_LIBRARIES if shell else _LIBRARIES, 0.0)
-    # What overflows is found when it is run.
+    # The run itself detects overflow.
     with np.errstate(all="ignore"):
         for model in case.models:
             total += _of_model(preview, model)
@@ -111,7 +111,7 @@ def of_preview(preview: Preview) -> Cost:
 
 
 def of_sweep(cases: Sequence[Case]) -> Cost:
-    """What a sweep of checked cases takes on all cores."""
+    """Return the cost of a sweep of checked cases on all cores."""
     at_a_time = min(len(cases), os.cpu_count() or 1)
     sample = [of_run(case) for case in cases[:: -(-len(cases) // _SAMPLE)]]
     seconds = sum(cost.seconds for cost in sample) / len(sample) * len(cases)
@@ -119,7 +119,7 @@ def of_sweep(cases: Sequence[Case]) -> Cost:
 
 
 def refuse_large(cost: Cost, file: str) -> None:
-    """Ask before much is taken.
+    """Refuse a run or sweep that needs much memory or time without confirmation.
 
     Raises:
         BadInput: more than :data:`ROOM` or :data:`PATIENCE`.
@@ -139,7 +139,7 @@ def _of_model(preview: Preview, model: Model) -> Cost:
     try:
         motion = preview.motion(model, stand_in.beam)
     except NUMERICS:
-        # The run ends with it, and says so.
+        # The run ends with this error and reports it.
         return before
     system, time = motion.system, case.time
     outputs, coordinates = time.duration / time.output_step, stand_in.coordinates

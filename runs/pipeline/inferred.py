@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What follows from a case before anything moves: sections, lengths, contact laws, models."""
+"""Tables of inferred data, before the motion: sections, lengths, contact laws, models."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ from runs.pipeline.proportions import of_buckling, slips
 from runs.pipeline.statics import print_statics
 from runs.report.tables import Table
 
-# Modes whose damping is shown.
+# Number of modes whose damping is shown.
 SHOWN_MODES = 3
 
-# Beside a jump of the force, as a part of the segment.
+# Distance from a jump of the force, as a part of the segment.
 _BESIDE = 1.0e-9
 
-# A damping ratio below it is none.
+# A damping ratio below this counts as zero.
 _ROUND_OFF = 1.0e-12
 
 
 def print_inferred(declared: Declared, console: Console) -> None:
-    """Print a checked case's segments, joints and models."""
+    """Print the segments, joints and models of a checked case."""
     case, boom, preview = declared.case, declared.boom, Preview(declared)
     console.print(case.title, markup=False)
     _segments(case, boom).show(console)
@@ -83,7 +83,7 @@ def _segments(case: Case, boom: Boom) -> Table:
 
 
 def _stiffeners(boom: Boom, system: System) -> Table:
-    """Those of segments with known plates; without, there is no shell either."""
+    """Return the table of stiffeners of segments with known plates; others have no shell."""
     x, mass = f"x ({system.label('m')})", f"mass ({system.label('kg')})"
     rows = []
     for segment in boom.segments:
@@ -132,7 +132,7 @@ def _joints(case: Case, boom: Boom) -> Table:
 
 
 def _clearances(joint: Joint) -> Iterator[str]:
-    """In mm, along z, and in space along y."""
+    """Yield the clearances of a joint in mm, along z, and in space along y."""
     sides: Mapping[Direction, tuple[str, str]] = {"z": ("above", "below"), "y": ("right", "left")}
     for direction, names in sides.items():
         if direction == "y" and joint.lateral_play is None:
@@ -160,7 +160,7 @@ def _models(case: Case, boom: Boom) -> Table:
 
 
 def print_axial_forces(declared: Declared, console: Console) -> None:
-    """Print the largest force of each segment, and the buckling factor of each model."""
+    """Print the largest axial force of each segment, and the buckling factor of each model."""
     rows = []
     for number, segment in enumerate(declared.boom.segments):
         force, stress = _hardest(declared.boom, number)
@@ -188,7 +188,7 @@ def print_axial_forces(declared: Declared, console: Console) -> None:
 
 
 def _hardest(boom: Boom, number: int) -> tuple[float, float | None]:
-    """The force of a segment in N that is farthest from 0, and over its area in Pa, as drawn."""
+    """Return the extreme axial force of a segment in N and stress in Pa, over all extensions."""
     segment = boom.segments[number]
     jumps = {*segment.compression.places, *passed_over(boom.segments, boom.joints, number)}
     ends = [x + side * _BESIDE * segment.length for x in jumps for side in (-1.0, 1.0)]
@@ -204,7 +204,7 @@ def _hardest(boom: Boom, number: int) -> tuple[float, float | None]:
 
 
 def _damping_ratios(preview: Preview) -> Table:
-    """What the first modes of the boom get in each model, its joints pressed, from all damping."""
+    """Return the total damping ratios of the first modes of each model, with closed contacts."""
     case, boom = preview.declared.case, preview.declared.boom
     shapes = [f"mode {number}" for number in range(1, SHOWN_MODES + 1)]
     rows = []
@@ -230,7 +230,7 @@ def _ratios(preview: Preview, model: Model, beam: ModelTable) -> list[str]:
             found = pressed_ratios(motion.system, rest)
     except NUMERICS:
         return ["cannot be computed"]
-    # What stations that nothing presses leave of a dashpot between them is round-off.
+    # The dashpot between open stations leaves only round-off.
     both = (
         (hertz, ratio if ratio > _ROUND_OFF else 0.0) for hertz, ratio in zip(*found, strict=True)
     )

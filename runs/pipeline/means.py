@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a run is made with, whatever its case."""
+"""The context of a run: ranks, progress, cache."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from runs.folder.cache import Cache, Memory
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-# Called with the model's name, the stage, and the part of it that is done.
+# Called with the model's name, the stage, and the completed part of the stage.
 Progress = Callable[[str, str, float], None]
 
 
 def silent(model: str, stage: str, part: float) -> None:
-    """A :data:`Progress` that nobody watches."""
+    """Ignore the progress, as a :data:`Progress` without display."""
 
 
 @dataclass(frozen=True, slots=True)
 class Means:
-    """Ranks, places, and who is told.
+    """The context of a run: ranks, folders and progress.
 
     Args:
         comm: the ranks that share the shells and the ensembles; a case without shells can do
@@ -39,7 +39,7 @@ class Means:
 
     @property
     def first_rank(self) -> bool:
-        """Whether this one writes, and moves what is reduced."""
+        """Whether this is the first rank, which writes files and integrates reduced models."""
         return self.comm is None or self.comm.rank == 0
 
     @property

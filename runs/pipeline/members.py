@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How long the motion of a model can be predicted: its ensemble, its horizons, steps it needs."""
+"""Predictability of a model's motion: its ensemble, its horizons, the steps that it needs."""
 
 from __future__ import annotations
 
@@ -33,15 +33,15 @@ from runs.pipeline.summary import (
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-# Elements of the closed boom, whose lowest frequency they give to four digits.
+# Elements of the retracted boom, which give its lowest frequency to four digits.
 ELEMENT_LENGTH = 0.5
 # Deflections that are kept of every member.
 PLACES = ("tip", "head")
-# Relative changes whose growth tells the horizon and its rate.
+# Relative changes whose growth gives the horizon and the rate.
 CHANGES = (1.0e-12, 1.0e-10, 1.0e-8, 1.0e-6)
-# As many peaks as the slow motion has before its spread is as large as the peaks' differences.
+# The number of peaks until the spread of the slow motion equals the differences of the peaks.
 PEAKS = 3
-# How near a peak must be: in time as a part of the period, in height as a part of itself, beyond
+# Tolerance of a peak: in time as a part of the period, in height as a part of itself, beyond
 # the spread that an ensemble of fully resolved runs has by itself.
 WITHIN = 0.01
 
@@ -52,9 +52,9 @@ _FINEST, _OF_PERIOD = -4, 0.25
 
 @contextmanager
 def rank_executor(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
-    """Who makes the runs of an ensemble: all ranks but the first, or None for our own threads.
+    """Give the executor of an ensemble: all ranks but the first, or None for local threads.
 
-    Collective. Other ranks than the first get None, once they have nothing to do any more.
+    Collective. Ranks other than the first get None once their work is done.
     """
     if comm is None or comm.size == 1:
         yield None
@@ -66,7 +66,7 @@ def rank_executor(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
 
 
 def slow_below(boom: Boom, time: TimeTable) -> float | None:
-    """Cut-off in Hz of the slow motion: part of the lowest elastic frequency without play.
+    """Return the cut-off of the slow motion in Hz, a part of the lowest frequency without play.
 
     None where the run is too short for it, too coarsely reported, or about a boom that no model
     can compute either, as each of them will say.
@@ -87,7 +87,7 @@ def slow_below(boom: Boom, time: TimeTable) -> float | None:
 
 
 def sum_up_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> EnsembleSummary:
-    """What the summary says of one model's ensemble.
+    """Return the summary of one model's ensemble.
 
     Args:
         ensemble: of :func:`dynamics.predictability.ensemble.integrate_ensemble`.
@@ -102,7 +102,7 @@ def sum_up_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> EnsembleSu
 
 
 def gather_ensembles(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
-    """Tip and head of all ensembles in one dataset, in single precision; None without any.
+    """Gather tip and head of all ensembles in one dataset, in single precision; None without any.
 
     Args:
         ensembles: by the model's name, of the same members and times.
@@ -158,7 +158,7 @@ def measure_predictability(
 
 
 def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsForPeaks | None:
-    """Move in longer and longer steps; tell which keep the first slow peaks.
+    """Integrate with longer and longer steps, and find those that keep the first slow peaks.
 
     Args:
         motion: from rest, of whose duration as much is taken as the peaks need.
@@ -170,9 +170,9 @@ def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsFor
     """
     if peaks.times.size < PEAKS:
         return None
-    # The filter leans on what follows the last peak by half a period of its own.
+    # The filter needs half of its own period after the last peak.
     lasting = peaks.times[PEAKS - 1] + 1.0 / cutoff
-    # Between outputs there is one step at least.
+    # There is at least one step between outputs.
     steps = motion.output_step * 2.0 ** np.arange(_FINEST, 64)
     trials = []
     for step in steps[steps < _OF_PERIOD / cutoff]:
@@ -187,7 +187,7 @@ def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsFor
                 holds=_holds(trial, peaks, cutoff),
             )
         )
-    # One trial that misses is chance, as a member of the ensemble may.
+    # One trial that misses may be chance, as with a member of the ensemble.
     return StepsForPeaks(
         peaks=PEAKS,
         within=WITHIN,
@@ -198,7 +198,7 @@ def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsFor
 
 
 def _holds(trajectory: Trajectory, peaks: SlowPeaks, cutoff: float) -> bool:
-    """Whether the first slow peaks are where the ensemble has them."""
+    """Return whether the first slow peaks agree with those of the ensemble."""
     times, heights = slow_peaks(trajectory.data["tip"].values, trajectory.time, cutoff)
     if times.size < PEAKS:
         return False

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How numbers of a model are shown: declared once, beside the field of the record that holds one.
+"""Display formats of a model's numbers, declared beside the fields of their records.
 
 >>> from runs.pipeline.residual_vibration import Swing
 >>> metrics(Swing)["tip"].title
@@ -17,24 +17,24 @@ from typing import ClassVar, get_args, get_type_hints
 class Metric:
     """A number of a model in sweeps and tables; an annotation of the field that holds it."""
 
-    name: str  #: in files of sweeps, which leave it out where this is empty
+    name: str  #: in files of sweeps, which omit the number where this is empty
     unit: str  #: in files, SI
-    title: str  #: for people, a lower-case phrase
-    factor: float  #: from the SI unit to the shown one
+    title: str  #: a lower-case phrase for display
+    factor: float  #: from the SI unit to the displayed one
     shown_unit: str  #: of tables and charts
     logarithmic: bool = False  #: whether it spans decades
-    charted: bool = True  #: whether it is a curve and no noise
-    heading: str = ""  #: of its column in the tables of reports, which leave it out without
-    form: str = ".4g"  #: of the numbers there
+    charted: bool = True  #: whether it is smooth enough for a chart
+    heading: str = ""  #: of its column in tables of reports, which omit it without
+    form: str = ".4g"  #: format of the numbers there
 
     @property
     def unit_of_heading(self) -> str:
-        """The unit below the heading; empty for parts."""
+        """Unit below the heading; empty for dimensionless numbers."""
         return "" if self.unit == "1" else self.shown_unit
 
 
 class Record:
-    """Numbers of one model that reports show as a table, a row for each model."""
+    """Numbers of one model that reports show as a table, with a row for each model."""
 
     __slots__ = ()
     title: ClassVar[str]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What models leave besides trajectories: fields, stresses, meshes of shells, lines of beams."""
+"""Output of models besides trajectories: fields, stresses, meshes of shells, lines of beams."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ if TYPE_CHECKING:
 STRESSES = "stress.nc"
 SERIES = "fields"
 
-# Enough for a film.
+# Number of frames of a film.
 FRAMES = 61
 
 
 @dataclass(frozen=True, slots=True)
 class ShellOutput:
-    """Everything of one shell that goes to files of its own.
+    """Output of one shell, which has files of its own.
 
     Args:
         fields: points, triangles, segment, modes and stresses of the mesh, ``state`` (time,
@@ -67,10 +67,10 @@ class ShellOutput:
     def of(
         cls, boom: Boom, name: str, reduced: ReducedShell, trajectory: Trajectory
     ) -> ShellOutput:
-        """From a shell that has moved; on rank 0.
+        """Return the output of a shell after its motion; on rank 0.
 
         Args:
-            boom: what it is a shell of.
+            boom: that of the shell.
             name: of the model.
             reduced: the shell.
             trajectory: its motion.
@@ -88,7 +88,7 @@ class ShellOutput:
         return cls(fields, stresses, sum_up(shell, stresses), meshes)
 
     def write_files(self, folder: Path, prefix: str) -> None:
-        """Stresses, series and meshes into a run's folder; the fields stand in a file before.
+        """Write stresses, series and meshes to a run's folder that already has the fields.
 
         Args:
             folder: of the run.
@@ -97,7 +97,7 @@ class ShellOutput:
         self.stresses.assign_attrs(Conventions=CONVENTIONS).to_netcdf(
             folder / f"{prefix}{STRESSES}", engine="scipy"
         )
-        # Of names joined by a hyphen two may be the same.
+        # Names joined by a hyphen may coincide.
         meshes, series = folder / "mesh" / prefix.removesuffix("-"), folder / SERIES
         for place in (meshes, series):
             place.mkdir(parents=True, exist_ok=True)
@@ -111,21 +111,21 @@ class ShellOutput:
 
 
 class MovedSegment(NamedTuple):
-    """Along one segment, x (num_places,) in m, rising, the quantities (num_frames, num_places)."""
+    """Quantities (num_frames, num_places) along one segment, at rising x (num_places,) in m."""
 
     x: Array
     read: Mapping[Quantity, Array]
 
 
 class BeamOutput(NamedTuple):
-    """Of all segments at so many times (num_frames,) in s."""
+    """Quantities along all segments at times (num_frames,) in s."""
 
     time: Array
     segments: list[MovedSegment]
 
     @classmethod
     def of(cls, lines: Sequence[Line], trajectory: Trajectory) -> BeamOutput:
-        """From a beam that has moved; where something jumps what is beyond is kept."""
+        """Return the output of a beam after its motion; at a jump, keep the value behind it."""
         steps = frames(trajectory.time.size)
         moved = []
         for line in lines:
@@ -138,19 +138,19 @@ class BeamOutput(NamedTuple):
 
 
 def frames(num_times: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
-    """Positions of the output times that a film shows, spread evenly, the ends included."""
+    """Return indices of the output times of a film, evenly spaced, with both ends."""
     return np.unique(np.linspace(0, num_times - 1, FRAMES).round().astype(np.intp))
 
 
 def _places(boom: Boom) -> list[float]:
-    """x of everything that carries a force into a segment at one place, rising."""
+    """Return the rising x of all places with a concentrated force on a segment."""
     places = {x for number in range(len(boom.segments)) for x in boom.stations_of(number)}
     places |= {support.x for segment in boom.segments for support in segment.supports}
     return sorted(places)
 
 
 def _modes(reduced: ReducedShell) -> dict[str, Any]:
-    """Those of the boom with its joints pressed, the largest displacement of each 1 m."""
+    """Return the modes of the boom with closed contacts, each with a maximum of 1 m."""
     assert reduced.fields is not None
     system = reduced.system.gathered()
     rest = positions(system)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How far the numbers of a run can be trusted: models compared, lines of accuracy, cautions.
+"""Accuracy of the results of a run: comparison of models, statements of accuracy, cautions.
 
 Every model is held against one of them. Where ensembles are known, at three levels, each with what
 it can decide; where segments rub, from the beginning to the end: friction takes what impacts would
@@ -25,18 +25,18 @@ from runs.pipeline.drives import lag_cautions, slip_cautions, slippings
 from runs.pipeline.proportions import of_buckling, of_period, of_tip, slips
 from runs.pipeline.summary import Comparisons, Levels, Summary, Whole
 
-# The part of the tip's range apart at which members of an ensemble count as parted.
+# Difference of members, as a part of the tip's range, beyond which their motions have diverged.
 _PARTED = 0.2
 
-# Relative error of a reduction, or of a mesh, beyond which a run says so.
+# Relative error of a reduction or a mesh beyond which the run gives a caution.
 POOR = 0.01
 
-# Part of the boom's length beyond which no displacement is small.
+# Part of the boom's length beyond which a displacement is not small.
 MOST = 0.1
 
-# Differences over a whole run are told until here, too, in s.
+# Times in s until which differences are given, besides those of the whole run.
 HALFWAY = 5.0
-# What each level can and cannot decide, in the words of those who measure.
+# What each level of comparison can and cannot decide.
 DECIDES: Mapping[str, str] = {
     "pointwise": Pointwise.decides,
     "peaks": PeakDifferences.decides,
@@ -45,7 +45,7 @@ DECIDES: Mapping[str, str] = {
 
 
 def reference_of(models: Iterable[Model]) -> str | None:
-    """The model that the others are held against: the last shell, else the last with play."""
+    """Return the reference of the other models: the last shell, else the last model with play."""
     with_play = [model for model in models if not model.play_free]
     shells = [model for model in with_play if model.meshed]
     candidates = shells or with_play
@@ -53,7 +53,7 @@ def reference_of(models: Iterable[Model]) -> str | None:
 
 
 def leading(case: Case, models: Sequence[str]) -> set[str]:
-    """Those that are read first: the last shell, the last beam with play, the first without.
+    """Return the main models: the last shell, the last beam with play, the first without.
 
     All of up to three, and of kinds that a run lacks the last one with play.
     """
@@ -73,7 +73,7 @@ def compare_models(
     ensembles: xr.Dataset | None,
     cutoff: float | None,
 ) -> Comparisons | None:
-    """What the summary says of the models' differences; None where there is nothing to compare.
+    """Return the summary of the differences of models; None where there is nothing to compare.
 
     Args:
         case: which model is which.
@@ -115,7 +115,7 @@ def _others(data: xr.Dataset, reference: str) -> list[str]:
 
 
 def quality_notes(summary: Summary, answers: Answers, duration: float) -> Iterator[QualityNote]:
-    """Yield what can be said of the accuracy of a run.
+    """Yield statements about the accuracy of a run.
 
     Args:
         summary: of its models.
@@ -153,12 +153,12 @@ def quality_notes(summary: Summary, answers: Answers, duration: float) -> Iterat
 
 
 def _percent(part: float) -> str:
-    """With two digits, or one that is not 0."""
+    """Return a percentage with two digits, or with the first digit that is not 0."""
     return f"{TO_PERCENT * part:.2g} %"
 
 
 def _agreement(answers: Answers) -> Iterator[str]:
-    """Of the models with play with the one that they are held against."""
+    """Yield the agreement of the models with play with the reference."""
     if answers.modes is None:
         return
     reference = answers.modes.reference
@@ -177,7 +177,7 @@ def _agreement(answers: Answers) -> Iterator[str]:
 
 
 def off_at_rest(own: ModelAnswers, other: ModelAnswers) -> float | None:
-    """By what part of one's the other's tip at rest under the largest loads is off; else None."""
+    """Return the relative difference of static tips under the largest loads; None where unknown."""
     tips = [max((rest.tip for rest in one.rests), key=abs, default=None) for one in (own, other)]
     if tips[1] is None or not tips[0]:
         return None
@@ -185,7 +185,7 @@ def off_at_rest(own: ModelAnswers, other: ModelAnswers) -> float | None:
 
 
 def _horizon(summary: Summary, duration: float) -> Iterator[str]:
-    """Of what ensembles have told."""
+    """Yield the horizons of the ensembles."""
     times = {
         name: model.ensemble.horizon(_PARTED)
         for name, model in summary.models.items()
@@ -205,7 +205,7 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
 
 
 def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[str]:
-    """Return what the results of models that have moved are not worth.
+    """Return the limits of validity of the results.
 
     Args:
         case: of the run.
@@ -227,7 +227,7 @@ def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list
 
 
 def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
-    """Of axial forces, of the deflection at rest, of the duration."""
+    """Yield cautions about axial forces, the static deflection and the duration."""
     for name, model in summary.models.items():
         yield from of_buckling(name, model.critical_factor)
         yield from of_tip(f"in {name}", model.static_tip, boom)
@@ -238,7 +238,7 @@ def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
 
 
 def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
-    """Yield what the walls' stresses of shells lack where axial forces move along the boom."""
+    """Yield the limits of the wall stresses of shells where axial forces change along the boom."""
     numbers = range(len(boom.joints))
     if any(entry(boom.segments, boom.joints, number) for number in numbers):
         for name in (name for name, one in summary.models.items() if one.stress is not None):
@@ -260,7 +260,7 @@ def _large_displacements(boom: Boom, data: xr.Dataset) -> Iterator[str]:
 
 
 def _numerical(summary: Summary) -> Iterator[str]:
-    """Of reductions and of meshes."""
+    """Yield cautions about reductions and meshes."""
     for name, model in summary.models.items():
         if (error := model.reduction_errors.get("contact_compliance") or 0.0) > POOR:
             yield (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""One model of a run: how it is built, moves, and is summed up."""
+"""One model of a run: its construction, motion and summary."""
 
 from __future__ import annotations
 
@@ -36,17 +36,17 @@ from runs.pipeline.summary import (
     StationSpring,
 )
 
-# Of the outer segment, by the direction in which the inner one presses and its sign.
+# Wall of the outer segment by the direction and the sign of the inner one's force.
 _WALLS = {("z", 1): "top", ("z", -1): "bottom", ("y", 1): "right", ("y", -1): "left"}
 
 
 class SharedFailure(Exception):
-    """Of one of several ranks, for which the others may wait in the middle of their own work."""
+    """A failure of one of several ranks, for which the others may wait in their work."""
 
 
 @dataclass(frozen=True, slots=True)
 class Finished:
-    """A motion that has ended; ``ensemble`` where the case asks for one."""
+    """A completed motion; ``ensemble`` where the case asks for one."""
 
     trajectory: Trajectory
     summary: ModelSummary
@@ -55,7 +55,7 @@ class Finished:
 
 @dataclass(frozen=True, slots=True)
 class ModelRun:
-    """A model as it was built, its motion, what a shell leaves, and how long all that took."""
+    """A model before its motion, the motion, the output of a shell, and the wall times."""
 
     model: Model
     built: Built
@@ -122,7 +122,7 @@ def run_model(
         summary.critical_factor = built.critical_factor
     if built.calibration is not None:
         summary.calibration = calibration_card(boom, system, built.calibration)
-    # Those of a motion that is kept are what it has taken.
+    # The wall times of a stored motion are those of its computation.
     stages.seconds |= summary.seconds
     shell = None
     if reduced is not None:
@@ -144,7 +144,7 @@ def _move(
     executor: Executor | None,
     stages: Stages,
 ) -> Finished:
-    """Move a model; measure its step error, its ensemble and its horizons."""
+    """Integrate a model; measure its step error, its ensemble and its horizons."""
     plan, table = MotionPlan.of(built.system, case, model), case.ensemble
     motion, system = plan.motion, plan.motion.system
     plan.warm()

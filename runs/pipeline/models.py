@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The models of a case: how each becomes a gap system, and the motion that the case asks of it."""
+"""The models of a case: the gap system of each, and its motion as the case defines it."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from runs.case.schema import Case, Model
 if TYPE_CHECKING:
     from dynamics.integrator import AdaptiveStep, FixedStep
 
-# Days of computing: what asks for more is a slip of the pen.
+# Days of computing: a case with more is an input error.
 MOST_STEPS = 1.0e10
 
 
 def build(case: Case, boom: Boom, model: Model, workshop: Workshop | None = None) -> Built:
-    """A model of a case. Collective where it is meshed.
+    """Build a model of a case. Collective for a meshed model.
 
     Args:
         case: its joints have the contact laws.
@@ -43,13 +43,13 @@ def build(case: Case, boom: Boom, model: Model, workshop: Workshop | None = None
 def build_on(
     joined: Joined, case: Case, model: ModelTable, workshop: Workshop | None = None
 ) -> Built:
-    """A model on the boom of a case; arguments and errors as of :func:`build`."""
+    """Build a model on the boom of a case; arguments and errors as of :func:`build`."""
     built = model.build(joined, workshop)
     return replace(built, system=with_elastic_drives(built.system, case, joined.boom))
 
 
 def begun(system: GapSystem, case: Case) -> Motion:
-    """The motion that a case asks of a system.
+    """Return the initial motion of a system as the case defines it.
 
     Raises:
         NumericsError: there is no equilibrium to start from.
@@ -67,7 +67,7 @@ def begun(system: GapSystem, case: Case) -> Motion:
 
 @dataclass(frozen=True, slots=True)
 class MotionPlan:
-    """The motion that a case asks of one of its models, and how it is integrated.
+    """The motion of one of the models of a case, and its integrator.
 
     Args:
         motion: of the system under the loads from t = 0 on.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The modes of the boom as it works: what presses at rest is a spring, in all models alike."""
+"""Modes of the boom linearised at rest: each closed contact is a spring, in all models alike."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Segment
 from runs.pipeline.section_forces import rounded
 
-# Of each model.
+# Number of modes of each model.
 MODES = 8
 
-# Places of a segment at which shapes are compared and kept.
+# Number of places per segment at which shapes are compared and stored.
 _PLACES = 21
 
-# What moves in a mode, and the words for it.
+# The kinds of motion in a mode, and their names.
 _WAYS: Mapping[Quantity, str] = {
     "deflection": "bending in z",
     "lateral": "bending in y",
     "twist": "twist",
 }
 
-# Modes that are alike by less than this are not the same (Allemang 2003).
+# Modes with a smaller criterion are different modes (Allemang 2003).
 ALIKE = 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """How a segment moves in a mode: at x in m ``deflection``, in space ``lateral``, ``twist``."""
+    """Shape of a segment in a mode: at x in m ``deflection``, in space ``lateral``, ``twist``."""
 
     segment: str
     x: list[float]
@@ -43,7 +43,7 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """A mode of the boom with its joints pressed as they are at rest.
+    """A mode of the boom with the contacts that are closed at rest.
 
     Args:
         frequency: in Hz.
@@ -62,7 +62,7 @@ class Mode:
 
 @dataclass(frozen=True, slots=True)
 class Match:
-    """A mode of another model that is that of the reference.
+    """A mode of another model that matches one of the reference.
 
     Args:
         number: among the other model's modes, from 1 on.
@@ -142,7 +142,7 @@ def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> 
 
 
 def inertia(segment: Segment, way: Quantity) -> float:
-    """Of a unit of length in kg/m, against a twist in kg·m."""
+    """Return the mass per length in kg/m, or the rotary inertia per length in kg·m of a twist."""
     if way != "twist":
         return segment.mass_per_length
     assert segment.lateral is not None
@@ -150,7 +150,7 @@ def inertia(segment: Segment, way: Quantity) -> float:
 
 
 def matched(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) -> list[Match | None]:
-    """For each mode of a reference the most alike of another model, each once; None without one.
+    """Return for each mode of a reference the best match of another model, each once; else None.
 
     Alike by the modal assurance criterion of the deflections and twists along the segments, each
     weighted by its inertia (Allemang 2003).
@@ -178,7 +178,7 @@ def matched(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) -> lis
 
 
 def _vector(boom: Boom, mode: Mode) -> Array:
-    """What moves, in √kg·m."""
+    """Return the mass-weighted shape in √kg·m."""
     parts = [
         np.sqrt(inertia(segment, name) * segment.length / _PLACES) * np.array(shape.curves[name])
         for segment, shape in zip(boom.segments, mode.shapes, strict=True)

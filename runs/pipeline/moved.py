@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a model has gone through: section forces, stresses, and how they exceed those at rest."""
+"""Extreme section forces and stresses of a motion, and their dynamic factors."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from runs.pipeline.strength import Fibres, FibreStress, Varying, WallStress, lar
 
 @dataclass(frozen=True, slots=True)
 class Envelope:
-    """What a segment has gone through: the least and the largest of every curve of a diagram.
+    """The envelope of a segment: the least and the largest value of every curve of a diagram.
 
     Args:
         segment: its name.
@@ -39,7 +39,7 @@ class Envelope:
 
 @dataclass(frozen=True, slots=True)
 class Peak:
-    """The largest of a motion beside the largest at rest, by their absolute values.
+    """The largest value of a motion beside the largest at rest, by their absolute values.
 
     Args:
         what: ``deflection``, ``contact force``, ``cylinder force``, ``reaction``, where something
@@ -64,13 +64,13 @@ class Peak:
 
     @property
     def factor(self) -> float | None:
-        """The dynamic factor; None where nothing is at rest."""
+        """Dynamic factor; None without a value at rest."""
         return self.largest / self.at_rest if self.at_rest else None
 
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """What a model has gone through.
+    """The extreme values of a model's motion.
 
     Args:
         envelopes: of each segment.
@@ -86,7 +86,7 @@ class Moved:
 
 
 class _Plane(NamedTuple):
-    """What the section forces of a plane of bending are called."""
+    """The names of the section forces of a plane of bending."""
 
     direction: Direction
     name: str
@@ -102,7 +102,7 @@ _PLANES = (
 
 @dataclass(frozen=True, slots=True)
 class Motions:
-    """A motion, and the rests that it is held against.
+    """A motion and the static states for comparison.
 
     Args:
         boom: with the play that the model has.
@@ -122,7 +122,7 @@ class Motions:
 
 
 def gone_through(motions: Motions) -> tuple[Moved, list[Varying]]:
-    """Return what a beam, or a shell but for its walls, has gone through.
+    """Return the extreme values of a beam's motion, or of a shell's without its walls.
 
     Beside it stands the stress of each segment where it varies most.
     """
@@ -149,14 +149,14 @@ def gone_through(motions: Motions) -> tuple[Moved, list[Varying]]:
 def _peak(
     what: str, where: str, unit: str, time: Array, values: Array, still: Sequence[float] | Array
 ) -> Peak:
-    """The largest over time (num_times,) beside the largest of the rests (num_rests,)."""
+    """Return the largest value over time (num_times,) beside the largest at rest (num_rests,)."""
     step = int(np.abs(values).argmax())
     at_rest = max((float(abs(value)) for value in still), default=None)
     return Peak(what, where, unit, float(abs(values[step])), float(time[step]), at_rest)
 
 
 def _observed(motions: Motions) -> Iterator[Peak]:
-    """Of what trajectories hold."""
+    """Yield the peaks of the quantities in the trajectories."""
     data, rests, time = motions.trajectory.data, motions.rests, motions.trajectory.time
     tips = [rest.tip for rest in rests]
     yield _peak("deflection", "tip", "m", time, data["tip"].values, tips)
@@ -187,12 +187,12 @@ def _bending_moments(
 
 
 def _reactions(motions: Motions, number: int) -> Iterator[Peak]:
-    """What the supports of a segment bear: the jumps of its section forces."""
+    """Yield the support reactions of a segment: the jumps of its section forces."""
     segment, line = motions.boom.segments[number], motions.lines[number]
     states, time = (motions.trajectory.states, motions.positions), motions.trajectory.time
 
     def jump(name: Quantity, x: float) -> list[Array]:
-        """(num_times,) and (num_rests,) what the line reads less behind x than before it."""
+        """Return the jumps (num_times,) and (num_rests,) of the line's values at x."""
         row = np.zeros(states[0].shape[1])
         if name in line.rows:
             row = line.beside(name, x, -1) - line.beside(name, x, 1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How hard slide pads are pressed, at rest and while the boom moves."""
+"""Forces and pressures of slide pads, at rest and during the motion."""
 
 from __future__ import annotations
 
@@ -21,17 +21,19 @@ from runs.case.schema import Case, Model
 if TYPE_CHECKING:
     import xarray as xr
 
-# Of sides.
+# Signs of the sides.
 SIGNS: tuple[Side, Side] = (1, -1)
 
-# Names of sides.
+# Names of the sides.
 _ON = {on: side for side, on in SIDES.items()}
 
 
 @dataclass(frozen=True, slots=True)
 class PressedPad:
-    """One slide pad of a pair in one model, where it bears most: ``force`` in N at a station at x
-    in m, ``pressure`` in Pa; ``utilisation`` of what it may bear is None where that is not told.
+    """The governing slide pad of a pair at a station in one model.
+
+    ``force`` is in N, ``x`` of the station in m, ``pressure`` in Pa; ``utilisation`` of the
+    permitted pressure is None where the case does not give that.
     """
 
     model: str
@@ -45,7 +47,7 @@ class PressedPad:
 
 
 def pressed_pads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PressedPad]:
-    """Those of every station of joints with play, in each model.
+    """Yield the governing pads of every station of joints with play, in each model.
 
     Args:
         case: of the run.
@@ -78,7 +80,7 @@ def pressed_pads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PressedPa
 def _pressed(
     model: Model, joint: JointTable, pad: PadTable, x: float, side: str, both: float
 ) -> PressedPad:
-    """One of a pair that bears a force in N evenly."""
+    """Return one pad of a pair that carries a force in N evenly."""
     force, allowable = both / PADS_OF_SIDE, pad.allowable_pressure
     pressure = force / pad.area
     return PressedPad(
@@ -94,7 +96,7 @@ def _pressed(
 
 
 def _of_each(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array) -> list[float]:
-    """The largest force in N of each pair of pads, where all together push by so much.
+    """Return the largest force in N of each pair of pads for given total forces.
 
     Args:
         joint: of the pads.
@@ -126,14 +128,14 @@ def _of_each(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array)
 
 
 def _of_a_side(both: float, law: ContactLaw) -> float:
-    """What one side bears in N where both together bear so much: shims press each at rest."""
+    """Return the force in N of one side from the net force of both: shims preload each side."""
     sides = (law.one_sided(side) for side in (1, -1))
     at_rest = max(float(abs(law.force(np.zeros(())))) for law in sides if law is not None)
     return max(both, at_rest + 0.5 * both)
 
 
 def most_on_pad(joint: Joint, direction: Direction, sides: Sequence[float]) -> float | None:
-    """The most in N that one pad bears where they bear so much on both sides; None without pads."""
+    """Return the largest force in N on one pad for the forces of both sides; None without pads."""
     if not joint.padded:
         return None
     pairs = (_hardest(joint, direction, *of) for of in zip(SIGNS, sides, strict=True))
@@ -141,17 +143,17 @@ def most_on_pad(joint: Joint, direction: Direction, sides: Sequence[float]) -> f
 
 
 def _hardest(joint: Joint, direction: Direction, side: Side, force: float) -> float:
-    """What bears most in N of the pairs of a side, of which those with more shim press first."""
+    """Return the largest force in N of the pairs of a side; those with more shim close first."""
     pairs = sorted(joint.pads_of(direction, side), key=lambda pair: -pair[2])
     shares, shims = (np.array([pair[k] for pair in pairs]) for k in (1, 2))
     own = [pad.stiffness for pad in joint.pads if pad.touches(direction, side)]
     stiffness = PADS_OF_SIDE * sum(own) or 1.0
-    # Each further pair that presses leaves less way to those before it.
+    # Each further pair in contact reduces the compression of those before it.
     ways = (force / stiffness - np.cumsum(shares * shims)) / np.cumsum(shares)
     return float(stiffness * (shares * (ways.min() + shims)).max())
 
 
 def one_sided_force(law: ContactLaw, side: int, gap: float) -> float:
-    """What a contact bears on a side in N, not negative."""
+    """Return the contact force on a side in N, not negative."""
     there = law.one_sided(side)
     return 0.0 if there is None else float(abs(there.force(np.array(gap))))

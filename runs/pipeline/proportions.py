@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What of a case or a boom is out of proportion: slips of the unit or of the sign, most often."""
+"""Sanity checks of the proportions of a case or a boom, to find errors of unit or sign."""
 
 from __future__ import annotations
 
@@ -17,28 +17,28 @@ from runs.case.actions import STANDARD_GRAVITY, across
 from runs.case.schema import Case
 from runs.case.usual import usual_numbers
 
-# Degrees up to which a boom may well be called level.
+# Angle in degrees up to which a boom may be called level.
 LEVEL = 0.1
 
-# Part of the critical force above which the second order is no small correction.
+# Part of the critical force above which second-order effects are not small.
 CLOSE = 1.0 / 3.0
 
-# Part of the boom's length beyond which a static tip is no small deflection.
+# Part of the boom's length beyond which a static deflection is not small.
 FAR = 0.05
 
 
-# Of the boom's weight: loads below it are not felt, loads beyond it no boom carries.
+# Parts of the boom's weight: smaller loads have no effect, larger ones exceed any capacity.
 LIGHT, HEAVY = 1.0e-3, 1.0e2
 
-# Of the boom's weight: loads upwards beyond it are weights of the wrong sign.
+# Part of the boom's weight: larger upward loads are weights with the wrong sign.
 LIFTING = 0.3
 
-# Parts by which two numbers may differ and be the same: two weights, a mass and a force.
+# Relative difference up to which two numbers are the same: two weights, a mass and a force.
 SAME, ALIKE = 0.01, 0.05
 
 
 def slips(case: Case, boom: Boom) -> list[str]:
-    """What to look at again, a line each."""
+    """Return suspicious inputs, a line each."""
     unusual = (one for one in usual_numbers(case, boom) if one.unusual)
     found = [f"{one.key}: {one.said(case.system)}" for one in unusual]
     found += [
@@ -53,7 +53,7 @@ def slips(case: Case, boom: Boom) -> list[str]:
 
 
 def _in_vain(case: Case) -> Iterator[str]:
-    """What does nothing, or hardly what is meant."""
+    """Yield inputs without effect, or with less than intended."""
     duration = case.time.duration
     ramps = [(f"load[{i}].ramp", load.ramp) for i, load in enumerate(case.loads, start=1)]
     ramps += [(f"base[{i}].ramp", base.ramp) for i, base in enumerate(case.base, start=1)]
@@ -84,7 +84,7 @@ def _in_vain(case: Case) -> Iterator[str]:
 
 
 def _pads(case: Case, boom: Boom) -> Iterator[str]:
-    """A contact that gives way more than the inner segment bends is none."""
+    """Yield contacts that are softer than the inner segment in bending."""
     for model in (model for model in case.models if not model.play_free):
         for joint in model.joined(boom).boom.joints:
             inner = boom.segments[joint.inner]
@@ -148,7 +148,7 @@ def _sizes(case: Case, boom: Boom) -> Iterator[str]:
 
 
 def _lasting(boom: Boom) -> Iterator[tuple[float, float]]:
-    """Of each load along z that comes and stays: N, and N m about the boom's base."""
+    """Yield the force in N and the moment in N m about the base of each lasting load along z."""
     base = boom.segments[0].start
     for segment in boom.segments:
         force = segment.load * segment.length
@@ -162,7 +162,7 @@ def _lasting(boom: Boom) -> Iterator[tuple[float, float]]:
 
 
 def _given_twice(case: Case, boom: Boom) -> Iterator[str]:
-    """Loads that are given again, as another load or as a weight; masses given for forces."""
+    """Yield loads that repeat another load or a weight, and masses in place of forces."""
     for name, tables in (("load", case.loads), ("axial", case.axial)):
         for number, table in enumerate(tables):
             if table in tables[:number]:
@@ -197,7 +197,7 @@ def _given_twice(case: Case, boom: Boom) -> Iterator[str]:
 
 
 def _without_gravity(case: Case, boom: Boom) -> Iterator[str]:
-    """A payload on a boom that nothing presses down."""
+    """Yield a caution for a payload on a boom without gravity or other downward load."""
     payload, weights = case.payload, [-segment.load for segment in boom.segments]
     weights += [-load.magnitude for load in boom.loads if load.x is None and load.direction == "z"]
     if payload and case.gravity is None and payload.gravity is None and max(weights) <= 0.0:
@@ -209,7 +209,7 @@ def _without_gravity(case: Case, boom: Boom) -> Iterator[str]:
 
 
 def of_period(where: str, frequency: float, case: Case) -> list[str]:
-    """A caution against a run that ends before the boom has swung once.
+    """Return a caution against a run that is shorter than one period of the boom.
 
     Args:
         where: ``in MODEL``, say.
@@ -225,7 +225,7 @@ def of_period(where: str, frequency: float, case: Case) -> list[str]:
 
 
 def static_tip(system: GapSystem) -> float:
-    """The tip's deflection in m at rest under the constant loads; NaN where there is no such rest.
+    """Return the static tip deflection in m under the constant loads; NaN without an equilibrium.
 
     Args:
         system: all that stays constant from t = 0 on is in its ``load``.
@@ -237,7 +237,7 @@ def static_tip(system: GapSystem) -> float:
 
 
 def of_buckling(name: str, critical_factor: float | None) -> list[str]:
-    """A caution against a model's axial forces, if they deserve one.
+    """Return a caution against a model's axial forces, if they are too large.
 
     Args:
         name: of the model.
@@ -252,7 +252,7 @@ def of_buckling(name: str, critical_factor: float | None) -> list[str]:
 
 
 def of_tip(where: str, tip: float | None, boom: Boom) -> list[str]:
-    """A caution against a deflection at rest, if it deserves one.
+    """Return a caution against a static deflection, if it is too large.
 
     Args:
         where: ``in MODEL``, say.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How far the tip swings while a boom is drawn out, beside the same boom that stands.
+"""Vibration of the tip while a boom extends, beside that of the same boom without extension.
 
 The swing is the largest distance of the tip from where it would rest, drawn out as far as it is and
 under the loads of that moment.
@@ -38,7 +38,7 @@ _level, _AT = partial(_metres, charted=False), "at rest where\nit "
 
 @dataclass(frozen=True, slots=True)
 class Swing(Record):
-    """How far the tip swings while the boom is drawn out, and afterwards.
+    """Vibration of the tip during and after the extension.
 
     Args:
         tip: the swing in m.
@@ -70,7 +70,7 @@ class Swing(Record):
 
 
 def swing(system: GapSystem, trajectory: Trajectory, case: Case, model: Model) -> Swing | None:
-    """Of a model that is drawn out; None where it is not, or has no rest that can be followed.
+    """Return the vibration of a model that extends; None without extension or an equilibrium path.
 
     Args:
         system: of the model, all that stays constant in its load.
@@ -80,7 +80,7 @@ def swing(system: GapSystem, trajectory: Trajectory, case: Case, model: Model) -
     """
     ends = [time for travel in system.travels for time in travel.history.kinks]
     if not ends or max(ends) > trajectory.time[-1]:
-        # What has not ended has not swung as far as it will.
+        # A motion that ends before its drives has not reached its largest vibration.
         return None
     try:
         tip, time = farthest_from_rest(system, trajectory)
@@ -94,7 +94,7 @@ def swing(system: GapSystem, trajectory: Trajectory, case: Case, model: Model) -
 
 
 def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float, float]:
-    """The swing in m, and when it is, in s.
+    """Return the largest distance from equilibrium in m, and its time in s.
 
     Args:
         system: all that stays constant is in its ``load``.
@@ -121,8 +121,11 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
 
 
 def _rest_steps(values: Array, passed: Array) -> Indices:
-    """(num_rests,) steps at which rests are found, rising: even ones along all that has passed, and
-    between where one of the values (num_changes, num_times) turns back and where the next does."""
+    """Return rising steps (num_rests,) at which equilibria are computed.
+
+    They are evenly spaced along the accumulated change, and between points where one of the values
+    (num_changes, num_times) reverses and where the next one does.
+    """
     turns = sorted({step for change in values for step in _turns(change).tolist()})
     if len(turns) > _MOST_TURNS:
         raise NumericsError(f"loads turn back {len(turns)} times, too often")
@@ -135,7 +138,7 @@ def _rest_steps(values: Array, passed: Array) -> Indices:
 
 
 def _turns(values: Array) -> Indices:
-    """(num_turns,) steps at which something (num_times,) turns back, or begins to stand for it."""
+    """Return the steps (num_turns,) at which values (num_times,) reverse or become constant."""
     ways = np.diff(values)
     moves = np.flatnonzero(ways)
     back = ways[moves[:-1]] * ways[moves[1:]] < 0.0
@@ -143,7 +146,7 @@ def _turns(values: Array) -> Indices:
 
 
 def _speed(travel: Travel) -> float:
-    """The mean in m/s while it moves; 0 of several together, whose own travels are beside it."""
+    """Return the mean speed in m/s while a drive moves; 0 for a sum of several travels."""
     if travel.suffix is None:
         return 0.0
     times = followed([travel.history], max(travel.history.kinks))
@@ -152,14 +155,14 @@ def _speed(travel: Travel) -> float:
 
 
 def _passed(values: Array) -> Array:
-    """(num_times,) how much of all that changes has passed, of values (num_changes, num_times)."""
+    """Return the accumulated change (num_times,) of values (num_changes, num_times)."""
     sizes = np.abs(values).max(axis=1, keepdims=True)
     ways = np.abs(np.diff(values, axis=1)) / np.where(sizes > 0.0, sizes, 1.0)
     return np.concatenate([[0.0], np.cumsum(ways.sum(axis=0))])
 
 
 def _standing(system: GapSystem, case: Case, model: Model) -> float | None:
-    """The swing of the same boom that stands, in m."""
+    """Return the largest distance from equilibrium in m of the same boom without extension."""
     try:
         plan = MotionPlan.of(system, case, model)
         changes = system.excitations or system.released.any() or plan.motion.velocity.any()

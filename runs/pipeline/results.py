@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a run leaves: labelled trajectories of all models, and a summary."""
+"""Results of a run: labelled trajectories of all models, and a summary."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ CASE = "case.toml"
 FIELDS = "fields.nc"
 ENSEMBLES = "ensembles.nc"
 
-# Of climate and forecast data (CF), as far as a boom's motion can follow it.
+# Conventions of climate and forecast data (CF), as far as they apply to a boom's motion.
 CONVENTIONS = "CF-1.8"
 
 
 @dataclass(frozen=True)
 class Results:
-    """One run.
+    """The results of one run.
 
     >>> case = pt.load_case(pt.CASES / "coarse.toml")
     >>> results = pt.run_case(case, models=["kantorovich-4"])
@@ -107,13 +107,13 @@ class Results:
         return results
 
     def conclude(self) -> None:
-        """Put what follows from the motion and the rest of the summary into it."""
+        """Complete the summary with what follows from the motion and its other parts."""
         case, boom, data, summary = self.case, self.boom, self.trajectories, self.summary
         summary.pads = list(pressed_pads(case, boom, data))
         summary.cautions = cautions(case, boom, data, summary)
 
     def save(self, folder: Path | str) -> None:
-        """Write what :meth:`load` reads to a folder, which is made if it is missing."""
+        """Write a folder that :meth:`load` reads; make it if it is missing."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         # netCDF 3 has no empty dimension: a boom without joints leaves out its stations.
@@ -126,35 +126,35 @@ class Results:
 
     @property
     def ran(self) -> list[Model]:
-        """The models that have not failed."""
+        """Models that have not failed."""
         return [model for model in self.case.models if model.name in self.summary.models]
 
     @cached_property
     def boom(self) -> Boom:
-        """Of the case."""
+        """The boom of the case."""
         return build_boom(self.case)
 
     @cached_property
     def reference(self) -> str | None:
-        """The model that the others are held against."""
+        """The model that the others are compared with."""
         return reference_of(self.ran)
 
     @property
     def play(self) -> PlayAdds | None:
-        """What play adds to the model that the others are held against."""
+        """Increase by play in the model that the others are compared with."""
         known = (one for one in self.summary.answers.play if one.numbers)
         return next((one for one in known if one.model == self.reference), None)
 
     @cached_property
     def read_first(self) -> list[str]:
-        """The models that are read first, before the others the one that these are held against."""
+        """The most important models, the reference before the others."""
         names = list(self.summary.models)
         first = leading(self.case, names)
         return sorted(first, key=lambda name: (name != self.reference, names.index(name)))
 
     @property
     def moved(self) -> dict[str, Moved]:
-        """What is known of the motions of the models that are read first."""
+        """Extreme values of the motions of the most important models."""
         own = self.summary.answers.models
         return {
             name: moved
@@ -164,7 +164,7 @@ class Results:
 
 
 def read_fields(path: Path) -> xr.Dataset:
-    """The fields of a shell in a run's folder, with all that pictures are made of.
+    """Read the fields of a shell in a run's folder, with all data of pictures.
 
     Raises:
         BadInput: the file is damaged, or another version's.
@@ -174,7 +174,7 @@ def read_fields(path: Path) -> xr.Dataset:
 
 
 def read_netcdf(path: Path) -> xr.Dataset:
-    """A netCDF file, all of it in memory."""
+    """Read a whole netCDF file into memory."""
     return xr.load_dataset(path, engine="scipy")
 
 
@@ -205,7 +205,7 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
     for name, (dims, attributes) in units.items():
         values = np.full((len(everything), *(lengths[str(dim)] for dim in dims)), np.nan)
         for i, data in enumerate(everything):
-            # A tied model has no stations.
+            # A model without play has no stations.
             if name in data and data[name].shape == values.shape[1:]:
                 values[i] = data[name].values
         variables[name] = (("model", *dims), values, titles.get(name, {}) | attributes)
@@ -235,7 +235,7 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
 
 
 def _read(path: Path, how: Callable[[Path], Any]) -> Any:
-    """A file of a run's folder.
+    """Read a file of a run's folder.
 
     Raises:
         BadInput: it is missing, damaged, or another version's.

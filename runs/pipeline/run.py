@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""From a case to results: every model becomes a gap system, moves, and is summed up."""
+"""The run of a case: build, integrate and summarise every model."""
 
 from __future__ import annotations
 
@@ -35,19 +35,19 @@ from runs.pipeline.summary import Ensembles, Summary, check_finite
 
 @dataclass(frozen=True)
 class Run:
-    """Results, and by their names the models that have moved."""
+    """Results, and the integrated models by their names."""
 
     results: Results
     ran: dict[str, ModelRun]
 
     @property
     def shells(self) -> dict[str, ShellOutput]:
-        """What each shell leaves."""
+        """Output of each shell."""
         return {name: one.shell for name, one in self.ran.items() if one.shell is not None}
 
     @cached_property
     def beams(self) -> dict[str, BeamOutput]:
-        """What each beam leaves."""
+        """Output of each beam."""
         boom = self.results.boom
         return {
             name: BeamOutput.of(one.model.lines(boom, one.built), one.moved.trajectory)
@@ -56,7 +56,7 @@ class Run:
         }
 
     def answer(self) -> None:
-        """Put what a designer asks, answered, and what the results are not worth, into the summary.
+        """Put the design results and the limits of validity into the summary.
 
         A model that has moved and cannot be answered for is in ``failures``, too.
 
@@ -83,7 +83,7 @@ class Run:
 
 
 def run_case(case: Case, file: str, means: Means) -> Run | None:
-    """Run all models of a case; answers are left to :meth:`Run.answer`. Collective.
+    """Run all models of a case without design results, see :meth:`Run.answer`. Collective.
 
     None but on rank 0. A model that cannot be computed is in the summary's ``failures``, by its
     name, with the reason.
@@ -100,7 +100,7 @@ def run_case(case: Case, file: str, means: Means) -> Run | None:
     cutoff = None if case.ensemble is None else members.slow_below(boom, case.time)
 
     def attempt(model: Model) -> ModelRun | Exception | None:
-        # What overflows is found where it matters, and said there.
+        # Overflow is detected and reported where it matters.
         with np.errstate(all="ignore"):
             try:
                 found = run_model(boom, model, case, cutoff, means)
@@ -134,7 +134,7 @@ def _results(
     moved: Mapping[str, Finished],
     failures: dict[str, str],
 ) -> Results:
-    """What the motions of a case leave, summed up."""
+    """Return the results of the motions of a case."""
     summary = Summary(
         title=case.title,
         case_hash=toml.digest(case),
@@ -142,7 +142,7 @@ def _results(
         models={name: one.summary for name, one in moved.items()},
         failures=failures,
     )
-    # Every file says which case it is of, so that a folder cannot mix two runs unnoticed.
+    # Every file names its case, so that a folder cannot mix two runs unnoticed.
     trajectories = {name: one.trajectory for name, one in moved.items()}
     data = label(boom, trajectories).assign_attrs(case_hash=summary.case_hash)
     ensembles = members.gather_ensembles(
@@ -163,7 +163,7 @@ def _attempt_all(
     attempt: Callable[[Model], ModelRun | Exception | None],
     alone: bool,
 ) -> dict[str, ModelRun | Exception | None]:
-    """What each model leaves, or what has kept it from that, in the order of the models.
+    """Return the result or the failure of each model, in the order of the models.
 
     Where no other rank waits beams move while shells are made: their compiled loops do not hold the
     interpreter.
@@ -175,7 +175,7 @@ def _attempt_all(
         try:
             made = {model.name: attempt(model) for model in models if model.needs_shell}
         except BaseException:
-            # Whoever interrupts does not wait for all beams.
+            # An interrupt does not wait for all beams.
             thread.shutdown(cancel_futures=True)
             raise
         return {m.name: made[m.name] if m.needs_shell else moving[m.name].result() for m in models}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What sections of a segment carry: what its line reads, and the normal force.
+"""Section forces of a segment: those of its line, and the normal force.
 
 N is that of the axial forces, which are given, and of what luffing cylinders push along the boom
 between their lugs and the foot that holds it there.
@@ -19,7 +19,7 @@ from geometry.axial import carried
 from geometry.boom import Boom
 from geometry.cylinder import force_name
 
-# Part of a place's distance from the start by which a jump's two sides are told apart.
+# Distance on both sides of a jump, as a part of the distance from the start.
 _ASIDE = 1.0e-9
 
 _ACROSS: tuple[tuple[Quantity, Quantity], ...] = (
@@ -28,17 +28,17 @@ _ACROSS: tuple[tuple[Quantity, Quantity], ...] = (
 )
 
 
-# Digits that are kept of curves.
+# Number of digits of stored curves.
 _DIGITS = 5
 
 
 def rounded(values: Array | Iterable[float]) -> list[float]:
-    """As a file keeps them."""
+    """Return values rounded to the digits of a file."""
     return [float(f"{value:.{_DIGITS}g}") for value in values]
 
 
 def with_cylinders(boom: Boom, system: GapSystem, lines: Sequence[Line]) -> list[Line]:
-    """Lines that read what cylinders push along the boom, too, as normal forces.
+    """Return lines with the axial forces of cylinders as normal forces.
 
     Args:
         boom: of the system.
@@ -58,7 +58,7 @@ def with_cylinders(boom: Boom, system: GapSystem, lines: Sequence[Line]) -> list
 def section_forces(
     boom: Boom, number: int, line: Line, states: Array, time: Array
 ) -> dict[Quantity, Array]:
-    """(..., num_places) of what a line reads of (..., num_modes), and N in N.
+    """Return the values (..., num_places) of a line at states (..., num_modes), with N in N.
 
     Args:
         boom: it may be drawn out.
@@ -67,13 +67,13 @@ def section_forces(
         time: (...) of the states in s.
     """
     read = line.read(states)
-    # A little before or behind themselves where places stand twice.
+    # Slightly before or behind themselves where places occur twice.
     jump = np.diff(line.x) == 0.0
     aside = _ASIDE * max(1.0, float(np.ptp(line.x)))
     x = line.x + aside * (np.append(False, jump).astype(float) - np.append(jump, False))
     pressed = carried(boom.segments, boom.joints, number, x, time)
     if boom.driven:
-        # Lines have the shear force of the axial forces at the start.
+        # Lines include the shear force of the axial forces at the start.
         more = pressed - boom.segments[number].compression(x)
         for deflection, shear in _ACROSS:
             if shear in read:
@@ -82,7 +82,7 @@ def section_forces(
 
 
 def _slopes(line: Line, deflection: Array) -> Array:
-    """(..., num_places) of a deflection (..., num_places) along a line."""
+    """Return the slopes (..., num_places) of a deflection (..., num_places) along a line."""
     x, index = np.unique(line.x, return_index=True)
     slopes = np.gradient(deflection[..., index], x, axis=-1)
     return np.asarray(slopes[..., np.searchsorted(x, line.x)])

@@ -23,15 +23,15 @@ from runs.pipeline.at_rest import pressed, tilts
 from runs.pipeline.proportions import of_period, of_tip
 from runs.report.tables import Table
 
-# A part of what others bear that is none.
+# Part of the other reactions below which a reaction counts as zero.
 ROUND_OFF = 1.0e-9
-# Moments in N·m that are none.
+# Moment in N·m below which a moment counts as zero.
 _NO_MOMENT = 1.0e-3
 
 
 @dataclass(frozen=True, slots=True)
 class Reaction:
-    """What a support, a cylinder or a stop does to a segment at x in m.
+    """The reaction of a support, a cylinder or a stop on a segment at x in m.
 
     Args:
         segment: its name.
@@ -61,7 +61,7 @@ class Statics(NamedTuple):
 
 
 def statics(case: Case, boom: Boom) -> Statics | None:
-    """None where no rest is found."""
+    """Return the static states; None without an equilibrium."""
     with_play = not all(model.play_free for model in case.models)
     try:
         with np.errstate(all="ignore"):
@@ -75,24 +75,24 @@ def statics(case: Case, boom: Boom) -> Statics | None:
 
 
 def with_play_seen(case: Case, boom: Boom) -> Boom:
-    """The boom as the first model with play sees it."""
+    """Return the boom of the first model with play."""
     with_play = next((model for model in case.models if not model.play_free), case.models[0])
     return with_play.joined(boom).boom
 
 
 def reactions(state: StaticState) -> list[Reaction]:
-    """Return what holds the boom to the ground."""
+    """Return the support reactions."""
     between = _between_segments(state.boom)
     return [one for place, one in _held(state).items() if place not in between]
 
 
 def _between_segments(boom: Boom) -> set[tuple[int, float]]:
-    """Stations of joints by the inner segment and x in m."""
+    """Return the stations of joints by the inner segment and x in m."""
     return {(joint.inner, x) for joint in boom.joints for x in joint.stations}
 
 
 def _held(state: StaticState) -> dict[tuple[int, float], Reaction]:
-    """By segment and x in m what the ground and joints do, each once and without round-off."""
+    """Return the reactions of ground and joints by segment and x in m, without round-off."""
     boom, depths, along = state.boom, _depths(state), _along(state)
     places = _between_segments(boom)
     places |= {(number, one.x) for number, s in enumerate(boom.segments) for one in s.supports}
@@ -114,7 +114,7 @@ def _held(state: StaticState) -> dict[tuple[int, float], Reaction]:
 
 
 def _along(state: StaticState) -> dict[tuple[int, float], float]:
-    """What feet and cylinders push along the boom in N, by the segment and x in m; else 0."""
+    """Return the axial forces of feet and cylinders in N, by segment and x in m; default 0."""
     boom = state.boom
     found: dict[tuple[int, float], float] = defaultdict(float)
     for number, segment in enumerate(boom.segments):
@@ -130,7 +130,7 @@ def _along(state: StaticState) -> dict[tuple[int, float], float]:
 
 
 def _depths(state: StaticState) -> dict[tuple[int, float], float]:
-    """How far in m stations along z are pressed in, by the inner segment and x in m."""
+    """Return the compression in m of stations along z, by the inner segment and x in m."""
     boom = state.boom
     joints = [joint for joint in boom.joints if not joint.tied]
     inner = [one.inner for _ in boom.directions for one in joints for _ in one.stations]
@@ -144,12 +144,12 @@ def _depths(state: StaticState) -> dict[tuple[int, float], float]:
 
 
 def cylinder_force(state: StaticState, number: int) -> float:
-    """Return the force of a cylinder's spring in N, of the first one with number 1."""
+    """Return the force of a cylinder's spring in N; the first cylinder has number 1."""
     return float(state.system.observers[force_name(number)].row @ state.position)
 
 
 def print_statics(case: Case, boom: Boom, console: Console) -> None:
-    """Print masses, and the boom at rest."""
+    """Print the masses and the static state of the boom."""
     _masses(boom, case.system).show(console)
     found = statics(case, boom)
     if found is None:
@@ -178,7 +178,7 @@ def print_statics(case: Case, boom: Boom, console: Console) -> None:
 
 
 def _masses(boom: Boom, system: System) -> Table:
-    """Of each segment with what it carries, and of all."""
+    """Return the table of masses of each segment with its attachments, and their sum."""
     kg, m = system.label("kg"), system.label("m")
     rows = []
 
@@ -202,7 +202,7 @@ def _masses(boom: Boom, system: System) -> Table:
 
 
 def _reactions(state: StaticState, system: System) -> Table:
-    """Forces on the segments where something holds them, and how deep contacts are pressed."""
+    """Return the table of support reactions and contact compressions."""
     held = list(_held(state).values())
     pushed = any(one.along for one in held)
     along = ["along (kN)"] if pushed else []
@@ -224,7 +224,7 @@ def _reactions(state: StaticState, system: System) -> Table:
 
 
 def _cylinders(state: StaticState, system: System) -> Table:
-    """Their lines, and the forces along them: of two side by side together."""
+    """Return the table of cylinder axes and forces; a pair side by side counts together."""
     lengths = [f"{name} ({system.label('m')})" for name in ("x", "length", "arm")]
     rows = []
     for number, cylinder in enumerate(state.boom.cylinders, start=1):

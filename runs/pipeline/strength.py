@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Stresses of a motion: in outer fibres, in the walls of shells, and what their cycles do.
+"""Stresses of a motion, in outer fibres and in the walls of shells, and their fatigue damage.
 
 σ = N/A + M z/J + M_y y/J_y, as beams have it (Navier 1826); of a shell with the integrals of its
 walls' stresses, so that both are the nominal stress of the same section.
@@ -27,23 +27,23 @@ from geometry.section import Section
 from runs.case.schema import LifeTable
 from runs.pipeline.section_forces import rounded
 
-# Cycles at which a category is named, at the constant-amplitude limit, and at the cut-off.
+# Reference cycles of a category, cycles of the constant-amplitude limit, and of the cut-off.
 NAMED, LIMIT, CUT_OFF = 2.0e6, 5.0e6, 1.0e8
 STEEP, FLAT = 3.0, 5.0
 
-# Debian's own packages have no such counter: there a run goes without it.
+# Debian's own packages have no such counter: there a run omits the count.
 COUNTS = find_spec("rainflow") is not None
 
-# In Pa, as categories are named.
+# Stress in Pa of the unit in which categories are named.
 _MEGA = 1.0e6
 
-# Classes of ranges that are kept.
+# Number of classes of stored ranges.
 _CLASSES = 20
 
 
 @dataclass(frozen=True, slots=True)
 class FibreStress:
-    """The stress along x in an outer fibre of a segment where it is largest, of section forces.
+    """The largest stress along x in an outer fibre of a segment, from section forces.
 
     Args:
         segment: its name.
@@ -88,7 +88,7 @@ class WallStress:
 
 @dataclass(frozen=True, slots=True)
 class Life:
-    """What the stress of a segment's outer fibre does to a detail there, where it varies most.
+    """The fatigue damage of a detail at the outer fibre of a segment, where the stress varies most.
 
     Args:
         segment: its name.
@@ -117,7 +117,7 @@ class Life:
 
 
 class Varying(NamedTuple):
-    """The stress of a segment at (x, y, z) in m, (num_times,) in Pa."""
+    """The stress history (num_times,) of a segment in Pa at (x, y, z) in m."""
 
     segment: str
     at: tuple[float, float, float]
@@ -145,7 +145,7 @@ class Fibres:
 
     @classmethod
     def of(cls, segment: Segment, line: Line) -> Fibres | None:
-        """None where the section is not known or the segment does not bend."""
+        """Return the fibres; None for an unknown section or a segment without bending."""
         if segment.section is None or "moment" not in line.rows:
             return None
         spatial = "lateral_moment" in line.rows
@@ -156,7 +156,7 @@ class Fibres:
         return cls(line.x, y, z, of_moment, of_lateral, 1.0 / _each(there, "section.area"))
 
     def stress(self, fibre: int, curves: Mapping[Quantity, Array]) -> Array:
-        """(..., num_places) in Pa of section forces (..., num_places)."""
+        """Return the stress (..., num_places) in Pa of section forces (..., num_places)."""
         stress = self.of_moment[fibre] * curves["moment"] + self.of_normal * curves["normal"]
         if "lateral_moment" in curves:
             stress += self.of_lateral[fibre] * curves["lateral_moment"]
@@ -168,7 +168,10 @@ def _each(segments: Sequence[Segment], number: str) -> Array:
 
 
 def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
-    """(num_fibres, num_places) y and z in m; of a flat boom those that differ in z, at y = 0."""
+    """Return y and z (num_fibres, num_places) of the corners in m.
+
+    For a flat boom only those of different z, at y = 0.
+    """
     different = x.tolist() if segment.head_section is not None else [float(x[0])]
     corners = np.array([outer_corners(segment.section_at(place)) for place in different])
     found = np.broadcast_to(corners, (x.size, *corners.shape[1:]))
@@ -180,7 +183,7 @@ def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
 
 
 def outer_corners(section: Section) -> tuple[Array, Array]:
-    """y and z (num_corners,) in m of the corners of the plates' outer surfaces, from the centroid.
+    """Return y and z (num_corners,) in m of the outer corners of the plates, from the centroid.
 
     Of plates that meet, those of the surface whose normal is nearer to the direction count.
     """
@@ -237,13 +240,13 @@ def largest_stresses(
 
 
 def utilisation(segment: Segment, stress: float) -> float | None:
-    """Of its yield strength; None where that is not known."""
+    """Return the utilisation of the yield strength; None where that is not known."""
     strength = segment.material.yield_strength
     return None if strength is None else abs(stress) / strength
 
 
 def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
-    """Of each segment of a shell that comes near a place.
+    """Return the largest wall stresses of each segment of a shell near stations and supports.
 
     Args:
         boom: of the shell.
@@ -270,14 +273,14 @@ def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
 
 
 class Ranges(NamedTuple):
-    """Ranges in Pa and how many cycles each has, halves among them, (num_ranges,) each."""
+    """Ranges (num_ranges,) in Pa and the number of cycles of each, with half cycles."""
 
     sizes: Array
     counts: Array
 
 
 def counted(stress: Sequence[float] | Array) -> Ranges:
-    """The cycles of a stress in Pa, rainflow counted."""
+    """Return the cycles of a stress in Pa by rainflow counting."""
     import rainflow
 
     found = [(size, count) for size, count in rainflow.count_cycles(stress) if size > 0.0]
@@ -286,7 +289,7 @@ def counted(stress: Sequence[float] | Array) -> Ranges:
 
 
 def endurance(sizes: Array, category: float) -> Array:
-    """(num_ranges,) cycles to failure of ranges in Pa; infinite below the cut-off.
+    """Return the cycles (num_ranges,) to failure of ranges in Pa; infinite below the cut-off.
 
     Args:
         sizes: the ranges.
@@ -300,7 +303,7 @@ def endurance(sizes: Array, category: float) -> Array:
 
 
 def life(varying: Varying, table: LifeTable) -> Life:
-    """What a segment goes through where its stress varies most.
+    """Return the fatigue damage of a segment where its stress varies most.
 
     Args:
         varying: the stress.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a run says of itself and of each model: the content of ``summary.json``.
+"""The content of ``summary.json``: results of a run and of each model.
 
 Fields are the file's keys, in its order; SI units. A field that was never set has no key; one that
 is None stands in the file as null.
@@ -84,7 +84,7 @@ class EnsembleSummary(SummaryTable):
     slow_peaks: CommonPeaks | None
 
     def horizon(self, share: float) -> float | None:
-        """In s, for one of :data:`dynamics.predictability.horizon.SHARES`."""
+        """Return the horizon in s for one of :data:`dynamics.predictability.horizon.SHARES`."""
         return self.horizons[f"{share:g}"]
 
 
@@ -309,13 +309,13 @@ class Summary(SummaryTable):
         return cls.model_validate_json(path.read_bytes())
 
     def __str__(self) -> str:
-        """The file's content."""
+        """Return the file's content."""
         content = self.model_dump(exclude_unset=True)
         return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def check_finite(part: object) -> None:
-    """Refuse a part of a summary with numbers that no file of it could hold.
+    """Refuse a part of a summary with numbers that JSON cannot hold.
 
     Raises:
         NumericsError: a number is infinite, or none.
