@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The client that judges runs, the paper: its part of the report, its verdicts.
+"""The client that evaluates runs, the paper: its part of the report, its verdicts.
 
-Nothing else knows it, but for :mod:`runs.case.schema`, which takes its keys into every case.
+Nothing else imports it except :mod:`runs.case.schema`, which adds its keys to every case.
 Another client would replace the names here and there.
 """
 
@@ -38,7 +38,7 @@ def judge(results: Results, folder: Path | None = None) -> Addition:
 
 
 def show(judged: Mapping[str, Addition], console: Console) -> int:
-    """Print what the client says of runs, by their file; return the exit status."""
+    """Print the client's verdicts on runs, by their file; return the exit status."""
     from runs.paper.verdicts import show
 
     return show(judged, console)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A case file: what it may say, how it is read and checked, what it makes."""
+"""The case file: its schema, its reading and checking, and the boom and models that it defines."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What acts on the boom of a case, over time and before it starts."""
+"""Actions on the boom of a case, over time and before t = 0."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ STANDARD_GRAVITY = 9.80665
 
 
 def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
-    """Weights and loads from t = 0 on, those released then, those whose impulse throws a segment.
+    """Return the loads: weights and loads from t = 0 on, loads released then, and initial impulses.
 
     :func:`dynamics.motion.begin` makes of the last two what they leave at t = 0.
 
@@ -63,7 +63,7 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
 
 
 def _thrown(index: int, velocity: VelocityTable, segments: Sequence[Segment]) -> list[Load]:
-    """The momentum of a segment that moves as a rigid body."""
+    """Return the momentum of a segment that moves as a rigid body."""
     segment = segments[index]
     x0 = segment.start if velocity.x is None else at(velocity.x, segment.start, segment.end)
     planes: tuple[tuple[Direction, float, float], ...] = (
@@ -87,7 +87,7 @@ def _thrown(index: int, velocity: VelocityTable, segments: Sequence[Segment]) ->
 def _felt(
     acceleration: float, direction: Direction, history: History, segments: Sequence[Segment]
 ) -> list[Load]:
-    """What all masses feel of an acceleration in m/s²."""
+    """Return the inertia loads of all masses under a ground acceleration in m/s²."""
     return [
         load
         for index, segment in enumerate(segments)
@@ -109,12 +109,12 @@ def _felt(
 
 
 def across(gravity: GravityTable) -> float:
-    """g cos θ in m/s², towards −z."""
+    """Return g cos θ in m/s², towards −z."""
     return gravity.acceleration * float(cosdg(gravity.angle))
 
 
 def along(gravity: GravityTable) -> float:
-    """g sin θ in m/s², towards the base."""
+    """Return g sin θ in m/s², towards the base."""
     return gravity.acceleration * float(sindg(gravity.angle))
 
 
@@ -124,7 +124,7 @@ def with_weight(
     acceleration: float = STANDARD_GRAVITY,
     thrusts: Sequence[Thrust] = (),
 ) -> Boom:
-    """Return the boom whose masses all weigh, across it and along it, from t = 0 on.
+    """Return the boom with the weight of all masses, across it and along it, from t = 0 on.
 
     >>> upright = pt.with_weight(boom, angle=90.0, acceleration=10.0)
     >>> foot = upright.segments[0].compression.ends[0][0]
@@ -144,7 +144,7 @@ def with_weight(
 
 
 def thrusts(case: Case, segments: Sequence[Segment]) -> tuple[Thrust, ...]:
-    """The forces along the boom but for weights.
+    """Return the axial forces on the boom except weights.
 
     Raises:
         BoomError: a name that is no segment, a place that is not on it, a rope that carries
@@ -167,7 +167,7 @@ def _thrust(where: str, table: AxialTable, case: Case, segments: Sequence[Segmen
 
 
 def _pull(where: str, table: AxialTable, case: Case) -> float:
-    """What it presses with in N."""
+    """Return the compressive force in N."""
     if table.force is not None:
         for key in ("falls", "mass"):
             if getattr(table, key) is not None:
@@ -189,7 +189,7 @@ def _pull(where: str, table: AxialTable, case: Case) -> float:
 
 
 def _weighing(payload: PayloadTable | None) -> float:
-    """By how many m/s² a payload weighs by itself."""
+    """Return the acceleration in m/s² of a payload with its own gravity."""
     if payload is None or payload.gravity is None:
         return STANDARD_GRAVITY
     return payload.gravity
@@ -217,7 +217,7 @@ def _load(where: str, table: LoadTable, segments: Sequence[Segment]) -> Load:
 
 
 def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:
-    """The rests on the ground.
+    """Return the stops on the ground.
 
     Raises:
         BoomError: a name that is no segment, a rest that nothing can press.
@@ -243,7 +243,7 @@ def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:
 
 
 def cylinders(case: Case, segments: Sequence[Segment]) -> tuple[Cylinder, ...]:
-    """What luffs the boom.
+    """Return the luffing cylinders.
 
     Raises:
         BoomError: a name that is no segment.
@@ -260,7 +260,7 @@ def cylinders(case: Case, segments: Sequence[Segment]) -> tuple[Cylinder, ...]:
 
 
 def series_notes(case: Case) -> list[str]:
-    """What happens where a tabled history and the run do not last alike, a line each."""
+    """Return notes on tabulated histories that are shorter or longer than the run, a line each."""
     duration = case.time.duration
     tabled = [(f"load[{i}]", load.table) for i, load in enumerate(case.loads, start=1)]
     tabled += [(f"base[{i}]", base.table) for i, base in enumerate(case.base, start=1)]
@@ -282,7 +282,7 @@ def series_notes(case: Case) -> list[str]:
 
 
 def called(where: str, name: str, segments: Sequence[Segment | SegmentTable]) -> int:
-    """Which of the segments has a name.
+    """Return the index of the segment with a name.
 
     Raises:
         BoomError: none has.

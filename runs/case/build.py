@@ -36,7 +36,7 @@ from runs.case.places import at
 from runs.case.schema import Case
 from runs.case.segment import SegmentTable, SupportTable
 
-# What trajectories hold of every boom.
+# Quantities in the trajectories of every boom.
 _TAKEN = {
     *OF_STATIONS,
     *DRIVEN_ENERGIES,
@@ -47,12 +47,12 @@ _TAKEN = {
     "model",
 }
 
-# A beam's numbers and its plates' may differ by this part, for the rounding of data sheets.
+# Relative tolerance between a beam's numbers and its plates', for the rounding of data sheets.
 SAME_SECTION = 0.01
 
 
 def build_boom(case: Case) -> Boom:
-    """The boom that a case declares, its sections inferred where they are not given.
+    """Return the boom of a case; infer sections that are not given.
 
     Raises:
         BoomError: no boom can be like that.
@@ -82,7 +82,7 @@ def build_boom(case: Case) -> Boom:
 
 
 def check_varied(case: Case, boom: Boom) -> None:
-    """Whether there is what the members of an ensemble change.
+    """Check that the case has the data that the members of an ensemble vary.
 
     Raises:
         BoomError: there is not.
@@ -106,7 +106,7 @@ def check_varied(case: Case, boom: Boom) -> None:
 
 
 def _loaded(boom: Boom) -> bool:
-    """Whether a load acts from t = 0 on."""
+    """Return whether a load acts from t = 0 on."""
     own = [segment.load for segment in boom.segments]
     own += [segment.lateral.load for segment in boom.segments if segment.lateral is not None]
     lasting = [load for load in boom.loads if not isinstance(load.history, Released | Thrown)]
@@ -132,7 +132,7 @@ def _observations(case: Case, segments: Sequence[Segment]) -> tuple[Observation,
 
 
 def check_names(where: str, names: Sequence[str]) -> None:
-    """No name twice.
+    """Check that names are unique.
 
     Raises:
         BoomError: at the second one.
@@ -147,7 +147,7 @@ def check_names(where: str, names: Sequence[str]) -> None:
 
 
 def _check_joined(case: Case) -> None:
-    """Joints connect two segments each, and no two twice."""
+    """Check that joints connect two segments each, and every pair once."""
     names = [segment.name for segment in case.segments]
     for index, table in enumerate(case.joints):
         where = f"joint[{index + 1}]"
@@ -204,7 +204,7 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
 
 
 def _check_plays(where: str, table: JointTable) -> None:
-    """A part of a play is not more than it, and shims leave none."""
+    """Check that parts of a play do not exceed it, and that shims leave clearance."""
     for key, of, pressed in (
         ("play_above", "play", "interference"),
         ("lateral_play_right", "lateral_play", "lateral_interference"),
@@ -256,7 +256,7 @@ def _support(table: SupportTable, ends: tuple[float, float]) -> Support:
 
 
 def material_of(case: Case, index: int) -> Material:
-    """A segment's own material, or the case's."""
+    """Return a segment's own material, or the case's."""
     table = case.segments[index].material or case.material
     if table is None:
         raise BoomError(
@@ -276,7 +276,7 @@ def _masses(case: Case, index: int, ends: tuple[float, float]) -> tuple[PointMas
 
 
 def _check_flat(case: Case) -> None:
-    """Nothing acts to the sides of a boom that does not move there."""
+    """Check that a flat boom has no lateral actions."""
     if _in_space(case):
         return
     remedy = "the boom is flat, and nothing moves along 'y'; give the joints lateral_play"
@@ -297,7 +297,7 @@ def _in_space(case: Case) -> bool:
 
 
 def _lateral(table: SegmentTable, material: Material, section: Section | None) -> Lateral | None:
-    """What bends sideways and twists, given or of the section; None where something is unknown."""
+    """Return lateral bending and torsion data, given or of the section; None if incomplete."""
     second_moment, torsion = table.lateral_second_moment_of_area, table.torsion_constant
     polar = table.polar_inertia
     if section is not None:
@@ -317,7 +317,7 @@ def _lateral(table: SegmentTable, material: Material, section: Section | None) -
 
 
 def _beam_numbers(case: Case, index: int) -> tuple[float, float]:
-    """Mass per length in kg/m and second moment in m⁴, given or of the given section."""
+    """Return mass per length in kg/m and second moment in m⁴, given or of the given section."""
     table = case.segments[index]
     section, head = _given_section(table, index), _head_section(table, index)
     mass, second_moment = table.mass_per_length, table.second_moment_of_area
@@ -333,7 +333,7 @@ def _beam_numbers(case: Case, index: int) -> tuple[float, float]:
 
 
 def _check_plates(case: Case, index: int, section: Section) -> None:
-    """A given section stands alone, and the beam's numbers are its own where a shell is to run."""
+    """Check that a section is given once, and that its plates agree with the beam's numbers."""
     table = case.segments[index]
     where = f"segment[{index + 1}]"
     if table.height_to_width is not None:
@@ -387,7 +387,7 @@ def _head_section(table: SegmentTable, index: int) -> Section | None:
     return head
 
 
-# Numbers that change along a segment that tapers.
+# Numbers that vary along a tapered segment.
 _OF_SECTIONS = (
     "mass_per_length", "second_moment_of_area", "rotary_inertia", "lateral_second_moment_of_area",
     "lateral_rotary_inertia", "torsion_constant", "polar_inertia",
@@ -395,12 +395,12 @@ _OF_SECTIONS = (
 
 
 def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
-    """Given sections, then those of a given ratio, then those that fill the one around them."""
+    """Return given sections, those of a given ratio, then those that fit in the one around them."""
     sections = [_given_section(table, i) for i, table in enumerate(case.segments)]
     for i, table in enumerate(case.segments):
         if sections[i] is None and table.height_to_width is not None:
             sections[i] = _infer(case, i, table.height_to_width)
-    # One pass a joint carries a section inwards through all of them, in whatever order.
+    # One pass per joint carries a section inwards through all of them, in any order.
     for _ in joints:
         for joint in joints:
             outer = sections[joint.outer]
@@ -420,9 +420,9 @@ def _check_plain(case: Case, joint: Joint) -> None:
 
 
 def _infer(case: Case, index: int, hint: float | tuple[Section, float]) -> Section | None:
-    """A section from its height-to-width ratio, or from the one around it and the clearance.
+    """Infer a section from its height-to-width ratio, or from the one around it and the clearance.
 
-    None where there is none and no model needs it.
+    Return None where there is none and no model needs it.
     """
     mass, second_moment = _beam_numbers(case, index)
     area = mass / material_of(case, index).density

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Two columns of a CSV file, as instruments, programs and spreadsheets write them.
 
-Cells are parted by commas, semicolons or tabs, a number's comma is a decimal one, and what follows
-a # is a comment. A heading names the columns, each with its unit behind the name, in brackets,
-behind a stroke or ``in``, or in a line of units below.
+Commas, semicolons or tabs separate cells, a comma in a number is a decimal one, and the text after
+a # is a comment. A heading names the columns, each with its unit after the name, in brackets,
+after a slash or ``in``, or in a line of units below.
 """
 
 from __future__ import annotations
@@ -29,20 +29,20 @@ _HEADED = re.compile(r"(.*?)\s*(?:\[(.+)\]|\((.+)\)|/(.+)|\bin (.+))")
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """What one of the two columns is to hold."""
+    """Expected content of one of the two columns."""
 
     name: str  #: in messages
     unit: str  #: of its numbers unless the heading says another of the same dimension
-    factor: bool = False  #: whether its numbers are factors unless the heading says such a unit
+    factor: bool = False  #: whether its numbers are factors unless the heading gives such a unit
 
     def __str__(self) -> str:
         return self.name if self.factor else f"{self.name} in {self.unit}"
 
     def scale(self, unit: str) -> float:
-        """How much of its own unit one of a file's unit is.
+        """Return the factor from a unit of the file to the column's own unit.
 
         Raises:
-            ValueError: it is another dimension, or no unit that is known.
+            ValueError: the unit is unknown, or of another dimension.
         """
         own, given = Unit.of(self.unit), Unit.of(unit)
         if self.factor and not any(given.dimension):
@@ -57,7 +57,7 @@ class Pairs:
     """The numbers of two columns, in their units."""
 
     values: tuple[tuple[float, float], ...]  #: the first number of each rises
-    measured: bool  #: whether the second one is no factor, since its heading says a unit
+    measured: bool  #: whether the second one is a quantity with a unit in its heading
 
 
 def read_pairs(
@@ -107,7 +107,7 @@ def read_pairs(
 
 
 class _Unfit(Exception):
-    """What is wrong with a file, behind its name: where, and nothing of what stands there.
+    """The fault of a file, without quoting its content.
 
     The file may be another one than the user meant, whose content is nobody's business.
 
@@ -133,14 +133,14 @@ class _Row:
         return any(map(_is_number, self.cells))
 
     def check_columns(self, chosen: Sequence[int], names: Sequence[str] | None) -> None:
-        """Whether the chosen columns are there, and no other ones unless these have names."""
+        """Check that the chosen columns exist, and that any others have names."""
         count = len(self.cells)
         if count <= max(chosen) or (names is None and count != len(chosen)):
             columns = "1 column" if count == 1 else f"{count} columns"
             raise _Unfit(f"has {columns} in line {self.line}")
 
     def number(self, column: int) -> float:
-        """Of a cell; raises :class:`_Unfit`."""
+        """Return the number in a cell; raise :class:`_Unfit` if there is none."""
         with suppress(ValueError):
             number = _number(self.cells[column])
             if np.isfinite(number):
@@ -149,7 +149,7 @@ class _Row:
 
 
 def _rows(text: str) -> list[_Row]:
-    """All lines but empty ones and comments."""
+    """Return all lines except empty ones and comments."""
     numbered = enumerate(text.splitlines(), start=1)
     lines = [(number, line.partition("#")[0].strip()) for number, line in numbered]
     lines = [(number, line) for number, line in lines if line]
@@ -179,7 +179,7 @@ def _is_number(cell: str) -> bool:
 def _chosen(
     headings: Sequence[_Row], names: Sequence[str] | None, columns: Sequence[Column]
 ) -> tuple[list[int], list[float], bool]:
-    """The positions of the two columns, what makes their own units of them, as of :class:`Pairs`.
+    """Return indices, unit factors and ``measured`` (see :class:`Pairs`) of the two columns.
 
     Raises:
         _Unfit: a name that is not there, too many columns, a unit that does not fit.
@@ -221,7 +221,7 @@ def _chosen(
 
 
 def _split(cell: str) -> tuple[str, str | None]:
-    """Name and unit of a heading."""
+    """Return the name and the unit of a heading."""
     found = _HEADED.fullmatch(cell)
     if found is None:
         return cell, None

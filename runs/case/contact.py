@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How segments touch, as a case file says it: joints, and the contact law of one model."""
+"""Contact between segments in a case file: joints, and the contact law of one model."""
 
 from __future__ import annotations
 
@@ -33,16 +33,16 @@ if TYPE_CHECKING:
     from dynamics.contact import ContactLaw
     from dynamics.contact_table import TableContact
 
-# Modulus in Pa of cast polyamide 6 with the 2.5 % of water that it takes from air, by the data
+# Modulus in Pa of cast polyamide 6 with the 2.5 % of water that it absorbs from air, by the data
 # sheet of PolyJARID; dry it has 3.2e9.
 POLYAMIDE = 1.9e9
 
 BOTH: tuple[Side, Side] = (1, -1)
 
-# Pads that press together on one side of a station, one beside each web.
+# Number of pads that share the force on one side of a station, one beside each web.
 PADS_OF_SIDE = 2
 
-# Each is a term of every row in every step of the time loop.
+# Number of terms: each is evaluated for every row in every step of the time loop.
 MOST_POINTS = 1000
 
 PAD_WITHOUT_STIFFNESS = (
@@ -54,7 +54,7 @@ _OF_POWER = ("stiffness", "stiffness_below", "exponent")
 
 
 def table_law(points: Sequence[tuple[float, float]], damping: float = 0.0) -> TableContact:
-    """A contact that follows pairs of a penetration in m and a force in N.
+    """Return a contact law through pairs of a penetration in m and a force in N.
 
     Raises:
         ValueError: no contact can be like that.
@@ -74,7 +74,7 @@ def _check_points(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float,
 
 
 def _check_law(table: JointTable | ContactTable, of_power: Sequence[str]) -> None:
-    """A power law has a stiffness; tables, and pads with a thickness, have no such numbers.
+    """Check that a power law has a stiffness, and that tables and pads with a thickness have none.
 
     Args:
         table: with all its keys, in whatever order these are declared.
@@ -134,17 +134,17 @@ class PadTable(Table):
 
     @property
     def size(self) -> PadSize:
-        """What it covers."""
+        """Dimensions of the contact patch."""
         return PadSize(self.length, self.width, self.offset)
 
     @property
     def area(self) -> float:
-        """In m²."""
+        """Area in m²."""
         return self.length * self.width
 
     @property
     def stiffness(self) -> float | None:
-        """k = E A/t in N/m."""
+        """Stiffness k = E A/t in N/m."""
         return None if self.thickness is None else self.modulus * self.area / self.thickness
 
 
@@ -160,7 +160,7 @@ class SlidePadTable(PadTable):
 
     @property
     def made(self) -> SlidePad:
-        """Where it is, and how stiff."""
+        """Slide pad with its position and stiffness."""
         covered = self.length, self.width, self.offset
         return SlidePad(*covered, self.side, self.modulus * self.area / self.thickness, self.shim)
 
@@ -242,14 +242,14 @@ class JointTable(Table):
 
     @property
     def thick_pads(self) -> str | None:
-        """The key of pads from whose thickness a stiffness follows."""
+        """Key of the pads whose thickness determines a stiffness."""
         if self.pads:
             return "pads"
         return "pad.thickness" if self.pad is not None and self.pad.thickness else None
 
     @property
     def slide_pads(self) -> tuple[SlidePad, ...]:
-        """Those of ``pads``."""
+        """The slide pads of ``pads``."""
         return tuple(pad.made for pad in self.pads)
 
     @model_validator(mode="after")
@@ -260,7 +260,7 @@ class JointTable(Table):
 
     @model_validator(mode="after")
     def _one_law(self) -> Self:
-        # To the sides a stiffness of their own makes a power law beside any table.
+        # To the sides, a lateral stiffness makes a power law beside any table.
         lateral = () if self.lateral_stiffness else ("lateral_exponent",)
         _check_law(self, (*_OF_POWER, *lateral))
         if self.pads and self.lateral_stiffness:
@@ -274,7 +274,7 @@ class JointTable(Table):
         return self.lateral_exponent or along_z if key == "lateral_stiffness" else along_z
 
     def law(self, direction: Direction) -> ContactLaw | None:
-        """The contact law of each station along z, or in space along y; None where no pad is."""
+        """Return the contact law of each station along a direction; None without pads there."""
         if self.pads:
             above, below = (self._of_side(direction, side) for side in BOTH)
             return _law(self, above, below, 1.0) if above or below else None
@@ -286,7 +286,7 @@ class JointTable(Table):
         return _law(self, stiffness, None, self.lateral_exponent or exponent)
 
     def _of_side(self, direction: Direction, side: Side) -> float:
-        """Stiffness of all pads there in N/m."""
+        """Return the stiffness of all pads on a side in N/m."""
         pads = (pad for pad in self.slide_pads if pad.touches(direction, side))
         return PADS_OF_SIDE * sum(pad.stiffness for pad in pads)
 
@@ -319,7 +319,7 @@ class ContactTable(Table):
         return self.exponent or 2.0
 
     def law(self, direction: Direction) -> ContactLaw:
-        """As that of a joint."""
+        """Return the contact law, as of a joint."""
         below = self.stiffness_below if direction == "z" else None
         return _law(self, self.stiffness, below, self.exponent)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A case in other units becomes one in SI units, number by number, as its tables declare them."""
+"""Conversion of a case from other units to SI units, as its tables declare the units of numbers."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _Table = TypeVar("_Table", bound=Table)
 
 
 def in_si(case: Case) -> Case:
-    """The case in SI units, which shows its numbers in those that it had.
+    """Return the case in SI units; it keeps its own units for display.
 
-    Defaults, which nobody has given, are in SI units already.
+    Defaults are in SI units already.
 
     Args:
         case: that stands alone, without files.
@@ -46,7 +46,7 @@ def _converted(table: _Table, system: System, exponent: float = 2.0) -> _Table:
 
 
 def _scaled(value: Any, sizes: Sequence[Fraction], system: System, exponent: float) -> Any:
-    """A value of a table, all numbers of it; where there are several sizes, those of a row each."""
+    """Return a value of a table with all its numbers scaled; several sizes apply to each row."""
     if isinstance(value, Table):
         return _converted(value, system, exponent)
     if isinstance(value, dict):

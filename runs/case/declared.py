@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a case declares, each made once: its boom, and its models on it."""
+"""The boom of a case and its models on it, each built once."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from runs.case.schema import Case, Model
 
 @dataclass(frozen=True)
 class Declared:
-    """A case, and what follows from it when it is asked for first."""
+    """A case, and its boom and joined models, built on first use."""
 
     case: Case  #: whose boom can be
     _joined: dict[str, Joined] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def boom(self) -> Boom:
-        """As :func:`runs.case.build.build_boom` makes it."""
+        """The boom of :func:`runs.case.build.build_boom`."""
         return build_boom(self.case)
 
     def joined(self, model: Model) -> Joined:
-        """The boom as one of the case's models sees it."""
+        """Return the boom for one of the case's models."""
         if model.name not in self._joined:
             self._joined[model.name] = model.joined(self.boom)
         return self._joined[model.name]

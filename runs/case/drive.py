@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What draws an inner segment out of its outer one while the boom moves, as a case file says it."""
+"""Drives that extend or retract an inner segment during the motion, in a case file."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from geometry.joint import Carrier, Drive
 from runs.case.limits import MOST_TIMES, In, NotNegative, Number, Positive, Table, Text, described
 from runs.case.places import PlaceTable
 
-# A travel in less time, in s, is a slip of the pen; one of fewer m is none.
+# Least duration in s and least travel in m: a shorter time is an input error.
 _SHORTEST, _NOWHERE = 1.0e-6, 1.0e-9
 
-# How a drive may go, by the key that says it.
+# Kinds of drive histories, by their keys.
 _WAYS = ("time", "speed", "table")
 
 Ways = Annotated[
@@ -60,7 +60,7 @@ class DriveTable(Table):
     unless given"""
 
     def history(self, where: str) -> History:
-        """How far it is drawn out in m.
+        """Return the history of the extension in m.
 
         Args:
             where: its key.
@@ -121,7 +121,7 @@ class DriveTable(Table):
         locked_at: float | PlaceTable | None,
         inner: tuple[str, float],
     ) -> Drive | None:
-        """None where it moves nothing.
+        """Return the drive; None where it moves nothing.
 
         Args:
             where: the key of its joint.
@@ -137,7 +137,7 @@ class DriveTable(Table):
         carriers = tuple(_carrier(place, *goes) for place in stations)
         locked: Carrier = "inner"
         if isinstance(locked_at, float) and locked_at < tail:
-            # The foot of what pushes the tail.
+            # The fixed end of the drive that pushes the tail.
             locked = "outer"
         elif locked_at is not None:
             locked = _carrier(locked_at, f"{where}.locked_at", "the place", name)
@@ -147,7 +147,7 @@ class DriveTable(Table):
 
 
 def fastest(drive: Drive) -> float:
-    """Its largest speed in m/s."""
+    """Return the largest speed of a drive in m/s."""
     times = followed([drive.history], max(drive.history.kinks))
     return float(np.abs(np.diff(drive.history(times)) / np.diff(times)).max())
 

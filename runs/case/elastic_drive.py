@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What drives of a given stiffness draw along the boom of a case."""
+"""Data of drives of finite stiffness."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from runs.case.contact import JointTable
 from runs.case.drive import DriveTable
 from runs.case.schema import Case
 
-# In Hz: a swing, or a decay, that is faster is that of a stiff drive.
+# Frequency or decay rate in Hz above which a drive counts as rigid.
 _FASTEST = 1.0e3
 
 
 def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
-    """What each drive of a given stiffness draws, by the position of its joint.
+    """Return the data of each drive of finite stiffness, by the index of its joint.
 
     Args:
         case: a checked one.
@@ -46,7 +46,7 @@ def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
 
 
 def with_elastic_drives(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
-    """A model's system, whose travels know what their drives draw."""
+    """Return a model's system with the data of its elastic drives."""
     found = elastic_drives(case, boom)
     suffixes = {course.suffix: found.get(course.joints[0]) for course in courses(boom)}
 
@@ -57,7 +57,7 @@ def with_elastic_drives(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
 
 
 def check_elastic_drives(case: Case, boom: Boom) -> None:
-    """Whether what drives are made of can be.
+    """Check the data of elastic drives.
 
     Raises:
         BoomError: it cannot.
@@ -115,7 +115,7 @@ def _drives(case: Case) -> Iterator[tuple[int, JointTable, DriveTable]]:
 
 
 def _moved_mass(boom: Boom, *joints: int) -> float:
-    """Of the segments that the drives of all these joints move, in kg."""
+    """Return the mass in kg of the segments that the drives of all these joints move."""
     return sum(
         segment.mass
         for number, segment in enumerate(boom.segments)
@@ -124,5 +124,5 @@ def _moved_mass(boom: Boom, *joints: int) -> float:
 
 
 def _sticking(joint: JointTable, drive: DriveTable) -> float:
-    """Static friction over that of sliding."""
+    """Return the ratio of static to sliding friction."""
     return 1.0 if drive.static_friction is None else drive.static_friction / joint.friction

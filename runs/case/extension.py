@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Where segments end: by their spans, or by their lengths and how far joints draw them out."""
+"""Ends of segments, from their spans, or from their lengths and the extension of joints."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from runs.case.segment import SegmentTable
 def spans(
     segments: Sequence[SegmentTable], joints: Sequence[JointTable]
 ) -> list[tuple[float, float]]:
-    """The x of the ends of each segment in m.
+    """Return the x of the ends of each segment in m.
 
     Args:
         segments: with a name each; the first one starts at 0 where it is given by its length.
@@ -42,7 +42,7 @@ def spans(
     first = segments[0]
     if first.length is not None and first.name not in {joint.inner for _, joint in drawn}:
         ends[first.name] = 0.0, first.length
-    # One pass a joint draws the segments out, in whatever order.
+    # One pass per joint places the segments, in any order of the joints.
     for _ in drawn:
         for where, joint in drawn:
             if joint.outer in ends and joint.inner not in ends:
@@ -62,7 +62,7 @@ def spans(
 def _extension(
     where: str, joint: JointTable, outer: tuple[float, float], length: float
 ) -> tuple[float, float]:
-    """The ends of an inner segment in m."""
+    """Return the ends of an inner segment in m."""
     start, end = outer
     assert joint.extension is not None
     least = max(0.0, length - (end - start))

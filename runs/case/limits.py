@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What tables and single values of a case file may be, and how many of each there may be."""
+"""Types and limits of the tables and values of a case file."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError
 
 
 class In:
-    """Says of what unit the numbers of a field are, by the names of :mod:`runs.case.units`.
+    """The unit of the numbers of a field, by the names of :mod:`runs.case.units`.
 
     Args:
         units: one for all of them, or one for each column of a table; ``1`` for none, ``^n`` a
@@ -49,15 +49,15 @@ class Table(BaseModel):
         extra="forbid", frozen=True, use_attribute_docstrings=True, json_schema_extra=_on_one_line
     )
 
-    # The key that a number alone stands for, where one may stand in place of the table.
+    # The key that a plain number sets, where a number may replace the table.
     bare: ClassVar[str] = ""
 
     def exponent_of(self, key: str) -> float | None:
-        """Of the contact law that a key is a number of; None where the table gives none."""
+        """Return the exponent of the contact law of a key; None where the table gives none."""
         return getattr(self, "exponent", None)
 
     def units_of(self, key: str, exponent: float = 2.0) -> tuple[str, ...]:
-        """What the numbers of a key are in, as of :class:`In`; empty where they are none.
+        """Return the units of the numbers of a key, as of :class:`In`; empty for other values.
 
         Args:
             key: as the class calls it.
@@ -70,12 +70,12 @@ class Table(BaseModel):
 
 
 def described(field: FieldInfo) -> str:
-    """What a key is, by the string below it in its table, on one line."""
+    """Return the description of a key, the string below it in its table, on one line."""
     return " ".join(str(field.description).split())
 
 
 def declared_units(field: FieldInfo) -> tuple[str, ...]:
-    """What a field's :class:`In` says."""
+    """Return the units in a field's :class:`In`."""
     return next((said.units for said in _said((*field.metadata, field.annotation))), ())
 
 
@@ -88,13 +88,13 @@ def _said(parts: Iterable[Any]) -> Iterator[In]:
 
 
 def fault_at(table: Table, fault: str | PydanticCustomError, *keys: str) -> ValidationError:
-    """What a validator of a whole table raises, since its own error would not be at a key."""
+    """Return an error at a key, for validators of a whole table, whose own errors name no key."""
     at = [InitErrorDetails(type=fault, loc=(k,), input=getattr(table, k)) for k in keys]
     return ValidationError.from_exception_data(type(table).__name__, at)
 
 
 def left_out(table: Table, given: str, *keys: str) -> ValidationError:
-    """What a validator raises of keys that say again what another one says."""
+    """Return a validator's error for keys that repeat another one."""
     what = {"what": f"{given} is given; leave one of them out"}
     return fault_at(table, PydanticCustomError("unsuitable", "{what}", what), *keys)
 
@@ -103,7 +103,7 @@ Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Length = Annotated[Positive, In("m")]
-# Hertz has 3/2; series of a press have as many terms as the exponent, and more.
+# Hertz has 3/2; power laws from measurements have such exponents, and larger ones.
 Exponent = Annotated[float, Field(strict=True, ge=1.0, le=10.0, allow_inf_nan=False), In("1")]
 Count = Annotated[int, Field(strict=True, ge=1, le=1000)]
 Part = Annotated[float, Field(strict=True, gt=0.0, lt=1.0), In("1")]
@@ -111,21 +111,21 @@ Flag = Annotated[bool, Field(strict=True)]
 # A name becomes a part of file names, and an element of a comma-separated list.
 NAME = r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$"
 Name = Annotated[str, Field(pattern=NAME, max_length=60)]
-# Neither controls, nor what breaks a line or turns its direction.
+# No control characters, line breaks or marks of text direction.
 PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]*$"
 Text = Annotated[str, Field(pattern=PRINTABLE, max_length=200)]
 
-# Whole tips are kept of each.
+# The run stores the whole tip history of each.
 MOST_MEMBERS = 10_000
-# A boom has a few of each; many more are a slip of the pen, and would take for ever to draw.
+# A boom has a few of each; many more are an input error, and would take too long to draw.
 MOST_SEGMENTS, MOST_STATIONS, MOST_MODELS, MOST_FACETS = 20, 50, 50, 20
 Few = Field(max_length=100)
-# Measured accelerations of a minute at a thousand a second, and more.
+# Enough for measured accelerations of a minute at 1 kHz, and more.
 MOST_TIMES = 100_000
 
 
 def _modes(given: Any) -> Any:
-    """A number of modes or a word; a union's own complaints would name its branches."""
+    """Check a number of modes or a word; a union's own messages would name its branches."""
     if given == "auto" or (isinstance(given, int) and not isinstance(given, bool) and given > 0):
         return given
     raise PydanticCustomError("modes", "a whole number above 0, or 'auto'")
@@ -137,12 +137,12 @@ Modes = Annotated[
 ]
 
 
-# Below it a mesh is too fine for one machine.
+# A mesh of a smaller size is too fine for one machine.
 LEAST_CONTACT_TOLERANCE = 1.0e-3
 
 
 def _contact_tolerance(given: Any) -> Any:
-    """A part or a word; a union's own complaints would name its branches."""
+    """Check a part or a word; a union's own messages would name its branches."""
     number = isinstance(given, float) and LEAST_CONTACT_TOLERANCE <= given < 1.0
     if given == "any" or number:
         return given

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What is wrong with the user's input, in one line that names the place and the remedy."""
+"""Error messages about the user's input, in one line that names the place and the remedy."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from runs.process.terminal import shown
 # Keys of the case that are arrays of tables.
 _ARRAYS = ("segment", "joint", "stop", "cylinder", "load", "axial", "base", "observe", "model")
 
-# Names that a message lists of those that would be right.
+# Number of valid names that a message lists.
 MOST_CHOICES = 12
 
-# Before what was given; braces hold the limits of the schema.
+# Start of a message, followed by the given value; braces hold the limits of the schema.
 _MUST = {
     "float_type": "a number",
     "int_type": "a whole number",
@@ -40,7 +40,7 @@ _MUST = {
     "literal_error": "{expected}",
     "tuple_type": "a list",
 }
-# Alone.
+# Messages without the given value.
 _SAYS = {
     "unsuitable": "{what}",
     "too_short": "too short; give {min_length} at least",
@@ -50,7 +50,7 @@ _SAYS = {
 
 
 class BadInput(Exception):
-    """``file`` as the user gave it, ``key`` of the fault, and what is wrong and would be right."""
+    """An input error: ``file`` as the user gave it, ``key``, the fault and the valid input."""
 
     def __init__(self, file: str, key: str, what: str) -> None:
         super().__init__(" ".join(f"{shown(file)}: {shown(key)}: {what}".split()))
@@ -60,9 +60,9 @@ class BadInput(Exception):
 
     @classmethod
     def from_validation(cls, file: str, error: ValidationError) -> BadInput:
-        """The most telling of the schema's complaints.
+        """Return the most informative of the schema's errors.
 
-        A misspelled key is both unknown and missing: the unknown one tells more.
+        A misspelled key is both unknown and missing: the unknown one is more informative.
         """
         faults = error.errors(include_url=False)
         first = next((f for f in faults if f["type"] == "extra_forbidden"), faults[0])
@@ -70,13 +70,13 @@ class BadInput(Exception):
 
 
 def first_fault(error: ValidationError) -> str:
-    """Where and what the first fault is of a file that no user has written."""
+    """Return place and description of the first fault of a file that the program has written."""
     fault = error.errors(include_url=False)[0]
     return "".join(f"{step}: " for step in fault["loc"]) + fault["msg"]
 
 
 def choices(known: Sequence[str]) -> str:
-    """'a', 'b' or 'c'; the first few of many."""
+    """Return "'a', 'b' or 'c'"; the first few of many."""
     if len(known) > MOST_CHOICES:
         return f"{', '.join(repr(name) for name in known[:MOST_CHOICES])} or another of its kind"
     quoted = [repr(name) for name in known]
@@ -86,7 +86,7 @@ def choices(known: Sequence[str]) -> str:
 def _explain(
     fault: str, location: tuple[int | str, ...], value: Any, context: Mapping[str, Any] | None
 ) -> tuple[str, str]:
-    """The key, and what is wrong with it."""
+    """Return the key and the fault."""
     key = _key(location)
     limits = context or {}
     if fault == "missing" and isinstance(location[-1], int):
@@ -126,7 +126,7 @@ def _pair(location: Sequence[int | str]) -> str:
 
 
 def _key(location: Sequence[int | str]) -> str:
-    """``segment[2].span`` from the schema's path, which counts from zero and names kinds."""
+    """Return ``segment[2].span`` from the schema's path, which counts from zero and names kinds."""
     key = ""
     for step in _without_kind(location):
         key += f"[{step + 1}]" if isinstance(step, int) else f".{step}" if key else step
@@ -144,16 +144,16 @@ def _without_kind(location: Sequence[int | str]) -> list[int | str]:
 
 
 def _table(location: Sequence[int | str]) -> type[BaseModel]:
-    """The table that holds the last step of a path."""
+    """Return the table of the last step of a path."""
     names = [step for step in location[:-1] if isinstance(step, str)]
     if names[:2] == ["start", "velocity"]:
-        # Behind it stands a segment's name.
+        # A segment's name follows.
         del names[2:]
     return _TABLES[names[-1]] if names else schema.Case
 
 
 def _tables(table: type[BaseModel]) -> Iterator[tuple[str, type[BaseModel]]]:
-    """Keys of tables within a table, all the way down."""
+    """Yield the keys of tables within a table, at all levels."""
     for key, field in _fields(table).items():
         for inner in _models(field.annotation):
             yield key, inner

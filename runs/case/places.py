@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Where things are along a boom: at an x, or at a distance from an end of what they are on."""
+"""Positions along a boom: an x, or a distance from an end of a segment or overlap."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ class PlaceTable(Table):
     """the distance in m from the segment's end, in a joint the outer one's"""
 
 
-# What a place may be called: an end itself.
+# Names of places: the ends.
 End = Literal["tail", "head"]
 
 
 def _place(given: Any) -> Any:
-    """A number or a distance; a union's own complaints would name its branches."""
+    """Check a number or a distance; a union's own messages would name its branches."""
     if isinstance(given, PlaceTable):
         return given
     if isinstance(given, int | float) and not isinstance(given, bool):
@@ -55,7 +55,7 @@ Place = Annotated[
 
 
 def at(place: float | PlaceTable, tail: float, head: float) -> float:
-    """The x in m of a place between two ends."""
+    """Return the x in m of a place between two ends."""
     if not isinstance(place, PlaceTable):
         return place
     if place.head is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A case file, read and checked."""
+"""Reading and checking of case files."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ from runs.case.units import System
 from runs.case.user_files import read_text
 from runs.case.usual import check_usual
 
-# More reported times than this would not fit in a netCDF file, or in anybody's patience.
+# Limit of output times: a netCDF file cannot hold more, and the run would take too long.
 MOST_OUTPUTS = 10_000_000
 
 History = TypeVar("History", bound=HistoryTable)
 Law = TypeVar("Law", JointTable, ContactTable)
 
-# What an option takes as a whole number: nobody means one of more digits.
+# Limit of digits of a whole number in an option: longer numbers are input errors.
 _WHOLE = re.compile(r"[0-9]{1,9}")
 
-# Behind the sign of equality no number goes on with a comma.
+# After the equals sign, a number that continues with a comma is an error.
 _DECIMAL_COMMA = re.compile(r"=\s*([-+]?[0-9]+),([0-9]+)")
 
 _TOO_MANY_DIGITS = "has more than 64 bits; give fewer digits, or a number as 1.0e20"
@@ -51,7 +51,7 @@ def load(path: str) -> Case:
 
 
 def declared(path: str) -> Declared:
-    """What a case file declares; raises what :func:`load` raises."""
+    """Return the boom and models of a case file; raise the errors of :func:`load`."""
     try:
         case = in_si(_read_tables(Case.model_validate(_read(path)), path))
     except ValidationError as error:
@@ -63,7 +63,7 @@ def declared(path: str) -> Declared:
 
 
 def check(case: Case, path: str) -> Declared:
-    """What a case declares, if it can be, beyond what its tables say each for itself.
+    """Check a case beyond its schema, and return its boom and models.
 
     Raises:
         BadInput: it cannot.
@@ -89,7 +89,7 @@ def select(
     members: int | None = None,
     modes: str | None = None,
 ) -> Case:
-    """The case with the named models alone, other shells, other ensembles.
+    """Return the case with the named models only, and with other shells and ensembles.
 
     Args:
         case: a checked one.
@@ -152,7 +152,7 @@ def select(
 def _with_shells(
     models: Sequence[Model], path: str, option: str, update: Mapping[str, object]
 ) -> tuple[Model, ...]:
-    """The models with the shells changed as an option says."""
+    """Return the models with the shells changed by an option."""
     if not any(model.needs_shell for model in models):
         raise BadInput(path, option, "no shell is to be run; leave it out")
     return tuple(model.with_shells(update) for model in models)
@@ -174,7 +174,7 @@ def _read(path: str) -> dict[str, object]:
 
 
 def _check_whole_numbers(thing: object, path: str, key: str = "") -> None:
-    """TOML promises 64 bits; Python reads any number of digits, and then cannot show them."""
+    """Check that whole numbers have 64 bits, as in TOML; Python reads longer ones."""
     if isinstance(thing, dict):
         for name, value in thing.items():
             _check_whole_numbers(value, path, f"{key}.{name}" if key else name)
@@ -186,7 +186,7 @@ def _check_whole_numbers(thing: object, path: str, key: str = "") -> None:
 
 
 def _read_tables(case: Case, path: str) -> Case:
-    """The case with the CSV files of its histories in place, so that it stands alone."""
+    """Return the case with the CSV files of its histories in place, so that it stands alone."""
     system = System(case.units)
 
     def standing(key: str, histories: Sequence[History]) -> tuple[History, ...]:
@@ -230,7 +230,7 @@ def _read_tables(case: Case, path: str) -> Case:
 
 
 def _history(path: str, key: str, table: History, system: System) -> History:
-    """A table with the pairs of its file, if it has one, in place."""
+    """Return a table with the pairs of its file in place, if it has a file."""
     _check_columns(path, f"{key}.columns", table.columns, table.file)
     if table.file is None:
         return table
@@ -241,13 +241,13 @@ def _history(path: str, key: str, table: History, system: System) -> History:
     if not read.measured and table.amount not in table.model_fields_set:
         what = described(type(table).model_fields[table.amount])
         raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
-    # What is left out counts as given, in the units of the case as the file is.
+    # Omitted values count as given, in the units of the case file.
     amount = {table.amount: getattr(table, table.amount)}
     return table.model_copy(update={"file": None, "columns": None, "table": read.values, **amount})
 
 
 def _driven(path: str, key: str, joint: JointTable, system: System) -> JointTable:
-    """A joint with the pairs of its drive's file, if there is one, in place."""
+    """Return a joint with the pairs of its drive's file in place, if there is a file."""
     drive = joint.drive
     if drive is None:
         return joint
@@ -272,7 +272,7 @@ def _check_columns(path: str, key: str, names: object, file: str | None) -> None
 
 
 def _unreadable(error: Exception, text: str) -> tuple[str, str]:
-    """Key and message for a file that is there, with a text that cannot be understood."""
+    """Return key and message for an existing file with invalid text."""
     if isinstance(error, OSError):
         return "file", f"cannot be read ({error.strerror}); give a case file that can"
     if isinstance(error, UnicodeDecodeError):
@@ -311,7 +311,7 @@ def _check_time(time: TimeTable) -> None:
 
 
 def _check_boom(found: Declared) -> None:
-    """Whether there is such a boom, and whether its models suit it."""
+    """Check that the boom is valid, and that its models suit it."""
     case, boom = found.case, found.boom
     check_usual(case, boom)
     check_names("model", [model.name for model in case.models])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a case file may say, in SI units unless it says others; an unknown key is an error.
+"""The schema of a case file, in SI units unless it names others; an unknown key is an error.
 
-The string below a key is what the JSON Schema shows, and the message for a missing key quotes.
+The JSON Schema shows the string below a key, and the message for a missing key quotes it.
 """
 
 from __future__ import annotations
@@ -128,12 +128,12 @@ class HistoryTable(Table):
     """the names of two columns in the heading of the file, of the times and of the factors; its
     only two unless given"""
 
-    # The key of what the history multiplies.
+    # The key of the quantity that the history multiplies.
     amount: ClassVar[str]
 
     @model_validator(mode="after")
     def _has_an_amount(self) -> Self:
-        # A file that says its unit does without.
+        # A file that gives its unit needs no such key.
         if self.file is None and self.amount not in self.model_fields_set:
             raise fault_at(self, "missing", self.amount)
         return self
@@ -234,7 +234,7 @@ class VelocityTable(Table):
 
 
 def _velocity(given: Any) -> Any:
-    """A number alone is the velocity along z."""
+    """Return a plain number as the velocity along z."""
     number = isinstance(given, int | float) and not isinstance(given, bool)
     return {VelocityTable.bare: float(given)} if number else given
 
@@ -254,7 +254,7 @@ class StartTable(Table):
 
     @property
     def at_rest(self) -> bool:
-        """Whether it is at rest under the loads of t = 0."""
+        """Whether the boom starts at rest under the loads of t = 0."""
         return self.state == "equilibrium"
 
 
@@ -361,7 +361,7 @@ class Case(CaseKeys, CaseHeading):
 
     @model_validator(mode="after")
     def _calibrators(self) -> Case:
-        """Names of shells that calibrate beams give way to their tables, which stand alone."""
+        """Replace the names of shells that calibrate beams by their tables, which stand alone."""
         by_name = {model.name: model for model in self.models}
         resolved = tuple(model.calibrated_among(by_name) for model in self.models)
         if any(new is not old for new, old in zip(resolved, self.models, strict=True)):
@@ -370,15 +370,15 @@ class Case(CaseKeys, CaseHeading):
 
     @property
     def system(self) -> System:
-        """In whose units tables and sweeps show it."""
+        """System of units of tables and sweeps."""
         return System(self.shown_units or self.units)
 
     @property
     def regular(self) -> bool:
-        """Whether dry friction keeps motions comparable from moment to moment.
+        """Whether dry friction keeps motions comparable at all times.
 
-        It does under forces that are given, at each station of a boom that meets no stop; what
-        contacts press does not.
+        It does under given normal forces, at each station of a boom without stops; under
+        contact forces it does not.
         """
         return not self.stops and all(
             joint.tied or (joint.friction > 0.0 and min(joint.normal_forces, default=0.0) > 0.0)
@@ -387,7 +387,7 @@ class Case(CaseKeys, CaseHeading):
 
     @property
     def driven(self) -> dict[str, str]:
-        """Of each joint with a drive, what ends the names of its results, and the segment."""
+        """Result name and segment of each joint with a drive."""
         return {
             "" if number == 1 else f"-{number}": joint.inner
             for number, joint in enumerate(self.joints, start=1)
@@ -396,5 +396,5 @@ class Case(CaseKeys, CaseHeading):
 
 
 def case_schema() -> dict[str, Any]:
-    """The JSON Schema of a case file."""
+    """Return the JSON Schema of a case file."""
     return {"$schema": GenerateJsonSchema.schema_dialect, **Case.model_json_schema()}

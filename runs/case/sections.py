@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The section's table of a case file, of each shape, and the section that it declares."""
+"""Tables of section shapes in a case file, and the sections that they define."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class ShapeTable(Table):
 
     @abstractmethod
     def section(self) -> Section:
-        """The section of these numbers.
+        """Return the section of these numbers.
 
         Raises:
             SectionError: there is none.
@@ -147,7 +147,7 @@ SHAPES: Mapping[str, type[ShapeTable]] = {
 
 
 def _shape(given: Any) -> str:
-    """That of a section's table; a box unless given."""
+    """Return the shape of a section's table; default a box."""
     if isinstance(given, Mapping):
         return str(given.get("shape", "box"))
     return str(getattr(given, "shape", "box"))

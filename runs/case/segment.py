@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A segment of the boom, as a case file says it, with all that is on it."""
+"""A segment of the boom in a case file, with its supports, masses, collars and diaphragms."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class DiaphragmTable(Table):
 
 
 def _support(given: Any) -> Any:
-    """A place alone is a pinned support."""
+    """Return a plain place as a pinned support."""
     place = isinstance(given, int | float | str) and not isinstance(given, bool)
     return {SupportTable.bare: given} if place else given
 

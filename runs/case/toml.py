@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Writes a case as TOML that reads back as the same case."""
+"""Writer of a case as TOML that reads back as the same case."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def dumps(case: Case) -> str:
-    """The whole case, defaults included; what is not given stays out."""
+    """Return the whole case as TOML, with defaults; omit values that are not given."""
     data = case.model_dump(by_alias=True, exclude_none=True)
     return "\n".join(_table(data, "")) + "\n"
 
 
 def digest(case: Case) -> str:
-    """SHA-256 of the whole case as written."""
+    """Return the SHA-256 of the whole case as written."""
     return hashlib.sha256(dumps(case).encode()).hexdigest()
 
 
 def _table(table: Mapping[str, Any], path: str) -> Iterator[str]:
-    """Lines of a table: its plain values first, as TOML wants it, then the tables in it."""
+    """Yield the lines of a table: first plain values, as TOML requires, then inner tables."""
     nested = {key: value for key, value in table.items() if _is_nested(value)}
     for key, value in table.items():
         if key not in nested:
@@ -40,7 +40,7 @@ def _table(table: Mapping[str, Any], path: str) -> Iterator[str]:
 
 
 def _key(name: str) -> str:
-    """A segment's name, which is a key of velocities, may have blanks and points."""
+    """Return a valid key: a segment's name, a key of velocities, may have blanks and points."""
     return name if _BARE.fullmatch(name) else _value(name)
 
 
@@ -56,7 +56,7 @@ def _value(value: bool | int | float | str | tuple[Any, ...] | Mapping[str, Any]
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
-        # JSON's escapes are TOML's, which also wants DEL escaped.
+        # JSON's escapes are TOML's, which also requires DEL to be escaped.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, Mapping):
         inside = ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items())

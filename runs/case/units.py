@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Units by their names: how much of the SI unit each is, and of what dimension."""
+"""Units by their names: the factor to the SI unit, and the dimension."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
-# Length, mass, time, as exponents.
+# Exponents of length, mass and time.
 Dimension = tuple[float, float, float]
 
 _NONE, _LENGTH, _MASS, _TIME = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -36,14 +36,14 @@ _PLAIN = str.maketrans("¹²³⁴⁻μ·*", "1234-µ  ")
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """A unit."""
+    """A unit of measurement."""
 
-    factor: float  #: what one of it is in the SI unit
-    dimension: Dimension  #: of both
+    factor: float  #: number of SI units in one of it
+    dimension: Dimension  #: the exponents of length, mass and time
 
     @classmethod
     def of(cls, text: str) -> Unit:
-        """Of a name such as ``kN/m``, ``m/s^2``, ``m/s²``, ``N m``; ``g`` is standard gravity.
+        """Return the unit of a name such as ``kN/m``, ``m/s^2``, ``m/s²``, ``N m``, ``g``.
 
         Raises:
             ValueError: no such unit is known.
@@ -67,7 +67,7 @@ class Unit:
         return cls(float(size), (exponents[0], exponents[1], exponents[2]))
 
 
-# Systems of units: what each has in place of units of the SI.
+# Systems of units: the replacements of units of the SI.
 SystemName = Literal["SI", "mm-t-s", "N-mm"]
 _MILLIMETRES = {"m": "mm", "kg": "t", "Pa": "MPa"}
 _SYSTEMS: Mapping[SystemName, Mapping[str, str]] = {
@@ -87,20 +87,20 @@ class System:
     name: SystemName = "SI"
 
     def unit(self, si: str) -> str:
-        """What it has for a unit of the SI: ``N/mm`` for ``N/m``, say."""
+        """Return the system's unit in place of an SI unit: ``N/mm`` for ``N/m``, for example."""
         symbols = _SYSTEMS[self.name]
         return re.sub("[A-Za-z]+", lambda found: symbols.get(found[0], found[0]), si)
 
     def size(self, si: str) -> Fraction:
-        """How many of a unit of the SI its own one is."""
+        """Return the number of SI units in the system's unit."""
         return Fraction(repr(Unit.of(self.unit(si)).factor / Unit.of(si).factor))
 
     def of(self, value: float, si: str) -> float:
-        """A value in a unit of the SI in its own one."""
+        """Return a value in an SI unit, converted to the system's unit."""
         return scaled(value, 1 / self.size(si))
 
     def label(self, si: str) -> str:
-        """Its unit as headings have it: ``mm⁴``."""
+        """Return the system's unit for headings: ``mm⁴``."""
         return self.unit(si).replace("^", "").translate(_RAISED)
 
     def text(self, value: float, si: str, digits: int = 4) -> str:
@@ -109,7 +109,7 @@ class System:
 
 
 def scaled(value: float, size: Fraction) -> float:
-    """Value times size as decimals are: 9.7 mm are 0.0097 m to the last bit.
+    """Return value times size in decimal arithmetic: 9.7 mm are 0.0097 m to the last bit.
 
     Raises:
         OverflowError: no number can be so large.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a user names: regular files of a sensible size are read, folders around nobody replaced."""
+"""User files: checks of files to read and of folders to replace."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ LARGEST = 16_000_000
 
 
 def check_regular(path: Path) -> None:
-    """Refuse what would never end: a pipe waits for its writer, a device has no end.
+    """Refuse files without an end: a pipe waits for its writer, a device has no end.
 
     Raises:
-        OSError: there is no such file, or it is none.
+        OSError: the file is missing, or is no regular file.
     """
     mode = path.stat().st_mode
     if stat.S_ISDIR(mode):
@@ -30,7 +30,7 @@ def check_regular(path: Path) -> None:
 
 
 def check_left(folder: Path, file: str, key: str) -> None:
-    """Refuse a folder that its user is in: a shell stays in what has been replaced, and is empty.
+    """Refuse to replace the working folder: a shell would stay in the old one, which is then empty.
 
     Args:
         folder: that another one is to take the place of.
@@ -46,7 +46,7 @@ def check_left(folder: Path, file: str, key: str) -> None:
 
 
 def read_text(path: Path) -> str:
-    """The text of a file.
+    """Return the text of a file.
 
     Raises:
         OSError: it cannot be read, is no regular file, or a too large one.
@@ -56,9 +56,9 @@ def read_text(path: Path) -> str:
 
 
 def read_any_text(path: Path) -> str:
-    """As :func:`read_text`, but also in the encodings in which spreadsheets save.
+    """Return the text of a file as :func:`read_text`, but also in the encodings of spreadsheets.
 
-    These are UTF-16, which begins with its mark, and where it is not UTF-8 the Western one of
+    These are UTF-16, which begins with its mark, and if the text is not UTF-8 the Western one of
     Windows.
     """
     data = _read(path)

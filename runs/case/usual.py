@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Numbers of a case beside what is usual: what is far from it is most often in another unit."""
+"""Usual ranges of the numbers of a case: most numbers far outside are in another unit."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from runs.case.limits import Table
 from runs.case.schema import Case
 from runs.case.units import System, Unit
 
-# Units in which a number may have been given by mistake, the most likely first.
+# Units that a user may have meant, the most likely first.
 _TAKEN_FOR = {
     "Pa": ("MPa", "GPa", "kPa", "Pa"),
     "m": ("mm", "cm", "m"),
@@ -30,7 +30,7 @@ _HEIGHT_OVER_GYRATION = 2.5
 
 
 class Usual(NamedTuple):
-    """A number of a case, and between which values such numbers usually are.
+    """A number of a case, and its usual range.
 
     Args:
         key: in the case file.
@@ -51,16 +51,16 @@ class Usual(NamedTuple):
 
     @property
     def unusual(self) -> bool:
-        """Whether it deserves a caution."""
+        """Whether the number deserves a caution."""
         return not self.least <= self.value <= self.most
 
     @property
     def impossible(self) -> bool:
-        """Whether no boom can be meant."""
+        """Whether the number is impossible for a boom."""
         return not self.least / self.margin <= self.value <= self.most * self.margin
 
     def said(self, system: System) -> str:
-        """The number, what is usual, and the unit that may have been meant, in a system's units."""
+        """Return the number, its usual range and the unit that the user may have meant, as text."""
         limits = [
             f"{word} {system.of(limit, self.unit):.3g}"
             for word, limit in (("from", self.least), ("up to", self.most))
@@ -77,7 +77,7 @@ class Usual(NamedTuple):
 
 
 def check_usual(case: Case, boom: Boom) -> None:
-    """Refuse a number that no boom has.
+    """Refuse a number that is impossible for a boom.
 
     Raises:
         BoomError: at the first one.
@@ -88,7 +88,7 @@ def check_usual(case: Case, boom: Boom) -> None:
 
 
 def usual_numbers(case: Case, boom: Boom) -> Iterator[Usual]:
-    """All numbers of a case of which it is known what is usual.
+    """Yield all numbers of a case with a known usual range.
 
     The limits are wide: laboratory booms of 1 m and cranes of 60 m are within them.
     """
@@ -111,7 +111,7 @@ def usual_numbers(case: Case, boom: Boom) -> Iterator[Usual]:
 
 
 def _of_materials(case: Case) -> Iterator[Usual]:
-    """Of the solids that booms are made of, from plastics to tungsten, with room on either side."""
+    """Yield the material data: solids for booms, from plastics to tungsten, with a margin."""
     tables = {f"segment[{i}].material": one.material for i, one in enumerate(case.segments, 1)}
     for where, table in {"material": case.material, **tables}.items():
         if table is None:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Results kept under the content of what they depend on, for whoever asks for the same again.
+"""A cache of results under the hash of their inputs.
 
 An entry is a file whose first line is the SHA-256 of its key and of what follows, so that a disk
-that forgets and a file that was copied from elsewhere are found out. It appears whole or not at
-all, and is never changed. What is out of date is never asked for again, so that it is the least
-recently used, and goes.
+error and a file that was copied from elsewhere are detected. It is complete or absent,
+and never changes. Nobody requests an outdated entry again, so that it becomes the least
+recently used, and is removed.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ if TYPE_CHECKING:
 
 Kept = TypeVar("Kept")
 
-# Bytes that the entries of a user may take together.
+# Size in bytes of all entries of a user.
 ROOM = 4 * 1024**3
 
-# Where another folder than the user's own is to be taken.
+# Environment variable for another folder than the user's own.
 VARIABLE = "PROTRACTILE_CACHE"
 
 _SUFFIX = ".record"
@@ -68,9 +68,9 @@ class Cache:
 
     @classmethod
     def of_user(cls) -> Cache | None:
-        """Return that in ``$PROTRACTILE_CACHE``, or in the user's folder of caches.
+        """Return the cache in ``$PROTRACTILE_CACHE``, or in the user's cache folder.
 
-        None, and a notice, for one who has no home.
+        Return None, with a notice, for a user without a home folder.
         """
         if given := os.environ.get(VARIABLE):
             return cls(Path(given))
@@ -86,9 +86,9 @@ class Cache:
         return cls(Path(caches) / "protractile")
 
     def load(self, key: str, kind: type[Kept]) -> Kept | None:
-        """Return an entry of a class; None where there is none, or none that is as it was kept."""
+        """Return an entry of a class; None where it is missing or damaged."""
         entry = self._entry(key)
-        # An entry of another user's can be read, too.
+        # An entry of another user may be readable, too.
         with suppress(OSError):
             os.utime(entry)
         if not entry.is_file():
@@ -103,7 +103,7 @@ class Cache:
         except FileNotFoundError:
             return None
         except Exception:
-            # Whatever has become of it on the disk, and whoever made it.
+            # The file may be damaged, or made by anybody.
             pass
         NOTICES.warning(
             "%s: is not as it was kept; it is dropped, and computed again", shown(str(entry))
@@ -114,20 +114,20 @@ class Cache:
 
     @contextmanager
     def making(self, key: str) -> Iterator[None]:
-        """Keep other processes waiting that want the same entry.
+        """Block other processes that want the same entry.
 
-        They do not wait where the cache cannot be written.
+        They do not wait if the cache is not writable.
         """
         with ExitStack() as stack:
             with suppress(OSError):
                 self.folder.mkdir(parents=True, exist_ok=True)
                 lock = stack.enter_context((self.folder / ".lock").open("a", encoding="utf-8"))
-                # A byte of its own for each entry, so that no file of locks is left.
+                # Each entry locks a byte of its own, so that no lock files remain.
                 fcntl.lockf(lock, fcntl.LOCK_EX, 1, int(key[:15], 16))
             yield
 
     def keep(self, key: str, thing: Any) -> None:
-        """Keep an entry.
+        """Store an entry.
 
         Raises:
             OSError: it cannot be written.
@@ -142,7 +142,7 @@ class Cache:
             file.write(head)
 
     def remember(self, key: str, thing: Any) -> None:
-        """Keep an entry, and room for others; a notice says so where it cannot be written."""
+        """Store an entry and make room for others; give a notice if the cache is not writable."""
         try:
             self.keep(key, thing)
             self.make_room()
@@ -156,10 +156,10 @@ class Cache:
             )
 
     def make_room(self, room: int = ROOM) -> None:
-        """Drop the least recently used entries until the others take ``room`` bytes together."""
+        """Remove the least recently used entries until the others take ``room`` bytes together."""
         used: list[tuple[float, int, Path]] = []
         for entry in self.folder.glob(f"*{_SUFFIX}"):
-            # Another process may take it away while it is looked at.
+            # Another process may remove it at the same time.
             with suppress(OSError):
                 status = entry.stat()
                 used.append((status.st_mtime, status.st_size, entry))
@@ -175,7 +175,7 @@ class Cache:
 
 
 class Memory:
-    """Entries as :class:`Cache` has them, as long as somebody holds them, and not on the disk."""
+    """A cache in memory, like :class:`Cache`, of entries that are still referenced."""
 
     def __init__(self) -> None:
         self._entries: dict[str, Any] = {}
@@ -187,7 +187,7 @@ class Memory:
         return thing
 
     def remember(self, key: str, thing: Any) -> None:
-        """Keep a copy."""
+        """Store a copy."""
         self._entries[key] = deepcopy(thing)
 
 
@@ -199,7 +199,7 @@ def remembered(
 ) -> ReducedShell:
     """Return a reduced shell, from the cache if it is there. Collective.
 
-    A cache that cannot be read or written costs time and a line to say so, and nothing else. Of
+    A cache that cannot be read or written costs time, and a notice, and nothing else. Of
     processes that want the same shell at a time one makes it, and the others wait for it.
 
     Args:
@@ -214,7 +214,7 @@ def remembered(
     name = key(list(content))
     with cache.making(name) if comm.rank == 0 else nullcontext():
         found = cache.load(name, ReducedShell) if comm.rank == 0 else None
-        # Fields and meshes are the first rank's alone.
+        # Only the first rank has fields and meshes.
         shared = comm.bcast(None if found is None else replace(found, fields=None, meshes=[]))
         if shared is not None:
             return replace(found or shared, seconds={"cache": perf_counter() - start})

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Files and folders that appear whole or not at all, whatever interrupts the writing.
+"""Files and folders that are complete or absent, at any interruption of the writing.
 
-What is being written lies in a hidden folder beside its place. That folder is locked as long as its
-process lives, so that the next process that writes there can remove what a killed one has left. A
+Incomplete files lie in a hidden folder beside their place. That folder is locked as long as its
+process lives, so that the next process that writes there can remove those of a killed one. A
 finished folder has a manifest of its files with their checksums, as ``sha256sum -c`` reads them.
 """
 
@@ -109,10 +109,10 @@ def exclusive(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def scratch_folder(path: Path) -> Iterator[Path]:
-    """Give an empty folder to work in beside a path; it is removed in the end, earlier ones too."""
+    """Give an empty folder to work in beside a path; remove it at the end, with earlier ones."""
     path = real(path)
     part = path.with_name(f"{_hidden(path)}{token_hex(4)}")
-    # Not found by other processes until it is locked.
+    # Other processes do not find it until it is locked.
     unlocked = path.with_name(f".{part.name}")
     try:
         if not path.parent.exists():
@@ -130,7 +130,7 @@ def scratch_folder(path: Path) -> Iterator[Path]:
             unlocked.rename(part)
             yield part
     except OSError as error:
-        # A full disk does not say which file it was, and users know it by the name it was to get.
+        # The error of a full disk names no file, and users know it by its final name.
         place = os.path.abspath(error.filename or path)
         for scratch in (unlocked, part):
             place = place.replace(str(scratch), str(path))
@@ -151,19 +151,19 @@ def damaged(folder: Path) -> str | None:
 
 
 def _hidden(path: Path) -> str:
-    """Return how the names of folders beside a path begin."""
+    """Return the prefix of the names of folders beside a path."""
     return f".{path.name[:50]}.protractile-"
 
 
 def _away(path: Path) -> Path:
-    """Return where a folder is while another one takes its place in two steps."""
+    """Return the path of a folder while another one takes its place in two steps."""
     return path.with_name(f".{path.name[:50]}.away")
 
 
 def _remove_left(path: Path) -> None:
-    """Remove what killed processes have left beside a path."""
+    """Remove the remains of killed processes beside a path."""
     for left in path.parent.glob(f"{escape(_hidden(path))}*"):
-        # That of a process that lives is locked.
+        # The folder of a live process is locked.
         with suppress(OSError), (left / MANIFEST).open("r+", encoding="utf-8") as manifest:
             fcntl.flock(manifest, fcntl.LOCK_EX | fcntl.LOCK_NB)
             shutil.rmtree(left, ignore_errors=True)
@@ -189,7 +189,7 @@ def _take_the_place(part: Path, folder: Path, own: Iterable[str]) -> None:
             raise
         libc = ctypes.PyDLL(None)
         names = _AT_FDCWD, os.fsencode(part), _AT_FDCWD, os.fsencode(folder)
-        # Not every system and not every disk can do it at once.
+        # Not every system and not every disk can exchange two names at once.
         if not hasattr(libc, "renameat2") or libc.renameat2(*names, _RENAME_EXCHANGE) != 0:
             folder.rename(_away(folder))
             part.rename(folder)
@@ -203,7 +203,7 @@ def _files(folder: Path) -> list[str]:
 
 
 def _same(name: str, one: Path, other: Path) -> bool:
-    """Return whether two folders have the same file of a name."""
+    """Return whether two folders have the same file under a name."""
     return (other / name).is_file() and filecmp.cmp(one / name, other / name)
 
 
@@ -224,7 +224,7 @@ def _digest(path: Path) -> str:
 
 
 def _link(source: Path, target: Path) -> None:
-    """Link a file, or copy it where that cannot be done."""
+    """Link a file, or copy it if links are impossible."""
     try:
         os.link(source, target, follow_symlinks=False)
     except OSError:

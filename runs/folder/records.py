@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Results as a line of JSON and the arrays that it refers to, in numpy's own format.
+"""Results as a line of JSON and its arrays, in numpy's own format.
 
-All comes back to the last bit, tuples as tuples, and this program's dataclasses, named tuples and
+Everything is restored to the last bit: tuples as tuples, and this program's dataclasses, named
+tuples and
 pydantic models as what they were, checks of their own included. Files hold data alone: whoever
 writes them has no say in what runs when they are read, other than which of these classes are made
 of what.
@@ -28,10 +29,10 @@ Kind = TypeVar("Kind")
 
 
 class Writable(Protocol):
-    """What takes bytes, such as a file."""
+    """A writer of bytes, such as a file."""
 
     def write(self, data: bytes, /) -> object:
-        """Take some more."""
+        """Write more bytes."""
         ...
 
 
@@ -39,11 +40,11 @@ def write(thing: Any, file: Writable) -> None:
     """Write a result.
 
     Args:
-        thing: a dataclass, a dataset, an array, a number, a text, or made of these.
-        file: gets it.
+        thing: a dataclass, a dataset, an array, a number, a text, or a combination of these.
+        file: the destination.
 
     Raises:
-        TypeError: there is something else in it.
+        TypeError: it contains another type.
     """
     arrays: list[np.ndarray[Any, Any]] = []
     file.write(json.dumps(_written(thing, arrays)).encode() + b"\n")
@@ -64,7 +65,7 @@ def read(file: IO[bytes], kind: type[Kind]) -> Kind:
 
 
 def _written(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
-    """Return the thing in JSON's terms, and add its arrays to the others."""
+    """Return the object in JSON's terms, and add its arrays to the others."""
     if thing is None or isinstance(thing, bool | int | float | str):
         return thing
     if isinstance(thing, np.generic):
@@ -85,7 +86,7 @@ def _written(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
         ]
         return {"mapping": entries}
     if (names := _names(type(thing))) is not None:
-        # Of a pydantic model, what was never set stays so.
+        # Of a pydantic model, fields that were never set stay unset.
         own = thing.model_fields_set if isinstance(thing, BaseModel) else names
         parts = {name: _written(getattr(thing, name), arrays) for name in names if name in own}
         return {"record": [type(thing).__module__, type(thing).__name__], "parts": parts}
@@ -95,7 +96,7 @@ def _written(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
 
 
 def _read(written: Any, file: IO[bytes]) -> Any:
-    """Return what has been written, whose arrays are in the file in the same order."""
+    """Return the object of JSON's terms, with its arrays from the file in the same order."""
     match written:
         case None | bool() | int() | float() | str():
             return written
@@ -117,7 +118,7 @@ def _read(written: Any, file: IO[bytes]) -> Any:
 
 
 def _class(module: str, name: str) -> type:
-    """Return one of this program's classes that are nothing but their parts."""
+    """Return one of this program's classes that consist of their fields only."""
     if module.partition(".")[0] in {package.name for package in packages()}:
         found = vars(import_module(module)).get(name)
         if isinstance(found, type) and found.__module__ == module and _names(found) is not None:
@@ -126,7 +127,7 @@ def _class(module: str, name: str) -> type:
 
 
 def _names(kind: type) -> list[str] | None:
-    """Return the parts that make an object of a class, None of what may be more than its parts."""
+    """Return the fields of a class; None for a class that may hold more than its fields."""
     if issubclass(kind, BaseModel):
         return list(kind.model_fields)
     if is_dataclass(kind):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Versions of what computes: this program's sources, and the libraries."""
+"""Versions of the code that computes: this program's sources, and the libraries."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LIBRARIES = "protractile", "numpy", "scipy", "numba", "gmsh", "fenics-dolfinx",
 
 
 def installed_version(name: str) -> str | None:
-    """Return that of a distribution; None where it is not installed."""
+    """Return the version of a distribution; None where it is not installed."""
     try:
         return version(name)
     except PackageNotFoundError:
@@ -24,7 +24,7 @@ def installed_version(name: str) -> str | None:
 
 
 def versions() -> dict[str, str | None]:
-    """Return versions by the module's name, if it has been loaded: a beam's run spares FEniCSx."""
+    """Return versions of loaded modules by name: a beam's run does not load FEniCSx."""
     modules: Sequence[str] = (
         "numpy", "scipy", "numba", "xarray", "gmsh", "dolfinx", "petsc4py", "mpi4py",
     )  # fmt: skip
@@ -37,7 +37,7 @@ def versions() -> dict[str, str | None]:
 
 @cache
 def packages() -> list[Path]:
-    """Return this program's packages: all in the tree of its sources, or those installed."""
+    """Return this program's packages: all in the source tree, or the installed ones."""
     top = Path(__file__).parents[2]
     if (top / "pyproject.toml").is_file():
         return [path.parent for path in sorted(top.glob("*/__init__.py"))]
@@ -46,7 +46,7 @@ def packages() -> list[Path]:
 
 
 def sources(folders: Iterable[Path]) -> str:
-    """Return the SHA-256 of the Python files of packages, inner ones too, with their places."""
+    """Return the SHA-256 of the Python files of packages and subpackages, with their paths."""
     digest = hashlib.sha256()
     for folder in folders:
         for path in sorted(folder.rglob("*.py")):
@@ -59,7 +59,7 @@ def sources(folders: Iterable[Path]) -> str:
 
 @cache
 def program() -> dict[str, str | None]:
-    """Return what decides a result beside its data: the sources, and libraries that compute."""
-    # As installed: what a process has loaded says nothing of what another one will compute.
+    """Return the inputs of a result beside its data: the sources, and libraries that compute."""
+    # As installed: the loaded modules of one process do not determine those of another.
     libraries = {name: installed_version(name) for name in _LIBRARIES}
     return {"sources": sources(packages()), **libraries}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How a process ends before its work is done: by Ctrl-C or SIGTERM, or by an error on one rank.
+"""The early end of a process, by Ctrl-C or SIGTERM, or by an error on one rank.
 
-A signal ends a command with one line, whatever it is doing. Nothing is unwound: what is being
-written lies beside its place until it is whole, so that a process may end at any moment. Python
+A signal ends a command with one line at any time. There is no clean-up: incomplete files
+lie beside their places until they are complete, so that a process may end at any moment. Python
 runs a signal's handler between two of its own instructions. Where a compiled loop, or a message of
 another rank, keeps it waiting, a thread of its own does the same.
 
@@ -32,18 +32,18 @@ if TYPE_CHECKING:
 
 LINE = b"protractile: interrupted\n"
 
-# Seconds for which the thread leaves it to the handler.
+# Time in s that the thread leaves to the handler.
 GRACE = 1.0
 
 # Clears the line of a progress bar, and shows the cursor again.
 _CLEAR = b"\r\x1b[K\x1b[?25h"
 
-# Rank as the launcher tells it before MPI is entered: Open MPI, PMIx, MPICH and its kin.
+# Rank from the launcher before MPI starts: Open MPI, PMIx, MPICH and its kin.
 _LAUNCHERS = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK")
 
-# Seconds for which another rank's message waits: if rank 0 has failed too, it speaks alone.
+# Time in s that another rank's message waits: if rank 0 has failed too, it alone reports.
 _GRACE_OF_RANKS = 5.0
-# Seconds for which a message may wait to be read, and between looks at whether it was.
+# Time in s that a message may wait for its reader, and between checks whether it was read.
 _UNREAD, _LOOK = 5.0, 1.0e-3
 
 _cleanups: list[Callable[[], object]] = []
@@ -52,9 +52,9 @@ _signals: list[int] = []
 
 
 def listen() -> None:
-    """From now on Ctrl-C and SIGTERM end this process, with exit status 130 or 143.
+    """End this process on Ctrl-C and SIGTERM from now on, with exit status 130 or 143.
 
-    A signal that whoever has started the process ignores stays ignored, as with ``nohup``.
+    A signal that the parent process ignores stays ignored, as with ``nohup``.
     """
     caught, told = os.pipe()
     os.set_blocking(told, False)
@@ -67,7 +67,7 @@ def listen() -> None:
 
 @contextmanager
 def when_interrupted(work: Callable[[], object]) -> Iterator[None]:
-    """Do something if the process is interrupted within."""
+    """Call a function if the process is interrupted within the context."""
     _cleanups.append(work)
     try:
         yield
@@ -78,7 +78,7 @@ def when_interrupted(work: Callable[[], object]) -> Iterator[None]:
 def launched_rank() -> int | None:
     """Return the rank that a launcher has given this process, None without a launcher."""
     given = (os.environ.get(name, "") for name in _LAUNCHERS)
-    # What is no number is none's.
+    # A value that is no number is ignored.
     return next((int(number) for number in given if number.isdecimal()), None)
 
 
@@ -107,9 +107,9 @@ def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
 
 
 def _wait_until_read(stream: int) -> None:
-    """Wait until a pipe is empty, so that what its reader says of the end comes after it.
+    """Wait until a pipe is empty, so that its reader's own message follows this one.
 
-    Open MPI 5 else puts our line behind its own on the abort, and in the same line of the terminal.
+    Otherwise Open MPI 5 puts our line after its own on the abort, on the same line.
 
     Args:
         stream: a file descriptor that can be written; only a pipe is waited for.
@@ -133,13 +133,13 @@ def _watch(caught: int) -> None:
 
 def _end(number: int, frame: object = None) -> None:
     if not _ending.acquire(blocking=False):
-        # The other one is at it.
+        # The other thread or handler already does this.
         Event().wait()
     _signals.append(number)
     if len(_signals) > 1:
-        # A second one interrupts this very function, which goes on.
+        # A second signal interrupts this very function, which continues.
         return
-    # The first rank speaks for all; it is interrupted when another one is.
+    # The first rank reports for all; it is interrupted when another one is.
     if not launched_rank():
         with suppress(OSError):
             os.write(2, _CLEAR + LINE if os.isatty(2) else LINE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The progress of a command: bars on a terminal, elsewhere a line now and then."""
+"""The progress of a command: bars on a terminal, otherwise occasional lines."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 
 from runs.process.terminal import printable, say
 
-# Called with the model's name, the stage, and the part of it that is done.
+# Called with the model's name, the stage, and the completed part of the stage.
 Tell = Callable[[str, str, float], None]
 
-# Seconds between two lines at least; what ends sooner says nothing.
+# Least time in s between two lines; shorter stages print nothing.
 EVERY = 5.0
 
 
 @contextmanager
 def display(models: Sequence[str] = ()) -> Iterator[Tell]:
-    """Give what displays how far each stage is, on stderr.
+    """Give a function that displays the progress of each stage on stderr.
 
     Args:
         models: names of those that run, in their order.
@@ -44,7 +44,7 @@ def display(models: Sequence[str] = ()) -> Iterator[Tell]:
 
 
 class Lines:
-    """Prints which model is at which stage, and how long that goes on.
+    """A printer of each model's stage and of the elapsed time.
 
     Args:
         models: names, in their order.
@@ -63,7 +63,7 @@ class Lines:
         self._begun: dict[tuple[str, str], float] = {}
 
     def __call__(self, model: str, stage: str, part: float) -> None:
-        """Print how far a stage is."""
+        """Print the progress of a stage."""
         now = self._clock()
         passed = now - self._begun.setdefault((model, stage), now)
         if now - self._said < EVERY:
@@ -71,7 +71,7 @@ class Lines:
         self._said = now
         how_far = f"{stage} begins"
         if part >= 1.0:
-            # Some stages are told of at their end alone.
+            # Some stages report their end only.
             how_far = f"{stage} took {passed:.0f} s" if passed else f"{stage} is done"
         elif part > 0.0:
             left = passed * (1.0 - part) / part

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Standard output and standard error: printable texts, notices, streams that are closed."""
+"""Standard output and standard error: printable texts, notices, closed streams."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from contextlib import contextmanager, suppress
 
 from rich.console import Console
 
-# Whoever imports the package may listen as to any logger of Python's.
+# Users of the package may listen as to any logger of Python's.
 NOTICES = logging.getLogger("protractile")
 
-# Characters of a message, its newline included, and of a path or a key in it.
+# Characters of a message, with its newline, and of a path or a key in it.
 LONGEST, LONGEST_PART = 300, 120
 
 _GAP = " ... "
@@ -26,16 +26,16 @@ class Terminal(Console):
     """A console whose reader may leave early, as ``head`` does."""
 
     def on_broken_pipe(self) -> None:
-        """Go on: what has been read is enough."""
+        """Continue: the reader has enough."""
         _discard_output()
 
 
 def prepare() -> None:
-    """Make closed streams swallow what is written, and others show every letter they can."""
+    """Make closed streams discard output, and others print every letter they can."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:
-            # Open for as long as the process lives.
+            # Open for the life of the process.
             swallowed = io.TextIOWrapper(io.FileIO(os.devnull, "w"), encoding="utf-8")
             setattr(sys, name, swallowed)
         elif isinstance(stream, io.TextIOWrapper):
@@ -44,10 +44,10 @@ def prepare() -> None:
 
 @contextmanager
 def flushed() -> Iterator[None]:
-    """Write all that is printed within, as long as it can still be told whether it was.
+    """Flush all output of the context, while an error can still be reported.
 
     Raises:
-        OSError: it cannot be written. Nothing more is tried then.
+        OSError: the output cannot be written. There is no second attempt.
     """
     try:
         yield
@@ -74,7 +74,7 @@ def message(text: str) -> str:
 
 
 def shown(text: str, longest: int = LONGEST_PART) -> str:
-    """Return a printable text, its middle left out where it is long."""
+    """Return a printable text, its middle left out if it is long."""
     # Escaping makes it longer, never shorter: ends of this length are enough.
     safe = printable(text if len(text) <= 2 * longest else text[:longest] + text[-longest:])
     if len(safe) <= longest:
@@ -84,7 +84,7 @@ def shown(text: str, longest: int = LONGEST_PART) -> str:
 
 
 def printable(text: str) -> str:
-    """Return a text with what no terminal should be sent escaped."""
+    """Return a text with control characters escaped."""
     return "".join(
         letter if letter.isprintable() else letter.encode("unicode_escape").decode()
         for letter in text
@@ -92,9 +92,9 @@ def printable(text: str) -> str:
 
 
 def show_notices() -> None:
-    """Print notices from now on, and not what libraries tell their callers.
+    """Print notices from now on, and suppress the warnings of libraries to their callers.
 
-    A user cannot mend that. Filters hold as before: tests make errors of warnings.
+    A user cannot fix these. Filters hold as before: tests turn warnings into errors.
     """
     NOTICES.addHandler(_LINES)
     # Some warn while they are imported.
@@ -103,7 +103,7 @@ def show_notices() -> None:
 
 
 class _Lines(logging.Handler):
-    """Prints each notice as a line on stderr, once."""
+    """A handler that prints each notice as a line on stderr, once."""
 
     def __init__(self) -> None:
         super().__init__(logging.WARNING)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Processes beside this one, on its other cores: the one place where they are started and ended."""
+"""Worker processes on other cores: the one place that starts and ends them."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from typing import Any
 from runs.process.ending import when_interrupted
 from runs.process.terminal import show_notices
 
-# A process has one thread, though its libraries would take all cores. They warn nobody while they
-# are imported, nor does the process that counts what others share when all are killed.
+# A process has one thread, though its libraries would use all cores. They give no warnings while
+# imported, nor does the process that counts shared resources when all are killed.
 _OF_WORKERS = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 ) | {"PYTHONWARNINGS": "ignore"}
-# After which a killed process is not waited for.
+# Time in s to wait for a killed process.
 _SECONDS_TO_DIE = 1.0
-# What could make a rank of a process: Open MPI, PMIx, MPICH and its kin.
+# Environment variables that turn a process into a rank: Open MPI, PMIx, MPICH and its kin.
 _OF_RANKS = ("OMPI_", "PMIX_", "PMI_")
 
 
 class _Shielded(ProcessPoolExecutor):
-    """Its processes never hear signals to all of a group, as Ctrl-C is one."""
+    """A pool whose processes ignore signals to a whole group, such as Ctrl-C."""
 
     def submit(self, work: Callable[..., Any], /, *given: Any, **named: Any) -> Future[Any]:
-        """Submit work as to any executor; this is when the processes start."""
+        """Submit work as to any executor; the processes start now."""
         signals = {signal.SIGINT, signal.SIGTERM}
         signal.pthread_sigmask(signal.SIG_BLOCK, signals)
         try:
@@ -43,7 +43,7 @@ class _Shielded(ProcessPoolExecutor):
 def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[Executor]:
     """Give an executor of several processes, which end with this one.
 
-    What is given to them and what they answer is pickled.
+    Arguments and results are pickled.
 
     Args:
         count: of processes; None for one on each core.
@@ -67,7 +67,7 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
 
 
 def end() -> None:
-    """End all processes that this one has started so, and see that they have ended."""
+    """End all worker processes of this process, and wait until they have ended."""
     children = active_children()
     for process in children:
         process.kill()
@@ -76,7 +76,7 @@ def end() -> None:
 
 
 def _start(prepare: Callable[[], object]) -> None:
-    """Make a process no rank, and end it with its parent, which does so when interrupted."""
+    """Prevent a process from being a rank, and end it with its parent, which handles interrupts."""
     show_notices()
     for name in [name for name in os.environ if name.startswith(_OF_RANKS)]:
         del os.environ[name]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from shell_model.reduced_shell import ReducedShell
 
 
-# What a shell that calibrates a beam has no use for, since the beam moves in its place.
+# Keys that a calibrating shell does not need, since the beam moves in its place.
 _OF_MOTION = ("contact", "step")
 
 
@@ -68,7 +68,7 @@ class CalibratedTable(BeamTable):
         return self.model_copy(update={"calibrated_by": self.calibrated_by.with_shells(update)})
 
     def calibrated_among(self, models: Mapping[str, ModelTable]) -> Self:
-        """The model with the shell that its name stands for; as it is where there is none."""
+        """Return the model with the shell of its name; unchanged without a name."""
         shell = models.get(self.calibrated_by) if isinstance(self.calibrated_by, str) else None
         if not isinstance(shell, Shell):
             return self
@@ -126,14 +126,14 @@ class CalibratedTable(BeamTable):
         return replace(moving, seconds=made.seconds | seconds)
 
     def moving(self, built: Built, shell: ReducedShell, boom: Boom) -> Built:
-        """What moves: the beam with springs, unless the model says more."""
+        """Return the model that moves: by default the beam with springs."""
         from beam_model.calibration import stiffened
         from beam_model.lines import lines
 
         assert built.calibration is not None
         stiff = stiffened(boom, built.calibration.segments)
         along = lines(stiff, self.segments(stiff))
-        # Springs stand behind the beam's own coordinates, and move nothing along it.
+        # The springs follow the beam's own coordinates, and move nothing along it.
         own = along[0].rows["deflection"].shape[1]
         basis = np.eye(own, built.system.num_modes)
         return replace(built, along=[line.on(basis) for line in along])
@@ -142,12 +142,12 @@ class CalibratedTable(BeamTable):
         return list(built.along) or super().lines(boom, built)
 
     def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
-        # What its springs give way is in its own contacts alone.
+        # Only its own contacts include the compliance of its springs.
         return super().without_play(boom) if self.calibrated_by is None else None
 
     @abstractmethod
     def beam_stand_in(self, boom: Boom) -> StandIn:
-        """What tells how long the beam takes to move."""
+        """Return the stand-in of the beam, which gives the time of its motion."""
 
     def stand_in(self, boom: Boom) -> StandIn:
         own = self.beam_stand_in(boom)

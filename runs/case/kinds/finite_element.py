@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from dynamics.line import Line
     from shell_model.reduced_shell import ReducedShell
 
-# A dense eigenproblem of more elements is a slip of the pen.
+# A dense eigenproblem of more elements is an input error.
 MOST_ELEMENTS = 5_000
 
-# Coordinates of each segment with the fields of its section, at most.
+# Largest number of coordinates of each segment with the fields of its section.
 FIELDS = 40
 
 # Of a dense eigenproblem of n coordinates: s for each n³, numbers for each n². Measured.

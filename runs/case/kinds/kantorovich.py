@@ -12,7 +12,7 @@ from runs.case.kinds.calibration import CalibratedTable
 from runs.case.kinds.model import Joined, StandIn
 from runs.case.limits import Count, Few, Flag
 
-# Beyond this, round-off in the polynomials passes 1e-6 of the lowest frequencies.
+# Beyond this, round-off in the polynomials exceeds 1e-6 of the lowest frequencies.
 MOST_TERMS = 60
 
 

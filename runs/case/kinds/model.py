@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a kind of model is: its table in the case file, and all that anyone asks of it."""
+"""The interface of a kind of model, and its table in the case file."""
 
 from __future__ import annotations
 
@@ -31,19 +31,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Beams:
-    """The segments of a boom as beams, and when these buckle, each found when it is first asked."""
+    """The segments of a boom as beams, and their buckling factor, each computed on first use."""
 
     boom: Boom  #: of a case
     model: BeamTable  #: whose segments are beams
 
     @cached_property
     def segments(self) -> list[SegmentModel]:
-        """As the model makes them."""
+        """Segments as the model builds them."""
         return self.model.segments(self.boom)
 
     @cached_property
     def critical_factor(self) -> float | None:
-        """Of the boom's axial forces, as in :class:`Built`."""
+        """Buckling factor of the boom's axial forces, as in :class:`Built`."""
         from beam_model.boom_modes import critical_factor
 
         if not self.boom.compressed:
@@ -52,19 +52,19 @@ class Beams:
             with np.errstate(all="ignore"):
                 return critical_factor(self.boom, self.segments)
         except (ArithmeticError, np.linalg.LinAlgError, ValueError):
-            # Numbers out of proportion: the run ends with them, and says so.
+            # Numbers out of proportion: the run ends with them and reports them.
             return None
 
 
 @dataclass(frozen=True, slots=True)
 class Joined:
-    """The boom of a case as one model sees it, and its beams."""
+    """The boom of a case for one model, and its beams."""
 
     boom: Boom  #: of the case, with the model's contact in its joints
     _beams: list[Beams] = field(default_factory=list, init=False, repr=False, compare=False)
 
     def beams(self, model: BeamTable) -> Beams:
-        """The same ones whenever a model asks, or one that is equal."""
+        """Return the beams of a model; the same object for equal models."""
         for known in self._beams:
             if known.model == model:
                 return known
@@ -74,12 +74,12 @@ class Joined:
 
 @dataclass(frozen=True, slots=True)
 class Workshop:
-    """What a model on a mesh is made with.
+    """The context for building a meshed model.
 
     Args:
         comm: the ranks that share the work.
-        tell: called with the stage and the part of it that is done.
-        cache: where the same shell may be already, and is kept; computed unless given.
+        tell: called with the stage and the completed part of it.
+        cache: of reduced shells; without one, every shell is computed.
     """
 
     comm: MPI.Comm
@@ -97,7 +97,7 @@ class Workshop:
 
 @dataclass(frozen=True, slots=True)
 class Built:
-    """A model before it moves."""
+    """A model before its motion."""
 
     system: GapSystem  #: of all segments
     num_dofs: int  #: before any reduction
@@ -105,18 +105,18 @@ class Built:
     #: Of the axial forces with the joints pressed, see
     #: :func:`dynamics.second_order.buckling_factor`; infinite without any.
     critical_factor: float | None = float("inf")
-    shell: ReducedShell | None = None  #: what a reduced shell has beyond its system
-    calibration: Calibration | None = None  #: what a calibrated beam has read from its shell
-    along: Sequence[Line] = ()  #: what is read along its segments, on the first rank
+    shell: ReducedShell | None = None  #: data of a reduced shell besides its system
+    calibration: Calibration | None = None  #: calibration of a beam from its shell
+    along: Sequence[Line] = ()  #: lines along its segments, on the first rank
 
 
 @dataclass(frozen=True, slots=True)
 class StandIn:
-    """The beam whose steps tell those of a model before it is built."""
+    """The beam whose steps estimate those of a model before it is built."""
 
     beam: ModelTable  #: quickly built
     coordinates: int  #: of the model itself
-    #: Bytes and s that it takes before it moves.
+    #: Memory in bytes and time in s before the motion.
     memory: float = 0.0
     seconds: float = 0.0
 
@@ -148,7 +148,7 @@ class ModelTable(Table):
         super().__init__(**{"name": kind, "kind": kind, **keys})
         self._boom = boom
 
-    # Case files are read past it: they must give name and kind.
+    # Case files do not use it: they must give name and kind.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
     # Whether it has a mesh of the plates: it leaves fields.
@@ -159,25 +159,25 @@ class ModelTable(Table):
 
     @property
     def longest_edge(self) -> float:
-        """Of the mesh of its plates in m; 0 where it has none."""
+        """Longest edge of the mesh of plates in m; 0 without a mesh."""
         return 0.0
 
     @property
     def needs_shell(self) -> bool:
-        """Whether it takes FEniCSx and a workshop to build."""
+        """Whether the model needs FEniCSx and a workshop."""
         return self.meshed
 
     @property
     def needs_plates(self) -> bool:
-        """Whether it cannot do without the sections of the segments."""
+        """Whether the model needs the sections of the segments."""
         return self.meshed
 
     def with_shells(self, update: Mapping[str, object]) -> Self:
-        """The model with the shell that it is, or that calibrates it, changed."""
+        """Return the model with an update of its shell, or of the shell that calibrates it."""
         return self.model_copy(update=update) if self.meshed else self
 
     def calibrated_among(self, models: Mapping[str, ModelTable]) -> Self:
-        """The model with the table of the one that calibrates it in place of its name.
+        """Return the model with the table of its calibrating shell in place of the name.
 
         Args:
             models: of its case, by their names.
@@ -185,7 +185,7 @@ class ModelTable(Table):
         return self
 
     def coarsened(self, boom: Boom) -> Self:
-        """The model, or a coarser one that answers what is checked as well, and soon.
+        """Return the model, or a coarser one that suffices for the checks and is fast.
 
         Args:
             boom: of its case.
@@ -194,25 +194,25 @@ class ModelTable(Table):
 
     @property
     def play_free(self) -> bool:
-        """Whether its segments are joined without play."""
+        """Whether the segments are joined without play."""
         return False
 
     @property
     def cannot_telescope(self) -> str | None:
-        """Why it cannot be drawn out, and what to leave out instead; None where it can."""
+        """Why the model cannot telescope, with the remedy; None where it can."""
         if self.play_free:
             return f"{self.name!r} is tied, and cannot be drawn out; leave the model out"
         return None
 
     def check(self, where: str, joined: Joined) -> None:
-        """Whether it can be a model of this boom.
+        """Check that the model is valid for this boom.
 
         Args:
-            where: its key, ``model[2]`` say.
+            where: its key, for example ``model[2]``.
             joined: the boom and its contacts.
 
         Raises:
-            BoomError: it cannot.
+            BoomError: it is not.
         """
         for number, segment in enumerate(joined.boom.segments, start=1):
             if self.needs_plates and segment.section is None:
@@ -232,11 +232,11 @@ class ModelTable(Table):
 
     @abstractmethod
     def describe(self) -> str:
-        """How finely, in the few words of a table."""
+        """Return the discretisation in a few words, for a table."""
 
     @abstractmethod
     def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
-        """Its gap system. Collective where it is meshed.
+        """Return the gap system. Collective for a meshed model.
 
         Args:
             joined: the boom and its contacts.
@@ -335,19 +335,19 @@ class ModelTable(Table):
 
     @abstractmethod
     def critical_factor(self, joined: Joined) -> float | None:
-        """Of the boom's axial forces, as in :class:`Built`, or about that of a meshed one."""
+        """Return the buckling factor as in :class:`Built`; approximate for a meshed model."""
 
     @abstractmethod
     def lines(self, boom: Boom, built: Built) -> list[Line]:
-        """What is read along each segment of the model as it was built, on the first rank."""
+        """Return the lines along each segment of the built model, on the first rank."""
 
     def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
-        """The same boom without play, and along it; None where contacts are to be tied for that."""
+        """Return system and lines without play; None where contacts are to be bonded instead."""
         return None
 
     @abstractmethod
     def stand_in(self, boom: Boom) -> StandIn:
-        """What tells how long it takes to move."""
+        """Return the stand-in that estimates the time of the motion."""
 
 
 class BeamTable(ModelTable):
@@ -355,7 +355,7 @@ class BeamTable(ModelTable):
 
     @abstractmethod
     def segments(self, boom: Boom) -> list[SegmentModel]:
-        """Each segment in coordinates of its own."""
+        """Return each segment in coordinates of its own."""
 
     def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
         from beam_model.segment_model import gap_system, tied_system
@@ -389,5 +389,5 @@ _Kind = TypeVar("_Kind", bound=ModelTable)
 
 
 def of_kind(kind: type[_Kind], models: Iterable[ModelTable]) -> list[_Kind]:
-    """Those models that are of one kind, for what is about this kind alone."""
+    """Return the models of one kind."""
     return [model for model in models if isinstance(model, kind)]

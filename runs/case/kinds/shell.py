@@ -22,18 +22,18 @@ if TYPE_CHECKING:
     from shell_model.boom_shell import ShellOptions
     from shell_model.reduction.krylov import KrylovOptions
 
-# A factorisation of more triangles is a slip of the pen.
+# A factorisation of more triangles is an input error.
 MOST_TRIANGLES = 20_000_000
 # Every point of a surface is an input of the reduction and a row of the time loop.
 MOST_POINTS = 256
 
-# Coordinates for each segment unless given, in the plane and in space.
+# Default coordinates for each segment, in the plane and in space.
 _FLAT, _SPATIAL = 60, 210
 # Dofs for each square of the mesh size, of a uniform mesh and of a graded one far from its spots,
 # and of the smaller sizes near them; bytes for a dof, for a coordinate of it; s. Measured.
 _DOFS, _GRADED_DOFS, _DOFS_AT_SPOTS = 21.0, 42.0, 35.0
 _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 2000.0, 5.0, 1.0e-4
-# Elements of the longest segment of the beam that stands for it.
+# Elements of the longest segment of the beam that stands for a shell.
 _ELEMENTS = 20
 
 
@@ -128,13 +128,13 @@ class Shell(ModelTable):
         shell = with_plays_and_loads(made, joined.boom)
         factor = shell.critical_factor
         if boom.driven and factor is not None:
-            # On the way it is known of beams alone.
+            # Until the shell is built, only beams give this.
             on_the_way = self.critical_factor(replace(joined, boom=boom))
             factor = min(factor, on_the_way or factor)
         return Built(shell.system, shell.num_dofs, shell.seconds, factor, shell)
 
     def options(self) -> ShellOptions:
-        """How a boom becomes such shells."""
+        """Return the options of the boom's shells."""
         from shell_model.boom_shell import ShellOptions
         from shell_model.contact.surface import POINTS, SurfaceOptions
 
@@ -175,7 +175,7 @@ class Shell(ModelTable):
         return StandIn(beam, coordinates, memory, _REDUCTION * dofs)
 
     def estimated_dofs(self, boom: Boom) -> float:
-        """Number of dofs of the meshes of all segments, about, without making them."""
+        """Return the approximate number of dofs of all segments' meshes, without meshing."""
         squares = _surface(boom) / self.mesh_size**2
         if self.contact_tolerance == "any" or self.contact_line == "surface":
             return _DOFS * squares
@@ -195,7 +195,7 @@ class Shell(ModelTable):
         return KrylovOptions(most=self.modes)
 
     def _check_contact(self, where: str, joined: Joined) -> None:
-        """A line that does not suit the boom, keys of another one."""
+        """Refuse a contact line that does not suit the boom, and keys of another contact."""
         line = self.contact_line
         if joined.boom.spatial and line == "across":
             raise BoomError(
@@ -222,7 +222,7 @@ class Shell(ModelTable):
                 )
 
     def _check_surface(self, where: str, joined: Joined) -> None:
-        """Too many points, one stiffness for several laws, or for one that is no power."""
+        """Refuse too many points, one stiffness for several laws, or a law that is no power law."""
         if self.surface_points is not None:
             along, across = self.surface_points
             if along * across > MOST_POINTS:
@@ -250,7 +250,7 @@ class Shell(ModelTable):
 
 
 def check_mesh_size(where: str, size: float, boom: Boom) -> None:
-    """Whether a mesh can be so fine.
+    """Check that the mesh is not too fine.
 
     Args:
         where: the key.
@@ -270,7 +270,7 @@ def check_mesh_size(where: str, size: float, boom: Boom) -> None:
 
 
 def _surface(boom: Boom) -> float:
-    """Of all walls in m²."""
+    """Return the area of all walls in m²."""
     return sum(
         segment.section.perimeter * segment.length
         for segment in boom.segments
