@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Forces along the boom, and what each segment carries of them on their way to the base.
+"""Axial forces: the compression of each segment along the load path to the base.
 
-All press towards the base. What is outboard of a place presses a segment there; a segment hands
-its sum over where it is locked in the next one, or where the ground holds it, and what is further
-inboard hangs there and pulls.
+All forces act towards the base. What is outboard of a place compresses a segment there. A segment
+transfers its sum where it is locked in the next one, or where the ground holds it. What is further
+inboard is suspended there and causes tension.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from geometry.load import Body
 from geometry.segment import SAME_PLACE, Segment
 from geometry.taper import mean_area
 
-# Forces are exact at their ends, and between them off by some thousandths of what a step weighs.
+# Forces are exact at the ends of steps, and between them within thousandths of a step's weight.
 _STEPS = 8
 
 
@@ -46,7 +46,7 @@ def with_compression(
     thrusts: Sequence[Thrust],
     gravity: float = 0.0,
 ) -> tuple[Segment, ...]:
-    """The segments with the axial forces that they carry.
+    """Return the segments with the axial forces that they carry.
 
     A boom that stands upright weighs on its base:
 
@@ -84,10 +84,10 @@ def with_compression(
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A place on a segment at which an axial force goes along as another segment is drawn out.
+    """A place on a segment at which an axial force moves along as another segment telescopes.
 
-    Drawn out by s, P is larger by the force between x and where it has come to, x + direction · s;
-    drawn in, smaller.
+    At an extension s, P is larger by the force between x and the present place, x + direction · s;
+    when retracted, smaller.
 
     Args:
         segment: its position.
@@ -102,7 +102,7 @@ class Entry:
     force: float
 
     def more(self, x: Array, way: Array) -> Array:
-        """(..., num_places) in N at x in m, drawn out by ways (...) in m."""
+        """Return (..., num_places) added P in N at x in m, at extensions ``way`` (...) in m."""
         passed = self.direction * (x - self.x)
         far = np.asarray(way)[..., None]
         out, back = (passed > 0.0) & (passed < far), (far < passed) & (passed < 0.0)
@@ -110,14 +110,14 @@ class Entry:
 
 
 def borne(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:
-    """What presses all that is inside a joint in N, where the joint takes it; else 0."""
+    """Return the force in N of all that is inside a joint, where the joint carries it; else 0."""
     inner = joints[number].inner
     taken = _lock(joints, inner) is joints[number]
     return segments[inner].compression.handed if taken else 0.0
 
 
 def on_foot(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:
-    """The axial force in N that a segment's foot bears; 0 where it has none or a joint takes it."""
+    """Return the axial force in N on a segment's foot; 0 without one or where a joint takes it."""
     segment = segments[number]
     if segment.foot is None or _lock(joints, number) is not None:
         return 0.0
@@ -127,7 +127,7 @@ def on_foot(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -
 def pin_moments(
     segments: Sequence[Segment], joints: Sequence[Joint], bodies: Sequence[Body]
 ) -> Iterator[tuple[int, Array]]:
-    """What axial forces do about pins below the axis: the segment, and (num_dofs,) what is pushed.
+    """Yield moments of axial forces about pins below the axis: segment, (num_dofs,) load vector.
 
     The pin stays where it is. So the segment moves along x by −d w′(x_pin) as it turns, against
     the axial forces N, which do N d w′ of work: a constant moment N d at the pin.
@@ -145,10 +145,10 @@ def pin_moments(
 
 
 def entry(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> Entry | None:
-    """What goes along as a joint is drawn out; None where no axial force changes its place.
+    """Return the force that moves along with a telescoping joint; None where no axial force moves.
 
-    What sits on the inner segment takes the force along the outer one; what sits on the outer one
-    takes it off the inner one ever nearer to its tail, but for a foot below the tail.
+    A lock on the inner segment moves the force along the outer one. A lock on the outer segment
+    removes it from the inner one progressively towards its tail, except for a foot below the tail.
     """
     joint = joints[number]
     inner, force = segments[joint.inner], borne(segments, joints, number)
@@ -161,7 +161,7 @@ def entry(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> 
 
 
 def passed_over(segments: Sequence[Segment], joints: Sequence[Joint], segment: int) -> set[float]:
-    """x in m on a segment between which axial forces go along it."""
+    """Return the x in m on a segment between which axial forces move along it."""
     return {
         found.x + found.direction * way
         for number, joint in enumerate(joints)
@@ -175,7 +175,7 @@ def passed_over(segments: Sequence[Segment], joints: Sequence[Joint], segment: i
 def carried(
     segments: Sequence[Segment], joints: Sequence[Joint], number: int, x: Array, time: Array
 ) -> Array:
-    """P of a segment in N, (..., num_places) at x in m and times (...) in s.
+    """Return P of a segment in N, (..., num_places) at x in m and times (...) in s.
 
     Args:
         segments: with what they carry at the start.
@@ -192,7 +192,7 @@ def carried(
 
 
 def _weights(segment: Segment, gravity: float) -> list[tuple[float, float]]:
-    """Those at one x in m, in N."""
+    """Return the point weights: x in m and weight in N of each."""
     found = [(point.x, point.mass * gravity) for point in segment.masses]
     if segment.section is not None:
         plate = segment.material.density * gravity
@@ -204,7 +204,7 @@ def _weights(segment: Segment, gravity: float) -> list[tuple[float, float]]:
 
 
 def _spread_weights(segment: Segment, gravity: float) -> list[tuple[float, float, float]]:
-    """Those between two x in m, in N/m."""
+    """Return the distributed weights: both x in m and the weight in N/m of each."""
     found = list(_plain_weights(segment, gravity))
     if segment.section is not None:
         doubler = segment.material.density * gravity
@@ -216,7 +216,7 @@ def _spread_weights(segment: Segment, gravity: float) -> list[tuple[float, float
 
 
 def _plain_weights(segment: Segment, gravity: float) -> Iterator[tuple[float, float, float]]:
-    """That of the mass per length, even in steps where the segment tapers."""
+    """Yield the weight of the mass per length, in uniform steps where the segment tapers."""
     if segment.head_section is None:
         yield segment.start, segment.end, segment.mass_per_length * gravity
         return
@@ -226,7 +226,7 @@ def _plain_weights(segment: Segment, gravity: float) -> Iterator[tuple[float, fl
 
 
 def _lock(joints: Sequence[Joint], number: int) -> Joint | None:
-    """The joint that takes a segment's axial force: one that says where, else the outermost."""
+    """Return the joint that takes a segment's axial force: with ``locked_at``, or the outermost."""
     around = [joint for joint in joints if joint.inner == number]
     return max(around, key=lambda joint: (joint.locked_at is not None, joint.outer), default=None)
 
@@ -245,7 +245,7 @@ def _compression(
             places.append(x)
 
     def beyond(x: float) -> float:
-        """What acts at and beyond x."""
+        """Return the sum of the forces at and beyond x."""
         at_places = sum(force for place, force in points if place >= x - near)
         return at_places + sum(q * max(0.0, end - max(start, x)) for start, end, q in spread)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The boom: segments that slide in one another, their joints, loads and stops.
+"""The boom: telescoping segments with their joints, loads and stops.
 
 x runs along the boom, z is the plane of bending, y is lateral. Everything is in SI units.
 """
@@ -54,13 +54,13 @@ __all__ = [
 ]
 
 
-# Part of the inner segment's length below which an overlap is none.
+# Fraction of the inner segment's length below which an overlap counts as none.
 LEAST_OVERLAP = 1.0e-4
 
 
 @dataclass(frozen=True)
 class Boom:
-    """Segments from the base to the tip, the joints between them, what acts on them, cylinders.
+    """Segments from the base to the tip, the joints between them, their loads and cylinders.
 
     A clamped arm, and a fly of which 2 m slide in it:
 
@@ -129,23 +129,23 @@ class Boom:
 
     @property
     def length(self) -> float:
-        """From the start of the first segment to the tip in m."""
+        """Length from the start of the first segment to the tip in m."""
         return self.tip - self.segments[0].start
 
     @property
     def spatial(self) -> bool:
-        """Whether the segments move along y and twist, too."""
+        """Whether the segments also move along y and twist."""
         return any(joint.lateral_play is not None for joint in self.joints)
 
     @cached_property
     def play_free(self) -> Boom:
-        """The same with all joints tied."""
+        """The same boom with all joints bonded."""
         tied = tuple(joint.without_play for joint in self.joints)
         return replace(self, joints=tied)
 
     @property
     def driven(self) -> bool:
-        """Whether something is drawn out or in while it moves."""
+        """Whether a joint telescopes during the motion."""
         return any(joint.drive is not None for joint in self.joints)
 
     @property
@@ -155,20 +155,20 @@ class Boom:
 
     @property
     def directions(self) -> tuple[Direction, ...]:
-        """Along which the segments touch."""
+        """Directions along which the segments touch."""
         return ("z", "y") if self.spatial else ("z",)
 
     @property
     def stations(self) -> list[tuple[float, Direction]]:
-        """x in m and direction of all places of contact, tied joints left out.
+        """x in m and direction of all contact stations; bonded joints are left out.
 
-        Those of the joints along z, in space those of the joints along y, those of the stops.
+        First those of joints along z, in space those of joints along y, then those of stops.
         """
         return self._stations_of_joints + [(stop.x, "z") for stop in self.stops]
 
     @property
     def numbered_stops(self) -> Iterator[tuple[int, Stop]]:
-        """Each stop, behind its position in ``stations``."""
+        """Position in ``stations`` and stop, of each stop."""
         return enumerate(self.stops, start=len(self._stations_of_joints))
 
     @property
@@ -182,7 +182,7 @@ class Boom:
         ]
 
     def telescoped_over(self, segment: int) -> tuple[float, ...]:
-        """x on a segment, rising, to and from which stations or axial forces move along it."""
+        """Return x on a segment, rising, between which stations or axial forces move along it."""
         found = {
             place[joint.inner == segment]
             for joint in self.joints
@@ -196,7 +196,7 @@ class Boom:
         return tuple(sorted(found | passed_over(self.segments, self.joints, segment)))
 
     def stations_of(self, segment: int) -> tuple[float, ...]:
-        """x of all places at which something acts on a segment, rising.
+        """Return the x of all places at which something acts on a segment, rising.
 
         Stations of its joints, stops, lugs of cylinders, point loads and point masses.
         """
@@ -213,11 +213,11 @@ class Boom:
         return tuple(sorted(places))
 
     def overlap(self, joint: Joint) -> tuple[float, float]:
-        """x in m between which both segments of a joint are."""
+        """Return the x in m between which both segments of a joint are."""
         return _overlap(joint, self.segments)
 
     def overlap_left(self, joint: Joint) -> float:
-        """In m where a drive has drawn a joint out farthest; of one without a drive where it is."""
+        """Return the overlap in m at the largest extension; without a drive the initial one."""
         start, end = self.overlap(joint)
         return end - start - (0.0 if joint.drive is None else joint.drive.reach[1])
 
@@ -236,7 +236,7 @@ class Boom:
         return places
 
     def recorded(self, of_ends: Sequence[Quantity]) -> list[Observation]:
-        """What a model records: several quantities of every end, then what is observed besides.
+        """Return what a model records: several quantities of every end, then the observations.
 
         Behind an end's name stands the quantity, ``tip_rotation``, unless it is the deflection.
         """
@@ -250,7 +250,7 @@ class Boom:
         ]
 
     def _find_segments(self) -> None:
-        """Put positions in place of the segments' names, and tuples in place of lists."""
+        """Replace the segments' names by positions, and lists by tuples."""
         names = [segment.name for segment in self.segments]
         for group in (field.name for field in fields(self)):
             parts = list(getattr(self, group))
@@ -278,7 +278,7 @@ class Boom:
             check_order(f"joint[{number}]", names[joint.outer], names[joint.inner], names)
 
     def _check_mirrors(self) -> None:
-        """Bending along z is a motion of its own; in space that along y and the twist are, too."""
+        """Check that bending along z is uncoupled; in space that along y and the twist are, too."""
         for number, segment in enumerate(self.segments, start=1):
             if segment.section is None:
                 continue
@@ -295,7 +295,7 @@ class Boom:
                 )
 
     def _check_diaphragms(self) -> None:
-        """No plate closes a box where another one is inside.
+        """Check that no diaphragm closes a box where another segment is inside.
 
         Segments end one beyond the other, so what is deeper inside is inside the next one, too.
         """
@@ -468,7 +468,7 @@ def _check_friction(where: str, joint: Joint, spatial: bool) -> None:
 
 
 def check_order(where: str, outer: str, inner: str, names: Sequence[str]) -> None:
-    """Whether the outer segment of a joint is nearer to the base than the inner one.
+    """Check that the outer segment of a joint is nearer to the base than the inner one.
 
     Args:
         where: the key of the joint.
@@ -485,7 +485,7 @@ def check_order(where: str, outer: str, inner: str, names: Sequence[str]) -> Non
 
 
 def check_place(where: str, x: float, segment: Segment) -> None:
-    """Whether a place is on a segment.
+    """Check that a place is on a segment.
 
     Args:
         where: its key.

@@ -12,7 +12,7 @@ from geometry.arrays import Array
 
 @dataclass(frozen=True, slots=True)
 class Compression:
-    """P(x) in N along a segment, positive where it is pressed: straight in pieces, with jumps.
+    """P(x) in N along a segment, positive in compression: piecewise linear, with jumps.
 
     >>> column = Compression(places=(0.0, 4.0, 10.0), ends=((9e3, 7e3), (2e3, 2e3)))
     >>> column(np.array([1.0, 5.0]))
@@ -29,11 +29,11 @@ class Compression:
     handed: float = 0.0
 
     def __bool__(self) -> bool:
-        """Whether there is any."""
+        """Return whether there is any axial force."""
         return bool(self.ends)
 
     def __call__(self, x: Array) -> Array:
-        """(num_places,) P at x (num_places,) in m; either of both at a jump."""
+        """Return P (num_places,) at x (num_places,) in m; at a jump either of both values."""
         if not self:
             return np.zeros(x.shape)
         places, ends = np.array(self.places), np.array(self.ends)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Where the segments of a joint touch, and where they rub.
+"""Contact geometry: where the segments of a joint touch and slide.
 
 In a flat boom a joint touches on the axis of its segments, above and below in one place. In
 space it touches in the corners of its sections, where slide pads sit because plates that meet are
@@ -24,8 +24,8 @@ from geometry.telescoping import drives_of, reach
 
 ContactLine = Literal["near webs", "across", "surface"]
 
-# What stations press of a segment's corners, over the least overlap: about 0.1 m in the paper's
-# boom, as slide pads are long.
+# Length over which a station presses a segment's corners, as a part of the least overlap: about
+# 0.1 m in the paper's boom, as slide pads are long.
 _OF_OVERLAP = 0.1
 
 _SIDES: tuple[Side, Side] = (1, -1)
@@ -34,7 +34,7 @@ _BOTH: tuple[Side] = (0,)
 
 @dataclass(frozen=True, slots=True)
 class Patch:
-    """Where a pad of a given size lies on a wall of the inner segment.
+    """Area of a pad of a given size on a wall of the inner segment.
 
     It is centred at its station, but moved inwards where the overlap ends, and reaches inwards from
     its offset from the corner of the inner box.
@@ -51,14 +51,14 @@ class Patch:
     width: float
 
     def across(self, face: Face) -> tuple[float, float]:
-        """Where it begins and ends on a wall of the inner segment, in m from the wall's middle."""
+        """Return where it begins and ends on a wall of the inner segment, in m from its middle."""
         far = 0.5 * face.width - self.offset
         return far - self.width, far
 
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """What a station presses of a segment's corners.
+    """Length of a segment's corners that a station presses.
 
     Args:
         start, end: x in m.
@@ -71,22 +71,22 @@ class Stretch:
 
     @classmethod
     def on(cls, segment: Segment, station: float, length: float) -> Stretch:
-        """Centred at a station, but moved inwards where the segment ends."""
+        """Return a stretch centred at a station, but moved inwards where the segment ends."""
         start = min(max(station - 0.5 * length, segment.start), segment.end - length)
         return cls(start, start + length, station)
 
     def moved(self, segment: Segment, by: float) -> Stretch:
-        """The same length of a segment, so many m further."""
+        """Return the same stretch moved along the segment by ``by`` in m."""
         if by == 0.0:
             return self
         return Stretch.on(segment, self.station + by, self.end - self.start)
 
     def density(self, x: Array) -> Array:
-        """(num_places,) a unit force per length in 1/m.
+        """Return (num_places,) a unit force per length in 1/m.
 
-        Even where the station is in the middle, else the line whose resultant is at the station:
-        read the other way round, the deflection at the station of the straight line that fits
-        that of the stretch best.
+        Uniform where the station is in the middle, else linear with the resultant at the station.
+        As a weight of the deflection, it gives the value at the station of the straight line that
+        fits the deflection of the stretch best.
         """
         length, middle = self.end - self.start, 0.5 * (self.start + self.end)
         return 1.0 / length + 12.0 * (self.station - middle) * (x - middle) / length**3
@@ -136,38 +136,38 @@ class Pad:
 
     @property
     def half(self) -> int:
-        """On which half of its wall it sits in space: 1 where the coordinate across is positive."""
+        """Half of its wall in space: 1 where the coordinate across the wall is positive."""
         return int(np.sign(self._corner))
 
     @property
     def _corner(self) -> float:
-        """Where its point is across its wall in m."""
+        """Position of its point across its wall in m."""
         return self.inner[0] if self.direction == "z" else self.inner[1]
 
     @property
     def across(self) -> float:
-        """How far the middle of what it covers is from its points, across its wall, in m."""
+        """Distance of the middle of its area from its points, across its wall, in m."""
         if self.patch is None or self.face is None:
             return 0.0
         return self.half * 0.5 * sum(self.patch.across(self.face)) - self._corner
 
     @property
     def reach(self) -> tuple[float, float]:
-        """How far in and out its joint is drawn, in m."""
+        """Range of its joint's extension in m."""
         return (0.0, 0.0) if self.joint.drive is None else self.joint.drive.reach
 
     @property
     def middle(self) -> float:
-        """x in m of the middle of what it covers, through which its resultant goes."""
+        """x in m of the middle of its area, through which its resultant goes."""
         return self.x if self.patch is None else 0.5 * (self.patch.start + self.patch.end)
 
     def ways(self, way: float) -> tuple[float, float]:
-        """By how many m it moves along the outer and the inner segment, drawn out by ``way``."""
+        """Return its travel in m along the outer and the inner segment at the extension ``way``."""
         on_outer = way if self.carrier == "inner" else 0.0
         return on_outer, -way if self.carrier == "outer" else 0.0
 
     def drawn(self, boom: Boom, way: float) -> Pad:
-        """The pad where its joint is drawn out by ``way`` in m."""
+        """Return the pad where its joint is extended by ``way`` in m."""
         on_outer, on_inner = self.ways(way)
         inner, outer = (
             stretch.moved(boom.segments[number], by)
@@ -187,14 +187,14 @@ class Pad:
 
     @property
     def covered(self) -> tuple[Offset, Offset]:
-        """(y, z) in m of the middles of what it covers of both segments, from their axes."""
+        """(y, z) in m of the middles of its areas on both segments, from their axes."""
         step = (self.across, 0.0) if self.direction == "z" else (0.0, self.across)
         (a, b), (c, d) = self.inner, self.outer
         return (a + step[0], b + step[1]), (c + step[0], d + step[1])
 
 
 def pads(boom: Boom) -> list[Pad]:
-    """Every pad of every joint that is not tied, by rising station.
+    """Return every pad of every joint that is not bonded, by rising station.
 
     The weights of one side of a station sum to one: when the segments approach each other
     without roll, the pads together press as one contact on the axis would.
@@ -232,7 +232,7 @@ def pads(boom: Boom) -> list[Pad]:
                             outer=outer,
                             weight=weight,
                             rubs="y" if boom.spatial and direction == "z" else "z",
-                            # Both sides together rub as the one on the axis does.
+                            # Both sides together have the friction of the one on the axis.
                             normal_force=None
                             if normal_force is None
                             else normal_force * weight * (0.5 if side else 1.0),
@@ -250,7 +250,7 @@ def pads(boom: Boom) -> list[Pad]:
 def _points(
     boom: Boom, joint: Joint, direction: Direction, x: float
 ) -> Iterator[tuple[Side, Offset, Offset, float, Face | None]]:
-    """Side, inner and outer point, weight, and inner face in space, of the pads at one station."""
+    """Yield side, inner and outer point, weight, and inner face in space, of a station's pads."""
     if joint.lateral_play is None:
         for side in _SIDES if joint.pads else _BOTH:
             yield side, (0.0, 0.0), (0.0, 0.0), 1.0, None
@@ -266,14 +266,14 @@ def _points(
             yield side, within, around, 0.5, touching
 
 
-# What stops press of a segment's corners, over the height of the box: about 0.1 m in the paper's
-# boom.
+# Length of a segment's corners that stops press, over the height of the box: about 0.1 m in the
+# paper's boom.
 _OF_HEIGHT = 0.2
 
 
 @dataclass(frozen=True, slots=True)
 class Rest:
-    """Where a stop presses a segment's corners.
+    """Place where a stop presses a segment's corners.
 
     Args:
         station: position in ``Boom.stations``.
@@ -288,13 +288,13 @@ class Rest:
     reach: tuple[float, float]
 
     def drawn(self, boom: Boom, way: float) -> Rest:
-        """Where its segment is drawn out by ``way`` in m."""
+        """Return the rest where its segment is extended by ``way`` in m."""
         pressed = self.pressed.moved(boom.segments[self.stop.segment], -way)
         return replace(self, pressed=pressed)
 
 
 def rests(boom: Boom) -> list[Rest]:
-    """Every stop of a boom whose sections are known."""
+    """Return every stop of a boom whose sections are known."""
     found = []
     for station, stop in boom.numbered_stops:
         segment = boom.segments[stop.segment]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A luffing cylinder, which holds a boom that stands on a hinge."""
+"""Luffing cylinders, which support a boom on a hinge."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Cylinder:
 
     @property
     def length(self) -> float:
-        """From the ground to the lug in m."""
+        """Length from the ground to the lug in m."""
         return hypot(self.x - self.ground[0], -self.depth - self.ground[1])
 
     @property
@@ -68,12 +68,12 @@ class Cylinder:
         )
 
     def arm(self, foot: Support) -> float:
-        """Of its line about the pin of a foot in m."""
+        """Return the lever arm of its line about the pin of a foot in m."""
         along, up = self.direction
         return (self.x - foot.x) * up + (self.depth - foot.depth) * along
 
     def pull(self, x: Array, foot: Support | None) -> Array:
-        """(num_places,) the normal force in N at x (num_places,) in m of 1 N that it presses with.
+        """Return the normal force (num_places,) in N at x (num_places,) in m of 1 N of compression.
 
         Between its lug and the foot, which holds the segment along x; none without a foot.
         """
@@ -83,7 +83,7 @@ class Cylinder:
         return np.where(between, np.sign(self.x - foot.x) * self.direction[0], 0.0)
 
     def check(self, where: str, spatial: bool) -> None:
-        """Whether there can be such a cylinder.
+        """Check that the cylinder is possible.
 
         Args:
             where: its key, ``cylinder[1]`` say.
@@ -114,11 +114,11 @@ class Cylinder:
             )
 
     def pushes(self, body: Body, foot: Support | None) -> Iterator[Array]:
-        """(num_dofs,) what 1 N of all cylinders does to their segment: what their length reads.
+        """Yield (num_dofs,) load vectors of 1 N of all cylinders: rows that read their length.
 
-        Then, of two, what ½ N in one and −½ N in the other do. A point at (y, z) of a cross-section
+        With two, also that of ½ N in one and −½ N in the other. A point at (y, z) of a section
         moves along x by −w′ z − v′ y and along z by w + φ y, beside the segment's motion along x,
-        which is none at the foot's depth.
+        which is zero at the foot's depth.
 
         Args:
             body: the segment.
@@ -153,12 +153,12 @@ class GroundLine(NamedTuple):
 
 
 def force_name(number: int) -> str:
-    """What results call the spring force of a cylinder, from 1 on, of two side by side together."""
+    """Return the results' name of a cylinder's spring force; ``number`` counts from 1."""
     return "cylinder_force" if number == 1 else f"cylinder_force-{number}"
 
 
 def forces(boom: Boom) -> dict[str, str]:
-    """What results call the forces of the cylinders' springs, and what they are in words."""
+    """Return the results' names of the cylinders' spring forces, and their descriptions."""
     found = {}
     for number, one in enumerate(boom.cylinders, start=1):
         name = force_name(number)
@@ -172,7 +172,7 @@ def forces(boom: Boom) -> dict[str, str]:
 
 
 def ground_lines(boom: Boom, bodies: Sequence[Body]) -> Iterator[GroundLine]:
-    """Springs and dashpots of cylinders, then dashpots of supports.
+    """Yield springs and dashpots of cylinders, then dashpots of supports.
 
     Args:
         boom: its supports and cylinders.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How a segment gives way far from where it is pushed: what a beam of it has to match.
+"""Far field: compliance of a segment far from its loads, which a beam has to match.
 
-Forces at the segment's ends and stations, moments at its ends and torques where forces are, each
-spread over the section as the stress of a beam is, so that nothing is bent but the segment.
+Forces at the segment's ends and stations, moments at its ends, and torques where forces are. Each
+is distributed over the section as the stress of a beam, so that only the segment bends.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from geometry.boom import Boom
 
 Bent = Literal["z", "y", "twist"]
 
-# Hz: slow beside all elastic motion; forces that leave a free segment at rest feel none of it.
+# Hz: slow beside all elastic motion; forces that leave a free segment at rest do not excite it.
 FAR_SHIFT = 2.0
 
 
 @dataclass(frozen=True, slots=True)
 class FarField:
-    """What probes of a segment do to one another.
+    """Response of a segment to probes of one another.
 
     Args:
         places: x in m of forces and torques, rising; the first and the last also of moments.
@@ -35,6 +35,6 @@ class FarField:
 
 
 def far_places(boom: Boom, number: int) -> tuple[float, ...]:
-    """x in m where a segment is probed."""
+    """Return the x in m where a segment is probed."""
     segment = boom.segments[number]
     return tuple(sorted({segment.start, *boom.stations_of(number), segment.end}))

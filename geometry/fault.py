@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What is wrong with a boom, and where."""
+"""Errors in a boom, and their places."""
 
 from __future__ import annotations
 
 
 class BoomError(ValueError):
-    """A boom that cannot be. ``where`` is the key of the fault, ``segment[2].span`` say."""
+    """An impossible boom. ``where`` is the key of the error, such as ``segment[2].span``."""
 
     def __init__(self, where: str, what: str) -> None:
         super().__init__(f"{where}: {what}")

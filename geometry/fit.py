@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Whether sections and slide pads have room, and touch flat on flat."""
+"""Checks that sections and slide pads have room, and that flat plates touch."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _WHERE: Mapping[tuple[Direction, Side], str] = {
 
 
 def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
-    """Whether the inner segment of a joint has its play within the outer one, where both are known.
+    """Check that the inner segment of a joint has its play within the outer one, if both are known.
 
     Raises:
         BoomError: it has not; at a key of the joint ``where``.
@@ -53,7 +53,7 @@ def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
 def check_room_on_the_way(
     where: str, joint: Joint, outer: Segment, inner: Segment, way: float
 ) -> None:
-    """Whether the inner segment of a flat joint still has its play where it is drawn by ``way``.
+    """Check that the inner segment of a flat joint still has its play at the extension ``way``.
 
     Raises:
         BoomError: it has not; at a key of the drive ``where``.
@@ -72,10 +72,10 @@ def check_room_on_the_way(
 
 
 def room(joint: Joint, outer: Segment, inner: Segment, way: float = 0.0) -> tuple[float, float]:
-    """How far the inner segment can move along z, and then along y, where that is least, in m.
+    """Return the least distances in m by which the inner segment can move along z, and along y.
 
-    At the ends of the overlap, drawn out by ``way`` in m, of segments whose sections are known:
-    what tapers does so evenly.
+    At the ends of the overlap, extended by ``way`` in m, of segments whose sections are known;
+    a taper is linear between them.
     """
     first, last = max(outer.start, inner.start + way), min(outer.end, inner.end + way)
     found = [
@@ -92,7 +92,7 @@ def check_flats(
     places: Sequence[float],
     around: Segment | None = None,
 ) -> None:
-    """Whether a segment has plates that can touch, as far as its section is known.
+    """Check that a segment has plates that can touch, as far as its section is known.
 
     Args:
         where: its key.
@@ -131,7 +131,7 @@ def check_flats(
 
 
 def check_pads(where: str, joint: Joint, boom: Boom) -> None:
-    """Whether all pads of a joint can be.
+    """Check that all pads of a joint are possible.
 
     Raises:
         BoomError: one has no room, two lie on one another, a side has none; at a key of ``where``.
@@ -155,7 +155,7 @@ def check_pads(where: str, joint: Joint, boom: Boom) -> None:
 
 
 def check_pads_on_the_way(where: str, joint: Joint, boom: Boom) -> None:
-    """Whether all pads of a joint with a drive stay on both of its segments.
+    """Check that all pads of a joint with a drive stay on both of its segments.
 
     Raises:
         BoomError: one is longer than the least overlap, or leaves it; at a key of ``where``.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Meshes that are fine where something presses, and grow coarser away from it.
+"""Graded meshes: fine where something presses, and coarser away from it.
 
 Rectangles first: near a spot they are nearly square, far from all they are almost seven times as
 long along the boom as across. What far edges make too stiff is the bending of walls across, by a
@@ -24,14 +24,14 @@ from geometry.mesh import SegmentMesh, mesh_segment
 from geometry.section import COMPONENT, Direction, Section
 from geometry.spots import Spot
 
-# Lengths are compared in this part of a mesh's extent: below any edge, above round-off.
+# Lengths are compared in this fraction of a mesh's extent: below any edge, above round-off.
 _ROUNDED = 1.0e-9
 
-# To tell edges of the same length: the part by which one at the outline is taken for shorter, and
-# how far along x, y and z counts.
+# Distinguishes edges of the same length: the fraction by which one at the outline counts as
+# shorter, and the weights of x, y and z.
 _NEARER, _BESIDE = 1.0e-6, np.array([0.0, 1.0, 1.6])
 
-# Rectangles in parts of the mesh size: across everywhere, along the boom from spots outwards.
+# Rectangles as fractions of the mesh size: across everywhere, along the boom from spots outwards.
 _ACROSS = 0.3
 _ALONG = (0.5, 1.0, 2.0)
 
@@ -61,11 +61,11 @@ def graded_mesh(
 
 
 def _along(breaks: Mapping[str, float], size: float, spots: Sequence[Spot]) -> dict[float, float]:
-    """x in m of outlines → length in m of rectangles from there on."""
+    """Return x in m of outlines → length in m of rectangles from there on."""
     start, end = min(breaks.values()), max(breaks.values())
     fine, middle, coarse = (part * size for part in _ALONG)
     ends = {x for spot in spots for length in (middle, coarse) for x in spot.reach(length)}
-    # No outline beside a break: nothing is gained there but slender triangles.
+    # No outline beside a break: it would only add slender triangles.
     apart = [x for x in ends if min(abs(x - place) for place in breaks.values()) > fine]
     found: dict[float, float] = {}
     for x in sorted([start, *(x for x in apart if start < x < end)]):
@@ -82,9 +82,9 @@ def _along(breaks: Mapping[str, float], size: float, spots: Sequence[Spot]) -> d
 
 
 def _diagonals_first(mesh: SegmentMesh) -> SegmentMesh:
-    """The mesh with the longest edge of each triangle first, which two of them share.
+    """Return the mesh with the longest edge of each triangle first, which two triangles share.
 
-    Of edges that are as long in a diaphragm's fan that nearer to the axis, as in all mirror images.
+    Of equal edges in a diaphragm's fan, the one nearer to the axis, as in all mirror images.
     """
     corners = mesh.points[mesh.triangles]
     beside = np.abs(corners + np.roll(corners, -1, axis=1)) @ _BESIDE
@@ -94,12 +94,12 @@ def _diagonals_first(mesh: SegmentMesh) -> SegmentMesh:
 
 
 def _edges(corners: Array) -> Array:
-    """(num_triangles, 3) lengths of edges in m, from corners (num_triangles, 3, 3)."""
+    """Return (num_triangles, 3) lengths of edges in m, from corners (num_triangles, 3, 3)."""
     return np.asarray(np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2))
 
 
 def _too_large(mesh: SegmentMesh, mirrors: Sequence[Direction], spots: Sequence[Spot]) -> Mask:
-    """(num_triangles,) which are larger than a spot allows at their nearest corner."""
+    """Return (num_triangles,) which are larger than a spot allows at their nearest corner."""
     near = _ROUNDED * float(np.ptp(mesh.points[:, 0]))
     places = mesh.points.copy()
     mirrored = [COMPONENT[axis] for axis in mirrors]
@@ -112,7 +112,7 @@ def _too_large(mesh: SegmentMesh, mirrors: Sequence[Direction], spots: Sequence[
 
 
 def _bisected(mesh: SegmentMesh, cut: Mask) -> SegmentMesh:
-    """The mesh with the marked triangles cut, and others as far as no node may hang."""
+    """Return the mesh with the marked triangles cut, and others so that no node hangs."""
     edges = np.sort(np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=2), axis=2)
     ends, edge_of = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
     edge_of = edge_of.reshape(-1, 3)
@@ -140,7 +140,7 @@ def _bisected(mesh: SegmentMesh, cut: Mask) -> SegmentMesh:
 
 
 def _with_middles(line: Indices, new_of: Mapping[tuple[int, int], int]) -> Indices:
-    """The edges of a line, those with a new middle as their halves."""
+    """Return the edges of a line; those with a new middle are replaced by their halves."""
     found: list[tuple[int, int]] = []
     for a, b in line.tolist():
         new = new_of.get((min(a, b), max(a, b)))

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Whether a boom is held: what its rigid segments can do against supports, joints and stops.
+"""Check of restraint: the rigid motions that supports, joints and stops leave to the segments.
 
-Each segment moves along z and turns there, in space also along y, and about its axis. What holds
-it is a row over these motions of all segments; the boom is held where the rows leave none of them.
-A stop may hold one way alone: then the loads of t = 0 have to press it there, with what the other
-rows bear in balance.
+Each segment moves along z and turns there, in space also along y, and about its axis. Each
+restraint is a row over these motions of all segments; the boom is held where the rows leave none.
+A stop may hold in one direction only. The loads of t = 0 then have to press the segment against
+it, in balance with the reactions of the other rows.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from geometry.segment import Segment
 if TYPE_CHECKING:
     from geometry.boom import Boom
 
-# Part of the largest row, or of the largest force, below which what is left is round-off.
+# Fraction of the largest row, or of the largest force, below which a remainder is round-off.
 _ROUND_OFF = 1.0e-9
 
 # Motions of a segment in the plane, and in space.
@@ -34,7 +34,7 @@ _FLAT, _SPATIAL = 2, 5
 
 
 def check_held(boom: Boom) -> None:
-    """Whether supports, cylinders, joints and stops leave no rigid motion.
+    """Check that supports, cylinders, joints and stops leave no rigid motion.
 
     Args:
         boom: with places that are on its segments.
@@ -61,7 +61,7 @@ def check_held(boom: Boom) -> None:
 
 
 def check_pressed(boom: Boom) -> None:
-    """Whether the loads of t = 0 press the stops that hold one way where nothing else does.
+    """Check that the loads of t = 0 press the one-way stops where nothing else holds the boom.
 
     Args:
         boom: that is held, under its own loads.
@@ -90,7 +90,7 @@ def check_pressed(boom: Boom) -> None:
 
 @dataclass(frozen=True, slots=True)
 class _RigidBody(Member):
-    """A segment among rigid ones, over the motions of all: slopes and turns by their way at the
+    """A segment among rigid ones, over the motions of all: slopes and turns are scaled by the
     boom's length.
     """
 
@@ -103,23 +103,23 @@ class _RigidBody(Member):
 
     @property
     def key(self) -> str:
-        """Its key in a case."""
+        """Its key in a case file."""
         return f"segment[{self.number + 1}]"
 
     @property
     def motions(self) -> slice:
-        """Its own ones: along z, then along y and about the axis."""
+        """Its own motions: along z, then along y and about the axis."""
         count = _SPATIAL if self.boom.spatial else _FLAT
         return slice(count * self.number, count * (self.number + 1))
 
     @property
     def load(self) -> Array:
-        """What acts on it at t = 0."""
+        """Its load vector at t = 0."""
         whole = self.segment.load * self.uniform("z", None)
         if self.boom.spatial and self.segment.lateral is not None:
             whole += self.segment.lateral.load * self.uniform("y", None)
         for load in self.boom.loads:
-            # What is over by then has no values.
+            # A load that is over by then has no values.
             if load.segment == self.number and callable(load.history):
                 whole += float(load.history(np.zeros(()))) * load.push(self)
         return whole
@@ -184,7 +184,7 @@ def _bodies(boom: Boom) -> list[_RigidBody]:
 
 
 def _one_way(boom: Boom, bodies: list[_RigidBody]) -> list[Array]:
-    """The push of the stops that a segment meets from one side."""
+    """Return the load vectors of the stops that a segment meets from one side."""
     return [
         -stop.sides[0] * bodies[stop.segment].force(stop.x, "z")
         for stop in boom.stops
@@ -193,7 +193,7 @@ def _one_way(boom: Boom, bodies: list[_RigidBody]) -> list[Array]:
 
 
 def _always(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
-    """Rows of what holds both ways."""
+    """Yield the rows of restraints that hold both ways."""
     for body in bodies:
         for support in body.segment.supports:
             for direction in boom.directions:
@@ -216,7 +216,7 @@ def _always(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
 
 
 def _left(rows: Iterable[Array], bodies: list[_RigidBody]) -> Array:
-    """(num_motions, num_left) what rows leave of the motions."""
+    """Return (num_motions, num_left) the motions that the rows leave free."""
     sizes = [(row, float(np.linalg.norm(row))) for row in rows]
     scaled = np.array([row / size for row, size in sizes if size > 0.0])
     motions = np.eye(bodies[-1].motions.stop)
@@ -227,5 +227,5 @@ def _left(rows: Iterable[Array], bodies: list[_RigidBody]) -> Array:
 
 
 def _free(bodies: list[_RigidBody], left: Array) -> Iterator[_RigidBody]:
-    """Segments that move in what is left."""
+    """Yield the segments that move in the free motions."""
     return (body for body in bodies if np.abs(left[body.motions]).max(initial=0.0) > _ROUND_OFF)

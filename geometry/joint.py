@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Where segments slide in one another, and where they meet the ground."""
+"""Joints, in which segments slide in one another, stops and drives."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class PadSize:
     offset: float = 0.0
 
     def span(self, x: float, overlap: tuple[float, float]) -> tuple[float, float]:
-        """The x in m between which it lies: centred at x, but moved inwards where overlap ends."""
+        """Return both ends in m along x: centred at x, but moved inwards where the overlap ends."""
         first, last = overlap
         start = min(max(x - 0.5 * self.length, first), last - self.length)
         return start, start + self.length
@@ -64,13 +64,13 @@ class SlidePad(PadSize):
     shim: float = 0.0
 
     def touches(self, direction: Direction, side: Side) -> bool:
-        """Whether it is on this side."""
+        """Return whether the pad is on this side."""
         return SIDES[self.side] == (direction, side)
 
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """Where an inner segment slides in an outer one, touching it at the stations.
+    """A joint in which an inner segment slides in an outer one, touching it at the stations.
 
     >>> (joint,) = boom.joints
     >>> boom.overlap(joint), joint.clearances("z")
@@ -126,7 +126,7 @@ class Joint:
     drive: Drive | None = None
 
     def clearances(self, direction: Direction) -> tuple[float, float]:
-        """Above and below in m, along y right and left; negative where shims press."""
+        """Return the clearances above and below in m, along y right and left; < 0 with preload."""
         if direction == "z":
             play, first, pressed = self.play, self.play_above, self.interference
         else:
@@ -137,7 +137,7 @@ class Joint:
         return first - 0.5 * pressed, play - first - 0.5 * pressed
 
     def law(self, direction: Direction) -> Any:
-        """Return what presses at each station along a direction, across its clearances.
+        """Return the contact law of each station along a direction, across its clearances.
 
         Raises:
             BoomError: the joint has no contact.
@@ -151,13 +151,13 @@ class Joint:
 
     @property
     def padded(self) -> bool:
-        """Whether it has pads of a size."""
+        """Whether it has pads of a given size."""
         return self.pad is not None or bool(self.pads)
 
     def pads_of(
         self, direction: Direction, side: Side
     ) -> list[tuple[PadSize | None, float, float]]:
-        """Size, share of the side's force, and shim in m of all pads there; of a side 0 on both."""
+        """Return size, share of the side's force, and shim in m of its pads; 0 means both sides."""
         if not self.pads:
             return [(self.pad, 1.0, 0.0)]
         here = [pad for pad in self.pads if pad.touches(direction, side)]
@@ -166,7 +166,7 @@ class Joint:
 
     @property
     def without_play(self) -> Joint:
-        """The same with the segments tied at its stations."""
+        """The same joint with the segments bonded at its stations."""
         return replace(
             self, tied=True, pad=None, pads=(), contact_length=None, dashpot=0.0, drive=None
         )
@@ -174,7 +174,7 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """A rest on the ground that a segment meets when it deflects along z.
+    """A stop on the ground that a segment meets when it deflects along z.
 
     >>> rest = pt.Stop(1, 14.0, play=0.2, contact=pt.PowerContact(1e6, exponent=1.0).lower())
     >>> replace(boom, stops=(rest,)).stations[-1]
@@ -198,26 +198,26 @@ class Stop:
 
     @property
     def sides(self) -> tuple[Side, ...]:
-        """1 where it stops a deflection upwards, −1 where one downwards."""
+        """1 where it stops an upward deflection, −1 where it stops a downward one."""
         both: tuple[Side, Side] = (1, -1)
         return tuple(side for side in both if self.contact.one_sided(side) is not None)
 
     @property
     def law(self) -> Any:
-        """What presses, across the play."""
+        """Its contact law across the play."""
         return self.contact.behind(0.5 * self.play)
 
 
-# On which segment of its joint a station sits, and goes with it.
+# The segment of its joint on which a station sits and with which it moves.
 Carrier = Literal["outer", "inner"]
 
-# Places in time at which the reach of a history is looked for beside its kinks.
+# Number of times at which the range of a history is evaluated beside its kinks.
 _TIMES = 1000
 
 
 @dataclass(frozen=True)
 class Drive:
-    """How far the inner segment of a joint is drawn out over time.
+    """Extension of the inner segment of a joint over time.
 
     >>> out = pt.Drive(pt.SCurve(travel=1.5, duration=3.0), carriers=("inner", "outer"))
     >>> drawn = replace(boom, joints=(replace(boom.joints[0], drive=out),))
@@ -238,13 +238,13 @@ class Drive:
 
     @cached_property
     def times(self) -> Array:
-        """(num_times,) from t = 0 on, in s, with its kinks."""
+        """(num_times,) times from t = 0 on in s, with its kinks."""
         kinks = np.array([0.0, *self.history.kinks])
         times = np.union1d(kinks, np.linspace(kinks.min(), kinks.max(), _TIMES))
         return np.asarray(times[times >= 0.0])
 
     @cached_property
     def reach(self) -> tuple[float, float]:
-        """How far in, not above 0, and how far out, not below it, it comes in m."""
+        """Smallest extension, not above 0, and largest one, not below 0, in m."""
         ways = self.history(self.times)
         return min(0.0, float(ways.min())), max(0.0, float(ways.max()))

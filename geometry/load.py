@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Loads on the segments of a boom: each kind says where it acts, and what it pushes."""
+"""Loads on the segments of a boom: each kind gives its place and its load vector."""
 
 from __future__ import annotations
 
@@ -12,32 +12,32 @@ from geometry.section import Direction, SegmentRef
 
 
 class Body(Protocol):
-    """A segment of a model as single forces push it; (num_dofs,) on its coordinates each.
+    """A segment of a model under single forces; each method gives (num_dofs,) on its coordinates.
 
-    What a force pushes reads, the other way round, how far the force moves.
+    The load vector of a unit force is also the row that reads the displacement of its point.
     """
 
     def force(self, x: float, direction: Direction) -> Array:
-        """1 N at x in m."""
+        """Return the load vector of 1 N at x in m."""
 
     def moment(self, x: float, direction: Direction) -> Array:
-        """1 N·m at x in m, in the plane of the direction, towards a larger slope."""
+        """Return that of 1 N·m at x in m, in the plane of the direction, towards a larger slope."""
 
     def torque(self, x: float) -> Array:
-        """1 N·m at x in m about the axis, of a segment in space."""
+        """Return the load vector of 1 N·m at x in m about the axis, of a segment in space."""
 
 
 class Member(Body, Protocol):
-    """A segment of a model as loads push it."""
+    """A segment of a model under all kinds of loads."""
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
-        """1 N/m between two x in m; along the whole segment where none are given."""
+        """Return that of 1 N/m between two x in m; along the whole segment where none are given."""
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        """An acceleration of all masses per length which the plain segment feels as so many N/m."""
+        """Return that of an acceleration of all masses: ``force`` N/m on the plain segment."""
 
     def turning(self, direction: Direction) -> Array:
-        """The inertia of all but point masses against 1 rad/s² about x = 0, towards a larger slope
+        """Return that of 1 rad/s² about x = 0 on all but point masses, towards a larger slope
         in the direction's plane.
         """
 
@@ -70,15 +70,15 @@ class Load:
 
     @property
     def places(self) -> Mapping[str, float]:
-        """x in m of mesh lines that it needs, by the keys that give them."""
+        """x in m of the mesh lines that it needs, by the keys that give them."""
         return {} if self.x is None else {"x": self.x}
 
     def resultant(self, length: float) -> float:
-        """In N along its direction at the value 1 of its history, on a segment so long in m."""
+        """Return its resultant in N at the value 1 of its history, for a segment's length in m."""
         return self.magnitude * (length if self.x is None else 1.0)
 
     def push(self, member: Member) -> Array:
-        """(num_dofs,) what it does at the value 1 of its history."""
+        """Return its load vector (num_dofs,) at the value 1 of its history."""
         if self.x is not None:
             return self.magnitude * member.force(self.x, self.direction)
         if self.inertial:
@@ -118,9 +118,9 @@ class Moment(Load):
 
 @dataclass(frozen=True, slots=True)
 class Turn(Load):
-    """What mass per length and rotary inertia feel of turning about x = 0; magnitude in rad/s².
+    """Inertia load of mass per length and rotary inertia turning about x = 0; magnitude in rad/s².
 
-    With a history that gives its impulse, what makes them turn by so many rad/s.
+    With a history that gives its impulse, it makes them turn at so many rad/s.
     """
 
     def push(self, member: Member) -> Array:

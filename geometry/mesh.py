@@ -29,7 +29,7 @@ from geometry.arrays import Array, Indices, Mask
 from geometry.boom import SAME_PLACE, Segment
 from geometry.section import Offset, Plate, Section
 
-# Part of a mesh's extent below which a coordinate is 0.
+# Fraction of a mesh's extent below which a coordinate is 0.
 _ROUND_OFF = 1.0e-12
 
 
@@ -54,12 +54,12 @@ class SegmentMesh:
 
     @property
     def on_walls(self) -> Mask:
-        """(num_triangles,) False on diaphragms."""
+        """(num_triangles,) True on walls, False on diaphragms."""
         return np.asarray(self.walls < len(self.plates))
 
     @property
     def along(self) -> Array:
-        """(num_triangles,) x in m of their middles."""
+        """(num_triangles,) x in m of the middles of the triangles."""
         return np.asarray(self.points[self.triangles, 0].mean(axis=1))
 
     def write(self, path: Path) -> None:
@@ -139,7 +139,7 @@ def mesh_segment(
 
 
 def collar_breaks(segment: Segment) -> dict[str, float]:
-    """Name → x in m of the ends of a segment's collars."""
+    """Return name → x in m of the ends of a segment's collars."""
     breaks: dict[str, float] = {}
     for k, collar in enumerate(segment.collars, start=1):
         breaks |= {f"collar-{k}-start": collar.start, f"collar-{k}-end": collar.end}
@@ -147,7 +147,7 @@ def collar_breaks(segment: Segment) -> dict[str, float]:
 
 
 def diaphragm_breaks(segment: Segment) -> dict[str, float]:
-    """Name → x in m of a segment's diaphragms, in their order."""
+    """Return name → x in m of a segment's diaphragms, in their order."""
     return {f"diaphragm-{k}": plate.x for k, plate in enumerate(segment.diaphragms, start=1)}
 
 
@@ -203,7 +203,7 @@ def _build_patches(
     across: float,
     along: Sequence[float],
 ) -> tuple[list[list[int]], list[_Ring]]:
-    """Transfinite patches; gives the surfaces of each wall, and the ring of each outline.
+    """Build transfinite patches; return the surfaces of each wall, and the ring of each outline.
 
     Edges are ``across`` long around the section, ``along`` the boom as long as each stretch says.
     """
@@ -236,7 +236,7 @@ def _build_patches(
 
 
 def _close(x: float, ring: _Ring, section: Section, size: float) -> list[int]:
-    """Transfinite patches of a diaphragm; gives their surfaces.
+    """Build the transfinite patches of a diaphragm; return their surfaces.
 
     One in each corner where the outline allows it, as a box's does: a patch's spokes have as many
     edges as the halves of plates that they face. Else one on each half of a plate, a fan from the
@@ -254,7 +254,7 @@ def _close(x: float, ring: _Ring, section: Section, size: float) -> list[int]:
 
 
 def _spanned(ring: _Ring, middle: int, spokes: Mapping[int, int]) -> list[int]:
-    """Patches from spoke to spoke.
+    """Build the patches from spoke to spoke.
 
     Args:
         ring: around.

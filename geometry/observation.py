@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What is recorded of a boom's motion, and where."""
+"""Observations: recorded quantities of a boom's motion, and their places."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from typing import Literal, NamedTuple
 
 from geometry.section import SegmentRef
 
-# What a case may ask for.
+# Quantities that a case may observe.
 Recorded = Literal["deflection", "rotation", "velocity", "acceleration", "lateral", "twist"]
 
 Quantity = Literal[Recorded, "distortion"]
 
 
-# What a row can read of a cross-section.
+# Quantities that a row can read of a cross-section.
 Read = Literal["deflection", "rotation", "distortion", "lateral", "twist"]
 
-# Those that move in space alone.
+# Quantities of booms in space alone.
 IN_SPACE: tuple[Read, ...] = ("lateral", "twist")
 
 
 class Kind(NamedTuple):
-    """A quantity's unit, what is read, how often that is derived by time, and the words for it."""
+    """Unit of a quantity, the quantity read, the number of its time derivatives, its words."""
 
     unit: str
     read: Read
@@ -46,7 +46,7 @@ KINDS: Mapping[Quantity, Kind] = {
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """Something that every model records.
+    """An output that every model records.
 
     >>> seat = pt.Observation("seat", segment=1, x=10.0, quantity="velocity")
     >>> system = pt.BeamElements(replace(boom, observations=(seat,))).system()
@@ -67,5 +67,5 @@ class Observation:
 
     @property
     def kind(self) -> Kind:
-        """Of its quantity."""
+        """Kind of its quantity."""
         return KINDS[self.quantity]

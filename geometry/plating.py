@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Plated meshes: how thick a segment's plates are by triangle, and meshes of what tapers."""
+"""Plated meshes: plate thickness by triangle, and meshes of tapered segments."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from geometry.section import Section
 from geometry.segment import Segment
 from geometry.taper import areas
 
-# Of a part of a segment's length: below any triangle, above round-off.
+# Fraction of a segment's length: below any triangle, above round-off.
 _DIGITS = 9
 
 
 @dataclass(frozen=True, slots=True)
 class PlatedMesh(SegmentMesh):
-    """A mesh whose triangles know how thick they are.
+    """A mesh whose triangles have thicknesses.
 
     Args:
         thickness: (num_triangles,) of all plates in m.
@@ -34,7 +34,7 @@ class PlatedMesh(SegmentMesh):
 
 
 def plated(segment: Segment, mesh: SegmentMesh) -> PlatedMesh:
-    """A segment's mesh with the thickness of its plates.
+    """Return a segment's mesh with the thickness of its plates.
 
     Args:
         segment: its section is known; its diaphragms are those of the mesh, in the same order.
@@ -60,17 +60,17 @@ def plated(segment: Segment, mesh: SegmentMesh) -> PlatedMesh:
 
 
 def plain_thickness(section: Section, mesh: SegmentMesh) -> Array:
-    """(num_triangles,) thickness in m of the walls without collars, 0 on diaphragms."""
+    """Return (num_triangles,) thickness in m of the walls without collars, 0 on diaphragms."""
     of_wall = [plate.thickness for plate in section.plates]
     return np.asarray(np.array([*of_wall, 0.0])[np.minimum(mesh.walls, len(of_wall))])
 
 
-# Part of a mesh's extent below which a coordinate is 0, and two are one.
+# Fraction of a mesh's extent below which a coordinate is 0, and two are one.
 _ROUND_OFF = 1.0e-12
 
 
 def tapered_mesh(segment: Segment, mesh: PlatedMesh) -> PlatedMesh:
-    """Each point where it is in the section of its x, all walls flat from mesh line to mesh line.
+    """Move each point into the section of its x; walls are flat from mesh line to mesh line.
 
     A section is a fan of triangles, from its middle to each plate: a point keeps its place in its
     triangle.
@@ -95,12 +95,12 @@ def tapered_mesh(segment: Segment, mesh: PlatedMesh) -> PlatedMesh:
 
 
 def _fan(section: Section) -> tuple[Array, Array]:
-    """(num_plates, 2) where plates begin, and (2,) the middle, in m."""
+    """Return (num_plates, 2) the starts of plates, and (2,) the middle, in m."""
     return np.array([plate.start for plate in section.plates]), np.mean(section.bounds, axis=0)
 
 
 def _in_fan(section: Section, places: Array) -> tuple[Indices, Array, Array]:
-    """(num_places,) number of each one's triangle, its parts of the arms to the plate's ends."""
+    """Return (num_places,) each one's triangle, and its fractions of the arms to the plate ends."""
     starts, middle = _fan(section)
     arms = np.stack([starts, np.roll(starts, -1, axis=0)], axis=2) - middle[:, None]
     parts = np.einsum("kij,nj->nki", np.linalg.inv(arms), places - middle)

@@ -24,7 +24,7 @@ from geometry.section import (
 from geometry.shear_flow import ShearFlow, carriers
 from geometry.walls import trapezoids
 
-# Places closer than this part of a section's size are one.
+# Places closer than this fraction of a section's size are one.
 _SAME = 1.0e-9
 
 # In m, so that no product overflows.
@@ -65,10 +65,10 @@ class PolygonSection(Section):
 
     @cached_property
     def plates(self) -> tuple[Plate, ...]:
-        """Anticlockwise from the lowest corner, of several that to the left."""
+        """Plates, anticlockwise from the lowest corner; of several, from the left one."""
         corners = self._upwards[0] - np.array(self.centroid)
         for axis in self.mirrors:
-            # What differs by round-off alone becomes the same to the last bit, as meshes need it.
+            # Values that differ by round-off alone become equal to the last bit, as meshes require.
             image = _mirrored(corners, axis)
             corners = 0.5 * (corners + image[_partners(corners, image)])
         return _plates(corners, self._upwards[1])
@@ -106,13 +106,13 @@ class PolygonSection(Section):
 
     @cached_property
     def centroid(self) -> Offset:
-        """(y, z) in m where the corners are given."""
+        """(y, z) in m in the axes of the corners."""
         parts = _moments(trapezoids(_plates(*self._upwards)))
         return float(parts[0]), float(parts[1])
 
     @cached_property
     def faces(self) -> tuple[Face, ...]:
-        """Of each direction and side the outermost plate, where one alone lies at right angles."""
+        """For each direction and side the outermost plate, if exactly one lies at right angles."""
         ends = np.array([(plate.start, plate.end) for plate in self.plates])
         found = []
         for direction, side in _OUTWARDS:
@@ -124,7 +124,7 @@ class PolygonSection(Section):
 
     @cached_property
     def mirrors(self) -> tuple[Direction, ...]:
-        """Those in which corners and thicknesses are their own images."""
+        """Directions in which corners and thicknesses mirror themselves."""
         corners, thicknesses = self._upwards
         corners = corners - np.array(self.centroid)
         middles = 0.5 * (corners + np.roll(corners, -1, axis=0))
@@ -139,7 +139,7 @@ class PolygonSection(Section):
         return tuple(found)
 
     def carriers(self, direction: Direction) -> tuple[tuple[int, float], ...]:
-        """By the shear flow."""
+        """Return the plates that carry a shear force, by the shear flow."""
         return carriers(self.plates, direction)
 
     def __str__(self) -> str:
@@ -148,12 +148,12 @@ class PolygonSection(Section):
         return f"{sizes} x {walls}, {len(self.plates)} plates"
 
     def turned(self) -> PolygonSection:
-        """The section lying on its side, y and z exchanged."""
+        """Return the section lying on its side, y and z exchanged."""
         return PolygonSection(tuple((z, y) for y, z in self.corners), self.thicknesses)
 
     @property
     def in_order(self) -> PolygonSection:
-        """Itself, its corners in the order of its plates, as those of one that it tapers to are."""
+        """The same section with its corners in the order of its plates, for tapers."""
         corners, thicknesses = self._upwards
         return PolygonSection(
             tuple((float(y), float(z)) for y, z in corners), tuple(map(float, thicknesses))
@@ -175,10 +175,10 @@ _OUTWARDS: Sequence[tuple[Direction, Side]] = (("z", -1), ("y", 1), ("z", 1), ("
 
 
 def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> Section:
-    """The section of plates once around; upright rectangles are boxes.
+    """Return the section of plates once around; upright rectangles are boxes.
 
-    A box carries shear in its webs alone, a polygon by the flow: a box has the numbers of a box
-    however it is written.
+    A box carries shear in its webs alone, a polygon by the shear flow. So a box has the same
+    properties however it is specified.
 
     >>> corners = ((-0.15, -0.2), (0.15, -0.2), (0.15, 0.2), (-0.15, 0.2))
     >>> print(pt.closed_polygon(corners, thicknesses=(0.01, 0.006, 0.008, 0.006)))
@@ -245,7 +245,7 @@ def _check(corners: Sequence[Offset], thicknesses: Sequence[float]) -> None:
 
 
 def _plates(corners: Array, thicknesses: Array) -> tuple[Plate, ...]:
-    """Named after the side on which they lie, from the bottom upwards."""
+    """Return the plates, named after their side, from the bottom upwards."""
     names = _names(corners)
     ends: list[Offset] = [(y, z) for y, z in corners.tolist()]
     return tuple(
@@ -257,7 +257,7 @@ def _plates(corners: Array, thicknesses: Array) -> tuple[Plate, ...]:
 
 
 def _names(corners: Array) -> list[str]:
-    """Bottom and top where there are such plates, and those beside them: right, left."""
+    """Return the names: bottom and top where such plates exist, right or left for the others."""
     ends, low, high = np.roll(corners, -1, axis=0), *(_reach(corners))
     near = _SAME * (high - low)
     sides = []
@@ -281,7 +281,7 @@ def _reach(corners: Array) -> tuple[float, float]:
 
 
 def _twice_enclosed(corners: Array) -> float:
-    """Twice the area within corners (num_corners, 2), positive where they go anticlockwise."""
+    """Return twice the area within corners (num_corners, 2), positive if these go anticlockwise."""
     after = np.roll(corners, -1, axis=0)
     return float(corners[:, 0] @ after[:, 1] - corners[:, 1] @ after[:, 0])
 
@@ -291,13 +291,13 @@ def _mirrored(places: Array, axis: Direction) -> Array:
 
 
 def _partners(places: Array, images: Array) -> Indices:
-    """(num_places,) number of the image nearest to each place."""
+    """Return (num_places,) the number of the image nearest to each place."""
     apart = np.linalg.norm(places[:, None] - images, axis=2)
     return np.asarray(apart.argmin(axis=1))
 
 
 def _moments(polygons: Array) -> Array:
-    """Of all polygons together: y and z of the centroid in m, ∫ y² dA and ∫ z² dA in m⁴ (Green).
+    """Return y and z of the joint centroid in m, ∫ y² dA and ∫ z² dA in m⁴ of all polygons (Green).
 
     Args:
         polygons: (num_polygons, num_corners, 2) in m, anticlockwise.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Polygons that booms have: hexagons, octagons, and a U folded of plates under a flat top.
+"""Common polygons: hexagons, octagons, and U-sections folded of plates under a flat top.
 
 Sizes are those of the mid-lines in m; y = z = 0 is in the middle of them.
 """
@@ -18,7 +18,7 @@ from geometry.section import SectionError
 def hexagon(
     height: float, width: float, flat: float, top: float, bottom: float, web: float
 ) -> PolygonSection:
-    """Level top and bottom, and two inclined plates on each side, which meet in a fold.
+    """Return a hexagon: level top and bottom, and two inclined plates on each side.
 
     >>> print(pt.hexagon(0.5, 0.4, flat=0.2, top=0.006, bottom=0.008, web=0.005))
     500 x 400 x 8 / 5 / 6, 6 plates
@@ -40,7 +40,7 @@ def hexagon(
 def octagon(
     height: float, width: float, chamfer: float, top: float, bottom: float, web: float
 ) -> PolygonSection:
-    """A rectangle whose corners are cut at 45°.
+    """Return a rectangle with corners cut at 45°.
 
     >>> print(pt.octagon(0.5, 0.4, chamfer=0.1, top=0.006, bottom=0.008, web=0.005))
     500 x 400 x 8 / 5 / 6, 8 plates
@@ -66,7 +66,7 @@ def octagon(
 def u_section(
     height: float, width: float, radius: float, facets: int, top: float, bottom: float, web: float
 ) -> PolygonSection:
-    """A U, each bend of its bottom folded as plates that touch the bend's circle, under a top.
+    """Return a U-section under a flat top; plates tangent to the bend's circle form each bend.
 
     >>> print(pt.u_section(0.5, 0.4, radius=0.15, facets=3, top=0.008, bottom=0.006, web=0.006))
     500 x 400 x 6 / 8, 10 plates
@@ -102,7 +102,7 @@ def u_section(
 def _mirrored(
     twice: Sequence[tuple[float, float]] | Array, thicknesses: Sequence[float]
 ) -> PolygonSection:
-    """The section of a right half and its image.
+    """Return the section of a right half and its image.
 
     Args:
         twice: (num_corners, 2) (y, z) of its corners times two in m, upwards.

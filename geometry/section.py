@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a thin-walled section is, its first shape, a box, and how one is inferred.
+"""Thin-walled sections: their protocol, the box, and inference of a box from beam properties.
 
 A section is flat plates around a cell. Its places (y, z) count from its centroid, y lateral, z in
-the plane of bending. Nobody else knows how many plates there are: meshes and shells read the
-plates, contacts the faces, beams the properties.
+the plane of bending. Other modules do not depend on the number of plates: meshes and shells read
+the plates, contacts the faces, beams the properties.
 
 A beam model gives a section's area and second moment of area; a shell model needs its
 plates. With a uniform wall a box has three numbers (height, width, wall), so one more is
@@ -24,22 +24,22 @@ from geometry.arrays import Array, Mask
 
 Direction = Literal["z", "y"]
 Side = Literal[-1, 0, 1]
-# A segment of a boom: its name as it is given, its position in a boom.
+# Segment of a boom: its name as the user gives it, or its position in a boom.
 SegmentRef = Any
 Offset = tuple[float, float]
 
-# Position of a direction in an (x, y, z).
+# Position of a direction in (x, y, z).
 COMPONENT: Mapping[Direction, int] = {"y": 1, "z": 2}
 
-# No inner box is lower than this part of the outer one.
+# Minimum height of an inner box as a fraction of the outer one.
 SMALLEST = 1.0e-6
 
-# Part of a root below which its imaginary part is round-off.
+# Fraction of a root below which its imaginary part is round-off.
 _REAL = 1.0e-8
 
 
 class SectionError(ValueError):
-    """No section satisfies what is asked of it."""
+    """Error: no section satisfies the requirements."""
 
 
 class Plate(NamedTuple):
@@ -58,12 +58,12 @@ class Plate(NamedTuple):
 
     @property
     def length(self) -> float:
-        """Of the mid-line in m."""
+        """Length of the mid-line in m."""
         return float(np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]))
 
     @property
     def middle(self) -> Offset:
-        """(y, z) in m of the mid-line's middle."""
+        """(y, z) in m of the middle of the mid-line."""
         return 0.5 * (self.start[0] + self.end[0]), 0.5 * (self.start[1] + self.end[1])
 
     @property
@@ -72,7 +72,7 @@ class Plate(NamedTuple):
         return np.asarray(np.subtract(self.end, self.start) / self.length)
 
     def distance(self, places: Array) -> Array:
-        """(num_places,) of places (num_places, 2) from the mid-line, in m."""
+        """Return the distance (num_places,) of places (num_places, 2) from the mid-line, in m."""
         tangent = self.tangent
         arms = places - np.array(self.start)
         along = arms @ tangent
@@ -81,7 +81,7 @@ class Plate(NamedTuple):
 
 
 class Face(NamedTuple):
-    """A plate that may touch another section's, from within or from around it.
+    """A plate that may touch another section, from within or from around it.
 
     Args:
         plate: its number in the section's plates.
@@ -102,14 +102,14 @@ class Face(NamedTuple):
 
     @classmethod
     def of(cls, plates: Sequence[Plate], number: int, direction: Direction, side: Side) -> Face:
-        """That of a plate at right angles to a direction."""
+        """Return the face of a plate at right angles to a direction."""
         plate, normal = plates[number], COMPONENT[direction] - 1
         low, high = sorted((plate.start[1 - normal], plate.end[1 - normal]))
         return cls(number, direction, side, plate.start[normal], low, high, plate.thickness)
 
     @property
     def width(self) -> float:
-        """Of the mid-line in m."""
+        """Width along the mid-line in m."""
         return self.high - self.low
 
     @property
@@ -152,31 +152,31 @@ class Section(Protocol):
 
     @property
     def plates(self) -> tuple[Plate, ...]:
-        """All of them, once around: each begins where the one before ends."""
+        """All plates, once around: each begins where the previous one ends."""
 
     @property
     def faces(self) -> tuple[Face, ...]:
-        """One for each direction and side that has a plate at right angles to it."""
+        """Faces, one for each direction and side that has a plate at right angles to it."""
 
     @property
     def mirrors(self) -> tuple[Direction, ...]:
-        """The directions, ``y`` before ``z``, in whose mirror the section is its own image."""
+        """Directions, ``y`` before ``z``, in whose mirror the section is its own image."""
 
     def carriers(self, direction: Direction) -> tuple[tuple[int, float], ...]:
-        """Numbers of the plates that carry a shear force of the direction in their own plane.
+        """Return the numbers of the plates that carry a shear force in their own plane.
 
-        Each with what it carries along its tangent of a unit force through the centroid.
+        Each with its force along its tangent under a unit force through the centroid.
         """
 
     def __str__(self) -> str:
-        """Its sizes in mm, as a table shows them."""
+        """Return its sizes in mm, in the form of tables."""
 
     def turned(self) -> Section:
-        """The section lying on its side, y and z exchanged."""
+        """Return the section lying on its side, y and z exchanged."""
 
     @property
     def polar_second_moment_of_area(self) -> float:
-        """Second moment about the axis (density times it is the polar inertia) in m⁴."""
+        """Second moment about the axis in m⁴; the polar inertia is density times it."""
         return self.second_moment_of_area + self.lateral_second_moment_of_area
 
     @property
@@ -191,48 +191,48 @@ class Section(Protocol):
         return float(0.5 * abs(start[:, 0] @ end[:, 1] - start[:, 1] @ end[:, 0]))
 
     def mass_per_length(self, density: float) -> float:
-        """Mass of a unit of length in kg/m, for a density in kg/m³."""
+        """Return the mass per length in kg/m, for a density in kg/m³."""
         return density * self.area
 
     def reach(self, direction: Direction) -> tuple[float, float]:
-        """The lowest and the highest coordinate of the mid-lines along a direction, in m."""
+        """Return the lowest and the highest coordinate of the mid-lines along a direction, in m."""
         reached = [plate.start[COMPONENT[direction] - 1] for plate in self.plates]
         return min(reached), max(reached)
 
     @property
     def bounds(self) -> tuple[Offset, Offset]:
-        """The lowest and the highest (y, z) of the mid-lines in m."""
+        """Lowest and highest (y, z) of the mid-lines in m."""
         (y_low, y_high), (z_low, z_high) = self.reach("y"), self.reach("z")
         return (y_low, z_low), (y_high, z_high)
 
     def size(self, direction: Direction) -> float:
-        """How far the mid-lines reach along a direction, from end to end, in m."""
+        """Return the extent of the mid-lines along a direction, from end to end, in m."""
         low, high = self.reach(direction)
         return high - low
 
     def face(self, direction: Direction, side: float) -> Face:
-        """The one with this outward normal, which there must be; of ``side`` the sign counts."""
+        """Return the face with this outward normal, which must exist; the sign of ``side`` counts."""
         return next(f for f in self.faces if f.direction == direction and f.side * side > 0.0)
 
     def on_plates(self, places: Array) -> Mask:
-        """(num_places,) which places (num_places, 2) lie on a mid-line."""
+        """Return (num_places,) whether places (num_places, 2) lie on a mid-line."""
         distance = np.min([plate.distance(places) for plate in self.plates], axis=0)
         return np.asarray(distance < self.near)
 
     @property
     def near(self) -> float:
-        """Places closer than this (m) are one: meshes are exact to round-off."""
+        """Distance in m below which places are one; meshes are exact to round-off."""
         return _ON_PLATE * self.size("z")
 
 
-# A part of a section's height.
+# Fraction of a section's height.
 _ON_PLATE = 1.0e-7
 
 
 def rectangle(
     low: Offset, high: Offset, bottom: float, right: float, top: float, left: float
 ) -> tuple[Plate, ...]:
-    """Four plates once around.
+    """Return four plates once around.
 
     Args:
         low, high: (y, z) in m of opposite corners of the mid-lines.
@@ -248,7 +248,7 @@ def rectangle(
 
 
 def rectangle_faces(plates: Sequence[Plate]) -> tuple[Face, ...]:
-    """All four of them."""
+    """Return the faces of all four plates."""
     return (
         Face.of(plates, 0, "z", -1),
         Face.of(plates, 1, "y", 1),
@@ -360,30 +360,30 @@ class BoxSection(Section):
         return f"{1e3 * self.height:.4g} x {1e3 * self.width:.4g} x {' / '.join(walls)}"
 
     def turned(self) -> BoxSection:
-        """The box lying on its side, y and z exchanged."""
+        """Return the box lying on its side, y and z exchanged."""
         (top, bottom), (right, left) = self._walls
         return BoxSection(self.width, self.height, right, top, left, bottom)
 
     @property
     def plates(self) -> tuple[Plate, ...]:
-        """Bottom, right, top and left."""
+        """Bottom, right, top and left plates."""
         (y, z), b, h = self.centroid, 0.5 * self.width, 0.5 * self.height
         (top, bottom), (right, left) = self._walls
         return rectangle((-b - y, -h - z), (b - y, h - z), bottom, right, top, left)
 
     @property
     def faces(self) -> tuple[Face, ...]:
-        """All plates."""
+        """Faces of all plates."""
         return rectangle_faces(self.plates)
 
     @property
     def mirrors(self) -> tuple[Direction, ...]:
-        """That of y where the webs are alike, that of z where the flanges are."""
+        """``y`` where the webs are alike, ``z`` where the flanges are."""
         alike: dict[Direction, bool] = {"y": not self.left_web, "z": not self.bottom_flange}
         return tuple(axis for axis, same in alike.items() if same)
 
     def carriers(self, direction: Direction) -> tuple[tuple[int, float], ...]:
-        """The webs along z, the flanges along y, by the law of the lever."""
+        """Return the webs along z, the flanges along y, by the law of the lever."""
         y, z = self.centroid
         if direction == "z":
             return (1, 0.5 + y / self.width), (3, y / self.width - 0.5)
@@ -393,7 +393,7 @@ class BoxSection(Section):
 def _hollow_rectangle(
     width: float, height: float, webs: Offset, flanges: Offset
 ) -> tuple[float, float]:
-    """Return the centroid of a hollow rectangle and its second moment about that.
+    """Return the centroid of a hollow rectangle and its second moment about the centroid.
 
     Args:
         width, height: of the mid-lines in m.
@@ -416,7 +416,7 @@ def _hollow_rectangle(
 def infer_outer_section(
     area: float, second_moment_of_area: float, height_to_width: float
 ) -> BoxSection:
-    """The uniform-wall box with a given area, second moment and height-to-width ratio.
+    """Return the uniform-wall box with a given area, second moment and height-to-width ratio.
 
     Args:
         area: m².
@@ -448,7 +448,7 @@ def infer_outer_section(
 def infer_inner_section(
     area: float, second_moment_of_area: float, outer: Section, clearance: float
 ) -> BoxSection:
-    """The uniform-wall box that fills ``outer`` up to the clearance above and below.
+    """Return the uniform-wall box that fills ``outer`` up to the clearance above and below.
 
     Args:
         area: m².

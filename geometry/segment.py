@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""One segment of the boom: its numbers as a beam, its supports, and what sits on it.
+"""Segments: their properties as beams, their supports, and their attached masses.
 
 x runs along the boom, z is the plane of bending, y is lateral. Everything is in SI units.
 """
@@ -20,18 +20,18 @@ from geometry.section import COMPONENT, Section, SectionError
 from geometry.support import Support, check_support
 from geometry.taper import areas, between, check_alike, half_way, mean_area
 
-# Two places closer than this part of a segment's length are one: far below any plate, far above
-# round-off, in whatever unit.
+# Two places closer than this fraction of a segment's length are one: far below any plate, far above
+# round-off, in any unit.
 SAME_PLACE = 1.0e-10
 
-# Elements shorter than this part of a segment's length leave no digits of its stiffness: their own
-# is larger by its inverse cubed.
+# Elements shorter than this fraction of a segment's length lose all digits of its stiffness: their
+# own stiffness is larger by the inverse cube.
 APART = 1.0e-4
 
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """Isotropic linear elasticity: E in Pa, ν, density in kg/m³; yield strength in Pa, where known.
+    """Isotropic linear elasticity: E in Pa, ν, density in kg/m³; yield strength in Pa, if known.
 
     >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
     >>> print(f"{1e-9 * steel.shear_modulus:.1f} GPa")
@@ -66,7 +66,7 @@ class PointMass:
 
 @dataclass(frozen=True, slots=True)
 class Collar:
-    """A doubler around the box, on all walls, whose mid-surfaces stay where they are.
+    """A doubler around the box, on all walls, which leaves the mid-surfaces in place.
 
     >>> head = pt.Collar(start=7.5, end=8.0, thickness=0.01)
     >>> len(replace(boom.segments[0], collars=(head,)).collars)
@@ -101,7 +101,7 @@ class Diaphragm:
 
 @dataclass(frozen=True, slots=True)
 class Lateral:
-    """What a beam in space has beyond one in the plane x-z.
+    """Additional properties of a beam in space, beyond those of one in the plane x-z.
 
     >>> print(f"{boom.segments[0].lateral.torsion_constant:.1e} m⁴")
     2.8e-04 m⁴
@@ -123,7 +123,7 @@ class Lateral:
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """One box of the boom, with the numbers of its beam and, where known, its plates.
+    """A segment of the boom, with its properties as a beam and, if known, its plates.
 
     >>> fly = boom.segments[1]
     >>> fly.length, fly.rigid_modes
@@ -180,7 +180,7 @@ class Segment:
         section: Section,
         **others: Any,
     ) -> Segment:
-        """A segment whose beam numbers are those of its plates, in space as in the plane.
+        """Return a segment with beam properties from its plates, in space as in the plane.
 
         >>> import protractile as pt
         >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
@@ -234,7 +234,7 @@ class Segment:
         return self.start + self.length * (2.0 * middle + head) / (6.0 * self.area)
 
     def section_at(self, x: float) -> Section:
-        """The section at x in m, of a segment whose plates are known."""
+        """Return the section at x in m, of a segment whose plates are known."""
         assert self.section is not None
         if self.head_section is None:
             return self.section
@@ -242,12 +242,12 @@ class Segment:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """x of both in m."""
+        """x of both ends in m."""
         return self.start, self.end
 
     @property
     def widest(self) -> Section:
-        """Of both ends the section with the longer mid-lines, which meshes of it begin with."""
+        """Section with the longer mid-lines of both ends, with which meshes start."""
         assert self.section is not None
         ends = self.section, self.head_section or self.section
         return max(ends, key=lambda section: section.perimeter)
@@ -259,7 +259,7 @@ class Segment:
 
     @property
     def stiffener_masses(self) -> tuple[PointMass, ...]:
-        """Of diaphragms, and of collars in their middles; none where no plates are known."""
+        """Masses of diaphragms, and of collars in their middles; none if the plates are unknown."""
         if self.section is None:
             return ()
         density = self.material.density
@@ -278,22 +278,22 @@ class Segment:
 
     @property
     def mass(self) -> float:
-        """In kg, with all that it carries."""
+        """Mass in kg, with all attached masses."""
         return self.mass_per_length * self.length + sum(point.mass for point in self.carried)
 
     def mean_perimeter(self, collar: Collar) -> float:
-        """Length of the mid-lines in m, half-way along a collar."""
+        """Return the length of the mid-lines in m, half-way along a collar."""
         return self.section_at(0.5 * (collar.start + collar.end)).perimeter
 
     def local(self, x: float) -> Segment:
-        """The plain segment that has everywhere the section of this one at x in m."""
+        """Return the plain segment that has this one's section at x in m everywhere."""
         if self.head_section is None:
             return self
         section = self.section_at(x)
         return Segment.of_section(self.name, self.start, self.end, self.material, section)
 
     def relative(self, number: Callable[[Segment], float], x: Array) -> Array:
-        """(num_places,) a number of the section at x (num_places,) in m over the segment's own."""
+        """Return (num_places,) a section's property at x (num_places,) in m over the segment's."""
         if self.head_section is None:
             return np.ones(x.shape)
         return np.array([number(self.local(place)) for place in x.tolist()]) / number(self)
@@ -314,7 +314,7 @@ class Segment:
 
     @property
     def rigid_modes(self) -> int:
-        """How many motions along z the supports leave free of strain."""
+        """Number of motions along z that the supports leave free of strain."""
         held = sum(
             1 if support.kind == "pinned" and support.rotation_stiffness is None else 2
             for support in self.supports
@@ -323,21 +323,21 @@ class Segment:
 
     @property
     def rigid_twists(self) -> int:
-        """How many turns about the axis the supports leave free of strain."""
+        """Number of rotations about the axis that the supports leave free of strain."""
         return 0 if self.supports else 1
 
     @property
     def foot(self) -> Support | None:
-        """The support nearest to the base, which holds the segment along x."""
+        """Support nearest to the base, which holds the segment along x."""
         return min(self.supports, key=lambda support: support.x, default=None)
 
     def holds(self, x: float) -> bool:
-        """Whether x lies on the segment, its ends included."""
+        """Return whether x lies on the segment, its ends included."""
         near = SAME_PLACE * self.length
         return self.start - near <= x <= self.end + near
 
     def turned(self) -> Segment:
-        """The segment with its two planes exchanged: what it does along y, this one does along z.
+        """Return the segment with its planes exchanged: its motion along y becomes that along z.
 
         Raises:
             ValueError: the segment has no lateral numbers.
@@ -362,7 +362,7 @@ class Segment:
         )
 
     def check(self, where: str) -> None:
-        """Whether there can be such a segment.
+        """Check that the segment is possible.
 
         Args:
             where: its key, ``segment[2]`` say.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How a closed thin wall carries a shear force: the flow q along its mid-line.
+"""Shear flow q along the mid-line of a closed thin wall.
 
 dq/ds = −t a·r (Jourawski 1856), with r from the centroid of the mid-lines and a such that the
 flow's resultant, ∮ r rᵀ t ds a, is the force; the constant that a closed cell leaves open follows
@@ -21,13 +21,13 @@ from geometry.section import COMPONENT, Direction, Offset, Plate
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 _ALONG, _PARTS = 0.5 * (1.0 + _POINTS), 0.5 * _WEIGHTS
 
-# A plate that takes a smaller part of the force takes none.
+# A plate with a smaller fraction of the force counts as carrying none.
 _NO_PART = 1.0e-12
 
 
 @dataclass(frozen=True, slots=True)
 class ShearFlow:
-    """Of a force of 1 N that does not twist the section.
+    """Shear flow of a force of 1 N that does not twist the section.
 
     Args:
         flow: (num_plates, num_points) q in 1/m along the tangent of each plate, at Gauss's points.
@@ -42,7 +42,7 @@ class ShearFlow:
 
     @classmethod
     def of(cls, plates: Sequence[Plate], direction: Direction) -> ShearFlow:
-        """Of a force along a direction.
+        """Return the flow of a force along a direction.
 
         Args:
             plates: once around, each beginning where the one before ends.
@@ -69,22 +69,22 @@ class ShearFlow:
 
     @property
     def shear_area(self) -> float:
-        """1/∮ q²/t ds in m²: with it G γ does the work that the flow does (Pilkey 2002)."""
+        """Area 1/∮ q²/t ds in m²: with it G γ does the same work as the flow (Pilkey 2002)."""
         return float(1.0 / (self.lengths / self.thicknesses @ self.flow**2 @ _PARTS))
 
     @property
     def forces(self) -> Array:
-        """(num_plates,) what each plate carries along its tangent."""
+        """Force (num_plates,) of each plate along its tangent."""
         return np.asarray(self.lengths * (self.flow @ _PARTS))
 
     @property
     def moment(self) -> float:
-        """About the axis in m: the arm of the force."""
+        """Moment about the axis in m: the lever arm of the force."""
         return float(self.arms @ self.forces)
 
 
 def shear_centre(plates: Sequence[Plate]) -> Offset:
-    """(y, z) in m from the axis, through which a force does not twist the section.
+    """Return the shear centre (y, z) in m from the axis: forces through it do not twist.
 
     >>> box = pt.BoxSection(0.6, 0.4, flange=0.02, web=0.02, left_web=0.01)
     >>> print(f"{1e3 * shear_centre(box.plates)[0]:.1f} mm to the thicker web's side")
@@ -94,9 +94,9 @@ def shear_centre(plates: Sequence[Plate]) -> Offset:
 
 
 def carriers(plates: Sequence[Plate], direction: Direction) -> tuple[tuple[int, float], ...]:
-    """Numbers of the plates that carry a unit force through the axis, and what along their tangent.
+    """Return the plates that carry a unit force through the axis: number, force along the tangent.
 
-    The flow of the force, and around it that of the moment which moves it from the shear centre to
+    This is the flow of the force, and that of the moment which moves it from the shear centre to
     the axis.
     """
     carried = ShearFlow.of(plates, direction)

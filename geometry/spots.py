@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Where the mesh of a boom's segment is to be fine, so that what presses there gives way rightly.
+"""Refinement zones of meshes, for an accurate local compliance at loads and contacts.
 
-Sizes are parts of what presses: of the length of a corner, of the smaller side of a pad, of the
-box where a force is spread over its walls. The parts are measured: with them the compliance of
-each, less that of the same force spread over the webs, is within the tolerance of that of meshes
-without end, and its error goes with the square of the size.
+Sizes are fractions of the loaded size: of the length of a corner, of the smaller side of a pad, of
+the box where a force is distributed over its walls. The fractions are measured: with them the local
+compliance, less that of the same force distributed over the webs, is within the tolerance of that
+of infinitely fine meshes. Its error is proportional to the square of the size.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from geometry.boom import Boom
 from geometry.contact_places import ContactLine, Pad, Rest, Stretch
 from geometry.section import Direction, Face, Section
 
-# The tolerance at which the parts below were measured.
+# The tolerance at which the fractions below were measured.
 MEASURED_AT = 0.01
 
-# Edge length over the length of a corner that is pressed, the smaller side of a pad, the smaller
-# side of the box; and how much longer edges may be for each unit of distance.
+# Edge length over the length of a loaded corner, the smaller side of a pad, the smaller side of
+# the box; and the growth of the edge length per unit of distance.
 _CORNER, _CORNER_GROWTH = 0.2, 0.5
 _PAD, _PAD_GROWTH = 0.18, 0.3
 _WALLS, _WALLS_GROWTH = 0.1, 0.5
@@ -31,7 +31,7 @@ _WALLS, _WALLS_GROWTH = 0.1, 0.5
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """Where a segment's mesh is to be fine, there and in all mirror images.
+    """A refinement zone of a segment's mesh, with all its mirror images.
 
     Args:
         low, high: (x, y, z) in m between which it lies, on the positive side of the mirrors.
@@ -45,19 +45,19 @@ class Spot:
     growth: float
 
     def allowed(self, places: Array) -> Array:
-        """(num_places,) edge length in m at places (num_places, 3) on that side."""
+        """Return (num_places,) edge length in m at places (num_places, 3) on that side."""
         outside = np.maximum(np.maximum(self.low - places, places - self.high), 0.0)
         return np.asarray(self.size + self.growth * np.sqrt((outside**2).sum(axis=1)))
 
     def reach(self, size: float) -> tuple[float, float]:
-        """x in m between which edges of a size are too long for it."""
+        """Return the x in m between which edges of a size are too long for it."""
         distance = max((size - self.size) / self.growth, 0.0)
         return self.low[0] - distance, self.high[0] + distance
 
     def squares(self, size: float) -> float:
-        """Number of squares of the allowed edge length around it, where that is below ``size``.
+        """Return the number of squares of the allowed edge length around it, if below ``size``.
 
-        On a flat wall without end: the spot itself, the stretches along its sides, its corners.
+        On an infinite flat wall: the spot itself, the stretches along its sides, its corners.
         """
         if self.size >= size:
             return 0.0
@@ -76,7 +76,7 @@ def spots(
     rests: Sequence[Rest],
     pads: Sequence[Pad],
 ) -> list[Spot]:
-    """Of a segment with known plates.
+    """Return the refinement zones of a segment with known plates.
 
     Args:
         boom: of the segment.
@@ -86,7 +86,7 @@ def spots(
         rests, pads: of the boom.
     """
     finer = float(np.sqrt(tolerance / MEASURED_AT))
-    # What presses from several sides, or in mirror images, is one spot.
+    # Zones on several sides, or in mirror images, are one.
     measured = dict.fromkeys(_measured(boom, number, line, rests, pads))
     return [Spot(low, high, finer * size, finer * growth) for low, high, size, growth in measured]
 
@@ -98,7 +98,7 @@ _Measured = tuple[_Place, _Place, float, float]
 def _measured(
     boom: Boom, number: int, line: ContactLine, rests: Sequence[Rest], pads: Sequence[Pad]
 ) -> Iterator[_Measured]:
-    """Ends, size and growth of each spot at the tolerance ``MEASURED_AT``."""
+    """Yield ends, size and growth of each spot at the tolerance ``MEASURED_AT``."""
     segment = boom.segments[number]
     section = segment.widest
     lowest, high = section.bounds
@@ -123,7 +123,7 @@ def _measured(
 
 
 def _walls(boom: Boom, number: int) -> Iterator[float]:
-    """x of supports, ties, loads and masses, which walls take in their plane, and of stiffeners."""
+    """Yield x of supports, ties, loads, masses and stiffeners, which act in the plane of walls."""
     segment = boom.segments[number]
     yield from (support.x for support in segment.supports)
     yield from (mass.x for mass in segment.masses)
@@ -138,7 +138,7 @@ def _walls(boom: Boom, number: int) -> Iterator[float]:
 
 
 def _faces(section: Section, direction: Direction) -> list[Face]:
-    """Those along a direction, without the mirror images."""
+    """Return the faces along a direction, without the mirror images."""
     mirrored = direction in section.mirrors
     return [
         face
@@ -158,13 +158,13 @@ def _corner(stretch: Stretch, face: Face) -> _Measured:
 
 
 def _swept(places: Iterable[_Measured]) -> _Measured:
-    """From the first to the last of places that differ in x alone."""
+    """Return the range from the first to the last of places that differ in x alone."""
     lows, highs, sizes, growths = zip(*places, strict=True)
     return min(lows), max(highs), sizes[0], growths[0]
 
 
 def _pressed(boom: Boom, pad: Pad, end: int, face: Face, line: ContactLine) -> _Measured:
-    """What a pad presses of the inner (``end`` 0) or of the outer segment's face."""
+    """Return the area of the inner (``end`` 0) or outer segment's face that a pad presses."""
     covered = pad.patch
     if covered is None:
         low, high, size, growth = _corner(pad.pressed[end], face)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What holds a segment to the ground."""
+"""Supports of segments on the ground."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Hold = Literal["pinned", "clamped"]
 
 @dataclass(frozen=True, slots=True)
 class Support:
-    """What holds a segment at x: its deflection, along y as along z, and its twist.
+    """A support at x, which holds a segment's deflection, along y as along z, and its twist.
 
     >>> pt.Support(2.0).stiffness is None, pt.Support(0.0, "clamped").kind
     (True, 'clamped')
@@ -42,7 +42,7 @@ class Support:
     depth: float = 0.0
 
     def holds_slope(self, direction: Direction) -> bool:
-        """Whether the slope along y or z is held rigidly."""
+        """Return whether the slope along y or z is held rigidly."""
         lateral = self.lateral_kind or self.kind
         return (self.kind if direction == "z" else lateral) == "clamped"
 
@@ -52,14 +52,14 @@ class Support:
         return self.holds_slope("z") and self.holds_slope("y")
 
     def turned(self) -> Support:
-        """Of a segment whose two planes are exchanged."""
+        """Return the support of a segment whose two planes are exchanged."""
         if self.lateral_kind is None:
             return self
         return replace(self, kind=self.lateral_kind, lateral_kind=self.kind)
 
 
 def check_support(where: str, support: Support) -> None:
-    """Whether there can be such a support; at the key ``where``.
+    """Check that a support is possible; ``where`` is its key.
 
     Raises:
         BoomError: it is rigid and gives way at once, or a number is none that can be.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Sections between the two ends of a segment that tapers, each number on a straight line."""
+"""Sections of tapered segments, linear between the two ends."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from geometry.section import Section, SectionError
 
 
 def between(tail: Section, head: Section, part: float) -> Section:
-    """The section at a part of the way from the tail's to the head's.
+    """Return the section at a fraction of the length between the tail's and the head's.
 
     >>> from geometry.taper import between
     >>> deep = pt.BoxSection(height=0.4, width=0.3, flange=0.01, web=0.006)
@@ -39,7 +39,7 @@ def _mixed(tail: Any, head: Any, part: float) -> Any:
 
 
 def check_alike(tail: Section, head: Section) -> None:
-    """Whether a segment can taper from one section to another.
+    """Check that a segment can taper from one section to another.
 
     Raises:
         SectionError: they differ in kind: in shape, plates, faces or mirrors.
@@ -60,17 +60,17 @@ def check_alike(tail: Section, head: Section) -> None:
 
 
 def half_way(section: Section, head: Section | None) -> Section:
-    """Of a segment that tapers from one section to another, if it does."""
+    """Return the section half-way along a segment that tapers, or that of one that does not."""
     return section if head is None else between(section, head, 0.5)
 
 
 def areas(tail: Section, head: Section) -> tuple[float, float, float]:
-    """At the tail, half-way and at the head in m²; a parabola through them is a box's area."""
+    """Return areas at the tail, half-way and at the head in m²; for a box a parabola is exact."""
     return tail.area, half_way(tail, head).area, head.area
 
 
 def mean_area(section: Section, head: Section | None) -> float:
-    """Along a segment that tapers from one section to another, if it does, in m²."""
+    """Return the mean area in m² along a segment, whether it tapers or not."""
     if head is None:
         return section.area
     tail, middle, last = areas(section, head)

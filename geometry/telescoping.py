@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Whether a boom can be drawn out as its joints' drives would have it, and what goes with them."""
+"""Telescoping: checks of the drives of joints, and the stations and segments that they move."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from geometry.segment import SAME_PLACE, Segment
 if TYPE_CHECKING:
     from geometry.boom import Boom
 
-# At so many times a boom is looked at as it is drawn out.
+# Number of times at which a telescoping boom is checked.
 _STANDS = 9
 
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """What the drives of some joints move together.
+    """Stations that the drives of some joints move together.
 
     Args:
         joints: their positions in ``Boom.joints``, from the base.
@@ -38,23 +38,23 @@ class Course:
 
     @property
     def reach(self) -> tuple[float, float]:
-        """How far in and out all of them come together, in m."""
+        """Range of the extensions of all of them together, in m."""
         return reach(self.drives)
 
     @property
     def suffix(self) -> str | None:
-        """Behind the names of results; nothing where several move together."""
+        """Suffix for the names of results; None where several move together."""
         if len(self.joints) > 1:
             return None
         return "" if self.joints[0] == 0 else f"-{self.joints[0] + 1}"
 
     def ways(self, way: float) -> dict[int, float]:
-        """Position of a joint → m; only the sum of several tells where stops are."""
+        """Return position of a joint → extension in m; stops need the sum of several alone."""
         return {self.joints[0]: way}
 
 
 def courses(boom: Boom) -> list[Course]:
-    """What drives move: the stations of each joint that has one, several together for stops."""
+    """Return the courses: the stations of each joint with a drive, for stops of several joints."""
     moved: dict[tuple[int, ...], list[int]] = {}
     for station, joints in _driven_stations(boom):
         if joints:
@@ -70,7 +70,7 @@ def courses(boom: Boom) -> list[Course]:
 
 
 def _driven_stations(boom: Boom) -> Iterator[tuple[int, tuple[int, ...]]]:
-    """Each station, and positions of the joints whose drives move what is read there."""
+    """Yield each station, and positions of the joints whose drives move what is read there."""
     station = 0
     for _ in boom.directions:
         for number, joint in enumerate(boom.joints):
@@ -82,7 +82,7 @@ def _driven_stations(boom: Boom) -> Iterator[tuple[int, tuple[int, ...]]]:
 
 
 def drives_below(joints: Sequence[Joint], segment: int) -> tuple[int, ...]:
-    """Positions of the joints between a segment and the ground that have a drive, from the base."""
+    """Return positions of the joints with a drive between a segment and ground, from the base."""
     for number, joint in enumerate(joints):
         if joint.inner == segment:
             own = () if joint.drive is None else (number,)
@@ -91,30 +91,30 @@ def drives_below(joints: Sequence[Joint], segment: int) -> tuple[int, ...]:
 
 
 def drawn(boom: Boom, segment: int, time: float) -> float:
-    """How far in m a segment has moved along since the start, at a time in s."""
+    """Return the travel of a segment in m since the start, at a time in s."""
     return sum(float(one.history(np.array(time))) for one in drives_of(boom.joints, segment))
 
 
 def drives_of(joints: Sequence[Joint], segment: int) -> list[Drive]:
-    """The drives between a segment and the ground, from the base."""
+    """Return the drives between a segment and the ground, from the base."""
     drives = (joints[number].drive for number in drives_below(joints, segment))
     return [drive for drive in drives if drive is not None]
 
 
 def reach(drives: Sequence[Drive]) -> tuple[float, float]:
-    """How far in and out they come together, in m."""
+    """Return the range of their extensions together, in m."""
     return sum(drive.reach[0] for drive in drives), sum(drive.reach[1] for drive in drives)
 
 
 def farthest(boom: Boom, segment: int) -> float:
-    """How far in m a segment's drives move it along: out, or in where they never move it out."""
+    """Return the farthest travel of a segment in m: out, or in if its drives never move it out."""
     drives = [boom.joints[number].drive for number in drives_below(boom.joints, segment)]
     reaches = [drive.reach for drive in drives if drive is not None]
     return sum(high or low for low, high in reaches)
 
 
 def stands(boom: Boom) -> list[dict[int, float]]:
-    """Where drives draw a boom to: m by positions of joints, at the start, farthest and between."""
+    """Return extensions in m by positions of joints: at the start, farthest and between."""
     drives = {n: joint.drive for n, joint in enumerate(boom.joints) if joint.drive is not None}
     times = np.unique(np.concatenate([np.zeros(1), *(drive.times for drive in drives.values())]))
     ways = np.array([drive.history(times) for drive in drives.values()]).reshape(-1, times.size)
@@ -124,7 +124,7 @@ def stands(boom: Boom) -> list[dict[int, float]]:
 
 
 def places(joint: Joint, way: float) -> list[tuple[float, float]]:
-    """x in m of each station on the outer and on the inner segment, drawn out by ``way`` in m."""
+    """Return x in m of each station on the outer and inner segment at an extension in m."""
     carriers = () if joint.drive is None else joint.drive.carriers
     return [
         (x, x - way) if carrier == "outer" else (x + way, x)
@@ -133,7 +133,7 @@ def places(joint: Joint, way: float) -> list[tuple[float, float]]:
 
 
 def check_drives(boom: Boom) -> None:
-    """Whether all of the way of each drive is there, and what moves may move.
+    """Check that each drive has its whole stroke, and moves only what may move.
 
     Raises:
         BoomError: it is not.
@@ -203,7 +203,7 @@ def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
 
 
 def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
-    """Axial force passes on both segments all the way, or from a foot below the inner one."""
+    """Check that axial force passes on both segments throughout, or from a foot below the inner."""
     drive, x = joint.drive, joint.locked_at
     assert drive is not None
     if x is None:
@@ -238,7 +238,7 @@ def _check_taper(where: str, boom: Boom, outer: Segment, inner: Segment) -> None
 
 
 def _check_order(boom: Boom) -> None:
-    """Each segment is moved alike by all the joints in which it slides."""
+    """Check that all the joints in which a segment slides move it alike."""
     for number, joint in enumerate(boom.joints):
         own = () if joint.drive is None else (number,)
         if drives_below(boom.joints, joint.inner) != drives_below(boom.joints, joint.outer) + own:
@@ -251,7 +251,7 @@ def _check_order(boom: Boom) -> None:
 
 
 def _check_free(boom: Boom, number: int) -> None:
-    """The ground does not hold a segment that moves along, but stops may touch it."""
+    """Check that the ground does not hold a segment that telescopes; stops may touch it."""
     segment = boom.segments[number]
     held = [f"segment[{number + 1}].supports"] if segment.supports else []
     held += [f"cylinder[{k}]" for k, c in enumerate(boom.cylinders, 1) if c.segment == number]

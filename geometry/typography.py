@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How numbers and lists are set where people read them, and in which multiples of units."""
+"""Formats of numbers and lists for readers, and multiples of units."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-# What turns m, N and Pa into the mm, kN and MPa that are read, and a part into per cent.
+# Factors from m, N and Pa to mm, kN and MPa, and from a fraction to per cent.
 TO_MICRO, TO_MILLI, TO_KILO, TO_MEGA, TO_PERCENT = 1.0e6, 1.0e3, 1.0e-3, 1.0e-6, 100.0
 
 
 def signed(text: str) -> str:
-    """A number with a minus sign in place of a hyphen."""
+    """Return a number with a minus sign in place of a hyphen."""
     return text.replace("-", "−")
 
 
 def digits(value: float, count: int = 3) -> str:
-    """A number with so many significant digits, 1020 and never 1.02e+03.
+    """Return a number with so many significant digits, 1020 and never 1.02e+03.
 
     >>> digits(1023.4), digits(22.68), digits(0.0)
     ('1020', '22.7', '0')
@@ -24,7 +24,7 @@ def digits(value: float, count: int = 3) -> str:
 
 
 def listed(parts: Iterable[str]) -> str:
-    """One after the other, one at least.
+    """Return a list in words of at least one part.
 
     >>> listed(["play", "load", "friction"])
     'play, load and friction'

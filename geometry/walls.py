@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The material of flat plates once around a cell, what room it leaves, where walls are along x."""
+"""Walls of flat plates once around a cell: material, room inside, places along x."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from geometry.arrays import Array
 from geometry.section import Plate, Section
 from geometry.segment import Segment
 
-# Sine of the angle below which plates meet butt to butt, not on a mitre, which would be long where
-# their thicknesses differ.
+# Sine of the angle below which plates meet butt to butt. A mitre would be long where their
+# thicknesses differ.
 _STRAIGHT = 0.1
 
-# Part of a normal's length below which a plate does not stand in the way.
+# Fraction of a normal's length below which a plate does not limit the travel.
 _ASIDE = 1.0e-9
 
 
 def normals(plates: Sequence[Plate]) -> Array:
-    """(num_plates, 2) unit vectors outwards of plates that go around anticlockwise."""
+    """Return (num_plates, 2) outward unit vectors of plates that go around anticlockwise."""
     tangents = np.array([plate.tangent for plate in plates])
     return np.column_stack([tangents[:, 1], -tangents[:, 0]])
 
 
 def trapezoids(plates: Sequence[Plate]) -> Array:
-    """(num_plates, 4, 2) corners in m of each plate with its thickness, anticlockwise.
+    """Return (num_plates, 4, 2) corners in m of each plate with its thickness, anticlockwise.
 
     The outer edge first. Neighbours meet where their surfaces do, so that corners are filled and
     the outermost edges are the section's outside, the innermost ones its hole.
@@ -50,7 +50,7 @@ def trapezoids(plates: Sequence[Plate]) -> Array:
 
 
 def free_room(outer: Section, inner: Section, play: float = 0.0) -> tuple[float, float]:
-    """How far a section can move within another one along z, and then along y, in m.
+    """Return the distances in m that a section can move within another one along z, then along y.
 
     Both must be convex. Less than 0 where it does not fit.
 
@@ -71,7 +71,7 @@ def free_room(outer: Section, inner: Section, play: float = 0.0) -> tuple[float,
 
 
 def _travel(slope: Array, clear: Array) -> tuple[float, float]:
-    """The lowest and the highest shift that leave room to every plate, in m.
+    """Return the lowest and the highest shift in m that leave room to every plate.
 
     Args:
         slope: (num_plates,) what a unit of shift takes of the room.
@@ -81,13 +81,13 @@ def _travel(slope: Array, clear: Array) -> tuple[float, float]:
     return float((clear[behind] / slope[behind]).max()), float((clear[ahead] / slope[ahead]).min())
 
 
-# A part of the height: above what walls that are flat between mesh lines are off the section there,
+# Fraction of the height: above the distance of walls, flat between mesh lines, from the section;
 # below any edge.
 _OFF_TAPER = 1.0e-4
 
 
 class WallsAlong:
-    """The mid-lines at each of many places.
+    """Mid-lines at each of many places.
 
     Args:
         segment: whose plates are known.
@@ -107,11 +107,11 @@ class WallsAlong:
         self._starts = np.array([[plate.start for plate in one.plates] for one in sections])
 
     def starts(self, plate: int) -> Array:
-        """(num_places, 2) where a plate begins, in m."""
+        """Return (num_places, 2) the starts of a plate in m."""
         return np.asarray(self._starts[self._at, plate])
 
     def distance(self, plate: int, places: Array) -> Array:
-        """(num_places,) of places (num_places, 2), one at each x, from a plate's mid-line, in m."""
+        """Return (num_places,) distances of places (num_places, 2), one at each x, from a plate."""
         start, end = self.starts(plate), self.starts((plate + 1) % self._starts.shape[1])
         length = np.linalg.norm(end - start, axis=1)
         tangent = (end - start) / length[:, None]

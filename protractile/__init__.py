@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The public names, imported when they are used: ``import protractile as pt``.
+"""Public names, imported at first use: ``import protractile as pt``.
 
 ``__init__.pyi`` lists them for this module and for type checkers.
 """
@@ -11,7 +11,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-# The module of each name.
+# Module of each name.
 _HOMES = {
     alias.name: str(node.module)
     for node in ast.parse(Path(__file__).with_suffix(".pyi").read_text("utf-8")).body

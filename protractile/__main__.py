@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The command ``protractile``: listens for signals before it imports what takes seconds."""
+"""Command ``protractile``: handles signals before the slow imports."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from runs.process.ending import listen
 
 
 def main() -> None:
-    """Run the command line that this process was given, and exit."""
+    """Run the command line of this process, and exit."""
     listen()
     from runs import cli
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Cases from Python: load one, change it, run it."""
+"""Cases in Python: load one, change it, run it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from runs.pipeline.results import Results
 from runs.pipeline.run import run_case as run_models
 from runs.sweep.variation import Unplaced, find
 
-# How messages call a case that has left its file.
+# Name of a case without a file in messages.
 _CASE = "case"
 
 
@@ -40,7 +40,7 @@ def load_case(path: str | Path) -> Case:
 
 
 def change(case: Case, **values: Any) -> Case:
-    """The case with some of its values changed, checked as if its file had said so.
+    """Return the case with some values changed, checked like a case file.
 
     >>> import protractile as pt
     >>> case = pt.load_case(pt.CASES / "paper.toml")
@@ -72,7 +72,7 @@ def change(case: Case, **values: Any) -> Case:
 
 
 def run_case(case: Case, models: Sequence[str] | None = None) -> Results:
-    """Run the models of a case in this process, nothing written but the user's cache of shells.
+    """Run the models of a case in this process; write nothing but the user's cache of shells.
 
     >>> import protractile as pt
     >>> case = pt.load_case(pt.CASES / "coarse.toml")
