@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The modal coordinates of all segments, and rows that read displacements in them."""
+"""Modal coordinates of all segments, and rows that read displacements in them."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from geometry.telescoping import places, stands
 # One component of one segment.
 _Part = tuple[int, Motion]
 
-# A tie that holds less than this part of what the strongest one holds, holds nothing.
+# A tie whose stiffness is below this fraction of the strongest one's has no effect.
 ROUND_OFF = 1.0e-9
 
 
 class BoomModes:
-    """Modes of the boom without contact: of each component of each segment by itself.
+    """Modes of the boom without contact, of each component of each segment separately.
 
-    Segments that a tied joint connects have their modes together, as cylinders let them.
+    Segments connected by a bonded joint have common modes, under the influence of cylinders.
 
     Args:
         boom: its joints say what is tied, and whether it is in space.
@@ -82,7 +82,7 @@ class BoomModes:
     def displacement(
         self, segment: int, x: float, direction: Direction, offset: tuple[float, float] = (0.0, 0.0)
     ) -> Array:
-        """(num_modes,) row that reads a displacement of a segment at x in m.
+        """Return the row (num_modes,) that reads a displacement of a segment at x in m.
 
         ``offset`` is (y, z) of the point from the axis in m.
         """
@@ -94,19 +94,19 @@ class BoomModes:
         return row
 
     def twist(self, segment: int, x: float) -> Array:
-        """(num_modes,) row that reads the turn of a segment's cross-section about x in rad."""
+        """Return the row (num_modes,) that reads the rotation of a cross-section about x in rad."""
         return self.member(segment).torque(x)
 
     def rotation(self, segment: int, x: float, direction: Direction) -> Array:
-        """(num_modes,) row that reads the rotation of a segment's cross-section at x in m."""
+        """Return the row (num_modes,) that reads the rotation of a cross-section at x in m."""
         return self.member(segment).moment(x, direction)
 
     def curvature(self, segment: int, x: float, direction: Direction) -> Array:
-        """(num_modes,) row that reads the curvature of a segment at x in m."""
+        """Return the row (num_modes,) that reads the curvature of a segment at x in m."""
         return self.member(segment).read(direction, lambda component: component.curvature_at(x))
 
     def member(self, segment: int) -> BeamMember:
-        """Return a segment as loads push it, over all modal coordinates."""
+        """Return a segment under loads, over all modal coordinates."""
 
         def read(motion: Motion, rule: Rule) -> Array:
             columns, shapes = self._shapes[segment, motion]
@@ -118,10 +118,10 @@ class BoomModes:
 
 
 def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
-    """Of the axial forces of the play-free boom, see :mod:`dynamics.second_order`.
+    """Return the critical factor of the axial forces, see :mod:`dynamics.second_order`.
 
-    Infinite without such forces; None where something moves that nothing holds. Of a telescoping
-    boom the smallest at several extensions, the ends of its stroke among them.
+    The boom is without play. The factor is infinite without such forces, and None for a mechanism.
+    Of a telescoping boom it is the smallest at several extensions, the stroke's ends among them.
     """
     tied = boom.play_free
     drives = [number for number, joint in enumerate(boom.joints) if joint.drive is not None]
@@ -151,9 +151,9 @@ def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
 
 
 def _groups(boom: Boom) -> list[list[_Part]]:
-    """What has its modes together: segments that tied joints connect, in each motion.
+    """Return the groups with common modes: segments that bonded joints connect, in each motion.
 
-    Two inclined cylinders side by side hold the twist of a segment by its slope along y.
+    Two inclined cylinders side by side couple the twist of a segment to its slope along y.
     """
     motions: tuple[Motion, ...] = ("z", "y", "twist") if boom.spatial else ("z",)
     parts: list[_Part] = [(i, motion) for motion in motions for i in range(len(boom.segments))]
@@ -177,7 +177,7 @@ def _groups(boom: Boom) -> list[list[_Part]]:
 def _members(
     boom: Boom, group: Sequence[_Part], components: Sequence[Component]
 ) -> list[BeamMember]:
-    """Each segment as forces push it, on the components of a group; 0 where it has none of them."""
+    """Return each segment under loads on a group's components; a row is 0 where it has none."""
 
     def member(segment: int) -> BeamMember:
         def read(motion: Motion, rule: Rule) -> Array:
@@ -198,9 +198,9 @@ def _holds(
     components: Sequence[Component],
     moved: Mapping[int, Sequence[tuple[float, float]]],
 ) -> tuple[list[Array], list[GroundLine]]:
-    """Of a group: rows (num_dofs,) that ties keep at zero, and the cylinders that pull at it.
+    """Return rows (num_dofs,) that ties keep at zero, and those of the cylinders, of a group.
 
-    Telescoping joints are tied where they have ``moved`` to, x in m on both segments.
+    Telescoping joints are bonded where they have ``moved`` to, x in m on both segments.
     """
     members = _members(boom, group, components)
     ties = [
@@ -216,7 +216,7 @@ def _holds(
 
 
 def _held_stiffness(components: Sequence[Component], pulled: Sequence[GroundLine]) -> Array:
-    """(num_dofs, num_dofs) with the springs of cylinders."""
+    """Return the stiffness (num_dofs, num_dofs) with the springs of cylinders."""
     stiffness = block_diag(*(c.stiffness for c in components))
     for line in pulled:
         stiffness += line.stiffness * np.outer(line.push, line.push)
@@ -224,12 +224,12 @@ def _held_stiffness(components: Sequence[Component], pulled: Sequence[GroundLine
 
 
 def _free(ties: Sequence[Array], num_dofs: int) -> Array:
-    """(num_dofs, num_free) motions that keep the ties at zero."""
+    """Return (num_dofs, num_free) the motions that keep the ties at zero."""
     return null_space(np.array(ties)) if ties else np.eye(num_dofs)
 
 
 def _group_modes(boom: Boom, group: Sequence[_Part], components: Sequence[Component]) -> Modes:
-    """Modes of components side by side that keep ties at zero and pull at cylinders."""
+    """Return the modes of components side by side under the constraints of ties and cylinders."""
     apart = [natural_modes(c.stiffness, c.mass, c.rigid_modes) for c in components]
     ties, pulled = _holds(boom, group, components, {})
     if not ties and not pulled and len(apart) == 1:
@@ -237,7 +237,7 @@ def _group_modes(boom: Boom, group: Sequence[_Part], components: Sequence[Compon
     rigid = block_diag(
         *(m.shapes[:, : c.rigid_modes] for m, c in zip(apart, components, strict=True))
     )
-    # What these leave of the segments' rigid motions is rigid still.
+    # Rigid motions of the segments that satisfy these constraints stay rigid.
     held = np.array([*ties, *(line.push for line in pulled)]).reshape(-1, len(rigid)) @ rigid
     bound = np.linalg.svd(held, compute_uv=False) if held.size else np.zeros(0)
     rigid_modes = rigid.shape[1] - int((bound > ROUND_OFF * bound.max(initial=0.0)).sum())

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A beam as the shell of the same boom has it: its stiffness as it acts, springs where it touches.
+"""Calibration of beams by the shell of the same boom: effective stiffness, local compliance.
 
-E J and G A_s of a segment are those with which the shear-flexible beam answers static probes far
-from their places as the shell does, G J_t likewise; shear lag, Poisson's effect and folds are in
-them. What pressed places still give way by more is the residual compliance
+With the effective E J and G A_s of a segment, the shear-flexible beam responds to static probes far
+from their places as the shell does; likewise G J_t. They include shear lag, Poisson's effect and
+folds. The additional local compliance of loaded places is the residual compliance
 (:mod:`dynamics.reduction`).
 """
 
@@ -25,16 +25,16 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Segment
 from geometry.far_field import FAR_SHIFT, Bent, FarField
 
-# What the logarithm of a factor weighs beside relative errors of the far field: it settles a
-# stiffness that nothing depends on, and moves no other.
+# Weight of the logarithm of a factor beside relative errors of the far field. It determines a
+# stiffness without influence, and changes no other.
 _PRIOR = 1.0e-4
-# Elements of a segment, at least; shear-flexible ones are exact at their nodes in statics.
+# Minimum elements of a segment; shear-flexible ones are exact at their nodes in statics.
 _ELEMENTS = 20
 
 
 @dataclass(frozen=True, slots=True)
 class Stiffness:
-    """A segment's as a beam.
+    """Effective stiffness of a segment as a beam.
 
     Args:
         bending: E J in N·m² along z, and in space along y.
@@ -49,7 +49,7 @@ class Stiffness:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """What a beam has read from the shell of its boom.
+    """Calibration of a beam by the shell of its boom.
 
     Args:
         segments: their stiffness.
@@ -61,7 +61,7 @@ class Calibration:
     residual: Array
 
     def spring(self, row: int) -> float | None:
-        """N/m of a contact row, in series with the contact; None of one that does not give way."""
+        """Return the stiffness in N/m in series with a contact row; None of a rigid one."""
         compliance = float(self.residual[row, row])
         return 1.0 / compliance if compliance > 0.0 else None
 
@@ -72,7 +72,7 @@ def calibrate(
     far_fields: Sequence[FarField],
     segments: Callable[[Boom], Sequence[SegmentModel]],
 ) -> tuple[GapSystem, Calibration]:
-    """A beam that presses where a shell does and gives way as it does.
+    """Return a beam with the contact places and local compliance of a shell, and its calibration.
 
     Args:
         boom: all its segments with sections.
@@ -91,14 +91,14 @@ def calibrate(
 
 
 def stiffened(boom: Boom, stiffness: Sequence[Stiffness]) -> Boom:
-    """The boom with another stiffness of each segment."""
+    """Return the boom with another stiffness of each segment."""
     return replace(boom, segments=tuple(map(with_stiffness, boom.segments, stiffness)))
 
 
 def effective_stiffness(segment: Segment, far: FarField) -> Stiffness:
-    """What makes a beam answer the probes as the shell of a segment has answered them.
+    """Return the stiffness with which a beam responds to the probes as the shell of the segment.
 
-    Of a segment that tapers it is the beam's own, half-way.
+    For a tapered segment it is the beam's own, half-way.
     """
     in_plane = _bending(segment, far, "z")
     if "y" not in far.compliance:
@@ -114,16 +114,16 @@ def effective_stiffness(segment: Segment, far: FarField) -> Stiffness:
 
 
 def with_stiffness(segment: Segment, stiffness: Stiffness) -> Segment:
-    """The segment with another stiffness, and with the rotary inertia of its plates.
+    """Return the segment with another stiffness, and with the rotary inertia of its plates.
 
-    One that tapers stays as it is.
+    A tapered segment stays unchanged.
     """
     if segment.head_section is not None:
         return segment
     material, section = segment.material, segment.section
     assert section is not None
     e, g = material.youngs_modulus, material.shear_modulus
-    # What the segment does not know of its other plane stays the section's.
+    # Properties that are unknown in the other plane remain those of the section.
     shear = (*stiffness.shear, g * section.turned().shear_area)[:2]
     changed = replace(
         segment,
@@ -144,7 +144,7 @@ def with_stiffness(segment: Segment, stiffness: Stiffness) -> Segment:
 
 
 def _bending(segment: Segment, far: FarField, motion: Bent) -> tuple[float, float]:
-    """E J and G A_s of a segment that is turned where it is to bend along y."""
+    """Return E J and G A_s of a segment, turned to bend along y."""
     assert segment.shear_stiffness is not None
     if segment.head_section is not None:
         return segment.bending_stiffness, segment.local(
@@ -155,12 +155,12 @@ def _bending(segment: Segment, far: FarField, motion: Bent) -> tuple[float, floa
 
 
 def _fit(segment: Segment, far: FarField, motion: Bent, count: int) -> Array:
-    """(count,) factors of the stiffnesses, by least squares of the relative errors."""
+    """Return (count,) factors of the stiffnesses, by least squares of the relative errors."""
     first, turns = _component(segment, far, motion, np.ones(count))
     probes = _probes(first, far, motion)
     moved = probes.any(axis=1)
     modes = natural_modes(first.stiffness, first.mass, turns)
-    # Combinations that leave a free segment at rest.
+    # Combinations of probes that leave a free segment at rest.
     rigid = probes[moved] @ modes.shapes[:, :turns]
     balanced = np.eye(len(probes))[:, moved] @ (
         null_space(rigid.T) if turns else np.eye(moved.sum())
@@ -182,7 +182,7 @@ def _fit(segment: Segment, far: FarField, motion: Bent, count: int) -> Array:
 def _component(
     segment: Segment, far: FarField, motion: Bent, factors: Array
 ) -> tuple[Component, int]:
-    """A motion of the segment with so many times its stiffness, and its rigid motions."""
+    """Return a motion of the segment with factors of its stiffness, and its rigid motions."""
     if motion == "twist":
         assert segment.lateral is not None
         torsion = factors[0] * segment.lateral.torsion_constant
@@ -204,7 +204,7 @@ def _component(
 
 
 def _probes(component: Component, far: FarField, motion: Bent) -> Array:
-    """(num_probes, num_dofs)."""
+    """Return the load vectors (num_probes, num_dofs) of the probes."""
     rows = [component.at(x) for x in far.places]
     if motion != "twist":
         rows += [component.rotation_at(x) for x in (far.places[0], far.places[-1])]

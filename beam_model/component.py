@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""One component of a segment's motion in finitely many coordinates, and its natural modes.
+"""Components of a segment's motion in finitely many coordinates, and their natural modes.
 
 A segment deflects along z, and in space deflects along y and twists as well. Within a straight
-segment of a symmetric section the three do not know of each other.
+segment of a symmetric section the three are uncoupled.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Motion = Literal["z", "y", "twist"]
 
 @dataclass(frozen=True, slots=True)
 class Component:
-    """M q̈ + C q̇ + K q = f, with a rule that reads the component anywhere.
+    """Equations M q̈ + C q̇ + K q = f, with rows that read the component anywhere.
 
     Args:
         stiffness, mass, damping: (num_dofs, num_dofs).
@@ -61,32 +61,32 @@ class Component:
 
     @property
     def softening(self) -> Array:
-        """(num_dofs, num_dofs) K_G."""
+        """Geometric stiffness K_G (num_dofs, num_dofs)."""
         return np.zeros_like(self.stiffness) if self.geometric is None else self.geometric
 
     @property
     def inertia(self) -> Array:
-        """(num_dofs,) ``felt``, of whatever component."""
+        """Load vector (num_dofs,) of an acceleration of the mass per length, for any component."""
         return self.unit_load if self.felt is None else self.felt
 
     def rotation_at(self, x: float) -> Array:
-        """(num_dofs,) row that reads the rotation of the cross-section at x in m."""
+        """Return the row (num_dofs,) that reads the rotation of the cross-section at x in m."""
         assert self.rotation is not None
         return self.rotation(x)
 
     def curvature_at(self, x: float) -> Array:
-        """(num_dofs,) row that reads θ′ at x in m."""
+        """Return the row (num_dofs,) that reads θ′ at x in m."""
         assert self.curvature is not None
         return self.curvature(x)
 
     @property
     def member(self) -> BeamMember:
-        """A segment that moves along z alone as loads push it, by this component of it."""
+        """Segment under loads, which moves along z alone by this component."""
         nothing = np.zeros(len(self.load))
         return BeamMember(lambda motion, rule: rule(self) if motion == "z" else nothing)
 
     def uniform(self, span: tuple[float, float] | None) -> Array:
-        """(num_dofs,) a uniform load of 1 N/m between two x in m, or along the whole segment."""
+        """Return (num_dofs,) a uniform load of 1 N/m between two x in m, or along the segment."""
         if span is None:
             return self.unit_load
         start, end = span
@@ -103,13 +103,13 @@ class Component:
         return total
 
 
-# What a component reads, or what is pushed of it: (num_dofs,) of its own.
+# Row or load vector of a component: (num_dofs,) of its own.
 Rule = Callable[[Component], Array]
 
 
 @dataclass(frozen=True, slots=True)
 class BeamMember:
-    """A segment as loads push it, see :class:`geometry.load.Member`, in any coordinates.
+    """A segment under loads, see :class:`geometry.load.Member`, in any coordinates.
 
     Args:
         read: (num_coordinates,) what a rule takes of the component of a motion.
@@ -118,7 +118,7 @@ class BeamMember:
     read: Callable[[Motion, Rule], Array]
 
     def at(self, motion: Motion, x: float) -> Array:
-        """(num_coordinates,) row that reads a deflection in m or the twist in rad at x in m."""
+        """Return the row (num_coordinates,) of a deflection in m or the twist in rad at x in m."""
         return self.read(motion, lambda component: component.at(x))
 
     def force(self, x: float, direction: Direction) -> Array:
@@ -142,7 +142,7 @@ class BeamMember:
 
 @dataclass(frozen=True, slots=True)
 class SegmentModel:
-    """A segment by its components: ``z`` alone, or in space ``z``, ``y`` and ``twist``."""
+    """Components of a segment: ``z`` alone, or in space ``z``, ``y`` and ``twist``."""
 
     components: Mapping[Motion, Component]
 
@@ -155,7 +155,7 @@ class Modes(NamedTuple):
 
 
 def natural_modes(stiffness: Array, mass: Array, rigid_modes: int) -> Modes:
-    """All natural modes of (K, M), rigid ones with ω² exactly 0; none of what cannot move."""
+    """Return all natural modes of (K, M), rigid ones with ω² exactly 0; none if nothing moves."""
     if not mass.size:
         return Modes(np.zeros(0), np.zeros((0, 0)))
     # A common scale per coordinate: rotations and deflections differ by orders of magnitude.
@@ -169,5 +169,5 @@ def natural_modes(stiffness: Array, mass: Array, rigid_modes: int) -> Modes:
 
 
 def products(values: Array, weights: Array) -> Array:
-    """∫ f_i f_j dx from values (num_functions, num_points) and weights of the rule in m."""
+    """Return ∫ f_i f_j dx from values (num_functions, num_points) and weights of the rule in m."""
     return np.asarray((values * weights) @ values.T)

@@ -24,26 +24,26 @@ Theory = Literal["euler-bernoulli", "timoshenko"]
 
 
 class Element(Protocol):
-    """Its shape functions at the parts ξ = x/h of its length h."""
+    """Shape functions of an element at the places ξ = x/h of its length h."""
 
     def deflection(self, xi: Array) -> Array:
-        """(4, num_points) shape functions of w."""
+        """Return the shape functions (4, num_points) of w."""
 
     def slope(self, xi: Array) -> Array:
-        """(4, num_points) w′ of these."""
+        """Return their derivatives w′ (4, num_points)."""
 
     def rotation(self, xi: Array) -> Array:
-        """(4, num_points) shape functions of θ."""
+        """Return the shape functions (4, num_points) of θ."""
 
     def curvature(self, xi: Array) -> Array:
-        """(4, num_points) θ′ of these."""
+        """Return their derivatives θ′ (4, num_points)."""
 
     def stiffness(self, xi: Array, weights: Array) -> Array:
-        """(4, 4) by a rule of points ξ and weights in m, both (num_points,)."""
+        """Return the matrix (4, 4) by a rule of points ξ and weights in m, both (num_points,)."""
 
 
 def element(segment: Segment, theory: Theory, start: float, h: float) -> Element:
-    """That of a segment, or of its part from a node at x = ``start`` on, over h, both in m."""
+    """Return the element of a segment, or of its part from x = ``start`` on, over h, both in m."""
     if segment.head_section is None:
         return PlainElement(h, segment.bending_stiffness, _shear_number(segment, theory, h))
     places = [segment.local(start + part * h) for part in (0.0, 0.5, 1.0)]
@@ -54,7 +54,7 @@ def element(segment: Segment, theory: Theory, start: float, h: float) -> Element
 
 @dataclass(frozen=True, slots=True)
 class PlainElement:
-    """Of one section.
+    """Element of one section.
 
     Args:
         h: its length in m.
@@ -126,8 +126,8 @@ class PlainElement:
 
 @dataclass(frozen=True, slots=True)
 class TaperedElement:
-    """Of sections between two: under the moments 1 and ξ its curvature is f and ξ f, its shear
-    strain 0 and −g/h, which integrated make θ and w.
+    """Element of sections between two. Under the moments 1 and ξ its curvature is f and ξ f, its
+    shear strain 0 and −g/h; integration gives θ and w.
 
     Args:
         h: its length in m.
@@ -159,18 +159,18 @@ class TaperedElement:
         return np.asarray(moved.T @ flexibility @ moved)
 
     def _shapes(self, rigid: tuple[float | Array, ...], bent: _Pair, xi: Array) -> Array:
-        """(4, num_points) what the first node's w and θ move rigidly, and what moments bend."""
+        """Return (4, num_points) rigid motion by the first node's w and θ, plus bending."""
         moved = np.array([np.broadcast_to(one, xi.shape) for one in (*rigid, 0.0, 0.0)])
         return np.asarray(moved + self._moments().T @ np.array([one(xi) for one in bent]))
 
     def _of_moments(self) -> tuple[_Pair, _Pair, _Pair]:
-        """Rotations, slopes and deflections under the moments 1 and ξ, clamped at ξ = 0."""
+        """Return rotations, slopes and deflections under the moments 1 and ξ, clamped at ξ = 0."""
         first, second = (self.h * (self.bending * m).integ() for m in (_ONE, _XI))
         slopes = first, second - self.shear / self.h
         return (first, second), slopes, (self.h * slopes[0].integ(), self.h * slopes[1].integ())
 
     def _moments(self) -> Array:
-        """(2, 4) the moments 1 and ξ that unit displacements of the nodes make."""
+        """Return the moments 1 and ξ (2, 4) due to unit displacements of the nodes."""
         rotations, _, deflections = self._of_moments()
         ends = np.array([[p(1.0) for p in pair] for pair in (rotations, deflections)])
         moved = np.array([[0.0, -1.0, 0.0, 1.0], [-1.0, -self.h, 1.0, 0.0]])
@@ -178,7 +178,7 @@ class TaperedElement:
 
 
 def _powers(xi: Array) -> tuple[Any, Any, Any]:
-    """ξ, ξ² and ξ³; those of a single place as plain numbers, which take less time."""
+    """Return ξ, ξ² and ξ³; those of a single place as plain numbers, which is faster."""
     powers = xi, xi**2, xi**3
     return powers if xi.ndim else (xi.item(), powers[1].item(), powers[2].item())
 
@@ -188,20 +188,20 @@ _ONE, _XI = Polynomial([1.0]), Polynomial([0.0, 1.0])
 
 
 def _parabola(values: list[float]) -> Polynomial:
-    """Through values at ξ = 0, 1/2 and 1."""
+    """Return the parabola through values at ξ = 0, 1/2 and 1."""
     start, middle, end = values
     return Polynomial([start, 4.0 * middle - 3.0 * start - end, 2.0 * (start + end) - 4.0 * middle])
 
 
 def _shear_flexibility(segment: Segment, theory: Theory) -> float:
-    """1/(G A_s) in 1/N, zero for a beam that is rigid in shear."""
+    """Return 1/(G A_s) in 1/N, zero for a beam that is rigid in shear."""
     if theory == "euler-bernoulli" or segment.section is None:
         return 0.0
     return 1.0 / (segment.material.shear_modulus * segment.section.shear_area)
 
 
 def _shear_number(segment: Segment, theory: Theory, h: float) -> float:
-    """Φ = 12 E J / (G A_s h²), zero for a beam that is rigid in shear."""
+    """Return Φ = 12 E J / (G A_s h²), zero for a beam that is rigid in shear."""
     shear_stiffness = segment.shear_stiffness
     if theory == "euler-bernoulli" or shear_stiffness is None:
         return 0.0

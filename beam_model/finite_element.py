@@ -35,7 +35,7 @@ def finite_element_system(
     theory: Theory = "euler-bernoulli",
     rotary_inertia: bool = True,
 ) -> GapSystem:
-    """A boom by beam finite elements.
+    """Return the gap system of a boom by beam finite elements.
 
     Args:
         boom: flat or in space.
@@ -53,7 +53,7 @@ def finite_element_system(
 def finite_element_segments(
     boom: Boom, element_length: float, theory: Theory, rotary_inertia: bool
 ) -> list[SegmentModel]:
-    """All segments of a boom, with nodes where something acts; arguments as below."""
+    """Return all segments of a boom, with nodes where something acts; arguments as below."""
     return [
         finite_element_segment(
             segment, element_length, boom.stations_of(number), theory, rotary_inertia
@@ -98,7 +98,7 @@ def finite_element_segment(
 
 
 def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: bool) -> Component:
-    """The deflection along z; unknowns w and θ of each node."""
+    """Return the component of deflection along z; unknowns w and θ of each node."""
     num_dofs = 2 * nodes.size
     stiffness, mass, damping, geometric = (np.zeros((num_dofs, num_dofs)) for _ in range(4))
     unit_load, turning, felt = np.zeros((3, num_dofs))
@@ -168,7 +168,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
 
 
 def _twist(segment: Segment, nodes: Array) -> Component:
-    """The turn about x, linear from node to node, which is exact at the nodes in statics."""
+    """Return the twist, linear from node to node, which is exact at the nodes in statics."""
     lateral = segment.lateral
     assert lateral is not None
     stiffness, mass = (np.zeros((nodes.size, nodes.size)) for _ in range(2))
@@ -206,7 +206,7 @@ def _twist(segment: Segment, nodes: Array) -> Component:
 
 
 def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> Array:
-    """Equal elements between the places that must be nodes, of which near ones share the first."""
+    """Return nodes of equal elements between the required places; close places share the first."""
     own = [support.x for support in segment.supports] + [mass.x for mass in segment.carried]
     places: list[float] = []
     for x in (segment.start, segment.end, *own, *segment.compression.places, *breaks):
@@ -224,6 +224,6 @@ def _nearest(nodes: Array, x: float) -> int:
 
 
 def _element(nodes: Array, x: float) -> tuple[int, float]:
-    """The element that holds x, and its length in m."""
+    """Return the element that contains x, and its length in m."""
     k = min(max(int(nodes.searchsorted(x, side="right")) - 1, 0), nodes.size - 2)
     return k, float(nodes[k + 1] - nodes[k])

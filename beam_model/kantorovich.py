@@ -25,7 +25,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Segment
 from geometry.compression import Compression
 
-# Points beyond those that polynomials need, for the numbers of sections that taper.
+# Additional points beyond those for polynomials, for the properties of tapered sections.
 _TAPERING = 6
 
 Base = Literal["as printed", "pinned", "complete"]
@@ -37,7 +37,7 @@ def kantorovich_system(
     base: Base = "complete",
     rotary_inertia: bool = True,
 ) -> GapSystem:
-    """A boom by Kantorovich series.
+    """Return the gap system of a boom by Kantorovich series.
 
     Args:
         boom: flat or in space.
@@ -55,7 +55,7 @@ def kantorovich_system(
 def kantorovich_segments(
     boom: Boom, terms: Sequence[int], base: Base, rotary_inertia: bool
 ) -> list[SegmentModel]:
-    """All segments of a boom, each of its own number of terms; arguments as below."""
+    """Return all segments of a boom, each with its own number of terms; arguments as below."""
     check_base(boom, base)
     return [
         kantorovich_segment(segment, count, base, rotary_inertia)
@@ -64,7 +64,7 @@ def kantorovich_segments(
 
 
 def check_base(boom: Boom, base: Base) -> None:
-    """Whether the functions have a form for what holds the boom.
+    """Check that the functions have a form for the supports of the boom.
 
     Raises:
         BoomError: clamped or elastic supports, or a cylinder, with another base than the complete
@@ -101,7 +101,7 @@ def _no_form(segment: Segment, what: str, base: Base) -> BoomError:
 def kantorovich_segment(
     segment: Segment, terms: int, base: Base, rotary_inertia: bool
 ) -> SegmentModel:
-    """A segment in the paper's function spaces, in space with the same ones along y.
+    """Return a segment in the paper's function spaces, in space with the same ones along y.
 
     Args:
         segment: a beam; with lateral numbers it deflects along y and twists as well.
@@ -124,7 +124,7 @@ def kantorovich_segment(
 def kantorovich_bending(
     segment: Segment, terms: int, base: Base, rotary_inertia: bool
 ) -> Component:
-    """Matrices (23)–(26) of one segment's deflection along z; arguments as above."""
+    """Return the matrices (23)–(26) of a segment's deflection along z; arguments as above."""
     basis = _Basis(segment, bending_basis(segment, terms, base))
     # The printed base holds the slope at the first support too.
     printed = int(bool(segment.supports) and base == "as printed")
@@ -170,7 +170,7 @@ def kantorovich_bending(
 
 
 def _geometric(compression: Compression, functions: Sequence[Legendre]) -> Array:
-    """∫ P φ_i′ φ_j′ dx, exact for straight pieces of P."""
+    """Return ∫ P φ_i′ φ_j′ dx, exact for linear pieces of P."""
     total = np.zeros((len(functions), len(functions)))
     slopes = [function.deriv() for function in functions]
     nodes, weights = np.polynomial.legendre.leggauss(max(f.degree() for f in functions) + 1)
@@ -182,7 +182,7 @@ def _geometric(compression: Compression, functions: Sequence[Legendre]) -> Array
 
 
 def kantorovich_twist(segment: Segment, terms: int) -> Component:
-    """The twist of a segment with lateral numbers, held at all supports."""
+    """Return the twist of a segment with lateral properties, held at all supports."""
     lateral = segment.lateral
     assert lateral is not None
     held = [(support.x, 0) for support in segment.supports]
@@ -204,7 +204,7 @@ def kantorovich_twist(segment: Segment, terms: int) -> Component:
 
 
 def bending_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
-    """Functions of the deflection in one reading of (29)–(31).
+    """Return the functions of the deflection in one interpretation of (29)–(31).
 
     Raises:
         BoomError: clamped or elastic supports with another base than the complete one.
@@ -224,7 +224,7 @@ def bending_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
 
 
 def outer_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
-    """Functions that vanish at the supports, spanning (29): φ_i = x^i (x − x0)(x − x1).
+    """Return functions that vanish at the supports and span (29): φ_i = x^i (x − x0)(x − x1).
 
     Args:
         segment: its supports are x0, x1, …; x counts from the first of them, as in the paper
@@ -238,9 +238,9 @@ def outer_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
 
 
 def inner_basis(segment: Segment, terms: int) -> list[Legendre]:
-    """Functions of a free segment, (30), (31): 1, x − x2, then (x − x2)^(i−1) (x − x4).
+    """Return functions of a free segment, (30), (31): 1, x − x2, then (x − x2)^(i−1) (x − x4).
 
-    They lack one: all of them keep x4 on the tangent at x2, and the series does not converge to
+    They are incomplete: all of them keep x4 on the tangent at x2. The series does not converge to
     a free beam however many terms it has.
 
     Args:
@@ -255,7 +255,7 @@ def inner_basis(segment: Segment, terms: int) -> list[Legendre]:
 def complete_basis(
     segment: Segment, held: Sequence[tuple[float, int]], terms: int
 ) -> list[Legendre]:
-    """Polynomials of rising degree whose held values and slopes vanish, orthonormal.
+    """Return polynomials of rising degree whose held values and slopes vanish, orthonormal.
 
     Args:
         segment: where they are orthonormal, over its length.
@@ -275,7 +275,7 @@ def complete_basis(
             [[(f.deriv() if order else f)(x) for f in whole] for x, order in held]
         )
         admitted = null_space(conditions / np.linalg.norm(conditions, axis=1)[:, None])
-        # Turned among themselves so that the degree rises by one from each to the next: the low
+        # A rotation among themselves makes the degree rise by one from each to the next. Low
         # modes then keep their digits beside the stiff ones of high degree.
         _, turn = rq(admitted[len(held) :])
         admitted = np.triu(admitted @ turn.T, -len(held))
@@ -295,7 +295,7 @@ class _Basis:
 
     def __init__(self, segment: Segment, functions: Sequence[Legendre]) -> None:
         self.functions = functions
-        # Gauss's rule with as many points as the highest degree and one is exact.
+        # A Gauss rule with as many points as the highest degree plus one is exact.
         degree = max(function.degree() for function in functions)
         tapering = _TAPERING if segment.head_section is not None else 0
         nodes, weights = np.polynomial.legendre.leggauss(degree + 1 + tapering)
@@ -310,20 +310,20 @@ class _Basis:
         self.integral = self.value @ self.weights
 
     def at(self, x: float) -> Array:
-        """(num_functions,) values at one place in m."""
+        """Return the values (num_functions,) at one place in m."""
         return np.array([function(x) for function in self.functions])
 
     def slope_at(self, x: float) -> Array:
-        """(num_functions,) slopes at one place in m."""
+        """Return the slopes (num_functions,) at one place in m."""
         return np.array([slope(x) for slope in self._slopes])
 
     def curvature_at(self, x: float) -> Array:
-        """(num_functions,) second derivatives at one place in m."""
+        """Return the second derivatives (num_functions,) at one place in m."""
         return np.array([curvature(x) for curvature in self._curvatures])
 
 
 def _times_legendre(segment: Segment, seed: Polynomial, terms: int) -> list[Legendre]:
-    """The seed times each of the first Legendre polynomials of the segment, scaled to one."""
+    """Return the seed times each of the first Legendre polynomials of the segment, normalised."""
     domain = [segment.start, segment.end]
     lowest = seed.convert(kind=Legendre, domain=domain)
     functions = [lowest * Legendre.basis(k, domain=domain) for k in range(terms)]

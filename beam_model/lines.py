@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Deflections and section forces along segments of beams.
 
-The moment is that of the curvature, M = −E J θ′. The shear force acts across the straight axis:
-under an axial force P it is M′ − P w′, whose mean over a piece is exact for elements. Under a load
-that is even on each, their moment is off by q h²/12 at the ends and by nothing in the mean slope.
-Between the middles of pieces the shear force goes on evenly, as far as nothing acts in between.
+The moment is that of the curvature, M = −E J θ′. The shear force is normal to the straight axis.
+Under an axial force P it is M′ − P w′, whose mean over a piece is exact for elements. Under a
+uniform load on each, their moment has an error of q h²/12 at the ends and none in the mean slope.
+Between the middles of pieces the shear force is linear, if nothing acts in between.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from dynamics.line import Line, Quantity
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 
-# Pieces of a segment between places where something acts, at least.
+# Minimum number of pieces of a segment between places where something acts.
 _PIECES = 40
 
-# Where in a piece a curvature is read, which is straight there: none of the neighbours'.
+# Places in a piece at which a curvature is read, linear there and independent of neighbours.
 _EARLY, _LATE = 0.25, 0.75
 
 _NAMES: dict[Direction, tuple[Quantity, Quantity, Quantity]] = {
@@ -36,7 +36,7 @@ _NAMES: dict[Direction, tuple[Quantity, Quantity, Quantity]] = {
 
 
 def lines(boom: Boom, models: Sequence[SegmentModel]) -> list[Line]:
-    """One for each segment; those that do not bend have no section forces."""
+    """Return one line for each segment; those that do not bend have no section forces."""
     modes = BoomModes(boom, models)
     return [_line(boom, number, modes, model) for number, model in enumerate(models)]
 
@@ -46,7 +46,7 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
     # The ends of the segment, and where something acts on it.
     acting = {*segment.ends, *boom.stations_of(number), *segment.compression.places}
     acting |= {held.x for held in segment.supports} | {mass.x for mass in segment.carried}
-    # The ends of all pieces: those of the elements, or even ones between places.
+    # The ends of all pieces: those of the elements, or equal pieces between places.
     breaks = model.components["z"].breaks
     if not breaks.size:
         even = np.linspace(segment.start, segment.end, _PIECES + 1)
@@ -89,17 +89,17 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
 
 
 def _both_ends(breaks: Array, read: Callable[[float], Array]) -> Array:
-    """(2 num_pieces, num_modes) of what is continuous, at both ends of each piece."""
+    """Return (2 num_pieces, num_modes) a continuous quantity at both ends of each piece."""
     return np.asarray(np.repeat([read(x) for x in breaks], 2, axis=0)[1:-1])
 
 
 def _slope(breaks: Array, rows: Array) -> Array:
-    """(num_pieces, num_modes) the mean slope of each piece."""
+    """Return (num_pieces, num_modes) the mean slope of each piece."""
     return np.asarray((rows[1::2] - rows[::2]) / np.diff(breaks)[:, None])
 
 
 def _to_ends(breaks: Array, means: Array, acting: set[float]) -> Array:
-    """(2 num_pieces, num_modes) at both ends of each piece, straight between places that act."""
+    """Return (2 num_pieces, num_modes) both ends of each piece, linear between places that act."""
     jumps = [int(np.abs(breaks - x).argmin()) for x in acting]
     ends = np.repeat(means, 2, axis=0)
     for first, last in pairwise(np.unique(jumps).tolist()):

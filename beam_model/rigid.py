@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Segments as rigid bodies: they move with their mass and inertia, and only what holds them gives
-way.
+"""Segments as rigid bodies, with mass and inertia; only their supports and contacts are
+elastic.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from geometry.boom import Segment
 
 
 def rigid_segment(segment: Segment) -> SegmentModel:
-    """A segment that moves, and in space turns about its axis, without bending or twisting.
+    """Return a segment that moves, and in space turns about its axis, without deformation.
 
-    These are the straight lines among the polynomials that its supports admit. Springs of elastic
-    supports and point masses act on them; where rigid supports leave none, nothing moves.
+    Its motions are the straight lines among the polynomials that its supports admit. Springs of
+    elastic supports and point masses act on them. It cannot move if rigid supports leave none.
     """
     components: dict[Motion, Component] = {"z": _moving(segment)}
     if segment.lateral is not None:
@@ -29,7 +29,7 @@ def rigid_segment(segment: Segment) -> SegmentModel:
 
 
 def freedom(segment: Segment) -> int:
-    """How many motions along z rigid supports leave to a rigid segment."""
+    """Return the number of motions along z that rigid supports leave to a rigid segment."""
     held = sum((s.stiffness is None) + (s.kind == "clamped") for s in segment.supports)
     return max(0, 2 - held)
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Segments as beams, and their way to a gap system.
+"""Gap systems of segments as beams.
 
-Kantorovich series and beam finite elements both end here; from here on they are the same. So
-are the flat boom and the one in space, which has more components and more pads.
+Kantorovich series and beam finite elements share this code. So do the flat boom and the one in
+space, which has more components and more pads.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from geometry.telescoping import drives_below
 
 
 class Touch(NamedTuple):
-    """Where beams touch.
+    """Contact geometry of beams.
 
     Args:
         sides: of a pad or stop that presses both ways, see ``GapBuilder.press``.
@@ -43,7 +43,7 @@ class Touch(NamedTuple):
 
 # At the stations, by the whole law on the axis.
 AT_STATIONS = Touch((0,), lambda pad: (pad.x, pad.x), lambda pad: (pad.inner, pad.outer))
-# Where a shell's pads are, each side by itself, as a shell's walls do.
+# At the pads of a shell, each side separately, like a shell's walls.
 AT_PADS = Touch((1, -1), lambda pad: (pad.middle, pad.slid), lambda pad: pad.covered)
 
 
@@ -52,9 +52,9 @@ def gap_system(
     models: Sequence[SegmentModel],
     touch: Touch = AT_STATIONS,
 ) -> GapSystem:
-    """Segments side by side in modal coordinates, coupled by contact, friction and ties alone.
+    """Return segments in modal coordinates, coupled by contact, friction and ties alone.
 
-    ``touch`` tells where pads are read.
+    ``touch`` gives the places where pads are read.
     """
     modes = BoomModes(boom, models)
     system = standing_system(boom, modes, touch)
@@ -64,7 +64,7 @@ def gap_system(
 
 
 def standing_system(boom: Boom, modes: BoomModes, touch: Touch = AT_STATIONS) -> GapSystem:
-    """The same at the start, without drives.
+    """Return the gap system at the start, without drives.
 
     Args:
         boom, touch: as of :func:`gap_system`.
@@ -91,7 +91,7 @@ def standing_system(boom: Boom, modes: BoomModes, touch: Touch = AT_STATIONS) ->
 
 
 def tied_system(boom: Boom, models: Sequence[SegmentModel]) -> GapSystem:
-    """The play-free boom: every joint's segments move alike at its stations."""
+    """Return the boom without play: each joint's segments move alike at its stations."""
     return gap_system(boom.play_free, models)
 
 
@@ -101,7 +101,7 @@ def _rows(
     touch: Touch,
     extensions: Mapping[int, float],
 ) -> GapBuilder[Array]:
-    """What touches, rubs and drags at the extensions of joints in m."""
+    """Return contact, friction and dashpot rows at the extensions of joints in m."""
     rows: GapBuilder[Array] = GapBuilder()
     for pad in pads(boom):
         on_outer, on_inner = pad.ways(extensions.get(pad.number, 0.0))
@@ -131,7 +131,7 @@ def _rows(
 
 
 def _row(place: Observation, modes: BoomModes) -> Array:
-    """(num_modes,) that reads a quantity, or what it is the derivative of."""
+    """Return the row (num_modes,) that reads a quantity, or that of which it is the derivative."""
     match place.kind.read:
         case "rotation":
             return modes.rotation(place.segment, place.x, "z")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What holds a boom at rest: forces of its supports, joints, cylinders and stops, from beams.
+"""Static states and support reactions: forces of supports, joints, cylinders and stops on beams.
 
-A segment without supports, bent as the boom at rest is, is in balance with its loads but where
-something holds it. So what K w − f leaves at a node is the force that acts there, however many
-supports there are.
+A segment without supports, deflected as the boom at rest, is in equilibrium with its loads except
+where something holds it. So the residual K w − f at a node is the reaction there, for any number
+of supports.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom
 
-# Of the longest segment, where axial forces soften it.
+# Elements of the longest segment, where axial forces soften it.
 COMPRESSED_ELEMENTS = 20
 
 
 class Hold(NamedTuple):
-    """What holds a segment at a place, along z in N and towards a larger slope in N·m."""
+    """Reaction on a segment at a place: N along z, and N·m towards a larger slope."""
 
     segment: int
     x: float
@@ -39,7 +39,7 @@ class Hold(NamedTuple):
 
 
 class StaticState(NamedTuple):
-    """A boom at rest under the loads of t = 0.
+    """Static state of a boom under the loads of t = 0.
 
     Args:
         boom: what rests.
@@ -55,13 +55,13 @@ class StaticState(NamedTuple):
 
     @property
     def tip(self) -> float:
-        """Its deflection in m."""
+        """Deflection of the tip in m."""
         return float(self.system.observers["tip"].row @ self.position)
 
 
 @dataclass(frozen=True)
 class Elements:
-    """The segments of a boom as elements that are exact in statics, with play or without.
+    """The segments of a boom as elements that are exact in statics, with or without play.
 
     Args:
         boom: whose joints may be tied or not.
@@ -71,12 +71,12 @@ class Elements:
 
     @cached_property
     def segments(self) -> list[SegmentModel]:
-        """As their supports hold them."""
+        """Segments with their supports."""
         return finite_element_segments(self.boom, *self._kind, rotary_inertia=False)
 
     @cached_property
     def unsupported(self) -> list[Component]:
-        """What bends along z without their supports, with nodes where they may be held."""
+        """Components along z without supports, with nodes where something may hold them."""
         size, theory = self._kind
         found = []
         for number, segment in enumerate(self.boom.segments):
@@ -88,7 +88,7 @@ class Elements:
 
     @property
     def _kind(self) -> tuple[float, Theory]:
-        """Length in m, the longest but for axial forces and tapers, and theory."""
+        """Length in m, the longest except under axial forces and with tapers, and theory."""
         segments = self.boom.segments
         longest = max(segment.length for segment in segments)
         if self.boom.compressed or any(one.head_section is not None for one in segments):
@@ -101,7 +101,7 @@ def static_state(
     boom: Boom,
     elements: Elements | None = None,
 ) -> StaticState:
-    """A boom of beam elements at rest, of Timoshenko's where all sections are known.
+    """Return the static state of a boom of beam elements, Timoshenko's if all sections are known.
 
     Args:
         boom: with its loads.
@@ -123,15 +123,15 @@ def static_state(
 
 
 def telescoping_system(boom: Boom) -> GapSystem:
-    """The beams of :func:`static_state`, and all that its drives move."""
+    """Return the system of the beams of :func:`static_state`, with its drives."""
     return gap_system(boom, Elements(boom).segments).gathered()
 
 
 def handed_on(boom: Boom, holds: Sequence[Hold]) -> list[Hold]:
-    """What holds a boom, each force once: without what segments hand on where they stand in others.
+    """Return the reactions of a boom, each force once, without those that segments transfer.
 
-    So where a segment stands in another one, its hold is what that does to it, and elsewhere what
-    the ground does.
+    Where a segment is supported in another one, the reaction is that of the other segment, and
+    elsewhere that of the ground.
 
     Args:
         boom: at rest.
@@ -148,7 +148,7 @@ def handed_on(boom: Boom, holds: Sequence[Hold]) -> list[Hold]:
 
 
 def _held_places(boom: Boom, number: int) -> set[float]:
-    """x in m on a segment where something may hold it."""
+    """Return the x in m on a segment where something may hold it."""
     places = {support.x for support in boom.segments[number].supports}
     places |= {stop.x for stop in boom.stops if stop.segment == number}
     places |= {jack.x for jack in boom.cylinders if jack.segment == number}
@@ -159,7 +159,7 @@ def _held_places(boom: Boom, number: int) -> set[float]:
 def _holds(
     boom: Boom, number: int, component: Component, modes: BoomModes, position: Array
 ) -> list[Hold]:
-    """What is left of a segment without its supports where something may hold it."""
+    """Return the residual of a segment without its supports where something may hold it."""
     nodes = component.breaks
     bent = [
         row @ position
@@ -168,7 +168,7 @@ def _holds(
     ]
     load = component.load.copy()
     for given in boom.loads:
-        # What is over by t = 0 has no values.
+        # A load that is over by t = 0 has no values.
         if given.segment == number and given.direction == "z" and callable(given.history):
             load += given.history(np.zeros(1))[0] * given.push(component.member)
     stiffness = component.stiffness - component.softening

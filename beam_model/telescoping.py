@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The rows of a telescoping boom of beams over all extensions of its joints.
+"""Rows of a telescoping boom of beams at all extensions of its joints.
 
-Between the nodes that pass a station rows are the shape functions of an element: of a plain one
-cubics, which tables hold exactly; of a tapered one they are of the fifth degree, and of a series
-polynomials of any, which tables hold within a tolerance.
+Between the nodes that pass a station, rows are the shape functions of an element. Those of a plain
+one are cubic, and tables hold them exactly. Those of a tapered one are of the fifth degree, those
+of a series polynomials of any degree, and tables hold them within a tolerance.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ def travels(
     rows_at: RowsAt,
     members: Sequence[BeamMember],
 ) -> list[Travel]:
-    """Return what moves the rows of a boom: the drive of each joint, several together for stops."""
+    """Return the motion of rows by drives: that of each joint, for stops of several together."""
     return [_travel(boom, models, rows_at, members, course) for course in courses(boom)]
 
 
 def moving_thrusts(
     boom: Boom, models: Sequence[SegmentModel], members: Sequence[BeamMember], joint: int
 ) -> list[MovingThrust]:
-    """Return the axial force, if there is one, that moves along with a telescoping joint.
+    """Return the axial force, if any, that moves along with a telescoping joint.
 
     ``members`` are the segments in any coordinates.
     """
@@ -78,7 +78,7 @@ def _travel(
 
 
 def _breaks(boom: Boom, models: Sequence[SegmentModel], course: Course) -> list[float]:
-    """Extensions in m at which a node passes a station, between the ends of the reach."""
+    """Return the extensions in m at which a node passes a station, and the ends of the reach."""
     joint = boom.joints[course.joints[-1]]
     outer, inner = (
         np.concatenate([c.breaks for c in models[segment].components.values()])
@@ -94,7 +94,7 @@ def _breaks(boom: Boom, models: Sequence[SegmentModel], course: Course) -> list[
 
 
 def _between(boom: Boom, reach: tuple[float, float], passed: Sequence[Array]) -> list[float]:
-    """Extensions in m between the ends of a reach, and these."""
+    """Return the extensions in m between the ends of a reach, and these ends."""
     low, high = reach
     extensions = np.unique(np.clip(np.concatenate([reach, *passed]), low, high))
     near = SAME_PLACE * boom.length

@@ -211,7 +211,7 @@ class Section(Protocol):
         return high - low
 
     def face(self, direction: Direction, side: float) -> Face:
-        """Return the face with this outward normal, which must exist; the sign of ``side`` counts."""
+        """Return the face with this outward normal, which must exist; only its sign matters."""
         return next(f for f in self.faces if f.direction == direction and f.side * side > 0.0)
 
     def on_plates(self, places: Array) -> Mask:
