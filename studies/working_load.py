@@ -168,7 +168,7 @@ class Contact:
 
 def at_point(system: GapSystem, point: Point) -> GapSystem:
     """The system with another play and load, its coordinates as they were."""
-    laws = [law.behind(0.5 * point.play) for law in system.laws]
+    laws = [law.scaled(0.0).behind(0.5 * point.play) for law in system.laws]
     return replace(system, laws=laws, load=point.load * system.load)
 
 

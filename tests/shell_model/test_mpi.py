@@ -96,7 +96,7 @@ def stresses(comm: MPI.Comm) -> list[Any]:
 def moved(comm: MPI.Comm) -> dict[str, Any]:
     """The unreduced shell with friction."""
     law = replace(LAW.law, stiffness=1.0e9, exponent=1.0).behind(LAW.above)
-    full = assemble_boom(touching(flat_boom(friction=0.2), {"z": [law]}), ShellOptions(1.0), comm)
+    full = assemble_boom(touching(flat_boom(friction=0.2), law), ShellOptions(1.0), comm)
     motion = integrate_directly(full, 0.04, 5.0e-4)
     return {"tip": motion.observed["tip"].tolist(), "residual": motion.energy_residual}
 

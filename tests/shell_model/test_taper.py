@@ -134,8 +134,8 @@ def tapered_boom(pad: PadSize | None, lateral: float | None) -> Boom:
 def test_a_boom_that_tapers_moves_as_its_beam(lateral: float | None) -> None:
     """Reference: other code, Timoshenko elements: first peak of the tip within 2 %."""
     boom = tapered_boom(None, lateral)
-    law = [LAW.law.behind(4e-3)]
-    sides = [LAW.law.behind(5e-3)] if lateral else []
+    law = [LAW.behind(4e-3)]
+    sides = [LAW.behind(5e-3)] if lateral else []
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     shell = reduce_boom(
         touching(boom, law, sides), ShellOptions(0.2, contact_tolerance=0.05), MPI.COMM_SELF

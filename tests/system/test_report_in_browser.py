@@ -13,7 +13,7 @@ import pytest
 
 from runs.case import reading as case_file
 from runs.case.schema import EnsembleTable
-from runs.paper.rules import judge
+from runs.client import judge
 from runs.pipeline.means import Means
 from runs.pipeline.results import read_netcdf
 from runs.pipeline.run import run_case
