@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What `make docs` asks of Sphinx: pages in Markdown, the library's pages from its docstrings."""
+"""Configuration of Sphinx for `make docs`: Markdown pages, API pages from docstrings."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ templates_path = ["_templates"]
 
 myst_enable_extensions = ["dollarmath"]
 autodoc_default_options = {"members": True, "ignore-module-all": True, "show-inheritance": True}
-# What `import protractile` gives, by the places where it is documented.
+# Public names of `import protractile`, by the modules that document them.
 public = [getattr(protractile, name) for name in dir(protractile)]
 autosummary_context = {
     "public": [f"{x.__module__}.{x.__qualname__}" for x in public if hasattr(x, "__qualname__")]
@@ -41,7 +41,7 @@ autodoc_member_order = "bysource"
 napoleon_numpy_docstring = False
 add_module_names = False
 python_use_unqualified_type_names = True
-toc_object_entries = False  # every function in every page's navigation takes half the time
+toc_object_entries = False  # functions in the navigation of every page take half the time
 
 html_theme = "furo"
 html_title = f"{project} {release}"
@@ -50,21 +50,22 @@ html_math_renderer = "mathml"
 
 
 def write_inline(writer: HTML5Translator, node: nodes.math) -> None:
-    """A formula in a line as MathML, which browsers set without a script."""
+    """Write an inline formula as MathML, which browsers render without a script."""
     writer.body.append(convert(node.astext()))
     raise nodes.SkipNode
 
 
 def write_block(writer: HTML5Translator, node: nodes.math_block) -> None:
-    """A formula on lines of its own, with room for what reaches beyond its box."""
+    """Write a display formula as MathML, with room for parts that exceed its box."""
     formula = convert(node.astext(), display="block")
     writer.body.append(f'<div style="padding: 0.4em 0">{formula}</div>')
     raise nodes.SkipNode
 
 
 def resolve_fields(app: Sphinx, of: object, bound: bool) -> None:
-    """The types of a NamedTuple's fields, from its module: what its `__new__` says are bare names,
-    which may be those of classes in two modules.
+    """Resolve the types of a NamedTuple's fields in its module.
+
+    The annotations of its `__new__` are bare names, which classes of two modules may share.
     """
     for made in tuple.__subclasses__():
         if made.__new__ is of:
@@ -74,7 +75,7 @@ def resolve_fields(app: Sphinx, of: object, bound: bool) -> None:
 def name_arrays(
     app: Sphinx, what: str, name: str, of: object, options: object, arguments: str, result: str
 ) -> tuple[str, str]:
-    """`Array` in signatures, as the modules have it."""
+    """Replace `Array` in signatures by its name in the modules."""
     array = re.compile(r"~?(numpy\.)?ndarray\[[^]]*float64\]\]")
     return tuple(text and array.sub("Array", text) for text in (arguments, result))
 
@@ -82,7 +83,7 @@ def name_arrays(
 def read_properties(
     app: Sphinx, what: str, name: str, of: object, options: object, lines: list[str]
 ) -> None:
-    """A property's text as a method's: its first line may have a colon, before which is no type."""
+    """Read a property's text as a method's: a colon in its first line then starts no type."""
     if what == "property" and lines:
         text = getdoc(of) or ""
         lines[:] = GoogleDocstring(text, app.config, app, "method", name, of, options).lines()
@@ -91,7 +92,7 @@ def read_properties(
 def read_formulas(
     app: Sphinx, what: str, name: str, of: object, options: object, lines: list[str]
 ) -> None:
-    """|x| is an absolute value, not a substitution; what a module's text indents is a formula."""
+    """Read |x| as an absolute value, not a substitution; indented text of a module as formulas."""
     text = re.sub(r"(``.*?``)|\|", lambda found: found[1] or r"\|", "\n".join(lines))
     if what == "module":
         text = re.sub(r"\n\n(?=    )", "\n\n::\n\n", text)
@@ -99,7 +100,7 @@ def read_formulas(
 
 
 def setup(app: Sphinx) -> None:
-    """Tell Sphinx of the functions above."""
+    """Register the functions above with Sphinx."""
     app.add_html_math_renderer("mathml", (write_inline, None), (write_block, None))
     app.connect("autodoc-before-process-signature", resolve_fields)
     app.connect("autodoc-process-signature", name_arrays)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A boom as beams and as FEniCSx shells: what the beams miss at the tip's first peak."""
+"""Boom as beams and as FEniCSx shells: error of the beams at the tip's first peak."""
 
 from boom_in_python import boom
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A boom of two boxes without a case file: the inner one falls through its play."""
+"""Boom of two boxes without a case file: the inner one falls through its play."""
 
 import protractile as pt
 
@@ -8,7 +8,7 @@ LAW = pt.PowerContact(1.0e9, exponent=1.0)
 
 
 def boom(play: float = PLAY) -> pt.Boom:
-    """A clamped arm and a fly of which the last 2 m are in it, with a play in m."""
+    """Return a clamped arm and a fly with an overlap of 2 m, with a play in m."""
     steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
     boxes = (
         pt.BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006),

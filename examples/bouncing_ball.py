@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A ball on a springy floor: a gap system of one's own."""
+"""Ball on an elastic floor: a user-defined gap system."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ HEIGHT, GRAVITY, STIFFNESS = 0.5, 9.81, 1.0e6
 
 
 def fall() -> pt.Trajectory:
-    """One second of a ball of 1 kg, let go at rest."""
+    """Return one second of the motion of a ball of 1 kg, released at rest."""
     ball = GapSystem(
         omega2=np.array([0.0]),
         load=np.array([-GRAVITY]),

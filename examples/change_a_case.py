@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A case that comes with the program, with more play, run and drawn."""
+"""Example case of the program with more play: run and figures."""
 
 import protractile as pt
 
 
 def run(play: float) -> pt.Results:
-    """The paper's boom by its five-term series, for 0.6 s, with a play in m."""
+    """Run the paper's boom as five-term series, for 0.6 s, with a play in m."""
     case = pt.load_case(pt.CASES / "coarse.toml")
     return pt.run_case(pt.change(case, **{"joint.play": play}), models=["kantorovich-5"])
 

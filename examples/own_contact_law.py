@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A contact law of one's own, a rubber stop F = k p + c p³, and a mass that runs into it."""
+"""User-defined contact law, a rubber stop F = k p + c p³, and a mass that hits it."""
 
 from dataclasses import dataclass, replace
 
@@ -13,7 +13,7 @@ from dynamics.integrator import simulate
 
 @dataclass(frozen=True, slots=True)
 class RubberStop(pt.ContactLaw):
-    """Linear at first, then ever stiffer; above alone."""
+    """Stop that is linear at first, then progressively stiffer; on the upper side alone."""
 
     linear: float
     cubic: float
@@ -32,7 +32,7 @@ class RubberStop(pt.ContactLaw):
 
 
 def strike(law: pt.ContactLaw, speed: float) -> pt.Trajectory:
-    """A free mass of 1 kg at a speed in m/s."""
+    """Return the motion of a free mass of 1 kg with an initial speed in m/s."""
     one, place = np.ones(1), np.array([0])
     mass = GapSystem(0.0 * one, 0.0 * one, one[None], [law], place, [0.0], {})
     return simulate(mass, 0.1, velocity=[speed])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""An integrator of one's own, scipy's Runge-Kutta formulas, to be held against ours."""
+"""User-defined integrator, scipy's Runge-Kutta formulas, compared with that of protractile."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A sweep in Python: how fast a mass leaves a stop whose damping is meant for a restitution."""
+"""Sweep in Python: rebound speed of a mass from a stop with a damping for a restitution."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ SPEED = 2.0
 
 
 def rebound(restitution: float) -> float:
-    """Speed after the impact over speed before it."""
+    """Return the ratio of the speed after the impact to that before it."""
     damping = pt.restitution_damping(restitution, SPEED)
     law = pt.PowerContact(1.0e6, 1.5, damping=damping).upper().behind(0.01)
     one, place = np.ones(1), np.array([0])

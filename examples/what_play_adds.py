@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What play adds to a boom that rests: the fly turns until it touches above and below."""
+"""Effect of play on a boom at rest: the fly rotates until it touches above and below."""
 
 from boom_in_python import boom
 
@@ -7,7 +7,7 @@ import protractile as pt
 
 
 def deflection(tied: bool) -> float:
-    """Static deflection of the tip in m, with the joint's play or without."""
+    """Return the static deflection of the tip in m, with or without the joint's play."""
     model = pt.BeamElements(boom(), tied=tied)
     return float(model.simulate(1.0e-3, at_rest=True).tip[0])
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""One reading of the paper's data: the case it makes, and what the statements say of it."""
+"""One reading of the paper's data: its case, and its findings on the statements."""
 
 from __future__ import annotations
 
@@ -29,35 +29,35 @@ SERIES = ("kantorovich-4", "kantorovich-5")
 WITH_PLAY = (*SERIES, "beam-fe")
 MODELS = (*WITH_PLAY, "beam-fe-tied")
 
-# Judged by the rules of every run; the others here, since they take several runs.
+# Judged by the rules of every run; the others here, since they need several runs.
 COMMON = ("S1", "S5", "S6")
 JUDGED = ("S1", "S2", "S3", "S4", "S5", "S6", "S9")
 
-# "1010 kN/m" with the exponent that the print has lost, in N/m², and as it stands, in N/mⁿ.
+# "1010 kN/m" with the exponent lost in print, in N/m², and literally, in N/mⁿ.
 RESTORED = 1.0e13
 LITERAL = 1.01e6
-# About the mean force of a pressed pad in N: there the laws of all exponents are equally stiff.
+# About the mean force of a loaded pad in N, at which the laws of all exponents are equally stiff.
 PAD_FORCE = 2.5e4
 
-# The soft literal contacts would let the integrator take steps at which kicks resonate with the
-# highest modes of the beam elements; in s.
+# The soft literal contacts would let the integrator take steps that resonate with the highest modes
+# of the beam elements; in s.
 LITERAL_STEP = 1.0e-5
 
-# Runs of a reading with loads a little changed, for what chaos makes a sample.
+# Runs of a reading with slightly changed loads, since chaos makes a single run a sample.
 MEMBERS = 5
 CHANGE = 1.0e-4
 
-# When the paper sees the models stratify, in s.
+# Time in s from which the models of the paper diverge.
 STRATIFIED_FROM = 6.0
 
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """One way to read the data.
+    """One reading of the data.
 
     Args:
         clearance: Δ in m.
-        stiffness: of the contact, with the lost exponent restored or as it stands.
+        stiffness: of the contact, with the lost exponent restored or literal.
         base: of the series.
         exponent: n of all models with play.
     """
@@ -72,8 +72,10 @@ class Reading:
 
     @property
     def contact_stiffness(self) -> float:
-        """k in N/mⁿ. Its unit depends on n, so the restored one of another n than the paper's 2
-        has the tangent n k^(1/n) F^(1−1/n) of the quadratic law at the pads' force F.
+        """Contact stiffness k in N/mⁿ.
+
+        Its unit depends on n, so the restored one of another n than the paper's 2 has the tangent
+        n k^(1/n) F^(1−1/n) of the quadratic law at the pads' force F.
         """
         if self.stiffness == "literal":
             return LITERAL
@@ -82,10 +84,10 @@ class Reading:
         return float((tangent / (n * PAD_FORCE ** (1.0 - 1.0 / n))) ** n)
 
     def case(self, paper: Case, change: float = 0.0) -> Case:
-        """The paper's case as this reading has it, with the beam models alone.
+        """Return the paper's case in this reading, with the beam models alone.
 
         Args:
-            paper: the case file's.
+            paper: case of the file.
             change: relative, of all loads.
         """
         law = {
@@ -102,7 +104,7 @@ class Reading:
             for model in paper.models
             if model.name in MODELS
         )
-        # No uniform-wall box leaves a play of 28 mm, and beams do not need the plates.
+        # No box of uniform walls leaves a play of 28 mm, and beams do not need the plates.
         segments = tuple(
             segment.model_copy(
                 update={"height_to_width": None, "load": (1.0 + change) * segment.load}
@@ -127,7 +129,7 @@ class Reading:
 
 @dataclass(frozen=True, slots=True)
 class ReadingFinding:
-    """A statement on a reading: the verdict, and the numbers it is from."""
+    """Finding on a statement in a reading: the verdict with its numbers."""
 
     verdict: Judgement
     measured: Sequence[float]
@@ -135,10 +137,10 @@ class ReadingFinding:
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """A reading and what it does.
+    """A reading with its findings.
 
     Args:
-        reading: which.
+        reading: that was judged.
         findings: by the statement's id.
         peaks: first tip peak of each model in m.
         energy_residual: the largest of all runs.
@@ -150,12 +152,12 @@ class Judged:
     energy_residual: float
 
     def excluded_by(self) -> list[str]:
-        """The statements that the reading contradicts."""
+        """Return the statements that the reading contradicts."""
         return [key for key, finding in self.findings.items() if finding.verdict == "contradicted"]
 
 
 def by_base(readings: Sequence[Reading]) -> list[list[Reading]]:
-    """Groups of readings that differ in the base of the series alone."""
+    """Return groups of readings that differ only in the base of the series."""
     groups: dict[Reading, list[Reading]] = {}
     for reading in readings:
         groups.setdefault(replace(reading, base="complete"), []).append(reading)
@@ -163,15 +165,15 @@ def by_base(readings: Sequence[Reading]) -> list[list[Reading]]:
 
 
 def judge_bases(readings: Sequence[Reading], paper: Case, members: int) -> list[Judged]:
-    """Judge one of these groups, all of whose readings have the same elements."""
+    """Judge one of these groups, whose readings all have the same beam elements."""
     motions = Memory()
     return [_judge(reading, paper, members, motions) for reading in readings]
 
 
 def _judge(reading: Reading, paper: Case, members: int, motions: Memory) -> Judged:
-    """Run a reading and judge all statements but S9, which takes several readings.
+    """Run a reading and judge all statements but S9, which needs several readings.
 
-    Motions of other readings are not made again, and its own join them.
+    Motions of other readings are reused, and its own are added to them.
     """
     changes = perturbations(members, CHANGE, 0)
     runs = [_results(reading.case(paper, change), motions) for change in changes]
@@ -193,8 +195,9 @@ def _judge(reading: Reading, paper: Case, members: int, motions: Memory) -> Judg
 
 
 def judge_exponents(judged: Sequence[Judged]) -> list[Judged]:
-    """Add S9: by how much the larger first tip peak of a model exceeds the smaller one between
-    readings that differ in their exponent alone; all of these readings share the verdict.
+    """Add S9 to readings that differ in their exponent alone, which share the verdict.
+
+    Its number is the part by which a model's larger first tip peak exceeds the smaller one.
     """
     groups: dict[Reading, list[Judged]] = {}
     for entry in judged:
@@ -214,7 +217,7 @@ def judge_exponents(judged: Sequence[Judged]) -> list[Judged]:
 
 
 def _but_exponent(reading: Reading) -> Reading:
-    """What readings have in common that differ in their exponent alone."""
+    """Return the common part of readings that differ only in their exponent."""
     return replace(reading, exponent=0.0)
 
 
@@ -227,7 +230,7 @@ def _results(case: Case, motions: Memory) -> Results:
 
 
 def _first_peak(run: Results, model: str) -> float:
-    """Of the tip in m."""
+    """Return the first peak of the tip in m."""
     height = run.summary.models[model].first_peak["tip"].height
     if height is None:
         raise NumericsError(f"{model}: no first peak")
@@ -235,7 +238,7 @@ def _first_peak(run: Results, model: str) -> float:
 
 
 def _apart(run: Results, models: Sequence[str], since: float) -> float:
-    """Largest difference of any two tips from a time in s on, as a part of the largest range."""
+    """Return the largest difference of two tips from a time in s on, as a part of the range."""
     late = run.trajectories["time"].values >= since
     tips = [run.trajectories["tip"].sel(model=name).values for name in models]
     largest = max(float(np.abs(a - b)[late].max()) for a, b in combinations(tips, 2))
@@ -250,8 +253,9 @@ def _all_above(values: Sequence[float]) -> ReadingFinding:
 
 
 def _grows(peaks: Sequence[float]) -> ReadingFinding:
-    """S4 without the shell: the smallest rise from one model to the next; less than what first
-    peaks scatter by is chance.
+    """Return the finding on S4 without the shell: the smallest rise between successive models.
+
+    A rise below the scatter of first peaks is chance.
     """
     smallest = min(after / before - 1.0 for before, after in pairwise(peaks))
     if abs(smallest) <= PEAK_SCATTER:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Which readings of its data the paper's statements bear out: ``python -m runs.paper.readings``.
+"""Survey of the readings of the paper's data: ``python -m runs.paper.readings``.
 
 The print leaves open whether the play of 14 mm is 2Δ or Δ, whether the contact stiffness has lost
 its exponent, which functions the series has at its ends, and which contact law a figure belongs
@@ -56,7 +56,7 @@ TITLE = "Readings of the paper's data"
 
 
 def all_readings() -> list[Reading]:
-    """Every combination."""
+    """Return every combination."""
     clearances = (0.007, 0.014)
     stiffnesses: tuple[Stiffness, ...] = ("restored", "literal")
     bases: tuple[Base, ...] = ("as printed", "pinned", "complete")
@@ -64,7 +64,7 @@ def all_readings() -> list[Reading]:
 
 
 def conclude(judged: Sequence[Judged]) -> list[str]:
-    """Which readings the statements exclude, as sentences."""
+    """Return sentences on the readings that the statements exclude."""
     left = [entry for entry in judged if not entry.excluded_by()]
     sentences = [f"{len(judged) - len(left)} of {len(judged)} readings are excluded."]
     aspects: Mapping[str, Callable[[Reading], str]] = {
@@ -89,7 +89,7 @@ def conclude(judged: Sequence[Judged]) -> list[str]:
 
 
 def verdict_table(judged: Sequence[Judged]) -> Table:
-    """A line for each reading: what each statement says of it."""
+    """Return a line for each reading with its verdict on each statement."""
     return Table.of_rows(
         "readings",
         "Readings of the data, and the statements on them",
@@ -112,7 +112,7 @@ def verdict_table(judged: Sequence[Judged]) -> Table:
 
 
 def number_table(judged: Sequence[Judged]) -> Table:
-    """A line for each reading: what the verdicts are from."""
+    """Return a line for each reading with the numbers of its verdicts."""
 
     def cell(finding: ReadingFinding) -> str:
         ends = (min(finding.measured), max(finding.measured)) if finding.measured else ()
@@ -150,7 +150,7 @@ def number_table(judged: Sequence[Judged]) -> Table:
 
 
 def shown(judged: Sequence[Judged]) -> list[Table]:
-    """The tables of a survey, its conclusion below the first."""
+    """Return the tables of a survey, its conclusion below the first."""
     table = verdict_table(judged)
     return [replace(table, notes=(*table.notes, *conclude(judged))), number_table(judged)]
 
@@ -158,7 +158,7 @@ def shown(judged: Sequence[Judged]) -> list[Table]:
 def survey(
     readings: Sequence[Reading], folder: Path, console: Console, members: int = MEMBERS
 ) -> list[Judged]:
-    """Run, print, and write ``readings.json``, ``readings.md`` and ``readings.html``."""
+    """Run the survey, print it, and write ``readings.json``, ``.md`` and ``.html``."""
     paper = case_file.load(str(PAPER))
     with ThreadPoolExecutor(2) as pool:
         groups = pool.map(lambda group: judge_bases(group, paper, members), by_base(readings))
@@ -186,7 +186,7 @@ def survey(
 
 
 def load(folder: Path, case: Case) -> list[Table]:
-    """The tables of the survey that lies in a run's folder; none where none does.
+    """Return the tables of the survey in a run's folder; none without a survey.
 
     Args:
         folder: of a run.

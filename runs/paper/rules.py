@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The statements of the paper, each judged by a rule on trajectories.
+"""Rules that judge each statement of the paper on trajectories.
 
 The frictionless system is chaotic: a relative change of the load of 1e-9 grows to about 1 % of
 the tip's range within a second. So one trajectory decides what happens up to the first peak;
@@ -26,11 +26,11 @@ from runs.pipeline.results import Results
 
 # S1. The integration of both series differs by round-off alone: about 1e-14 of the range.
 COINCIDENCE = 1.0e-6
-# S2. In the statement.
+# S2. Number of the statement.
 DIVERGENCE = 0.20
-# S3. In the statement, in s.
+# S3. Number of the statement, in s.
 CONFORMITY = 6.0
-# S3. The paper shows one run: what it shows is typical if most members show it.
+# S3. The paper shows one run, which is typical if most members agree.
 MOST = 0.5
 # S2. Of the mean of an ensemble, whose members are samples of one chaotic motion.
 CONFIDENCE = 0.95
@@ -39,7 +39,7 @@ CONFIDENCE = 0.95
 INTERVAL = 7.0
 # S4. A relative load change of 1e-4, or another step, moves a first tip peak by up to 0.5 %.
 PEAK_SCATTER = 0.005
-# S5. From here on play adds more than the whole deflection that there is without it.
+# S5. From here on play adds more than the whole deflection without play.
 FUNDAMENTAL = 2.0
 # S6. Equal relative differences would make the absolute ones differ like the ranges, whose ratio
 # is about 10 for this boom; up to half of that they are taken as of one level. Chaos moves the
@@ -48,7 +48,7 @@ SAME_LEVEL = 5.0
 LEVEL_SCATTER = 0.1
 # S9. Less than what the models of S4 are apart, which the paper calls minor.
 CLEAR_INFLUENCE = 0.05
-# S10. In the statement.
+# S10. Number of the statement.
 SERIES_STEPS = 2000
 ELEMENT_STEPS = 4000
 # S11. More than two.
@@ -57,7 +57,7 @@ SEGMENTS = 3
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What a rule leaves; the fields are those of a verdict."""
+    """Result of a rule; the fields are those of a verdict."""
 
     verdict: Judgement
     why: str
@@ -67,7 +67,7 @@ class Finding:
 
 
 def judge(results: Results) -> list[Verdict]:
-    """The verdicts that a run's case asks for, or demands."""
+    """Return the verdicts that a run's case requests or demands."""
     case = results.case
     run = RunQuery(results)
     return [
@@ -391,38 +391,38 @@ def _find(rule: Callable[[RunQuery], Finding], run: RunQuery) -> Finding:
 
 
 def _above(value: float, threshold: float, doubt: float) -> Judgement:
-    """Whether a value is above a threshold, where both are known to within ``doubt``."""
+    """Return whether a value is above a threshold, each known to within ``doubt``."""
     if abs(value - threshold) <= doubt:
         return "undecided"
     return "reproduced" if value > threshold else "contradicted"
 
 
 def _mean(values: Array) -> tuple[float, float]:
-    """Mean of the members, and half its confidence interval by Student's distribution."""
+    """Return the mean of the members, and half its Student's confidence interval."""
     quantile = student.ppf(0.5 + 0.5 * CONFIDENCE, values.size - 1)
     return float(values.mean()), float(quantile * values.std(ddof=1) / np.sqrt(values.size))
 
 
 def _share(shows: Mask) -> tuple[float, float]:
-    """Share of members that show something, and twice its standard error at one half."""
+    """Return the share of members with a property, and twice its standard error at one half."""
     return float(shows.mean()), 1.0 / float(np.sqrt(shows.size))
 
 
 def _apart(run: RunQuery, models: Sequence[Model], place: str) -> Array:
-    """(num_times,) largest difference of any two models, as a part of the largest range."""
+    """Return the largest difference (num_times,) of any two models, as a part of the range."""
     curves = np.array([run.curve(model, place) for model in models])
     return np.asarray(np.ptp(curves, axis=0) / max(map(_range, curves)))
 
 
 def _half_part(middle: float) -> str:
-    """When the models of the middle member part, infinite if they do not."""
+    """Return when the models of the middle member diverge, infinite if they do not."""
     if not np.isfinite(middle):
         return "In most members no peaks are further apart."
     return f"In half of them the first such peak is at {middle:.1f} s or before."
 
 
 def _horizons(run: RunQuery, models: list[Model]) -> str:
-    """From when on a single run of each model is a sample."""
+    """Return the times from which a single run of each model is a sample."""
     horizons = [run.horizon(model, DIVERGENCE) for model in models]
     times = [time for time in horizons if time is not None]
     if not times:
@@ -434,7 +434,7 @@ def _horizons(run: RunQuery, models: list[Model]) -> str:
 
 
 def _all_of(*parts: Judgement) -> Judgement:
-    """One part contradicted contradicts the whole; it takes all to reproduce."""
+    """Return the common judgement: contradicted if one part is, reproduced if all parts are."""
     if "contradicted" in parts:
         return "contradicted"
     return "undecided" if "undecided" in parts else "reproduced"
@@ -448,6 +448,6 @@ def _range(curve: Array) -> float:
 
 
 def _exponents(run: RunQuery, model: Model) -> list[set[float]]:
-    """n of each joint, as the model sees it."""
+    """Return n of each joint in a model."""
     joints = model.joined(run.results.boom).boom.joints
     return [{term.exponent for term in joint.contact.terms} for joint in joints]

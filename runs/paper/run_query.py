@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What the rules on the paper's statements ask of a run, and how far models diverge."""
+"""Quantities of a run that the rules on the paper's statements need, and model divergence."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from runs.case.schema import Case, Model
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary
 
-# Beyond the last peak a motion may end before the next one comes, so many periods of its own.
+# After the last peak a motion may end before the next one, within this number of its periods.
 NEXT_PEAK = 1.5
 
 _Found = TypeVar("_Found")
 
 
 class MissingData(Exception):
-    """What a rule needs and the run does not have, as a sentence."""
+    """Error for a quantity that a rule needs and the run lacks, as a sentence."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunQuery:
-    """What the rules ask of a run; each question raises :class:`MissingData` without an answer.
+    """Query of a run for the rules; each method raises :class:`MissingData` without a result.
 
     Args:
         results: of the run.
@@ -39,12 +39,12 @@ class RunQuery:
 
     @property
     def case(self) -> Case:
-        """Which model is which."""
+        """Case of the run, by which models are identified."""
         return self.results.case
 
     @property
     def time(self) -> Array:
-        """(num_times,) in s."""
+        """Output times (num_times,) in s."""
         return np.asarray(self.results.trajectories["time"].values, dtype=float)
 
     def check_ran(self, model: Model) -> None:
@@ -56,7 +56,7 @@ class RunQuery:
             raise MissingData(f"{model.name!r} did not run.")
 
     def curve(self, model: Model, place: str = "tip") -> Array:
-        """(num_times,) deflection in m."""
+        """Return a deflection (num_times,) in m."""
         self.check_ran(model)
         if place not in self.results.trajectories:
             raise MissingData(f"No {place} in this run.")
@@ -67,7 +67,7 @@ class RunQuery:
         return deflection
 
     def members(self, *models: Model) -> Array:
-        """(num_models, num_members, num_times) tip in m."""
+        """Return the tip (num_models, num_members, num_times) in m."""
         for model in models:
             self.curve(model)
         if self.results.ensembles is None:
@@ -76,51 +76,51 @@ class RunQuery:
         return np.asarray(tips.transpose("model", "member", "time").values, dtype=float)
 
     def found(self, model: Model) -> ModelSummary:
-        """What the summary says of a model."""
+        """Return the summary of a model."""
         self.check_ran(model)
         return self.results.summary.models[model.name]
 
     def horizon(self, model: Model, share: float) -> float | None:
-        """When the members of a model are a share of the tip's range apart, in s; None if never."""
+        """Return when members of a model differ by a share of the tip's range (s), or None."""
         return _there(model, "ensemble", self.found(model).ensemble).horizon(share)
 
     def first_contact(self, model: Model) -> float:
-        """In s."""
+        """Return the time of the first contact in s."""
         return _there(model, "first contact", self.found(model).first_contact)
 
     def peak_time(self, model: Model) -> float:
-        """Of the first peak of the tip in s."""
+        """Return the time of the tip's first peak in s."""
         return _there(model, "first peak", self.found(model).first_peak["tip"].time)
 
     def peak_height(self, model: Model) -> float:
-        """Of the first peak of the tip in m."""
+        """Return the height of the tip's first peak in m."""
         return _there(model, "first peak", self.found(model).first_peak["tip"].height)
 
     def fewest_steps(self, model: Model) -> int:
-        """That keep the first slow peaks."""
+        """Return the fewest steps that preserve the first slow peaks."""
         needed = self.found(model).steps_for_peaks
         return _there(model, "steps for peaks", needed.fewest if needed else None)
 
     def slow_below(self) -> float:
-        """Cut-off of the slow motion in Hz."""
+        """Return the cut-off of the slow motion in Hz."""
         asked = self.results.summary.ensemble
         if asked is None or asked.slow_below is None:
             raise MissingData("The run is too coarsely reported for a slow motion.")
         return asked.slow_below
 
     def one(self, what: str, fits: Callable[[Model], bool]) -> Model:
-        """The model that fits; of several the one that is called ``what``, else the first."""
+        """Return the matching model; of several the one named ``what``, else the first."""
         found = sorted(filter(fits, self.case.models), key=lambda model: model.name != what)
         if not found:
             raise MissingData(f"The case has no model like {what!r}.")
         return found[0]
 
     def four_terms(self) -> Model:
-        """The series with a rigid inner segment."""
+        """Return the series with a rigid inner segment."""
         return self.one("kantorovich-4", lambda model: terms(model) == (2, 2))
 
     def five_terms(self) -> Model:
-        """The series with one bending function more in the inner segment, else as with four."""
+        """Return the series with one bending function more in the inner segment, else the same."""
         four = self.four_terms()
         return self.one(
             "kantorovich-5",
@@ -131,7 +131,7 @@ class RunQuery:
         )
 
     def beam_elements(self) -> Model:
-        """The paper's beam model with play."""
+        """Return the paper's beam model with play."""
         return self.one(
             "beam-fe",
             lambda model: (
@@ -140,15 +140,15 @@ class RunQuery:
         )
 
     def shell(self) -> Model:
-        """The shell."""
+        """Return the shell."""
         return self.one("shell", lambda model: model.meshed)
 
     def play_free(self) -> Model:
-        """The beam model without play."""
+        """Return the beam model without play."""
         return self.one("beam-fe-tied", lambda model: model.play_free)
 
     def with_play(self) -> list[Model]:
-        """All models whose segments can touch, two at least."""
+        """Return all models with contact between segments, two at least."""
         models = [model for model in self.case.models if not model.play_free]
         if len(models) < 2:
             raise MissingData("It takes two models with play to compare.")
@@ -177,28 +177,28 @@ def _there(model: Model, what: str, value: _Found | None) -> _Found:
 
 
 def terms(model: Model) -> tuple[int, ...]:
-    """The numbers of a series' functions; none for other models."""
+    """Return the numbers of a series' functions; none for other models."""
     return next((series.terms for series in of_kind(Kantorovich, [model])), ())
 
 
 def options(model: Model, *ignored: str) -> dict[str, Any]:
-    """What a model is, but for its name and the ignored keys."""
+    """Return the options of a model, without its name and the ignored keys."""
     return model.model_dump(exclude={"name", *ignored})
 
 
 def apart_at_the_end(one: Array, other: Array, last: Mask) -> Array:
-    """Return (num_members,) largest difference at the last times, as a part of the larger range.
+    """Return the largest difference (num_members,) at the last times, as a part of the range.
 
     Args:
         one, other: (num_members, num_times) of one quantity.
-        last: (num_times,) which times count.
+        last: (num_times,) mask of the last times.
     """
     scale = np.maximum(np.ptp(one, axis=1), np.ptp(other, axis=1))
     return np.asarray(np.abs(one - other)[:, last].max(axis=1) / scale)
 
 
 def peaks_apart(curves: Array, time: Array, cutoff: float) -> tuple[Array, Array]:
-    """Return how far the peaks of several slow motions are from one another, peak by peak.
+    """Return distances between the peaks of several slow motions, peak by peak.
 
     The k-th peak of one model belongs to the k-th of every other. Their distance is the larger of
     that in time, as a part of the mean period, and that in height, as a part of the highest; it is

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The statements of the paper, and the keys of a case that ask for their verdicts."""
+"""Statements of the paper, and the keys of a case that request their verdicts."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ STATEMENTS: dict[StatementId, str] = {
     "and plane.",
 }
 
-# What a run's folder may hold a copy of: a survey of the paper's readings, and what numerics of its
-# time show.
+# Possible copies in a run's folder: a survey of the paper's readings, and results of numerics of
+# its time.
 SURVEY_FILE, THEN_FILE = "readings.json", "then.json"
 
 
@@ -40,5 +40,5 @@ class CaseKeys(Table):
     """the statements of the paper that the run must reproduce"""
 
     def unjudged(self) -> Self:
-        """Return the same case without them."""
+        """Return the same case without these keys."""
         return self.model_copy(update={"statements": (), "demand": ()})

@@ -42,15 +42,15 @@ _Read = TypeVar("_Read")
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """One statement, judged.
+    """Verdict on one statement.
 
     Args:
-        id: by which the case knows it.
-        statement: what is claimed.
-        measured: the number that the rule looks at, None where there is none.
-        threshold: what it is held against.
+        id: in the case.
+        statement: the claim.
+        measured: number that the rule compares, None where there is none.
+        threshold: limit of this number.
         unit: of both; empty where there is none.
-        verdict: what the rule says.
+        verdict: result of the rule.
         why: what was compared, and what the number can and cannot decide.
         demanded: the case takes no other verdict than ``reproduced``.
         then: what numerics of the statement's own time show; empty where none were tried.
@@ -94,7 +94,7 @@ class Outcomes(BaseModel):
 
 
 def beside(verdicts: Sequence[Verdict], folder: Path, case: Case) -> list[Verdict]:
-    """Return the verdicts with what the file in a run's folder says; as they are without one.
+    """Return the verdicts completed from the file in a run's folder; unchanged without one.
 
     Raises:
         BadInput: the file is damaged, or of another case.
@@ -112,13 +112,13 @@ def beside(verdicts: Sequence[Verdict], folder: Path, case: Case) -> list[Verdic
 def read_copy(
     path: Path, case: Case, read: Callable[[Any], tuple[Sequence[str], _Read]], remedy: str
 ) -> _Read | None:
-    """Return what a JSON file in a run's folder holds; None where there is none.
+    """Return the content of a JSON file in a run's folder; None without the file.
 
     Args:
         path: of the file.
         case: the run's.
-        read: returns hashes of the cases that the data are of, and what they say.
-        remedy: how the file is made again.
+        read: returns hashes of the cases of the data, and their content.
+        remedy: how to make the file again.
 
     Raises:
         BadInput: it is damaged, or of another case.
@@ -139,7 +139,7 @@ def read_copy(
 
 
 def addition(case: Case, verdicts: Sequence[Verdict], surveyed: Sequence[Table] = ()) -> Addition:
-    """Return what verdicts, and a survey of the case's readings, add to the report of its run."""
+    """Return the additions of verdicts, and of a survey of readings, to the report of a run."""
     judged = [verdict.verdict for verdict in verdicts]
     known = evidence(case)
     figures = {"tip": 8, "head": 9} if case.regular else {"tip": 6, "head": 7}
@@ -170,7 +170,7 @@ def addition(case: Case, verdicts: Sequence[Verdict], surveyed: Sequence[Table] 
 
 
 def evidence(case: Case) -> Mapping[str, Sequence[str]]:
-    """Return what of a report bears on each statement: anchors, pictures before tables."""
+    """Return the evidence for each statement in the report: anchors, pictures before tables."""
     regular = case.regular
     heads = [f"figure-head-{number}" for number in range(2, len(case.joints) + 1)]
     heads = ["figure-head", *heads]
@@ -194,7 +194,7 @@ def evidence(case: Case) -> Mapping[str, Sequence[str]]:
 
 
 def show(judged: Mapping[str, Addition], console: Console) -> int:
-    """Print verdicts by the file of their run, and those that a case demands; the exit status."""
+    """Print verdicts by the file of their run, and those that a case demands; return the status."""
     runs: dict[str, Sequence[Verdict]] = {
         file: one.content["verdicts"] for file, one in judged.items()
     }
@@ -210,11 +210,11 @@ def show(judged: Mapping[str, Addition], console: Console) -> int:
 
 
 def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> None:
-    """Print one table of verdicts: on each statement that of the first run that decides it.
+    """Print one table of verdicts: for each statement that of the first run that decides it.
 
     Args:
         runs: the verdicts by the name of their case; nothing is printed if there are none.
-        console: where to.
+        console: of the output.
     """
     judging = [name for name, verdicts in runs.items() if verdicts]
     if not judging:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a designer asks of a boom, as tables: rest, modes, motion, drives, pads, stress, life."""
+"""Design results of a boom as tables: rest, modes, motion, drives, pads, stress, fatigue life."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from runs.report.model_tables import metric_columns
 from runs.report.numerals import NONE, amount, number
 from runs.report.tables import Column, Table
 
-# A part of a number that is next to nothing.
+# Share of a number that is negligible.
 HARDLY = 0.005
-# A part of what the others have that is none.
+# Share of the values of the other models that counts as zero.
 ROUND_OFF = 1.0e-9
 
 
 def answer_tables(results: Results) -> list[Table]:
-    """Return all but the first look that the run has numbers for, in the order of the questions."""
+    """Return all tables but the summary for which a run has numbers, in the report's order."""
     found = [
         play_table(results),
         *rest_tables(results),
@@ -41,7 +41,7 @@ def answer_tables(results: Results) -> list[Table]:
 
 
 def play_table(results: Results) -> Table | None:
-    """Return every number beside that of the same boom tied."""
+    """Return the results with play beside those of the same boom with bonded joints."""
     found = results.play
     if found is None:
         return None
@@ -59,7 +59,7 @@ def play_table(results: Results) -> Table | None:
 
 
 def rest_tables(results: Results) -> list[Table]:
-    """Return tilts by play, contact forces and reactions, at rest under the largest loads."""
+    """Return tilts by play, contact forces and support reactions in the state of rest."""
     farthest = {name: own.farthest_rest for name, own in results.summary.answers.models.items()}
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     as_extended = of_rests(results.case, rests.values())
@@ -122,7 +122,7 @@ def _reaction_table(results: Results) -> Table | None:
 
 
 def _unless_none(title: str, carried: list[float], form: str, unit: str) -> Iterator[Column]:
-    """Give what is carried, without the round-off of what carries none; no column of zeros."""
+    """Yield columns of section forces, round-off set to zero, without columns of zeros."""
     most = max(map(abs, carried), default=0.0)
     if most > 0.0:
         cells = [each if abs(each) > ROUND_OFF * most else 0.0 for each in carried]
@@ -130,7 +130,7 @@ def _unless_none(title: str, carried: list[float], form: str, unit: str) -> Iter
 
 
 def mode_table(results: Results) -> Table | None:
-    """Return the first modes of the boom, its joints pressed, of all models side by side."""
+    """Return the first modes of the boom with closed contacts, of all models side by side."""
     of = {
         name: {(mode.way, mode.number): mode.frequency for mode in own.modes}
         for name, own in results.summary.answers.models.items()
@@ -152,7 +152,7 @@ def mode_table(results: Results) -> Table | None:
 
 
 def peak_table(results: Results) -> Table | None:
-    """Return the largest of the motion beside what is at rest, of the models read first."""
+    """Return the maxima of the motion beside the values at rest, of the leading models."""
     of = {
         name: {(peak.what, peak.where, peak.unit): peak for peak in own.peaks}
         for name, own in results.moved.items()
@@ -172,7 +172,7 @@ def peak_table(results: Results) -> Table | None:
 
 
 def hardly(one: Added) -> bool:
-    """Whether play adds next to nothing."""
+    """Return whether play adds a negligible part."""
     return one.share is not None and abs(one.share) < HARDLY
 
 
@@ -183,7 +183,7 @@ def _peak_cell(peak: Peak | None) -> str:
 
 
 def times(peak: Peak) -> str:
-    """Return how many times what is at rest a peak is; empty where nothing is."""
+    """Return the ratio of a maximum to the value at rest; empty where the latter is zero."""
     return "" if peak.factor is None else f" (× {number(peak.factor)})"
 
 
@@ -225,7 +225,7 @@ def drive_table(results: Results) -> Table | None:
 
 
 def _effort(results: Results, model: str, suffix: str) -> tuple[float, float, float, float]:
-    """Return mean and largest force in N, largest power in W, work in J of a drive."""
+    """Return mean and maximum force in N, maximum power in W and work in J of a drive."""
     data = results.trajectories.sel(model=model)
     way, friction, power = (
         np.asarray(data[name + suffix].values, dtype=float)
@@ -238,7 +238,7 @@ def _effort(results: Results, model: str, suffix: str) -> tuple[float, float, fl
 
 
 def stick_slip_table(results: Results) -> Table | None:
-    """Return what every model and drive of a given stiffness does; None where all are stiff."""
+    """Return stick-slip results of every elastic drive and model; None where all are rigid."""
     rows = [
         (model, inner, own.stick_slip[name])
         for suffix, inner in results.case.driven.items()
@@ -270,7 +270,7 @@ def stick_slip_table(results: Results) -> Table | None:
 
 
 def record_tables(results: Results) -> Iterator[Table]:
-    """Yield a table for each answer that is one record of numbers in each model."""
+    """Yield a table for each result that is one record of numbers per model."""
     answers = results.summary.answers.models
     for name, kind in records(ModelAnswers).items():
         found = {m: getattr(own, name) for m, own in answers.items() if getattr(own, name)}
@@ -280,7 +280,7 @@ def record_tables(results: Results) -> Iterator[Table]:
 
 
 def pad_table(results: Results) -> Table | None:
-    """Return how hard the pads of each joint are pressed; None without pads of a size."""
+    """Return forces and pressures of the pads of each joint; None without pads of a given size."""
     pads = results.summary.pads
     if not pads:
         return None
@@ -301,7 +301,7 @@ def pad_table(results: Results) -> Table | None:
 
 
 def stress_table(results: Results) -> Table | None:
-    """Return the largest stresses of each segment: outer fibres of all models, walls of shells."""
+    """Return the maximum stresses of each segment: outer fibres of all models, plates of shells."""
     rows = []
     for name, own in results.moved.items():
         walls = {wall.segment: wall for wall in sorted(own.walls, key=lambda wall: wall.patch)}
@@ -330,7 +330,7 @@ def stress_table(results: Results) -> Table | None:
 
 
 def life_table(results: Results) -> Table | None:
-    """Return rainflow ranges of each segment, of the models that are read first."""
+    """Return rainflow ranges of each segment, of the leading models."""
     models = results.summary.answers.models
     rows = [
         (name, life)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The boom of a case as it is before anything moves: a drawing with all that holds and loads it."""
+"""Drawing of a case's boom in its initial position, with supports, loads and sections."""
 
 from __future__ import annotations
 
@@ -32,20 +32,20 @@ from runs.report import numerals, theme
 from runs.report.figure_context import Figure, Pen
 from runs.report.marks import PINNED, Mark, abbreviated, edges, look, marks
 
-# Of the panels' height the outermost section takes this part, in the one that draws heights larger.
+# Part of the panel's height that the outermost section takes where heights are exaggerated.
 SECTION_SHARE = 0.2
-# Size of the signs in pt, and of those of which there are many.
+# Size of the symbols in pt: usual, and where there are many.
 SIGN, SMALL = 15.0, 9.0
-# Heights in inches: of the panel along the boom, of the one to scale at most and at least, of the
+# Heights in inches: of the panel along the boom, of the panel to scale (maximum, minimum), of the
 # sections, of a line of the legend.
 LYING, HIGHEST, LEAST, SECTIONS, LEGEND_LINE = 1.8, 2.6, 0.7, 1.6, 0.24
-# Letters that fit in one of two columns of the legend.
+# Characters that fit in one of the two columns of the legend.
 LETTERS = 30
-# A boom that stands steeper than so many degrees leaves room for so many sections beside it.
+# Above this angle in degrees, this number of sections fits beside the boom.
 STEEP, BESIDE = 25.0, 3
-# What is left free beside the boom, as a part of its length.
+# Margin beside the boom, as a part of its length.
 MARGIN = 0.06
-# So many sections can be seen beside one another, m between two as a part of the largest one's
+# Maximum number of sections side by side, and the distance between two as a part of the largest
 # width.
 MOST, GAP = 8, 0.35
 
@@ -57,15 +57,15 @@ CAPTION = (
 
 @dataclass(slots=True)
 class Panel:
-    """A drawing of the boom, and what its signs mean.
+    """A drawing of the boom with the meanings of its symbols.
 
     Args:
-        axes: where it is.
-        boom: of which.
-        angle: at which it stands, in degrees.
-        larger: by how much heights are drawn larger.
-        whole: whether it shows all of the boom and no details.
-        meanings: text of the legend → its sign.
+        axes: of the drawing.
+        boom: to be drawn.
+        angle: of the boom, in degrees.
+        larger: factor by which heights are exaggerated.
+        whole: whether the panel shows all of the boom without details.
+        meanings: text of the legend → its symbol.
     """
 
     axes: Axes
@@ -77,19 +77,19 @@ class Panel:
 
     @property
     def turn(self) -> Transform:
-        """From x and z in m to the panel's places."""
+        """Transform from x and z in m to the panel's coordinates."""
         return Affine2D().scale(1.0, self.larger).rotate_deg(self.angle)
 
     def outline(self, corners: Sequence[tuple[float, float]] | Array, **given: Any) -> None:
-        """A filled polygon, x and z of its corners in m."""
+        """Draw a filled polygon from the x and z of its corners in m."""
         self.axes.add_patch(Polygon(self.turn.transform(np.array(corners)), closed=True, **given))
 
     def line(self, places: Sequence[Sequence[float] | Array] | Array, **given: Any) -> None:
-        """Through x and z in m."""
+        """Draw a line through x and z in m."""
         self.axes.plot(*self.turn.transform(np.array(places)).T, **given)
 
     def sign(self, mark: Mark) -> None:
-        """One of the boom's marks."""
+        """Draw the symbol of a mark at its places."""
         places = [(x, mark.z(self.boom, x)) for x in mark.places]
         size = SIGN if len(places) == 1 else SMALL
         shown = look(mark.turned(self.angle), mark.color, size)
@@ -101,7 +101,7 @@ class Panel:
 
 
 def boom(pen: Pen) -> list[Figure]:
-    """What the run is of."""
+    """Draw the boom of a run."""
     path = pen.folder / "boom.png"
     if not path.exists():
         draw_boom_of(pen.case, path)
@@ -109,10 +109,10 @@ def boom(pen: Pen) -> list[Figure]:
 
 
 def draw_boom_of(case: Case, path: Path) -> None:
-    """Draw a case's boom: to scale as it stands, along itself with heights larger, its sections.
+    """Draw a case's boom: to scale, along itself with exaggerated heights, and its sections.
 
     Args:
-        case: whose boom it is.
+        case: with the boom.
         path: of the PNG file.
     """
     with rc_context(theme.RC):
@@ -120,15 +120,15 @@ def draw_boom_of(case: Case, path: Path) -> None:
 
 
 def save_drawing(case: Case, file: str, picture: str) -> None:
-    """Draw a case's boom into a file, whole or not at all.
+    """Draw a case's boom into a file, written completely or not at all.
 
     Args:
-        case: whose boom it is.
-        file: how messages call the case.
-        picture: where it goes, as the user gave it.
+        case: with the boom.
+        file: name of the case in messages.
+        picture: path of the drawing, as the user gave it.
 
     Raises:
-        BadInput: that is no PNG file's name.
+        BadInput: the path does not end with ``.png``.
     """
     if Path(picture).suffix.lower() != ".png":
         raise BadInput(file, f"--picture {picture}", "must end in .png")
@@ -137,7 +137,7 @@ def save_drawing(case: Case, file: str, picture: str) -> None:
 
 
 def boom_sheet(case: Case, boom: Boom) -> Sheet:
-    """The drawing, before it is on the disk."""
+    """Return the sheet of the drawing, not yet written to the disk."""
     angle = 0.0 if case.gravity is None else case.gravity.angle
     low, high = _extent(boom, angle)
     sections = [
@@ -183,7 +183,7 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
 
 
 def _draw_whole(panel: Panel, signs: Sequence[Mark]) -> None:
-    """To scale, at its angle, between what it stands on and what it carries."""
+    """Draw the boom to scale at its angle, with its supports and loads."""
     _draw(panel, [mark for mark in signs if len(mark.places) == 1])
     boom, axes, angle = panel.boom, panel.axes, panel.angle
     low, high = _extent(boom, angle)
@@ -205,11 +205,11 @@ def _draw_whole(panel: Panel, signs: Sequence[Mark]) -> None:
 
 
 def _draw_along(panel: Panel, signs: Sequence[Mark]) -> None:
-    """Lying, with heights larger, names and x."""
+    """Draw the boom horizontally, with exaggerated heights, names and x."""
     _draw(panel, signs)
     boom, axes, larger = panel.boom, panel.axes, panel.larger
     for number, segment in enumerate(boom.segments):
-        # Above the part that is seen, the names of many on two lines.
+        # Many names stand on two lines above the visible part.
         hidden = boom.segments[number - 1].end if number else segment.start
         middle = 0.5 * (max(hidden, segment.start) + segment.end)
         axes.annotate(
@@ -236,7 +236,7 @@ def _draw_along(panel: Panel, signs: Sequence[Mark]) -> None:
 
 
 def _draw(panel: Panel, signs: Sequence[Mark]) -> None:
-    """The boom with everything that holds and loads it."""
+    """Draw the boom with its supports and loads."""
     for number in reversed(range(len(panel.boom.segments))):
         _draw_segment(panel, number)
     for joint in () if panel.whole else panel.boom.joints:
@@ -272,7 +272,7 @@ def _draw_segment(panel: Panel, number: int) -> None:
 
 
 def _draw_stations(panel: Panel, joint: Joint) -> None:
-    """Bars across what the two segments leave between them, above and below."""
+    """Draw bars across the clearance of two segments, above and below."""
     outer, inner = (panel.boom.segments[number] for number in (joint.outer, joint.inner))
     color = theme.PLAY_FREE if joint.tied else theme.INK
     bar: dict[str, Any] = {"color": color, "linewidth": 4.0, "solid_capstyle": "butt"}
@@ -285,7 +285,7 @@ def _draw_stations(panel: Panel, joint: Joint) -> None:
 
 
 def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
-    """From lug to ground; without its lower part where not all is shown."""
+    """Draw a cylinder from lug to ground; without its lower part where details are shown."""
     lug, ground = np.array([cylinder.x, -cylinder.depth]), np.array(cylinder.ground)
     if not panel.whole:
         ground = lug + (ground - lug) * min(1.0, 0.6 / panel.larger)
@@ -299,7 +299,7 @@ def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
 
 
 def _extent(boom: Boom, angle: float) -> tuple[Array, Array]:
-    """(2,) the lowest and the highest place of a boom at an angle in degrees, in m."""
+    """Return the lowest and the highest point (2,) of a boom at an angle in degrees, in m."""
     ends = [(x, z) for s in boom.segments for x in s.ends for z in edges(boom, s, x)]
     ends.append((boom.tip + _farthest(boom), 0.0))
     places = np.array([*ends, *(one.ground for one in boom.cylinders)])
@@ -308,19 +308,19 @@ def _extent(boom: Boom, angle: float) -> tuple[Array, Array]:
 
 
 def _farthest(boom: Boom) -> float:
-    """How far in m the tip comes beyond where it is."""
+    """Return the maximum extension of the tip beyond its initial position, in m."""
     return max(0.0, farthest(boom, len(boom.segments) - 1))
 
 
 def _larger(boom: Boom) -> float:
-    """By how much heights are drawn larger."""
+    """Return the factor by which heights are exaggerated."""
     tallest = max(np.ptp(edges(boom, s, x)) for s in boom.segments for x in s.ends)
     wanted = SECTION_SHARE * LYING * (1.0 + 2.0 * MARGIN) * boom.length / theme.WIDTH / tallest
     return max(1.0, float(f"{wanted:.1g}"))
 
 
 def _remarks(case: Case, boom: Boom) -> Iterator[str]:
-    """What has no sign."""
+    """Yield remarks on loads and supports that have no symbol."""
     loose = [joint for joint in boom.joints if not joint.tied]
     if loose:
         yield f"play {_several(1e3 * joint.play for joint in loose)} mm"
@@ -340,7 +340,7 @@ def _several(values: Iterable[float]) -> str:
 
 
 def _draw_sections(axes: Axes, sections: Sequence[tuple[str, Section]]) -> None:
-    """Sections beside one another to one scale, with their sizes in mm below."""
+    """Draw sections side by side to one scale, with their dimensions in mm below."""
     widest = max(section.size("y") for _, section in sections)
     lowest = min(section.reach("z")[0] for _, section in sections)
     highest = max(section.reach("z")[1] for _, section in sections)
@@ -367,14 +367,14 @@ def _draw_sections(axes: Axes, sections: Sequence[tuple[str, Section]]) -> None:
 
 
 def _thick(plate: Plate) -> Array:
-    """(4, 2) corners of a plate as thick as it is, longer by half of that at both ends."""
+    """Return the corners (4, 2) of a plate, extended by half its thickness at both ends."""
     half = 0.5 * plate.thickness * plate.tangent
     start, end, across = plate.start - half, plate.end + half, np.array([-half[1], half[0]])
     return np.array([start - across, end - across, end + across, start + across])
 
 
 def _walls(section: Section) -> str:
-    """How thick they are in mm, by name where webs, which carry what acts along z, differ."""
+    """Return thicknesses in mm, by name where webs (shear along z) and flanges differ."""
     webs = {number for number, _ in section.carriers("z")}
     thick = [round(1e3 * plate.thickness, 1) for plate in section.plates]
     web, flange = (

@@ -27,22 +27,22 @@ from runs.report.sheet import MATTE, SHEET, Camera, Sheet, sharp_edges, stage, s
 
 PIXELS = (SHEET[0], 470)
 
-# Size of the signs in pt, and length of a cylinder in pixels.
+# Size of the symbols in pt, and length of a cylinder in pixels.
 SIGN, CYLINDER = 30.0, 70.0
 
 
 @dataclass(frozen=True, slots=True)
 class BoomView:
-    """What the pictures of a boom share, so that they can be compared.
+    """View settings that all pictures of a boom share, for comparison.
 
     Args:
         scene: in motion.
         scale: of displacements and play.
-        largest: deflection, up or down, in mm.
-        camera: sees the boom at every instant.
+        largest: magnitude of deflection in mm.
+        camera: shows the boom at every instant.
         span: the least and the largest x in m of the boom.
-        rest: pyvista surface of the boom at rest.
-        edges: the sharp edges of it.
+        rest: pyvista surface of the undeformed boom.
+        edges: its sharp edges.
     """
 
     scene: Scene
@@ -61,9 +61,9 @@ class BoomView:
         pixels: tuple[int, int] = PIXELS,
         displacement: float = DISPLACEMENT_DRAWN,
     ) -> BoomView:
-        """The view for pictures of these instants, of so many pixels each way.
+        """Return the view for pictures of these instants, of a given number of pixels each way.
 
-        Displacements are drawn up to a part of the boom's length.
+        Displacements are magnified up to a part of the boom's length.
         """
         times = [instant.time for instant in instants]
         heights = [moved[:, 2] for moved in scene.displacements(times)]
@@ -79,7 +79,7 @@ class BoomView:
         return cls(
             scene=scene,
             scale=scale,
-            # A scale of colours has two ends, even at rest.
+            # A colour scale needs two different ends, even at rest.
             largest=1.0e3 * max(high, -low, SAME_PLACE),
             camera=Camera(centre, width, pixels, elevation=10.0),
             span=(begin, end),
@@ -88,19 +88,19 @@ class BoomView:
         )
 
     def places(self, moved: Array, time: float) -> Array:
-        """(num_points, 3) where the points are drawn, displaced by (num_points, 3) in m."""
+        """Return points (num_points, 3) in the picture, displaced by (num_points, 3) in m."""
         places = self.scene.drawn(moved, self.scale)
         places[:, 0] += self.scene.along(time)
         return places
 
     def edges_at(self, places: Array) -> Any:
-        """The sharp edges of the boom as a pyvista mesh, where its points are drawn."""
+        """Return the sharp edges of the boom as a pyvista mesh at the displaced points."""
         edges = self.edges.copy()
         edges.points = places[edges["number"]]
         return edges
 
     def draw_marks(self, sheet: Sheet, places: Array) -> str:
-        """Put the signs of what holds and loads the boom on a sheet; what they are, in words."""
+        """Draw the symbols of supports and loads on a sheet; return their meanings in words."""
         scene, axes = self.scene, sheet.picture
         shown = [mark for mark in scene.marks if len(mark.places) == 1]
         for mark in shown:
@@ -128,13 +128,13 @@ class BoomView:
 def draw_boom(
     view: BoomView, instants: Sequence[Instant], until: float, pace: str = "", part: float = 1.0
 ) -> Iterator[Image.Image]:
-    """The deformed boom, above the deflection of its tip in time.
+    """Draw the deformed boom above the deflection of its tip over time.
 
     Args:
-        view: of a boom.
+        view: of the boom.
         instants: of the pictures.
         until: last time in s of the tip's curve.
-        pace: how fast a film shows it.
+        pace: speed of a film relative to real time.
         part: see :class:`runs.report.sheet.Sheet`.
     """
     scene, camera = view.scene, view.camera
@@ -152,7 +152,7 @@ def draw_boom(
     curve.plot(time, tip, color=theme.FAINT, linewidth=2)
     curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
     with stage(camera.pixels, part) as plotter:
-        # A little behind the boom, or it would shine through where that hardly moves.
+        # Slightly behind the boom, where it would otherwise show through parts that hardly move.
         behind = view.edges_at(view.rest.points + np.array([0.0, 0.02, 0.0]))
         plotter.add_mesh(behind, color=theme.FAINT, line_width=3.0 * part, lighting=False)
         boom = view.rest.copy()
@@ -185,7 +185,7 @@ def draw_boom(
 
 
 def _at(scene: Scene, places: Array, segment: int, x: float, z: float) -> Array:
-    """(3,) where a point of a section's plane of symmetry is drawn, from what is drawn of it."""
+    """Return the place (3,) of a point in a section's plane of symmetry, from displayed points."""
     mine = (scene.owner == segment) & (np.abs(scene.points[:, 0] - x) < SAME_PLACE)
     low, high = scene.edges(segment, x)
     section = places[mine]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Curves over time that a reader can zoom, hover and hide, beside their pictures.
+"""Interactive curves over time (zoom, hover, hide) beside their static pictures.
 
 A page carries plotly.js once, compressed, and the numbers of each chart as 32-bit floats: seven
-digits of what the netCDF file has.
+digits of the values in the netCDF file.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import numpy as np
 
 from geometry.arrays import Array
 
-# A curve of more samples is drawn by the lowest and the highest of each of half as many stretches:
+# A curve with more samples is reduced to the minimum and maximum of each of half as many intervals:
 # more than a screen has columns.
 MOST = 12_000
 
@@ -30,13 +30,13 @@ class Curve:
     """One line of a chart.
 
     Args:
-        name: of the model, or what else it is of.
+        name: of the model or of another source.
         values: (num_times,) in the unit of the chart.
         color: as CSS has it.
-        dashes: how plotly calls them.
-        shown: at first, else on demand.
+        dashes: by plotly's name.
+        shown: whether the curve is visible at first, else on demand.
         panel: position of its panel.
-        band: (num_times,) each, the lowest and the highest around it.
+        band: (num_times,) each, lower and upper limit.
         at: (num_times,) its own abscissa; that of the chart unless given.
     """
 
@@ -52,14 +52,14 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """Curves over one time, in panels above one another.
+    """Curves over a common time, in panels above one another.
 
     Args:
-        time: (num_times,) in s, or what else the curves are over.
+        time: (num_times,) in s, or another abscissa.
         heading: of the ordinate, with its unit.
         curves: of all panels.
         panels: their titles.
-        window: of the time that is shown at first, in s; all of it unless given.
+        window: of time shown at first, in s; all of it unless given.
         along: heading of the abscissa.
     """
 
@@ -72,12 +72,12 @@ class Chart:
 
     @property
     def thinned(self) -> bool:
-        """Whether it leaves out samples."""
+        """Whether the chart leaves out samples."""
         return self.time.size > MOST
 
     @property
     def data(self) -> dict[str, Any]:
-        """For the script of the page."""
+        """Content of the chart for the script of the page."""
         return {
             "time": _packed(self.time, "<f8"),
             "heading": self.heading,
@@ -109,7 +109,7 @@ class Chart:
 
 
 def extremes(values: Array, stretches: int) -> np.ndarray[Any, np.dtype[np.intp]]:
-    """(num_kept,) numbers, rising, of the lowest and the highest sample of each stretch."""
+    """Return sorted numbers (num_kept,) of the minimum and maximum sample of each interval."""
     ends = np.linspace(0, values.size, stretches + 1).astype(int)
     known = np.nan_to_num(values)
     kept = {
@@ -121,14 +121,14 @@ def extremes(values: Array, stretches: int) -> np.ndarray[Any, np.dtype[np.intp]
 
 
 def packed_charts(charts: Mapping[str, Chart]) -> str:
-    """All charts of a page by the names of their figures, as JSON that HTML can hold."""
+    """Return all charts of a page by the names of their figures, as JSON escaped for HTML."""
     text = json.dumps({name: chart.data for name, chart in charts.items()}, allow_nan=False)
     return text.replace("<", "\\u003c")
 
 
 @cache
 def packed_plotly() -> str:
-    """plotly.js as its wheel has it, compressed, in base 64."""
+    """Return plotly.js from its wheel, compressed, in base 64."""
     from plotly.offline import get_plotlyjs
 
     return base64.b64encode(gzip.compress(get_plotlyjs().encode(), 9, mtime=0)).decode("ascii")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A run for reading: one HTML file that needs nothing else, and the tables of the terminal."""
+"""Presentation of a run: one self-contained HTML file, and the tables of the terminal."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from runs.report.numerals import number, percent
 from runs.report.pages import Addition, page
 from runs.report.tables import Column, Table
 
-# Columns of the models' table that fit a terminal → their headings there.
+# Columns of the models' table for the terminal → their headings there.
 SHOWN = {
     "model": "model",
     "degrees of freedom": "dofs",
@@ -46,14 +46,14 @@ def render(
     snapshots: Sequence[Figure],
     viewer: str = "",
 ) -> str:
-    """The report as HTML: every picture and script inside, no resource from elsewhere.
+    """Return the report as HTML: every picture and script inside, no external resource.
 
     Args:
         results: one run.
         addition: of a client.
         figures: on disk.
         snapshots: on disk.
-        viewer: file beside the report, in which the boom can be turned.
+        viewer: file of the interactive viewer beside the report.
 
     Where plotly is not installed the pictures of curves stand alone.
     """
@@ -106,12 +106,12 @@ def render(
 
 
 def _numbered(kind: str, things: Iterable[Table | Figure]) -> list[tuple[Table | Figure, str]]:
-    """Each with what the text calls it, *Table 1* and so forth; the blank does not break."""
+    """Return each item with its label, *Table 1* and so forth, with a no-break space."""
     return [(thing, f"{kind}\N{NO-BREAK SPACE}{i}") for i, thing in enumerate(things, start=1)]
 
 
 def _costs(results: Results) -> Mapping[str, str]:
-    """What each model's stages took, and how near a reduction is."""
+    """Return computing times of the stages of each model, and the accuracy of a reduction."""
     costs = {}
     for name, model in results.summary.models.items():
         parts = [f"{stage} {seconds:.2f} s" for stage, seconds in model.seconds.items()]
@@ -130,7 +130,7 @@ def _costs(results: Results) -> Mapping[str, str]:
 
 
 def print_models(results: Results, console: Console) -> None:
-    """Print the table of a run's models, how near shells are, and cautions."""
+    """Print the table of a run's models, the accuracy of shells, and cautions."""
     found = {column.heading: column.text for column in model_table(results).columns}
     columns = [Column(SHOWN[one], found[one]) for one in found if one in SHOWN]
     Table(results.case.title, columns).show(console)
@@ -139,7 +139,7 @@ def print_models(results: Results, console: Console) -> None:
 
 
 def _found_of_models(results: Results) -> Iterator[str]:
-    """Give how near shells are to what they stand for, and how tips swing while they telescope."""
+    """Yield the accuracy of shells and the residual vibration of tips during telescoping."""
     for name, model in results.summary.models.items():
         if errors := model.reduction_errors:
             yield (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What all figures of a run share: its numbers, one stroke per model, a sheet, and the disk."""
+"""Context that all figures of a run share: numbers, one line style per model, sheets, the disk."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.charts import Chart, Curve
 
-# Where in the report a figure belongs.
+# Parts of the report to which figures belong.
 Part = Literal["case", "motion", "rest", "knowledge", "numerics"]
 
-# Widths of the curves that stand behind the leading ones, as a part of theirs.
+# Widths of background curves, as a part of those of the leading curves.
 BEHIND = 0.5
-# A close-up lasts so many times as long as the first peak takes.
+# A close-up lasts this multiple of the time of the first peak.
 PAST = 1.3
-# An axis shows no less than this part of what it is about.
+# An axis spans at least this part of its quantity's scale.
 HARDLY_CHANGES = 0.02
-# Strokes of drives.
+# Line styles of drives.
 EXTENSIONS = ("-", "--", "-.", ":")
-# How plotly calls the strokes.
+# Plotly's names of the line styles.
 CHART_DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
 THINNED = (
     " On a screen each curve is drawn by the lowest and the highest of every few samples; "
@@ -43,14 +43,14 @@ THINNED = (
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A picture on disk, and what it shows.
+    """A picture on disk with its title and caption.
 
     Args:
         path: PNG or GIF.
-        title: a line.
+        title: one line.
         caption: sentences.
-        part: of the report where it belongs.
-        chart: the same curves for whoever reads it on a screen.
+        part: of the report to which the figure belongs.
+        chart: the same curves as an interactive chart.
     """
 
     path: Path
@@ -61,12 +61,12 @@ class Figure:
 
     @property
     def anchor(self) -> str:
-        """What a link in the report points to."""
+        """Target of links in the report."""
         return f"figure-{self.path.stem}"
 
 
 class Pen:
-    """Draws one run's figures with one stroke per model."""
+    """Context for drawing one run's figures, with one line style per model."""
 
     def __init__(self, results: Results, folder: Path) -> None:
         self.case = results.case
@@ -89,13 +89,13 @@ class Pen:
         self.leading = results.read_first
 
     def of(self, name: str, variable: str) -> Array:
-        """(num_times,) of one model; (num_times, num_stations) of what stations have."""
+        """Return a result (num_times,) of a model, at stations (num_times, num_stations)."""
         values = self.data[variable].sel(model=name)
         dims = [dim for dim in ("time", "station") if dim in values.dims]
         return np.asarray(values.transpose(*dims).values, dtype=float)
 
     def stations(self) -> list[str]:
-        """What the panels of the stations are called."""
+        """Return the names of the stations' panels."""
         places = self.data["station"]
         if "direction" not in places.coords:
             return [f"x = {x:g} m" for x in places.values]
@@ -115,7 +115,7 @@ class Pen:
         marker: str = "",
         alone: bool = False,
     ) -> None:
-        """A curve of one model; one that is alone in its panel needs no dashes to be known."""
+        """Draw a curve of one model, without dashes where it is alone in its panel."""
         stroke = self.strokes[name]
         behind = not alone and name not in self.leading
         axes.plot(
@@ -131,7 +131,7 @@ class Pen:
         )
 
     def curve(self, name: str, values: Array, panel: int = 0, **more: Any) -> Curve:
-        """The same for a chart, whose axes are in the unit of the values."""
+        """Return the curve for a chart, whose axes are in the unit of the values."""
         stroke = self.strokes[name]
         dashes, shown = CHART_DASHES[stroke.linestyle], name in self.leading
         return Curve(self.labels[name], values, stroke.color, dashes, shown, panel, **more)
@@ -139,7 +139,7 @@ class Pen:
     def plot(
         self, axes: Axes, values: Mapping[str, Array], panel: int = 0, linewidth: float = 1.5
     ) -> list[Curve]:
-        """Draw a line over time for each model; the same for a chart."""
+        """Draw a line over time for each model; return the curves of the chart."""
         for name, curve in values.items():
             self.line(axes, name, self.time, curve, linewidth)
         return [self.curve(name, curve, panel) for name, curve in values.items()]
@@ -147,13 +147,13 @@ class Pen:
     def over_time(
         self, panels: int, height: float, end: float | None = None, share_y: bool = False
     ) -> tuple[Sheet, list[Axes]]:
-        """A sheet as of :func:`new_sheet` over time, with how far drives have extended the boom.
+        """Return a sheet of :func:`new_sheet` over time, with the extension by the drives.
 
         The time ends with the run unless an end is given in s.
         """
         sheet, column = new_sheet(panels, height, share_y)
         column[-1].set(xlabel="time (s)", xlim=(0.0, self.time[-1] if end is None else end))
-        # Segments that go together are one line.
+        # Segments that move together are one line.
         together: dict[tuple[float, ...], list[str]] = {}
         for suffix, inner in self.case.driven.items():
             if f"drawn_out{suffix}" in self.data:
@@ -172,14 +172,14 @@ class Pen:
 
     @property
     def stays_pressed(self) -> bool:
-        """Whether no contact ever opens, and no impact lets small differences grow."""
+        """Whether no contact opens, so that no impact amplifies small differences."""
         touching = self.with_play if "contact_force" in self.data else ()
         forces = [self.of(name, "contact_force") for name in touching]
         return all(bool((np.nan_to_num(force) != 0.0).all()) for force in forces)
 
     @property
     def first_stretch(self) -> float:
-        """Until shortly after the first peaks of the tip, in s; the whole run without any."""
+        """Time until shortly after the first tip peaks in s; the whole run without peaks."""
         found = (self.summary[name].first_peak["tip"].time for name in self.models)
         peaks = [time for time in found if time is not None]
         end = float(self.time[-1])
@@ -195,7 +195,7 @@ class Pen:
         part: Part = "motion",
         chart: Chart | None = None,
     ) -> Figure:
-        """Title above, a legend of all below, and onto the disk; the last are :class:`Figure`'s."""
+        """Add title and legend, write the file, and return the :class:`Figure`."""
         if legend_of is not None:
             named: dict[str, Artist] = {}
             for axes in sheet.axes:
@@ -204,7 +204,7 @@ class Pen:
             sheet.legend([*named.values()], [*named], loc="outside lower left", ncols=2)
         sheet.suptitle(title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
         path = self.folder / f"{stem}.png"
-        # One that is there is of the same numbers.
+        # An existing file shows the same numbers.
         if not path.exists():
             sheet.savefig(path)
         if chart is not None and chart.thinned:
@@ -213,12 +213,12 @@ class Pen:
 
 
 def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet, list[Axes]]:
-    """A sheet with panels above one another that share their time.
+    """Return a sheet with panels above one another that share their time.
 
     Args:
-        panels: how many.
+        panels: number of panels.
         height: of the sheet in inches.
-        share_y: whether they have one scale.
+        share_y: whether the panels share a scale.
     """
     sheet = Sheet(figsize=(theme.WIDTH, height))
     theme.Canvas(sheet)
@@ -227,7 +227,7 @@ def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet,
 
 
 def no_closer(axes: Axes) -> None:
-    """Leave what hardly changes a flat line: round-off is not drawn as a curve."""
+    """Widen the limits around an almost constant curve, so that round-off is not drawn."""
     low, high = axes.get_ylim()
     least = HARDLY_CHANGES * max(abs(low), abs(high))
     if high - low < least:
@@ -236,23 +236,23 @@ def no_closer(axes: Axes) -> None:
 
 
 def farthest(values: Sequence[float] | Array) -> float:
-    """The finite one that is farthest from zero, with its sign, NaN if there are none."""
+    """Return the finite value of largest magnitude, with its sign; NaN if there are none."""
     finite = np.asarray(values)[np.isfinite(values)]
     return float(finite[np.abs(finite).argmax()]) if finite.size else float("nan")
 
 
 def highest(values: Sequence[float] | Array) -> float:
-    """The largest of the finite ones, NaN if there are none."""
+    """Return the largest finite value, NaN if there are none."""
     finite = np.asarray(values)[np.isfinite(values)]
     return float(finite.max()) if finite.size else float("nan")
 
 
 def of_start(case: Case) -> str:
-    """A sentence for what stands over x, or is named by it; empty where nothing is drawn out."""
+    """Return a sentence on initial positions for figures over x; empty without telescoping."""
     return " Places are those of t = 0, and go with their segments." if case.driven else ""
 
 
 def of_rests(case: Case, rests: Iterable[AtRest]) -> str:
-    """A sentence for how far a boom is drawn out where it rests; empty where nothing is."""
+    """Return a sentence on the extension of the boom at rest; empty without telescoping."""
     times = [f"{time:g}" for time in sorted({rest.time for rest in rests})]
     return f" Drawn out as it is at {listed(times)} s." if case.driven and times else ""

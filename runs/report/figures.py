@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The figures of a run, as PNG."""
+"""Figures of a run, as PNG."""
 
 from __future__ import annotations
 
@@ -62,11 +62,11 @@ FIGURES: Sequence[Callable[[Pen], list[Figure]]] = (
 
 
 def draw(results: Results, folder: Path) -> list[Figure]:
-    """Draw all figures of a run that it has the numbers for.
+    """Draw all figures for which a run has the numbers.
 
     Args:
         results: one run.
-        folder: where the PNG files go; it must exist. Those that are there stay as they are.
+        folder: of the PNG files; it must exist. Existing files are kept.
     """
     with matplotlib.rc_context(theme.RC):
         pen = Pen(results, folder)
@@ -74,7 +74,7 @@ def draw(results: Results, folder: Path) -> list[Figure]:
 
 
 def draw_in(results: Results, folder: Path) -> list[Figure]:
-    """Draw them into a run's folder, in place of all earlier ones of anything else."""
+    """Draw figures into a run's folder, in place of all earlier ones of other data."""
     figures, known = folder / FOLDER, folder / DRAWN_OF
     drawn_of = _drawn_of(results, folder)
     figures.mkdir(exist_ok=True)
@@ -89,7 +89,7 @@ def draw_in(results: Results, folder: Path) -> list[Figure]:
 
 
 def _drawn_of(results: Results, folder: Path) -> str:
-    """SHA-256 of all that decides what figures look like: data and this program."""
+    """Return the SHA-256 of all that determines the figures: data and this program."""
     bare = results.summary.model_copy(update={"snapshots": Snapshots(written=[], skipped=None)})
     digest = sha256(json.dumps([str(bare), program(), matplotlib.__version__]).encode())
     for path in (folder / name for name in (CASE, TRAJECTORIES, ENSEMBLES)):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a designer asks of a boom, on the first screen: what play adds, the answers, trust."""
+"""Summary of the design results on the first screen: effect of play, results, model quality."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from runs.report.figure_context import farthest
 from runs.report.numerals import NONE, SHOWN, amount, fixed, number, percent
 from runs.report.tables import Column, Table
 
-# To which part a swing has died that nobody heeds any more.
+# Decay time: until the vibration has fallen to this part.
 TENTH = 0.1
-# From which part of what it may bear a number stands out.
+# Utilisation from which on a number is highlighted.
 NEAR = 0.9
 
 
 def first_table(results: Results) -> Table | None:
-    """Return the answers of the models that are read first, the reference's before the others'."""
+    """Return the design results of the leading models, the reference's before the others'."""
     names, answers = results.read_first, results.summary.answers.models
     if not answers:
         return None
     own = [answers[name] for name in names]
     tips = [results.trajectories["tip"].sel(model=name).values for name in names]
     hertz = [one.modes[0].frequency if one.modes else None for one in own]
-    # By its modal damping, of an oscillation that nothing else takes energy from.
+    # By modal damping, of a vibration without other dissipation.
     decay = 2.0 * pi * results.case.damping.modal / log(1.0 / TENTH)
     fading = [1.0 / (decay * f) if f and decay else None for f in hertz]
     walls, fibres = [_walls(one) for one in own], [_fibres(one) for one in own]
@@ -49,7 +49,7 @@ def first_table(results: Results) -> Table | None:
         Column("Tip at rest, largest loads", [_at_rest(one.rests[1:]) for one in own], ".1f", "mm"),
         Column("Tip at rest where it is drawn to", drawn, ".1f", "mm"),
         Column("Tip in motion, farthest", [*map(_farthest, own, tips)], unit="mm"),
-        # What starts in the straight line has no need of it.
+        # A motion that starts undeformed needs no initial state.
         Column("Tip travels", [farthest(x - x[0]) if x[0] else None for x in tips], ".1f", "mm"),
         Column("Tip swings while it is drawn", [_swings(one) for one in own], unit="mm"),
         Column("Tip to the sides, farthest", _each(own, "lateral deflection"), unit="mm"),
@@ -75,7 +75,7 @@ def first_table(results: Results) -> Table | None:
 
 
 def trust_line(results: Results) -> str:
-    """Return how far the other models with play are off the reference; else empty."""
+    """Return the deviation of the other models with play from the reference; else empty."""
     answers, reference = results.summary.answers.models, results.reference
     if not answers or reference is None:
         return ""
@@ -97,7 +97,7 @@ def trust_line(results: Results) -> str:
 
 
 def play_sentence(results: Results) -> str:
-    """Return what play adds, of the model that the others are held against; else empty."""
+    """Return a sentence on the effect of play, of the reference model; else empty."""
     found = results.play
     if found is None:
         return ""
@@ -118,9 +118,9 @@ def play_sentence(results: Results) -> str:
 
 
 def strength_sentence(results: Results) -> str:
-    """Return the utilisation of steel and pads in the model that is read first, or an empty text.
+    """Return the utilisation of steel and pads in the leading model, or an empty text.
 
-    Where neither strengths, allowable pressures nor a life are known there is nothing to be said.
+    The text is empty where neither strengths, allowable pressures nor a fatigue life are known.
     """
     first = results.read_first[0]
     own = results.summary.answers.models.get(first, ModelAnswers())
@@ -148,7 +148,7 @@ def strength_sentence(results: Results) -> str:
 
 
 def _not_given(results: Results, model: str) -> str:
-    """Of what strength is not known: steel, and pads that a model presses."""
+    """Return which strengths are missing: of the steel, and of pads that a model presses."""
     steels = [one.name for one in results.boom.segments if one.material.yield_strength is None]
     pressed = (pad for pad in results.summary.pads if pad.model == model and pad.force > 0.0)
     pads = {pad.inner: None for pad in pressed if pad.utilisation is None}
@@ -169,7 +169,7 @@ def _more(one: Added) -> str:
 
 
 class _Largest(NamedTuple):
-    """A stress in Pa at x in m of a segment, and what part of its yield strength that is."""
+    """A stress in Pa at x in m of a segment, with its utilisation of the yield strength."""
 
     stress: float
     segment: str
@@ -190,19 +190,19 @@ def _fibres(own: ModelAnswers) -> _Largest | None:
 
 
 def _hardest(found: Iterable[_Largest]) -> _Largest | None:
-    """Return the one nearest to what its steel bears, else the largest."""
+    """Return the stress of the highest utilisation, else the largest stress."""
     return max(found, key=lambda one: (one.part or 0.0, one.stress), default=None)
 
 
 def _hardest_pads(results: Results) -> dict[str, PressedPad]:
-    """Return each model's pad nearest to what it may bear, else of the largest pressure."""
+    """Return each model's pad of the highest utilisation, else of the largest pressure."""
     pads = results.summary.pads[::-1]
     pads = sorted(pads, key=lambda pad: (pad.utilisation or 0.0, pad.pressure))
     return {pad.model: pad for pad in pads}
 
 
 def _pad(pad: PressedPad) -> str:
-    """Force and pressure of one, and where it is."""
+    """Return force, pressure and position of a pad."""
     used = _used(pad.utilisation, "allowable")
     force, pressure = amount(pad.force, "N"), amount(pad.pressure, "Pa")
     return f"{force}\n{pressure}{used}\n{pad.inner} {_FACES[pad.side]}, {pad.x:g} m"
@@ -216,7 +216,7 @@ def _stress(largest: _Largest) -> str:
 
 
 def _used(part: float | None, borne: str) -> str:
-    """A part of what may be borne."""
+    """Return a utilisation as text."""
     if part is None:
         return ""
     return f", {percent(part)}" + (f"\nbeyond {borne}" if part > 1.0 else "")
@@ -227,7 +227,7 @@ def _place(largest: _Largest) -> str:
 
 
 def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]:
-    """What the table's numbers are."""
+    """Yield notes that explain the table's numbers."""
     models = sorted(
         (model for model in results.ran if model.name in results.read_first),
         key=lambda model: results.read_first.index(model.name),
@@ -261,13 +261,13 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
 
 
 def _model(model: Model) -> str:
-    """What it is."""
+    """Return the description of a model."""
     tied = ", without play" if model.play_free else ""
     return f"{model.name}: {model.kind}, {model.describe()}{tied}"
 
 
 def _span(values: Iterable[float | None]) -> str:
-    """From the least to the largest in MPa; empty where none is known."""
+    """Return the range from minimum to maximum in MPa; empty where no value is known."""
     known = sorted({TO_MEGA * value for value in values if value is not None})
     return f"{' to '.join(map(number, dict.fromkeys((known[0], known[-1]))))} MPa" if known else ""
 
@@ -277,13 +277,13 @@ def _at_rest(rests: Sequence[AtRest]) -> float | None:
 
 
 def _farthest(own: ModelAnswers, tip: Array) -> str:
-    """Return the tip's farthest with its sign, and how many times the rest that is."""
+    """Return the maximum tip deflection with its sign, and its ratio to the value at rest."""
     peak = _peak(own, "deflection")
     return _milli(farthest(tip)) + (times(peak) if peak else "")
 
 
 def _swings(own: ModelAnswers) -> str | None:
-    """Return a swing about where the tip would rest, and those of the boom where drives end."""
+    """Return the residual vibration of the tip, and that of the boom where drives end."""
     if (swing := own.swing) is None:
         return None
     begun, ended = _milli(swing.where_begun), _milli(swing.where_ended)
@@ -299,7 +299,7 @@ def _each(own: Sequence[ModelAnswers], what: str) -> list[str | None]:
 
 
 def _largest(own: ModelAnswers, what: str, at: str = "") -> str | None:
-    """Return the largest of its kind in kN or mm, and where it is."""
+    """Return the maximum of a kind in kN or mm, with its position."""
     if (peak := _peak(own, what)) is None:
         return None
     return f"{number(SHOWN[peak.unit][1] * peak.largest, 4)}{times(peak)}{at.format(peak.where)}"
@@ -311,6 +311,6 @@ def _peak(own: ModelAnswers, what: str) -> Peak | None:
 
 
 def _life_damage(own: ModelAnswers) -> float | None:
-    """The largest; None without a detail category."""
+    """Return the largest fatigue damage; None without a detail category."""
     found = [life.life_damage for life in own.life if life.life_damage is not None]
     return max(found, default=None)

@@ -24,20 +24,20 @@ from runs.report.figure_context import (
 )
 from runs.report.numerals import fixed
 
-# Over a whole run only the largest force of each of so many intervals can be seen.
+# Over a whole run only the maximum of each of this number of intervals is visible.
 FORCE_BINS = 100
-# Below this a contact force is as good as none in a picture, in N.
+# Contact forces below this value in N count as zero in a picture.
 LEAST_FORCE = 1000.0
-# Impacts follow one another within milliseconds; their mean over so many s holds the boom.
+# Impacts follow one another within milliseconds; the mean over this time in s supports the boom.
 FORCE_WINDOW = 0.010
-# Labels on a logarithmic axis that do not crowd a panel of two inches.
+# Labels of a logarithmic axis that fit a panel of two inches.
 MOST_LABELS = 7
-# Room on it above the largest and below the smallest mark, as a factor.
+# Margin above the largest and below the smallest mark, as a factor.
 LOG_MARGIN = 1.2
 
 
 def first_contacts(pen: Pen) -> list[Figure]:
-    """Mean contact force at each station while single presses can be told apart."""
+    """Draw the mean contact force at each station while single contacts are distinguishable."""
     if not _touches(pen):
         return []
     end = pen.first_stretch
@@ -64,7 +64,7 @@ def first_contacts(pen: Pen) -> list[Figure]:
 
 
 def contact_peaks(pen: Pen) -> list[Figure]:
-    """Largest contact force at each station in each part of the run."""
+    """Draw the maximum contact force at each station in each interval of the run."""
     if not _touches(pen):
         return []
     bins = np.array_split(np.arange(pen.time.size), min(FORCE_BINS, pen.time.size))
@@ -93,7 +93,7 @@ def contact_peaks(pen: Pen) -> list[Figure]:
 
 
 def friction(pen: Pen) -> list[Figure]:
-    """Force of dry friction at each station where one model, the most complicated, rubs."""
+    """Draw the friction force at each station of the most detailed model with friction."""
     if "friction_force" not in pen.data or not pen.with_play:
         return []
     name = pen.with_play[-1]
@@ -116,7 +116,7 @@ def friction(pen: Pen) -> list[Figure]:
 
 
 def running_mean(pen: Pen, force: Array) -> Array:
-    """(num_times,) running mean over the window that impacts take, or what of it the run has."""
+    """Return the running mean (num_times,) over the window of impacts, at most over the run."""
     width = min(max(1, round(FORCE_WINDOW / (pen.time[1] - pen.time[0]))), force.size)
     window = np.ones(width)
     held = np.convolve(np.ones(force.size), window, mode="same")
@@ -128,7 +128,7 @@ def _touches(pen: Pen) -> bool:
 
 
 def _log_scale(panels: Sequence[Axes], values: Array) -> None:
-    """One logarithmic scale for all panels, with some labels however few decades it spans."""
+    """Set one logarithmic scale for all panels, with labels however few decades it spans."""
     known = values[np.isfinite(values)]
     if known.size == 0:
         return
@@ -150,7 +150,7 @@ def _log_scale(panels: Sequence[Axes], values: Array) -> None:
 
 
 def drives(pen: Pen) -> list[Figure]:
-    """Force and power of each drive; of one that gives way its own force, and how it follows."""
+    """Draw force and power of each drive; of elastic drives also their force and deflection."""
     return [
         draw(pen, suffix, inner)
         for suffix, inner in pen.case.driven.items()
@@ -211,7 +211,7 @@ def _of_drive(
     title: str,
     caption: str,
 ) -> Figure:
-    """Two results of a drive in all models, by their headings."""
+    """Draw two results of a drive in all models, given by their headings."""
     sheet, panels = pen.over_time(2, 5.2)
     curves = []
     for panel, (axes, (label, values)) in enumerate(zip(panels, shown.items(), strict=True)):
@@ -222,7 +222,7 @@ def _of_drive(
 
 
 def stress_history(pen: Pen) -> list[Figure]:
-    """Largest von Mises stresses of each shell in each part of the run, place by place."""
+    """Draw the maximum von Mises stresses of each shell per interval and position."""
     figures = []
     for name in pen.models:
         stress = pen.summary[name].stress

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The pictures of docs/gallery.md, from runs that are there.
+"""Pictures of docs/gallery.md, from finished runs.
 
 ``python -m runs.report.gallery`` takes them from the folders ``paper``, ``spatial``,
 ``three-segments`` and ``convergence`` of runs/out, which ``make verify convergence`` leaves, and
@@ -36,13 +36,13 @@ from runs.report.snapshots import TITLES, telling_instants
 RUNS, GALLERY = Path("runs/out"), Path("docs/gallery")
 MODEL = "shell"
 
-# Of the mesh; degrees from which one looks down on it, and metres to each side of the overlap.
+# Of the mesh: the view's elevation in degrees, and metres to each side of the overlap.
 PIXELS, ELEVATION, BESIDE = (SHEET[0], 660), 28.0, 0.9
 
-# Changes of shape are drawn up to this part of the outer section's height.
+# Distortions of sections are drawn up to this part of the outer section's height.
 CHANGE_DRAWN = 0.05
 
-# Picture of the gallery → the run that has it, and where.
+# Picture of the gallery → its run and file.
 COPIED = {
     "boom-first-peak": ("paper", "snapshots/boom-first-peak.png"),
     "overlap-largest-force": ("paper", "snapshots/overlap-largest-force.png"),
@@ -62,13 +62,13 @@ COPIED = {
 
 
 def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
-    """Names and pictures, one after the other.
+    """Yield names and pictures, one after the other.
 
     Args:
         runs: the folder of the runs' folders.
 
     Raises:
-        BadInput: a run or one of its pictures is not there.
+        BadInput: a run or one of its pictures is missing.
     """
     for name, (run, picture) in COPIED.items():
         path = runs / run / picture
@@ -94,9 +94,7 @@ def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
 
 
 def draw_mesh(scene: Scene, overlap: Overlap) -> Image.Image:
-    """The triangles at an overlap; those walls of the outer segment that hide the inner one are
-    left out.
-    """
+    """Draw the triangles at an overlap without the outer walls that hide the inner segment."""
     assert scene.stress is not None
     corners = scene.points[scene.triangles]
     inside = scene.points[scene.owner == overlap.inner, 0].min()
@@ -132,7 +130,7 @@ def draw_mesh(scene: Scene, overlap: Overlap) -> Image.Image:
 
 
 def draw_sections(scene: Scene, instant: Instant, overlap: Overlap) -> Image.Image:
-    """How the sections at the stations of an overlap change their shape."""
+    """Draw the distortion of the sections at the stations of an overlap."""
     moved = scene.displacement(instant.time)
     now = scene.motion.isel(station=overlap.stations).sel(time=instant.time, method="nearest")
     stations = now["station"].values.tolist()
@@ -171,9 +169,9 @@ def draw_sections(scene: Scene, instant: Instant, overlap: Overlap) -> Image.Ima
 
 
 def change_of_shape(scene: Scene, moved: Array, segment: int, x: float) -> tuple[Array, Array]:
-    """(num_points + 1, 2) y and z in m once around a section, and how they change.
+    """Return y and z in m once around a section, and its distortion, (num_points + 1, 2) each.
 
-    What moves and turns the section as a whole is left out. ``moved`` (num_points, 3) is in m, x a
+    The section's rigid motion is left out. ``moved`` (num_points, 3) is in m, x a
     mesh line.
     """
     assert scene.stress is not None
@@ -189,14 +187,14 @@ def change_of_shape(scene: Scene, moved: Array, segment: int, x: float) -> tuple
 
 
 def main() -> int:
-    """Write the gallery; the exit status."""
+    """Write the gallery; return the exit status."""
     show_notices()
     GALLERY.mkdir(parents=True, exist_ok=True)
     try:
         for name, picture in pictures(RUNS):
             path = GALLERY / f"{name}.png"
             with whole(path) as part:
-                # A page loads all of them; no eye sees more colours.
+                # A page loads all of them; more colours are not visible.
                 picture.quantize(256).save(part, format="PNG", optimize=True)
             print(f"{path}  {path.stat().st_size // 1000} kB")
     except BadInput as error:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What can be known of a run's motion, and how its models compare, as tables."""
+"""Predictability of a run's motion, and comparison of its models, as tables."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ from runs.report.model_tables import horizon_column
 from runs.report.numerals import NONE, fixed, number, percent, scientific
 from runs.report.tables import Column, Table
 
-# What a table says of ``limits``.
+# Texts of a table for ``limits``.
 LIMITS = {
     "physics": "the motion",
     "step": "the step",
     "nothing": "nothing in the run",
 }
-# Form and unit of times.
+# Format and unit of times.
 _TIME = ".2f", "s"
 VARIED = {"load": "loads", "clearance": "clearances", "velocity": "initial velocities"}
 
 
 def known_tables(results: Results) -> list[Table]:
-    """Return what each model's ensembles tell; empty without any."""
+    """Return the tables of each model's ensembles; empty without any."""
     models, asked = results.summary.models, results.summary.ensemble
     sampled = {name: model for name, model in models.items() if model.ensemble}
     measured = {name: model.horizons for name, model in models.items() if model.horizons}
@@ -56,7 +56,7 @@ def known_tables(results: Results) -> list[Table]:
 
 
 def compared_tables(results: Results) -> list[Table]:
-    """Return how the models differ from the reference; empty where nothing is compared."""
+    """Return the differences of the models from the reference; empty without comparisons."""
     compared = results.summary.comparisons
     tables: list[Table] = []
     if compared is not None and compared.ensembles:
@@ -120,21 +120,21 @@ def _growth_table(measured: Mapping[str, Predictability]) -> Table:
 
 
 def _peak_columns(peaks: Mapping[str, Sequence[str]]) -> list[Column]:
-    """A row for each peak, a column for each model."""
+    """Return a column for each model with a row for each peak."""
     most = max(map(len, peaks.values()))
     numbers = [str(i) for i in range(1, most + 1)]
     return [Column("peak", numbers), *(Column(*column) for column in peaks.items())]
 
 
 def _heights(found: CommonPeaks) -> list[str]:
-    """Time and height of each peak."""
+    """Return time and height of each peak."""
     times = map(partial(_spread, decimals=3), found.time, found.time_spread)
     heights = map(partial(_spread, decimals=2, factor=TO_MILLI), found.height, found.height_spread)
     return [f"{time} s\n{height} mm" for time, height in zip(times, heights, strict=True)]
 
 
 def _differences(found: PeaksLevel) -> list[str]:
-    """By how much each peak is later and higher than that of the reference."""
+    """Return the differences of each peak from the reference, in time and height."""
     signed_milli = partial(_spread, factor=TO_MILLI, sign="+")
     times = map(partial(signed_milli, decimals=0), found.time, found.time_spread)
     heights = map(partial(signed_milli, decimals=2), found.height, found.height_spread)
@@ -144,7 +144,7 @@ def _differences(found: PeaksLevel) -> list[str]:
 
 
 def _level_tables(reference: str, levels: Mapping[str, Levels]) -> list[Table]:
-    """Return comparisons from moment to moment, peak by peak, and of all values afterwards."""
+    """Return comparisons at every instant, peak by peak, and of all values afterwards."""
     points = [level.pointwise for level in levels.values()]
     spreads = [level.distributions for level in levels.values()]
     models = Column("model", list(levels))
@@ -182,7 +182,7 @@ def _level_tables(reference: str, levels: Mapping[str, Levels]) -> list[Table]:
 
 
 def _both(values: Sequence[float | None]) -> str:
-    """The model's / that of the reference, in mm."""
+    """Return the value of the model and that of the reference, in mm, separated by a slash."""
     if all(value is None for value in values):
         return NONE
     return " / ".join(fixed(value, 1, TO_MILLI) for value in reversed(values))
@@ -207,7 +207,7 @@ def _whole_table(reference: str, whole: Mapping[str, Whole]) -> Table:
 def _spread(
     value: float | None, spread: float | None, decimals: int, factor: float = 1.0, sign: str = ""
 ) -> str:
-    """``1.058 ± 0.031``; ``NONE`` where there is no value."""
+    """Return a mean and its spread, ``1.058 ± 0.031``; ``NONE`` where there is no value."""
     if value is None or spread is None:
         return NONE
     return signed(f"{factor * value:{sign}.{decimals}f}") + f" ± {fixed(spread, decimals, factor)}"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Marks of a picture: signs of what holds and loads a boom, at their places.
+"""Marks of a picture: symbols of supports and loads at their places on the boom.
 
-A sign keeps its size and its upright stand, however the boom lies. It is a matplotlib path in units
-of its own size, about the place that it marks.
+A symbol keeps its size and its upright orientation, whatever the boom's angle. It is a matplotlib
+path in units of its own size, about the place that it marks.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from runs.case.schema import Case, HistoryTable, LoadTable
 from runs.report import theme
 from runs.report.numerals import number
 
-# A segment whose plates are unknown is drawn as high as this part of the boom's length.
+# A segment of unknown plates is drawn with this part of the boom's length as its height.
 UNKNOWN = 0.015
-# Arrows of a load along a segment, m apart as a part of the boom's length.
+# Distance of the arrows of a distributed load, as a part of the boom's length.
 APART = 0.07
-# Strokes of a zigzag, and how far it swings.
+# Strokes of a zigzag, and their amplitude.
 TURNS, SWING = 6, 0.18
 
-# Of a segment, where a sign is, or z in m.
+# Edge of a segment at which a symbol stands, or z in m.
 Edge = Literal["top", "bottom"] | float
 
 _KILO = {"N": "kN", "N/m": "kN/m", "N m": "kN m"}
@@ -38,12 +38,12 @@ _MORE = {"N/m": (("GN/m", 1e9), ("MN/m", 1e6), ("kN/m", 1e3))}
 
 
 def _strokes(*lines: Sequence[tuple[float, float]]) -> Path:
-    """Lines that are not joined."""
+    """Return a path of lines that are not joined."""
     return Path.make_compound_path(*map(Path, lines))
 
 
 def _ground(z: float) -> list[Sequence[tuple[float, float]]]:
-    """A hatched line."""
+    """Return the lines of a hatched ground."""
     hatches = [((x, z), (x - 0.15, z - 0.15)) for x in np.linspace(-0.3, 0.45, 6).tolist()]
     return [((-0.45, z), (0.45, z)), *hatches]
 
@@ -53,7 +53,7 @@ def _circle(z: float, radius: float) -> Path:
 
 
 def _rotated(path: Path, degrees: float) -> Path:
-    """A sign that leans to the left by an angle."""
+    """Return a symbol rotated to the left by an angle."""
     return path.transformed(Affine2D().rotate_deg(degrees))
 
 
@@ -86,19 +86,19 @@ MOMENT = CLOCKWISE.transformed(Affine2D().scale(-1.0, 1.0))
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """One thing that holds or loads a boom.
+    """A support or a load of a boom.
 
     Args:
-        kind: the word for all of its kind.
+        kind: name of the kind.
         segment: its number.
-        places: x in m of its signs.
-        edge: of the segment, where they are, or z in m.
-        sign: what is drawn.
+        places: x in m of its symbols.
+        edge: of the segment at which they stand, or z in m.
+        sign: path of the symbol.
         meaning: in words.
-        color: of the sign.
-        turns: whether the sign turns with the boom.
-        clearance: in m between edge and sign.
-        stands: whether it stays where the boom rests when that moves.
+        color: of the symbol.
+        turns: whether the symbol rotates with the boom.
+        clearance: in m between edge and symbol.
+        stands: whether it keeps its initial place when the boom moves.
     """
 
     kind: Literal["supports", "springs", "stops", "masses", "loads"]
@@ -113,18 +113,18 @@ class Mark:
     stands: bool = False
 
     def turned(self, angle: float) -> Path:
-        """The sign on a boom at an angle in degrees."""
+        """Return the symbol on a boom at an angle in degrees."""
         return _rotated(self.sign, angle) if self.turns else self.sign
 
     def z(self, boom: Boom, x: float) -> float:
-        """Of the edge at x, in m."""
+        """Return z of the edge at x, in m."""
         if not isinstance(self.edge, str):
             return self.edge
         return edges(boom, boom.segments[self.segment], x)[self.edge == "top"]
 
 
 def look(sign: Path, color: str, size: float) -> dict[str, Any]:
-    """How matplotlib draws a sign of a size in pt; it scales a path by its farthest point."""
+    """Return matplotlib's style of a symbol of a size in pt, scaled by its farthest point."""
     return {
         "marker": sign,
         "markersize": 2.0 * size * float(np.abs(sign.vertices).max()),
@@ -138,13 +138,13 @@ def look(sign: Path, color: str, size: float) -> dict[str, Any]:
 def edges(
     boom: Boom, segment: Segment, x: float, direction: Direction = "z"
 ) -> tuple[float, float]:
-    """The lowest and the highest place in m of a section at x in m, of unknown plates a guess."""
+    """Return the lowest and highest z in m of a section at x in m, estimated without plates."""
     half = 0.5 * UNKNOWN * boom.length
     return (-half, half) if segment.section is None else segment.section_at(x).reach(direction)
 
 
 def abbreviated(value: float, unit: str) -> str:
-    """A number with its unit, in thousands, millions where it is large."""
+    """Return a number with its unit, in thousands or millions where it is large."""
     for larger, factor in _MORE.get(unit, ()):
         if abs(value) >= factor:
             return f"{number(value / factor, 4)} {larger}"
@@ -154,7 +154,7 @@ def abbreviated(value: float, unit: str) -> str:
 
 
 def marks(case: Case, boom: Boom) -> Iterator[Mark]:
-    """Supports and stops, then masses, loads and axial forces, those of segments first."""
+    """Yield supports and stops, then masses, loads and axial forces, those of segments first."""
     yield from _ground_marks(boom)
     for index, segment in enumerate(boom.segments):
         given = case.segments[index]
@@ -177,7 +177,7 @@ def marks(case: Case, boom: Boom) -> Iterator[Mark]:
 
 
 def _ground_marks(boom: Boom) -> Iterator[Mark]:
-    """What holds the boom beside cylinders."""
+    """Yield the marks of supports other than cylinders."""
     upright: dict[str, Any] = {"color": theme.INK, "turns": False, "stands": True}
     for index, segment in enumerate(boom.segments):
         for support in segment.supports:
@@ -223,7 +223,7 @@ def _load(table: LoadTable, boom: Boom, index: int) -> Mark:
 def _spread(
     boom: Boom, index: int, span: tuple[float, float], load: float, direction: str, how: str
 ) -> Mark:
-    """Arrows along a part of a segment."""
+    """Return arrows along a part of a segment."""
     start, end = span
     arrows = max(2, round((end - start) / (APART * boom.length)))
     places = start + (np.arange(arrows) + 0.5) / arrows * (end - start)

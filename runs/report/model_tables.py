@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The models of a run as tables: results, steps, contact laws, calibrations, forces of walls."""
+"""Models of a run as tables: results, steps, contact laws, calibrations, section forces."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def model_tables(results: Results) -> list[Table]:
-    """Return what each model found, and how, where there is such a thing."""
+    """Return the tables of the models' results and methods, where they apply."""
     found = (
         model_table(results),
         step_table(results),
@@ -36,7 +36,7 @@ def model_tables(results: Results) -> list[Table]:
 
 
 def model_table(results: Results) -> Table:
-    """Return what each model found, in the case's order, and at the end those that failed."""
+    """Return the results of each model in the case's order, failed models last."""
     summary, duration = results.summary, results.case.time.duration
     models = list(summary.models.values())
     failed = [model for model in results.case.models if model.name in summary.failures]
@@ -82,16 +82,16 @@ def metric_columns(kind: type, rows: Sequence[object]) -> list[Column]:
 
 
 def _peak_force(model: ModelSummary) -> Cell:
-    """Return the peak contact force, marked where the step does not resolve the blow."""
+    """Return the peak contact force, marked where the step does not resolve the impact."""
     if model.resolving_step is None or model.peak_contact_force is None:
         return model.peak_contact_force
     return f"≥ {number(TO_KILO * model.peak_contact_force)}"
 
 
 def horizon_column(models: list[ModelSummary], share: float, duration: float) -> Column:
-    """Return when the members of each ensemble are a share of the tip's range apart.
+    """Return the time at which members of each ensemble differ by a share of the tip's range.
 
-    ``> 10`` where they are not within 10 s.
+    The cell is ``> 10`` where they do not within 10 s.
     """
 
     def horizon(model: ModelSummary) -> Cell:
@@ -105,7 +105,7 @@ def horizon_column(models: list[ModelSummary], share: float, duration: float) ->
 
 
 def step_table(results: Results) -> Table:
-    """Return how many steps each model took, and how many its motion needs."""
+    """Return the number of steps of each model, and the number that its motion needs."""
     models = results.summary.models.values()
     columns = [
         Column("model", list(results.summary.models)),
@@ -133,7 +133,7 @@ def step_table(results: Results) -> Table:
 
 
 def law_table(results: Results) -> Table | None:
-    """Return the contact law of each joint in each model, and the first peak it leads to."""
+    """Return the contact law of each joint in each model, with the resulting first peak."""
     found = [
         (model.name, joint, seen.contact)
         for model in results.ran
@@ -167,7 +167,7 @@ def law_table(results: Results) -> Table | None:
 
 
 def space_table(results: Results) -> Table | None:
-    """Return first peaks along both directions against the reference; None for a flat boom."""
+    """Return first peaks along both directions against the reference; None for a planar boom."""
     models, duration = results.summary.models, results.case.time.duration
     reference = results.reference
     if reference is None or "tip_lateral" not in models[reference].first_peak:
@@ -186,7 +186,7 @@ def space_table(results: Results) -> Table | None:
 
 
 def buckling_table(results: Results) -> Table | None:
-    """Return how near axial forces are to those under which the boom buckles; None without any."""
+    """Return ratios of axial forces to buckling loads; None without axial forces."""
     models = results.summary.models
     factors = [model.critical_factor for model in models.values()]
     tips = [model.static_tip for model in models.values()]
@@ -206,7 +206,7 @@ def buckling_table(results: Results) -> Table | None:
 
 
 def _first_peak(peak: FirstPeak, duration: float) -> tuple[Cell, Cell]:
-    """Time and height; where there is no peak the two say so together."""
+    """Return time and height of the first peak, or a remark where there is none."""
     return peak if peak.height is not None else ("no peak", f"within {duration:g} s")
 
 
@@ -215,7 +215,7 @@ def _off(height: float | None, other: float | None) -> float | None:
 
 
 def wall_table(results: Results) -> Table | None:
-    """Return forces of the walls at the instant of the largest stress; None without shells."""
+    """Return section forces of plates at the time of maximum stress; None without shells."""
     shells = {n: model.stress for n, model in results.summary.models.items() if model.stress}
     walls = [
         (name, section, wall, carried)
@@ -245,7 +245,7 @@ def wall_table(results: Results) -> Table | None:
 
 
 def _largest(case: Case, stress: StressSummary) -> str:
-    """What is judged, the mean over a patch, before what tells the instant alone."""
+    """Return the design stress, a mean over a patch, before the stress at the instant."""
     triangle = (
         f"single triangle, beside a line of contact the more the finer the mesh: "
         f"{number(TO_MEGA * stress.von_mises, 3)} MPa{_of_yield(case, stress)} at "
@@ -262,7 +262,7 @@ def _largest(case: Case, stress: StressSummary) -> str:
 
 
 def _of_yield(case: Case, stress: StressSummary | LargestPatch) -> str:
-    """What part of the yield strength it is, where the case tells that."""
+    """Return the utilisation of the yield strength, where the case specifies it."""
     names = [segment.name for segment in case.segments]
     strength = material_of(case, names.index(stress.segment)).yield_strength
     if strength is None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The motion over time: tip and heads with their ensembles, what is predictable of it, energies."""
+"""Motion over time: tip and heads with their ensembles, predictability, energies."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from runs.report.charts import Chart
 from runs.report.figure_context import Figure, Pen, farthest, highest, new_sheet
 from runs.report.numerals import fixed, scientific
 
-# Of an ensemble this part of the members lies in its band, in percent.
+# This percentage of an ensemble's members lies in its band.
 BAND = (5.0, 95.0)
-# How dark the bands of all models are where they lie on one another.
+# Opacity of the overlaid bands of all models.
 SHADE = 0.8
-# A stroke for each part of the range.
+# One line style for each part of the range.
 DASHES = ("-", ":", "--")
-# Of the numbers that an energy is the sum of.
+# Among the terms that an energy sums up.
 ROUND_OFF = 1.0e-16
-# Shades of what is held, of the model's colour, and of what is lost.
+# Shades of stored energy, of the model's colour, and of dissipated energy.
 HELD = {"strain_energy": 0.65, "kinetic_energy": 0.3, "contact_energy": 1.0}
 LOST = (0.75, 0.45, 0.2)
 
 
 def tip(pen: Pen) -> list[Figure]:
-    """The tip in all models, over one another."""
+    """Draw the tip deflection of all models in one panel."""
     sheet, (axes,) = pen.over_time(1, 3.9)
     axes.set_ylabel("deflection (mm)")
     for name in pen.models:
@@ -44,7 +44,7 @@ def tip(pen: Pen) -> list[Figure]:
 
 
 def close_up(pen: Pen) -> list[Figure]:
-    """The tip up to shortly after its first peak; nothing where none has one."""
+    """Draw the tip until shortly after its first peak; nothing where no model has a peak."""
     if not any(pen.summary[name].first_peak["tip"].time for name in pen.models):
         return []
     end = pen.first_stretch
@@ -82,7 +82,7 @@ def close_up(pen: Pen) -> list[Figure]:
 
 
 def heads(pen: Pen) -> list[Figure]:
-    """The head of each outer segment; it rattles, so each model has its own panel."""
+    """Draw the heads of the outer segments, with a panel per model because they rattle."""
     joints = range(1, len(pen.case.joints) + 1)
     places = ["head", *(f"head-{number}" for number in joints if number > 1)]
     return [_head(pen, place) for place in places if place in pen.data]
@@ -90,7 +90,7 @@ def heads(pen: Pen) -> list[Figure]:
 
 def _head(pen: Pen, place: str) -> Figure:
     models = pen.with_play or pen.models
-    # One panel alone has room for the names of its axes.
+    # A single panel has room for the names of its axes.
     sheet, panels = pen.over_time(len(models), 1.1 + max(1.25 * len(models), 2.2))
     curves = {name: TO_MILLI * pen.of(name, place) for name in pen.models}
     for axes, name in zip(panels, models, strict=True):
@@ -115,7 +115,7 @@ def _head(pen: Pen, place: str) -> Figure:
 
 
 def lateral_tip(pen: Pen) -> list[Figure]:
-    """The tip to the sides, where the boom is spatial."""
+    """Draw the lateral tip deflection of a spatial boom."""
     if "tip_lateral" not in pen.data:
         return []
     sheet, (axes,) = pen.over_time(1, 3.9)
@@ -128,7 +128,7 @@ def lateral_tip(pen: Pen) -> list[Figure]:
 
 
 def _chart(pen: Pen, place: str) -> Chart:
-    """One place in all models, with the bands of their ensembles."""
+    """Return the chart of one place in all models, with the bands of their ensembles."""
     curves = [
         pen.curve(name, TO_MILLI * pen.of(name, place), band=_band(pen, name, place))
         for name in pen.models
@@ -137,7 +137,7 @@ def _chart(pen: Pen, place: str) -> Chart:
 
 
 def _reach(pen: Pen, place: str) -> str:
-    """How far the models, with play where any have it, deflect at one place, up or down."""
+    """Return the maximum deflection at one place over the models, those with play if any."""
     reaches = {name: farthest(pen.of(name, place)) for name in pen.with_play or pen.models}
     name = max(reaches, key=lambda one: np.nan_to_num(abs(reaches[one]), nan=-1.0))
     most = fixed(reaches[name], 0, TO_MILLI)
@@ -145,7 +145,7 @@ def _reach(pen: Pen, place: str) -> str:
 
 
 def _members(pen: Pen, axes: Axes, name: str, place: str) -> None:
-    """The band of a model's ensemble behind its curve, and its horizons."""
+    """Draw the band of a model's ensemble behind its curve, and its horizons."""
     band = _band(pen, name, place)
     if band is None:
         return
@@ -160,7 +160,7 @@ def _members(pen: Pen, axes: Axes, name: str, place: str) -> None:
 
 
 def _band(pen: Pen, name: str, place: str) -> tuple[Array, Array] | None:
-    """(num_times,) each in mm, between which most members of an ensemble are."""
+    """Return the limits (num_times,) in mm between which most members of an ensemble lie."""
     if pen.ensembles is None or name not in pen.ensembles["model"] or place not in pen.ensembles:
         return None
     members = TO_MILLI * pen.ensembles[place].sel(model=name).values
@@ -169,7 +169,7 @@ def _band(pen: Pen, name: str, place: str) -> tuple[Array, Array] | None:
 
 
 def _sampled(pen: Pen, place: str) -> str:
-    """What a curve is worth, and what the marks of its ensemble are."""
+    """Return a sentence on the accuracy of a curve and on the marks of its ensemble."""
     if not pen.with_play or pen.stays_pressed:
         return ""
     if pen.ensembles is None or place not in pen.ensembles:
@@ -196,7 +196,7 @@ def _sampled(pen: Pen, place: str) -> str:
 
 
 def _limits(curves: Sequence[Array]) -> tuple[float, float]:
-    """Limits of an axis on which all curves fit."""
+    """Return limits of an axis that contain all curves."""
     high = highest([highest(curve) for curve in curves])
     low = -highest([highest(-curve) for curve in curves])
     margin = 0.05 * (high - low) or 1.0
@@ -204,7 +204,7 @@ def _limits(curves: Sequence[Array]) -> tuple[float, float]:
 
 
 def slow_peaks(pen: Pen) -> list[Figure]:
-    """The peaks of the slow motion that all members of an ensemble share, with their spreads."""
+    """Draw the peaks of the slow motion that all members of an ensemble share, with spreads."""
     found = {
         name: peaks
         for name in pen.with_play
@@ -243,7 +243,7 @@ def slow_peaks(pen: Pen) -> list[Figure]:
 
 
 def horizons(pen: Pen) -> list[Figure]:
-    """Horizon against the size of the change, of each model whose growth has been measured."""
+    """Draw the horizon over the size of the perturbation, of models with measured growth."""
     measured = {name: found for name in pen.with_play if (found := pen.summary[name].horizons)}
     if not measured:
         return []
@@ -275,7 +275,7 @@ def horizons(pen: Pen) -> list[Figure]:
 
 
 def energies(pen: Pen) -> list[Figure]:
-    """Where the energy of one model is: the last with play, the most complicated."""
+    """Draw the energies of one model: the last with play, which is the most detailed."""
     name = (pen.with_play or pen.models)[-1]
     columns = dict(zip(DRIVEN_ENERGIES, _energies(pen, name).T, strict=False))
     drawn = columns.pop("drive_work", None)
@@ -296,7 +296,7 @@ def energies(pen: Pen) -> list[Figure]:
         linewidth=0,
     )
     for area in areas[len(held) :]:
-        # Whatever the model's colour is.
+        # Independent of the model's colour.
         area.set(hatch="///", edgecolor="white")
     start = float(sum(values[0] for values in parts.values()))
     total = f"start and {of}" if start else of
@@ -314,7 +314,7 @@ def energies(pen: Pen) -> list[Figure]:
 
 
 def residuals(pen: Pen) -> list[Figure]:
-    """Unaccounted energy of every model, the largest so far."""
+    """Draw the energy residual of every model, as its running maximum."""
     sheet, (axes,) = new_sheet(1, 3.9)
     worst = []
     for name in pen.models:
@@ -332,11 +332,11 @@ def residuals(pen: Pen) -> list[Figure]:
 
 
 def _energies(pen: Pen, name: str) -> Array:
-    """(num_times, num_energies) in J, as in :func:`dynamics.energy.energy_residual`."""
+    """Return energies (num_times, num_energies) in J by :func:`dynamics.energy.energy_residual`."""
     known = [energy for energy in DRIVEN_ENERGIES if energy in pen.data]
     return np.array([pen.of(name, energy) for energy in known]).T
 
 
 def _named(energy: str) -> str:
-    """``strain_energy`` as *strain*, ``friction_loss`` as *friction loss*."""
+    """Return the name of an energy: ``strain_energy`` as *strain*."""
     return energy.removesuffix("_energy").replace("_", " ")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How numbers look in tables, captions and sentences."""
+"""Formatting of numbers in tables, captions and sentences."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def scientific(number: float, digits: int = 1) -> str:
-    """8 × 10⁻⁵ for 8e-05, with at most so many significant digits."""
+    """Return 8 × 10⁻⁵ for 8e-05, with at most a given number of significant digits."""
     mantissa, exponent = f"{number:.{digits - 1}e}".split("e")
     return f"{signed(f'{float(mantissa):g}')} × 10{str(int(exponent)).translate(_SUPERSCRIPT)}"
 
@@ -22,7 +22,7 @@ NONE = "–"
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """A number for people, with so many significant digits; ``NONE`` for none."""
+    """Return a number with a given number of significant digits; ``NONE`` for none."""
     if value is None or not math.isfinite(value):
         return NONE
     if value == 0.0 or 1.0e-3 <= abs(value) < 1.0e5:
@@ -37,29 +37,29 @@ SHOWN |= {"Pa": ("MPa", TO_MEGA), "Hz": ("Hz", 1.0), "1": ("", 1.0)}
 
 
 def amount(value: float, unit: str) -> str:
-    """In the unit that is shown for one of the SI."""
+    """Return an amount in SI units as text in its display unit."""
     name, factor = SHOWN[unit]
     return f"{number(factor * value)} {name}".strip()
 
 
 def percent(part: float, digits: int = 3) -> str:
-    """Return a part in percent, with so many significant digits."""
+    """Return a part in percent, with a given number of significant digits."""
     return f"{number(TO_PERCENT * part, digits)} %"
 
 
 def fixed(value: float | None, decimals: int, factor: float = 1.0) -> str:
-    """A number times a factor, with so many decimals; ``NONE`` for none."""
+    """Return a number times a factor, with a given number of decimals; ``NONE`` for none."""
     if value is None or not math.isfinite(value):
         return NONE
-    # Adding zero takes the sign of what is rounded to nothing.
+    # Adding zero removes the sign of a number that is rounded to zero.
     return signed(f"{round(factor * value, decimals) + 0.0:.{decimals}f}")
 
 
 def repeated(values: Sequence[float]) -> str:
-    """The median of repetitions with the digits that their spread leaves.
+    """Return the median of repetitions with the digits that their spread leaves.
 
-    There is a ``~`` before it if not one is left. The spread is half the range; its first digit is
-    the last that is shown. A single value has no known spread and is shown with one digit.
+    The text starts with ``~`` where no digit is left. The spread is half the range; its first digit
+    is the last that is shown. A single value has no known spread and is shown with one digit.
     """
     middle = median(values)
     if middle == 0.0 or not math.isfinite(middle):
@@ -74,5 +74,5 @@ def repeated(values: Sequence[float]) -> str:
 
 
 def count(whole: float) -> str:
-    """``11 194 798``, with blanks that do not break."""
+    """Return an integer as ``11 194 798``, with no-break spaces."""
     return f"{whole:,.0f}".replace(",", "\N{NO-BREAK SPACE}")

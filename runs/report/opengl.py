@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Whether VTK can draw here. Without a working OpenGL it ends its process, so another one tries."""
+"""Test of VTK's rendering, in another process because VTK aborts without a working OpenGL."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ REMEDY = "install libegl1 and libgl1-mesa-dri beside pip's vtk, or give Debian's
 
 
 class RenderingUnavailable(RuntimeError):
-    """No picture can be made here; the message says why, in one line."""
+    """Failure of rendering on this machine; the message gives the reason in one line."""
 
 
 def first_picture() -> None:
     """Draw a ball.
 
     Raises:
-        ImportError: there is no VTK.
-        RuntimeError: nothing is seen of it.
+        ImportError: VTK is not installed.
+        RuntimeError: the picture is empty.
     """
     import pyvista
 
@@ -35,12 +35,12 @@ def first_picture() -> None:
 
 
 def hush() -> None:
-    """From now on this process says nothing on stderr, where VTK and OpenGL would."""
+    """Silence stderr of this process, to which VTK and OpenGL write."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
 
 
 def require_opengl() -> None:
-    """Make sure that VTK can draw.
+    """Check that VTK can render.
 
     Raises:
         RenderingUnavailable: it cannot.
@@ -62,5 +62,5 @@ def require_opengl() -> None:
 
 
 def too_late() -> RenderingUnavailable:
-    """What is said of a VTK that draws nothing and does not end."""
+    """Return the error for a VTK that renders nothing and does not end."""
     return RenderingUnavailable(f"VTK makes no picture within {PROBE_SECONDS:g} s; {REMEDY}")

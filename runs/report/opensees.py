@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A boom of beam elements as an OpenSeesPy script that needs nothing of this program.
+"""Export of a boom of beam elements as an OpenSeesPy script that is independent of this program.
 
 Beam elements, the gaps as elastic zero-length materials through points of the contact law, in
 series with the spring of a calibrated station, friction under prescribed forces as an
-elastic-plastic slip, loads at the nodes. What couples the springs of different stations, and what a
-section's fields do, is not in it.
+elastic-plastic slip, loads at the nodes. The script omits the coupling between springs of different
+stations, and the higher functions of the section.
 """
 
 from __future__ import annotations
@@ -37,17 +37,17 @@ if TYPE_CHECKING:
 
 TEMPLATE = Path(__file__).parent / "templates" / "opensees_script.py.txt"
 
-# N up to which a contact law is followed, and points of one that is no straight line.
+# Force in N up to which a contact law is followed, and points of a nonlinear law.
 LARGEST, POINTS = 1.0e7, 80
-# N at the edge of an open gap, which keeps what nothing holds from being singular.
+# Force in N at the edge of an open gap, which prevents a singular matrix.
 OPEN = 1.0e-5
 
 
 class Part(NamedTuple):
-    """A segment as elements, which loads push, see :class:`geometry.load.Member`.
+    """Elements of a segment, with loads as in :class:`geometry.load.Member`.
 
     Args:
-        component: of the segment, flat.
+        component: planar one of the segment.
         free: degrees of freedom that no rigid support holds.
     """
 
@@ -59,7 +59,7 @@ class Part(NamedTuple):
         return int(np.argmin(np.abs(self.component.breaks - x)))
 
     def nodal(self, row: Array) -> list[list[float]]:
-        """Return what pushes each node that is pushed: its number, N and N·m."""
+        """Return the loaded nodes: their numbers, N and N·m."""
         whole = np.zeros(2 * self.component.breaks.size)
         whole[self.free] = row
         pairs = whole.reshape(-1, 2)
@@ -67,16 +67,16 @@ class Part(NamedTuple):
 
 
 def script(case: Case, joined: Joined, model: BeamElements, calibration: Calibration | None) -> str:
-    """The script.
+    """Return the script.
 
     Args:
         case: a checked one.
-        joined: its boom, flat, and its contacts.
+        joined: its planar boom with its contacts.
         model: of the case.
         calibration: of a model that a shell calibrates.
 
     Raises:
-        BoomError: the boom has something that the script does not.
+        BoomError: the boom has a feature that the script does not support.
     """
     _check(case, joined)
     boom = joined.boom
@@ -97,7 +97,7 @@ def script(case: Case, joined: Joined, model: BeamElements, calibration: Calibra
 
 
 def _check(case: Case, joined: Joined) -> None:
-    """Whether the script can have all that the case has."""
+    """Check that the script supports all features of the case."""
     boom = joined.boom
     segments = boom.segments
     for key, present in (
@@ -128,7 +128,7 @@ def _check(case: Case, joined: Joined) -> None:
 
 
 def _touching(boom: Boom, *, calibrated: bool) -> list[tuple[int, float]]:
-    """Segments and x in m where something touches."""
+    """Return segments and x in m of contact points."""
     found = [(stop.segment, stop.x) for _, stop in boom.numbered_stops]
     for pad in pads(boom):
         x = pad.middle if calibrated else pad.x
@@ -158,7 +158,7 @@ def _part(
 
 
 def _segment(boom: Boom, number: int, part: Part, model: BeamElements) -> dict[str, object]:
-    """What the script has of a segment, SI units."""
+    """Return the script's data of a segment in SI units."""
     segment = boom.segments[number]
     material = segment.material
     sheared = model.theory == "timoshenko" or model.calibrated_by is not None
@@ -189,7 +189,7 @@ def _segment(boom: Boom, number: int, part: Part, model: BeamElements) -> dict[s
 def _contacts(
     joined: Joined, parts: Sequence[Part], calibration: Calibration | None
 ) -> Iterator[dict[str, object]]:
-    """Both nodes, and points (m, N) of what presses, in the order of the calibrated rows."""
+    """Yield both nodes, and points (m, N) of the contact law, in the order of calibrated rows."""
     boom, row = joined.boom, 0
 
     def points(law: ContactLaw) -> list[list[float]]:
@@ -214,7 +214,7 @@ def _contacts(
 
 
 def _points(law: ContactLaw, compliance: float) -> list[list[float]]:
-    """Approaches in m, rising, and forces in N of a one-sided law behind a spring in m/N."""
+    """Return approaches (m, rising) and forces (N) of a one-sided law behind a spring (m/N)."""
     side, onset = law.terms[0].side, min(term.onset for term in law.terms)
     straight = len(law.terms) == 1 and law.terms[0].exponent == 1.0
     deepest = 1.0
@@ -230,7 +230,7 @@ def _points(law: ContactLaw, compliance: float) -> list[list[float]]:
 
 
 def _frictions(boom: Boom, parts: Sequence[Part], *, calibrated: bool) -> Iterator[list[object]]:
-    """Both nodes and the friction force in N."""
+    """Yield both nodes and the friction force in N."""
     for pad in pads(boom):
         if pad.joint.friction > 0.0:
             assert pad.normal_force is not None
@@ -239,7 +239,7 @@ def _frictions(boom: Boom, parts: Sequence[Part], *, calibrated: bool) -> Iterat
 
 
 def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, object]]:
-    """Nodal loads, and the values by which they are multiplied at every output time."""
+    """Yield nodal loads with their factors at every output time."""
     for number, part in enumerate(parts):
         own = part.nodal(part.component.load)
         if own:
@@ -265,15 +265,15 @@ def _ends(pad: Pad, parts: Sequence[Part], *, calibrated: bool) -> list[list[int
 
 
 def exported(case: Case, file: str, name: str | None = None) -> BeamElements:
-    """The model of a name, or the last of beam elements with play.
+    """Return the model with a name, or the last of beam elements with play.
 
     Args:
         case: a checked one.
-        file: how messages call it.
+        file: its name in messages.
         name: of the model.
 
     Raises:
-        BadInput: there is no such model.
+        BadInput: no such model exists.
     """
     of = {m.name: m for m in of_kind(BeamElements, case.models) if not m.tied}
     if not of:
@@ -287,19 +287,19 @@ def exported(case: Case, file: str, name: str | None = None) -> BeamElements:
 def write(
     case: Case, file: str, comm: MPI.Intracomm | None, path: Path, cache: Cache | None
 ) -> None:
-    """Write the script of the model that :func:`exported` has.
+    """Write the script of the model that :func:`exported` returns.
 
     Args:
         case: a checked one.
-        file: how messages call it.
+        file: its name in messages.
         comm: for a model that a shell calibrates.
         path: of the script.
         cache: of reduced shells.
 
     Raises:
-        BadInput: there is no such model, or it has something that the script does not.
+        BadInput: no such model exists, or the script does not support one of its features.
     """
-    # No beam of another program has the fields of the section.
+    # Beam elements of other programs lack the higher functions of the section.
     model = exported(case, file).model_copy(update={"section_fields": False})
     boom = build_boom(case)
     calibration = None

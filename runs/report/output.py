@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A run's folder, which takes the place of an earlier one when all its files are there."""
+"""Folder of a run, which replaces an earlier one when all its files are written."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ LATER = "they were not asked for; protractile snapshot draws them"
 
 
 def prepare(out: str, file: str) -> Path:
-    """The folder of a run, which may be an earlier run's.
+    """Return the folder of a run, which may contain an earlier run.
 
     Args:
         out: the folder as the user gave it.
         file: the case file, for messages.
 
     Raises:
-        BadInput: it cannot be made or replaced, holds something else, or its user is in it.
+        BadInput: it cannot be made or replaced, holds other files or the current directory.
     """
     folder = Path(out)
     key = f"--out {out}"
@@ -70,13 +70,13 @@ def write(
     folder: Path,
     snapshots_now: bool = True,
 ) -> None:
-    """Write everything that a run leaves.
+    """Write all files of a run.
 
     Args:
         run: a finished one.
         addition: of a client.
         folder: an empty one.
-        snapshots_now: whether they are drawn; else whoever wants some asks for them later.
+        snapshots_now: whether they are drawn; else on request later.
     """
     results = run.results
     results.save(folder)
@@ -103,12 +103,12 @@ def write(
 
 
 def write_report(results: Results, addition: Addition, folder: Path) -> None:
-    """Write what is derived from the trajectories: summary, figures, report.
+    """Write the files derived from the trajectories: summary, figures, report.
 
     Args:
         results: of the folder.
         addition: of a client.
-        folder: gets them.
+        folder: of these files.
     """
     _write_pages(results, addition, folder, draw_in(results, folder))
 
@@ -134,7 +134,7 @@ def _write_pages(
 
 
 def write_csv(trajectories: xr.Dataset, path: Path) -> None:
-    """One line for each model and time; a station's columns are headed ``NAME@X``.
+    """Write a line for each model and time, columns of stations under ``NAME@X``.
 
     X is the station's ``place``.
     """
@@ -154,7 +154,7 @@ def write_csv(trajectories: xr.Dataset, path: Path) -> None:
         table = csv.writer(file)
         table.writerow(["model", "time", *columns])
         for name, rows in zip(trajectories["model"].values, values, strict=True):
-            # A writer's own way with numbers takes four times as long.
+            # The formatting of csv.writer takes four times as long.
             begin = StringIO()
             csv.writer(begin, lineterminator="").writerow([name])
             numbers = np.column_stack([time, rows]).tolist()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Pictures of an overlap that is cut open: forces between its segments, and von Mises stresses."""
+"""Pictures of an overlap cut open: contact forces between segments, and von Mises stresses."""
 
 from __future__ import annotations
 
@@ -44,41 +44,42 @@ from runs.report.sheet import (
 )
 from shell_model.stress.stresses import ShellStress
 
-# A clearance is drawn up to this part of the outer section's height; room in m beside the stations.
+# The clearance is drawn up to this part of the outer section's height; margin in m beside the
+# stations.
 CLEARANCE_DRAWN, MARGIN = 0.08, 0.6
 
 PIXELS = (SHEET[0], 625)
 
-# Where stresses are shown: of the overlap and of the whole boom, whose displacements are drawn up
-# to this part of its length.
+# Sizes in pixels of the pictures of stresses, in the overlap and in the whole boom, whose
+# displacements are drawn up to this part of its length.
 STRESS_PIXELS, BOOM_PIXELS = (SHEET[0], 475), (1160, 195)
 BOOM_DISPLACEMENT = 0.1
 
-# The cut walls of the segments beside stresses.
+# Colours of cut walls of the segments beside stresses.
 CUT_OUTER, CUT_INNER = "#ffffff", "#c8c8c8"
 
-# A peak that is not above its mean by this factor is the mean.
+# A peak within this factor of its mean is shown as the mean.
 PEAK = 1.02
 
-# Lengths of the arrows, and what is left for them above and below the section, in pixels.
+# Shortest and longest arrow, and the room above and below the section for them, in pixels.
 SHORTEST, LONGEST, ARROW_ROOM = 60.0, 110.0, 120.0
 
-# The scale of stresses ends where this part of the walls' area is below: the few triangles at a
-# line of contact would leave nothing but the light end for the rest.
+# This part of the walls' area lies below the end of the stress scale: the few triangles at a line
+# of contact would use most of the scale otherwise.
 SHOWN_AREA = 0.995
 
-# Stresses below it are none, in Pa.
+# Stresses below this value in Pa count as zero.
 LEAST = 1.0
 
-# Elements across a web from which on its stresses can be read.
+# Elements across a web that resolve its stresses.
 ENOUGH = 4
 
-# Between this part of the scale and its end there is no room for another number.
+# Above this part of the scale there is no room for a number before the end.
 LAST_TICK = 0.65
 
 
 class Half(NamedTuple):
-    """How half of a segment's box is drawn: a pyvista surface, its look, the cut's colour."""
+    """Half of a segment's box in a picture: a pyvista surface, its style, the cut's colour."""
 
     surface: Any
     look: Mapping[str, Any]
@@ -87,7 +88,7 @@ class Half(NamedTuple):
 
 @dataclass(frozen=True)
 class OverlapView:
-    """What the pictures of an overlap share: it shows all stations, and forces there.
+    """View settings that all pictures of an overlap share, with its stations and contact forces.
 
     Args:
         scene: a shell in motion.
@@ -103,34 +104,34 @@ class OverlapView:
 
     @property
     def stress(self) -> ShellStress:
-        """Of the shell; a beam has no walls that could be cut."""
+        """Stresses of the shell; a beam has no walls to cut."""
         assert self.scene.stress is not None
         return self.scene.stress
 
     @cached_property
     def motion(self) -> xr.Dataset:
-        """The trajectories, of the overlap's stations alone."""
+        """Trajectories at the overlap's stations alone."""
         return self.scene.motion.isel(station=self.overlap.stations)
 
     @property
     def stations(self) -> Array:
-        """(num_stations,) their x in m."""
+        """Positions x of the stations (num_stations,) in m."""
         return np.asarray(self.motion["station"].values)
 
     @property
     def middle(self) -> float:
-        """x between the stations in m."""
+        """Centre x between the stations in m."""
         return float(0.5 * (self.stations.min() + self.stations.max()))
 
     @cached_property
     def scale(self) -> float:
-        """Of displacements and play."""
+        """Magnification of displacements and play."""
         height = 2.0 * self.scene.half_height(self.overlap.outer)
         return round_scale(CLEARANCE_DRAWN * height / max(self.overlap.clearance, SAME_PLACE))
 
     @cached_property
     def width(self) -> float:
-        """Of what is seen in m."""
+        """Width of the view in m."""
         ends = [self.ends(self.places(time)) for time in self.times]
         tallest = float(np.ptp(ends, axis=1).max()) + self.scene.wall(self.overlap)
         room = tallest * self.pixels[0] / (self.pixels[1] - 2.0 * ARROW_ROOM)
@@ -138,45 +139,45 @@ class OverlapView:
 
     @cached_property
     def behind(self) -> Mask:
-        """(num_triangles,) what is left when the half before the cut is taken away."""
+        """Mask (num_triangles,) of the half behind the cut."""
         corners = self.scene.points[self.scene.triangles]
         near = (np.abs(corners[..., 0] - self.middle) < self.width).all(axis=1)
         return np.asarray(near & (corners[..., 1].mean(axis=1) > 0.0))
 
     @property
     def numbers(self) -> tuple[int, int]:
-        """Of the outer and of the inner segment."""
+        """Numbers of the outer and of the inner segment."""
         return self.overlap.outer, self.overlap.inner
 
     @property
     def names(self) -> tuple[str, str]:
-        """Of the outer and of the inner segment."""
+        """Names of the outer and of the inner segment."""
         outer, inner = (self.scene.boom.segments[number].name for number in self.numbers)
         return outer, inner
 
     def places(self, time: float) -> Array:
-        """(num_points, 3) where the points are drawn at a time (s), in m."""
+        """Return displayed places (num_points, 3) of the points at a time (s), in m."""
         between = (float(self.stations.min()), float(self.stations.max()))
         moved = self.scene.beside(time, self.overlap.outer, between)
         return self.scene.drawn(moved, self.scale, 1.0)
 
     def flange(self, places: Array, segment: int, side: int) -> Array:
-        """(num_points, 3) places of a flange in the plane of bending, from base to tip."""
+        """Return places (num_points, 3) of a flange in the plane of bending, from base to tip."""
         return places[self.scene.flange_in_plane(segment, side)]
 
     def ends(self, places: Array) -> tuple[float, float]:
-        """The lowest and the highest z in m of the outer segment's flanges at the stations."""
+        """Return the lowest and highest z in m of the outer segment's flanges at the stations."""
         flanges = [self.flange(places, self.overlap.outer, side) for side in (-1, 1)]
         heights = [_at(line, x)[2] for line in flanges for x in self.stations]
         return min(heights), max(heights)
 
     def camera(self, places: Array) -> Camera:
-        """Looks at the outer segment where it is drawn, at its stations."""
+        """Return a camera at the displayed outer segment, at its stations."""
         centre = np.array([self.middle, 0.0, np.mean(self.ends(places))])
         return Camera(centre, self.width, self.pixels, elevation=8.0)
 
     def half(self, segment: int) -> Numbers:
-        """(num_seen, 3) the triangles of half a segment's box."""
+        """Return triangles (num_seen, 3) of half a segment's box."""
         mine = self.scene.segment == segment
         return np.asarray(self.scene.triangles[self.behind & mine])
 
@@ -184,9 +185,9 @@ class OverlapView:
         """Put both segments and the forces between them on a sheet.
 
         Args:
-            sheet: gets the picture.
+            sheet: of the picture.
             time: in s.
-            places: of the points then.
+            places: of the points at that time.
             halves: the outer and the inner segment's.
         """
         camera, wall = self.camera(places), self.scene.wall(self.overlap)
@@ -218,7 +219,7 @@ class OverlapView:
             sheet.arrow(camera.project(outside), side * length, text)
 
     def explain_forces(self, time: float) -> str:
-        """What the arrows' numbers are, or that there are none at a time (s)."""
+        """Return the meaning of the arrows' numbers, or that no forces act at a time (s)."""
         now = self.motion.sel(time=time, method="nearest")
         if not np.nan_to_num(now["contact_force"].values).any():
             return "no contact here"
@@ -232,7 +233,7 @@ class OverlapView:
 def draw_overlap(
     scene: Scene, instants: Sequence[Instant], overlap: Overlap
 ) -> Iterator[Image.Image]:
-    """An overlap without its half before the plane of bending, and the forces at its stations."""
+    """Draw an overlap without its front half, with the forces at its stations."""
     view = OverlapView(scene, overlap, [instant.time for instant in instants])
     outer, inner = view.names
     labels = {theme.OUTER: outer, theme.INNER: inner, theme.FORCE: f"force of {inner} on {outer}"}
@@ -262,10 +263,10 @@ def draw_overlap(
 
 @dataclass(frozen=True, slots=True)
 class StressScale:
-    """The colours of von Mises stresses, the same in all pictures that are to be compared.
+    """Colour scale of von Mises stresses, the same in all pictures that are compared.
 
     Args:
-        end: what the darkest colour is for, in Pa, of three digits.
+        end: stress of the darkest colour in Pa, to three digits.
         largest: of all triangles and instants, in Pa.
     """
 
@@ -274,7 +275,7 @@ class StressScale:
 
     @classmethod
     def of(cls, shell: ShellStress, times: Iterable[float]) -> StressScale:
-        """From all triangles at these times (s)."""
+        """Return the scale for all triangles at these times (s)."""
         end, largest = LEAST, 0.0
         for stress in shell.instants([*times]):
             values = stress.largest()
@@ -283,13 +284,13 @@ class StressScale:
             place = int(np.searchsorted(covered, SHOWN_AREA * covered[-1]))
             end = max(end, float(values[rising[place]]))
             largest = max(largest, float(values.max()))
-        # Rounded down to three digits: what is written is not above what there is.
+        # Rounded down to three digits, so that the text does not exceed the value.
         unit = 10.0 ** (np.floor(np.log10(end)) - 2.0)
         return cls(float(f"{np.floor(end / unit + 1.0e-9) * unit:.3g}"), largest)
 
     @property
     def look(self) -> dict[str, Any]:
-        """How surfaces with a ``stress`` in MPa are drawn."""
+        """Style of surfaces with a ``stress`` in MPa."""
         ends = (0.0, TO_MEGA * self.end)
         return {"scalars": "stress", "cmap": theme.STRESS, "clim": ends, **COLOUR_READ}
 
@@ -306,7 +307,7 @@ class StressScale:
         last = f"≥ {end:.3g}" if goes_on else f"{end:.3g}"
         labels = {**{t: f"{t:g}" for t in ticks}, end: last}
         if self.largest < self.end:
-            # Nothing is stressed, and the scale has no end.
+            # Without stresses the scale has no end.
             labels = {0.0: "0"}
         bar.set_ticks(list(labels), labels=list(labels.values()))
         bar.set_label("von Mises stress (MPa),\nthe larger of both faces", fontsize=18)
@@ -315,7 +316,7 @@ class StressScale:
 def draw_stress(
     scene: Scene, instants: Sequence[Instant], scale: StressScale, overlap: Overlap
 ) -> Iterator[Image.Image]:
-    """Von Mises stresses of the whole boom, and below it of an overlap cut open."""
+    """Draw von Mises stresses of the whole boom, and of an overlap cut open below it."""
     times = [instant.time for instant in instants]
     view = OverlapView(scene, overlap, times, STRESS_PIXELS)
     whole = BoomView.of(scene, instants, BOOM_PIXELS, BOOM_DISPLACEMENT)
@@ -353,9 +354,9 @@ def draw_stress(
 
 
 def _coloured(points: Array, triangles: Numbers, values: Array) -> Any:
-    """A surface whose triangles have points of their own, which may differ in colour.
+    """Return a surface whose triangles have points of their own, which may differ in colour.
 
-    Of points (num_points, 3) in m, and stresses (num_triangles, 3) in Pa at the corners.
+    Points (num_points, 3) are in m, stresses (num_triangles, 3) at the corners in Pa.
     """
     own = np.arange(triangles.size, dtype=np.int32).reshape(triangles.shape)
     found = surface(points[triangles].reshape(-1, 3), own)
@@ -364,7 +365,7 @@ def _coloured(points: Array, triangles: Numbers, values: Array) -> Any:
 
 
 def smoothed(shell: ShellStress, triangles: Numbers, values: npt.ArrayLike) -> Array:
-    """(num_triangles, 3) at the corners: means of the triangles of the same wall around a point."""
+    """Return corner values (num_triangles, 3): means over triangles of a wall around a point."""
     walls = int(shell.wall.max()) + 1
     of = (triangles.astype(np.int64) * walls + shell.wall[:, None]).ravel()
     _, number = np.unique(of, return_inverse=True)
@@ -373,7 +374,7 @@ def smoothed(shell: ShellStress, triangles: Numbers, values: npt.ArrayLike) -> A
 
 
 def _largest(view: OverlapView, time: float) -> str:
-    """The largest stress of a triangle of both segments, seen or not, and its place."""
+    """Return the largest stress of a triangle of both segments, visible or not, and its place."""
     stress, segment = view.stress.at(time).largest(), view.scene.segment
     triangle = int(np.where(np.isin(segment, view.numbers), stress, 0.0).argmax())
     x, _, _ = view.stress.centroids[triangle]
@@ -385,7 +386,7 @@ def _largest(view: OverlapView, time: float) -> str:
 
 
 def _ring_largest(sheet: Sheet, view: OverlapView, places: Array, values: Array) -> str:
-    """A ring where the smoothed stress of the half that is seen is largest; what it is."""
+    """Mark the largest smoothed stress of the visible half with a ring; return its meaning."""
     scene = view.scene
     shown = view.behind & np.isin(scene.segment, view.numbers)
     triangle = int(np.where(shown, values.max(axis=1), 0.0).argmax())
@@ -398,25 +399,25 @@ def _ring_largest(sheet: Sheet, view: OverlapView, places: Array, values: Array)
 
 
 def _coarse(view: OverlapView) -> str:
-    """A caution where webs have too few elements for how stress changes across them."""
+    """Return a caution where webs have too few elements to resolve their stresses."""
     fewest = min(_across_web(view.scene, number) for number in view.numbers)
     return "" if fewest >= ENOUGH else f";  webs of {fewest} elements are coarse for stresses"
 
 
 def _across_web(scene: Scene, segment: int) -> int:
-    """How many edges of elements are across a web, at most places."""
+    """Return the number of element edges across a web, at most places."""
     x, _, z = scene.points[scene.owner == segment].T
     middle, half = 0.5 * (z.min() + z.max()), 0.5 * np.ptp(z)
     inside = np.abs(z - middle) < 0.999 * half
     counts = np.unique(x[inside].round(6), return_counts=True)[1]
-    # Two webs, the points of whose ends are not inside.
+    # Two webs, without the points at their ends.
     return int(np.median(counts)) // 2 + 1
 
 
 def _band(line: Array, thickness: float) -> Any:
-    """The wall that is cut along a line (num_points, 3), in m, as a pyvista surface.
+    """Return the cut wall along a line (num_points, 3) in m as a pyvista surface.
 
-    A hair before the plane of bending, in which the halves of the boxes end.
+    It lies slightly before the plane of bending, in which the halves of the boxes end.
     """
     low, high = (line + np.array([0.0, -0.002, 0.5 * side * thickness]) for side in (-1.0, 1.0))
     number = np.arange(len(line) - 1, dtype=np.int32)
@@ -425,5 +426,5 @@ def _band(line: Array, thickness: float) -> Any:
 
 
 def _at(line: Array, x: float) -> Array:
-    """(3,) place in m at which a line (num_points, 3) passes x."""
+    """Return the place (3,) in m at which a line (num_points, 3) passes x."""
     return np.array([np.interp(x, line[:, 0], line[:, i]) for i in range(3)])

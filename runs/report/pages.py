@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""HTML pages of one file each: every picture and script inside, no resource from elsewhere."""
+"""HTML pages of one file each: every picture and script inside, no external resource."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from PIL import Image
 from runs.report.tables import Table
 
 TEMPLATES = Path(__file__).parent / "templates"
-# A picture in a page is a third as large as on the disk, and looks the same; it has at most twice
-# as many pixels as the page is wide for it.
+# A picture in a page is compressed to a third of its size on the disk without visible loss; it has
+# at most twice the pixels of its width in the page.
 WIDEST = 1240
 _WEBP: dict[str, Any] = {"format": "WEBP", "quality": 85, "method": 1}
-# The classes of marks that are a cell by themselves.
+# Classes of marks that fill a cell alone.
 TONES = {"✓": "yes", "✗": "no", "?": "open"}
 
 
 @dataclass(frozen=True, slots=True)
 class Addition:
-    """What a client of the program adds to the report of a run.
+    """Additions of a client to the report of a run.
 
     Args:
         template: extends ``report.html`` and fills its blocks ``added_…``.
-        content: what the template asks for besides.
+        content: further variables of the template.
         tables: numbered with the report's own.
         remarks: sentences below tables and figures, by their anchors.
-        files: of the run's folder, their text by name.
+        files: for the run's folder, their text by name.
     """
 
     template: Path = TEMPLATES / "report.html"
@@ -44,11 +44,11 @@ class Addition:
 
 
 def page(template: str | Path, **content: Any) -> str:
-    """Return a page as HTML; what it shows is escaped.
+    """Return a page as HTML, its content escaped.
 
     Args:
         template: the name of one in ``TEMPLATES``, or the path of another that extends these.
-        content: what the template asks for.
+        content: variables of the template.
     """
     path = TEMPLATES / template
     environment = Environment(

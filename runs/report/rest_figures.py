@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Along the boom: its line and section forces at rest, their envelopes in motion, its modes."""
+"""Figures along the boom: deflection and section forces at rest, envelopes in motion, modes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from runs.report import numerals, theme
 from runs.report.charts import Chart, Curve
 from runs.report.figure_context import Figure, Pen, new_sheet, of_rests, of_start
 
-# Quantity → heading of its panel, and the factor to its unit.
+# Quantity → heading of its panel, and the conversion factor to its unit.
 _PANELS: Mapping[str, tuple[str, float]] = {
     "deflection": ("deflection (mm)", TO_MILLI),
     "lateral": ("to the sides (mm)", TO_MILLI),
@@ -28,14 +28,14 @@ _PANELS: Mapping[str, tuple[str, float]] = {
     "lateral_moment": ("M to the sides (kN m)", 1e-3),
     "torque": ("T (kN m)", 1e-3),
 }
-# Of an envelope.
+# Quantities of an envelope.
 _FORCES = ("normal", "shear", "moment", "lateral_moment", "torque")
-# So many modes are drawn.
+# Number of modes in the figure.
 MODES = 4
 
 
 class _Line(NamedTuple):
-    """One segment's curve."""
+    """Curve of one segment."""
 
     name: str
     x: Array
@@ -45,14 +45,14 @@ class _Line(NamedTuple):
 
 
 def at_rest(pen: Pen) -> list[Figure]:
-    """The boom's line and its section forces at rest, with play and without."""
+    """Draw the boom's deflection and section forces at rest, with and without play."""
     found = dict(_read_first(pen))
     farthest = {name: own.farthest_rest for name, own in found.items()}
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     if not rests:
         return []
     lines = {name: _rest_lines(rest, name, pen.strokes[name].color) for name, rest in rests.items()}
-    # None stands where drives draw it to.
+    # None stands for the position at the end of telescoping.
     tied = [
         rest
         for name in rests
@@ -75,7 +75,7 @@ def at_rest(pen: Pen) -> list[Figure]:
 
 
 def envelopes(pen: Pen) -> list[Figure]:
-    """Between what the section forces are in motion."""
+    """Draw the limits of the section forces in motion."""
     found = {name: own.moved.envelopes for name, own in _read_first(pen) if own.moved is not None}
     lines = {
         name: {
@@ -96,7 +96,7 @@ def envelopes(pen: Pen) -> list[Figure]:
 
 
 def mode_shapes(pen: Pen) -> list[Figure]:
-    """The first modes of the model that is read first."""
+    """Draw the first modes of the leading model."""
     found = [(name, own.modes) for name, own in _read_first(pen) if own.modes]
     if not found:
         return []
@@ -119,7 +119,7 @@ def mode_shapes(pen: Pen) -> list[Figure]:
 
 
 def _moving(mode: Mode) -> str:
-    """What of a shape moves most."""
+    """Return the direction of the largest displacement of a mode shape."""
     return {"bending in z": "deflection", "bending in y": "lateral", "twist": "twist"}[mode.way]
 
 
@@ -154,7 +154,7 @@ def _stacked(
     title: str,
     caption: str,
 ) -> list[Figure]:
-    """Panels of the quantities that are not zero above one another; none where all are."""
+    """Draw panels of the non-zero quantities above one another; nothing where all are zero."""
     of = {
         what: [line for each in lines.values() for line in each.get(what, ())] for what in _PANELS
     }

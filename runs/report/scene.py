@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A boom in motion as pictures show it: its surfaces, what holds and loads it, magnified.
+"""Scene of a boom in motion: its surfaces, supports and loads, with magnified displacements.
 
 Displacements of millimetres are invisible on a boom of many metres, so pictures magnify them.
 They magnify the play alike, at the cost of the inner section's height: segments touch in the
@@ -33,29 +33,29 @@ from shell_model.stress.stresses import ShellStress
 
 Numbers = npt.NDArray[np.int32]
 
-# Displacements are drawn up to this part of the boom's length, sections so many times larger, of
-# which the play takes up to this part.
+# Displacements are drawn up to this part of the boom's length, sections magnified by this factor,
+# of which the play takes up to this part.
 DISPLACEMENT_DRAWN, SECTION_DRAWN, PLAY_OF_SECTION = 0.2, 2.0, 0.5
 
-# Walls are drawn with this part of the outer section's height: true ones would be hair lines.
+# Walls are drawn with this part of the outer section's height: true thicknesses are invisible.
 WALL_DRAWN = 0.03
 
-# Lengths in m that are the same.
+# Tolerance in m for equal lengths.
 SAME_PLACE = 1.0e-6
 
-# Times for which displacements are computed together.
+# Number of times for which displacements are computed together.
 AT_ONCE = 10
 
-# x stays, y comes up, z comes towards the eye.
+# x stays, y becomes upward, z points to the viewer.
 _FROM_ABOVE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 
 
 class Overlap(NamedTuple):
-    """Two segments that slide in one another.
+    """Two telescoping segments that overlap.
 
     Args:
         outer, inner: their numbers.
-        stations: where they touch, as positions in the trajectories.
+        stations: of contact, as positions in the trajectories.
         clearance: Δ in m.
     """
 
@@ -66,13 +66,13 @@ class Overlap(NamedTuple):
 
 
 class Instant(NamedTuple):
-    """A time in s, and what happens then."""
+    """A time in s, and its event."""
 
     time: float
     title: str = ""
 
     def heading(self, scene: Scene) -> str:
-        """The line above a picture: the time, and the deflection of the tip."""
+        """Return the line above a picture: the time, and the deflection of the tip."""
         title = f"{self.title}:  " if self.title else ""
         tip = float(scene.motion["tip"].sel(time=self.time, method="nearest"))
         aside = " sideways" if scene.from_above else ""
@@ -84,8 +84,8 @@ class Scene:
     """A boom and its motion.
 
     Args:
-        boom: what moves.
-        marks: what holds and loads it.
+        boom: the boom.
+        marks: of its supports and loads.
         points: (num_points, 3) in m.
         triangles: (num_triangles, 3) point numbers.
         segment: (num_triangles,) of each triangle.
@@ -109,7 +109,7 @@ class Scene:
 
     @classmethod
     def views(cls, fields: xr.Dataset, motion: xr.Dataset, case: Case) -> list[Scene]:
-        """A shell from the files of a run: seen from the side, and a boom in space from above too.
+        """Return scenes of a shell from a run's files: from the side, in space also from above.
 
         For the view from above the boom is turned about x, so that y points up.
 
@@ -145,14 +145,15 @@ class Scene:
 
     @classmethod
     def of_beam(cls, boom: Boom, output: BeamOutput, motion: xr.Dataset) -> tuple[Scene, Array]:
-        """A beam as tubes along its axis, and the bending stress (num_frames, num_points) in Pa.
+        """Return a beam as tubes along its axis, with bending stresses in Pa.
 
         Sections stay plane and keep their shape: a point at (y, z) moves along x by −z w′ − y v′,
-        and with the section's twist. Stresses are those at the mid-lines of the plates.
+        and with the section's twist. Stresses (num_frames, num_points) are those at the mid-lines
+        of the plates.
 
         Args:
-            boom: whose model has moved.
-            output: how it has.
+            boom: of the model.
+            output: of its motion.
             motion: its trajectories.
         """
         tubes = [
@@ -179,19 +180,19 @@ class Scene:
 
     @property
     def direction(self) -> Direction:
-        """Along which a picture's third direction is."""
+        """Third direction of the picture."""
         return "y" if self.from_above else "z"
 
     @cached_property
     def owner(self) -> Numbers:
-        """(num_points,) the segment of each point."""
+        """Segments (num_points,) of the points."""
         owner = np.zeros(len(self.points), dtype=np.int32)
         owner[self.triangles] = self.segment[:, None]
         return owner
 
     @cached_property
     def overlaps(self) -> list[Overlap]:
-        """Of the joints with play along the third direction, from the base to the tip."""
+        """Overlaps of the joints with play along the third direction, from the base to the tip."""
         found, begin = [], 0
         for direction in self.boom.directions:
             for joint in self.boom.joints:
@@ -205,19 +206,19 @@ class Scene:
         return found
 
     def displacement(self, t: float) -> Array:
-        """(num_points, 3) in m, at the output time next to ``t`` (s)."""
+        """Return displacements (num_points, 3) in m, at the output time next to ``t`` (s)."""
         return next(self.displacements([t]))
 
     def displacements(self, times: Sequence[float]) -> Iterator[Array]:
-        """(num_points, 3) each in m, at the output times next to ``times`` (s)."""
+        """Yield displacements (num_points, 3) in m, at the output times next to ``times`` (s)."""
         states = self.state.sel(time=list(times), method="nearest").values
-        # The modes, which do not fit into a processor's memory, are read once for several times.
+        # The modes do not fit into a processor's cache; each is read once for several times.
         for begin in range(0, len(states), AT_ONCE):
             moved = np.tensordot(states[begin : begin + AT_ONCE], self.modes, axes=1)
             yield from moved.astype(np.float64)
 
     def travel(self, segment: int) -> Array:
-        """(num_times,) how far drives have moved a segment along x, in m, at the motion's times."""
+        """Return a segment's extension (num_times,) by drives, in m, at the motion's times."""
         names = [
             f"drawn_out-{n + 1}" if n else "drawn_out"
             for n in drives_below(self.boom.joints, segment)
@@ -226,23 +227,23 @@ class Scene:
         return np.asarray(sum((self.motion[name].values for name in names), none))
 
     def along(self, t: float) -> Array:
-        """(num_points,) how far drives have moved each along x in m, at a time in s."""
+        """Return the extension (num_points,) of each point along x in m, at a time in s."""
         step = int(np.abs(self.motion["time"].values - t).argmin())
         ways = [self.travel(number)[step] for number in range(len(self.boom.segments))]
         return np.array(ways)[self.owner]
 
     def slides(self, overlap: Overlap) -> bool:
-        """Whether a drive moves the inner segment of an overlap in the outer one."""
+        """Return whether a drive moves the inner segment of an overlap in the outer one."""
         return bool((self.travel(overlap.outer) != self.travel(overlap.inner)).any())
 
     def reach(self, times: Sequence[float]) -> tuple[float, float]:
-        """The least and the largest x in m at which the boom is, telescoped as it may be."""
+        """Return the minimum and maximum x in m of the boom, telescoping included."""
         x = self.points[:, 0]
         places = [x, *(x + self.along(time) for time in times)]
         return float(np.min(places)), float(np.max(places))
 
     def beside(self, t: float, segment: int, between: tuple[float, float]) -> Array:
-        """(num_points, 3) displacement in m beside a part of a segment, which seems to rest.
+        """Return displacements (num_points, 3) in m relative to a part of a segment.
 
         The motion and the turn of that part, ``between`` two x in m, as a whole in the picture's
         plane is taken from all points: magnified it would tilt a sloping boom, and tells nothing
@@ -259,16 +260,16 @@ class Scene:
         )
 
     def edges(self, segment: int, x: float) -> tuple[float, float]:
-        """The lowest and the highest place in m of a segment's section at x in m."""
+        """Return the lowest and highest z in m of a segment's section at x in m."""
         return edges(self.boom, self.boom.segments[segment], x, self.direction)
 
     def half_height(self, segment: int, x: float | None = None) -> float:
-        """Half of how tall a segment's section is at x in m, else at its tallest, in m."""
+        """Return half the height of a segment's section at x in m, by default the maximum, in m."""
         ends = self.boom.segments[segment].ends if x is None else (x,)
         return max(0.5 * float(np.ptp(self.edges(segment, end))) for end in ends)
 
     def flange_in_plane(self, segment: int, side: int) -> Numbers:
-        """(num_points,) points of a flange in the plane of bending, from base to tip.
+        """Return points (num_points,) of a flange in the plane of bending, from base to tip.
 
         ``side`` is 1 for the top, -1 for the bottom.
         """
@@ -279,13 +280,13 @@ class Scene:
         return np.asarray(order[outermost], dtype=np.int32)
 
     def wall(self, overlap: Overlap) -> float:
-        """Thickness in m with which the walls of an overlap are drawn."""
+        """Return the thickness in m with which the walls of an overlap are drawn."""
         return 2.0 * WALL_DRAWN * self.half_height(overlap.outer)
 
     def fitting_scale(self, times: Sequence[float], part: float = DISPLACEMENT_DRAWN) -> float:
-        """A round magnification of displacements and play in pictures of the whole boom.
+        """Return a rounded magnification of displacements and play for pictures of the whole boom.
 
-        Displacements at these times (s) are drawn up to a part of the boom's length.
+        Magnified displacements at these times (s) stay below a part of the boom's length.
         """
         largest = max(float(np.abs(moved[:, 2]).max()) for moved in self.displacements(times))
         tallest = max(self.half_height(number) for number in range(len(self.boom.segments)))
@@ -298,9 +299,9 @@ class Scene:
         )
 
     def drawn(self, moved: Array, scale: float, section: float = SECTION_DRAWN) -> Array:
-        """(num_points, 3) places in m at which a picture shows the points.
+        """Return the displayed places (num_points, 3) of the points in m.
 
-        A section that is drawn larger also turns with its larger height. What moves along the
+        A magnified section also rotates with its magnified height. What moves along the
         line of sight stays, or it would come out of the picture.
 
         Args:
@@ -317,7 +318,7 @@ class Scene:
         )
 
     def _section_factors(self, scale: float, section: float) -> Array:
-        """(num_segments,) of y and z; every inner segment makes room for the play around it."""
+        """Return factors (num_segments,) of y and z; inner segments leave room for the play."""
         factors = np.full(len(self.boom.segments), section)
         for overlap in sorted(self.overlaps, key=lambda o: -self.half_height(o.outer)):
             x = float(np.mean(np.array([at for at, _ in self.boom.stations])[overlap.stations]))
@@ -328,8 +329,10 @@ class Scene:
 
 
 class _Tube(NamedTuple):
-    """One segment: points (num_points, 3), triangles, how they move (num_frames, num_points, 3),
-    stress (num_frames, num_points) in Pa."""
+    """Tube of one segment: points (num_points, 3) and triangles.
+
+    Displacements are (num_frames, num_points, 3), stresses (num_frames, num_points) in Pa.
+    """
 
     points: Array
     triangles: Array
@@ -338,7 +341,7 @@ class _Tube(NamedTuple):
 
 
 def _tube(boom: Boom, segment: Segment, output: MovedSegment) -> _Tube:
-    """Rings (place, corner) of a segment, joined by two triangles for each plate and stretch."""
+    """Return rings (place, corner) of a segment, joined by two triangles per plate and interval."""
     x, read = output.x, output.read
     corners = np.array([_corners(boom, segment, place) for place in x.tolist()])
     none = np.zeros_like(read["deflection"])
@@ -350,7 +353,7 @@ def _tube(boom: Boom, segment: Segment, output: MovedSegment) -> _Tube:
     quads = [(low, np.roll(low, -1), np.roll(high, -1), high) for low, high in pairwise(rings)]
     a, b, c, d = np.array(quads).transpose(1, 0, 2).reshape(4, -1)
     there = [segment.local(place) for place in x.tolist()]
-    # Rigid segments know no moments.
+    # Rigid segments have no bending moments.
     stress = _bending(read.get("moment", none), there, "second_moment_of_area") * z
     if "lateral_moment" in read:
         stress += _bending(read["lateral_moment"], there, "lateral.second_moment_of_area") * y
@@ -364,7 +367,7 @@ def _tube(boom: Boom, segment: Segment, output: MovedSegment) -> _Tube:
 
 
 def _corners(boom: Boom, segment: Segment, x: float) -> Array:
-    """(num_corners, 2) y and z in m at x in m, once around; a square where plates are unknown."""
+    """Return y and z (num_corners, 2) in m at x in m around a section; without plates a square."""
     if segment.section is not None:
         return np.array([plate.start for plate in segment.section_at(x).plates])
     _, half = edges(boom, segment, x)
@@ -372,12 +375,12 @@ def _corners(boom: Boom, segment: Segment, x: float) -> Array:
 
 
 def _bending(moments: Array, there: Sequence[Segment], number: str) -> Array:
-    """(num_frames, num_places, 1) curvature times Young's modulus, in Pa/m."""
+    """Return curvature times Young's modulus (num_frames, num_places, 1), in Pa/m."""
     return np.asarray(moments / [attrgetter(number)(segment) for segment in there])[..., None]
 
 
 def rigid_motion(places: Array, moved: Array) -> Array:
-    """(3,) two shifts and a turn of places (num_places, 2) whose motion is fitted by least squares.
+    """Return two shifts and a rotation (3,) fitted to a motion of places (num_places, 2).
 
     The first coordinate moves by shift − turn · second, the second by shift + turn · first.
     """
@@ -390,10 +393,10 @@ def rigid_motion(places: Array, moved: Array) -> Array:
 
 
 def means_around(groups: Numbers, areas: Array, values: npt.ArrayLike) -> Array:
-    """(num_groups,) means of triangles' values around points, by their areas.
+    """Return means (num_groups,) of triangles' values around points, weighted by area.
 
     Args:
-        groups: (num_triangles, 3) of each corner, its point or the like.
+        groups: (num_triangles, 3) group of each corner, usually its point.
         areas: (num_triangles,).
         values: (num_triangles,).
     """
@@ -403,6 +406,6 @@ def means_around(groups: Numbers, areas: Array, values: npt.ArrayLike) -> Array:
 
 
 def round_scale(largest: float) -> float:
-    """The largest of …, 1, 2, 5, 10, 20, … that is not above ``largest``."""
+    """Return the largest of …, 1, 2, 5, 10, 20, … that is not above ``largest``."""
     decade = 10.0 ** np.floor(np.log10(largest))
     return float(decade * max(step for step in (1.0, 2.0, 5.0) if step * decade <= largest))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A page around a rendered boom: one camera, and what is written on what it sees.
+"""Sheet around a rendered boom: one camera, and annotations of the rendered picture.
 
-VTK draws the surfaces, matplotlib everything that is written on them: the camera's projection
-is known, so that labels and axes stand where they belong.
+VTK renders the surfaces, matplotlib draws the annotations. They share the camera's projection, so
+that labels and axes have the correct positions.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ from runs.report import theme
 
 Pixels = npt.NDArray[np.uint8]
 
-# Light enough for the colour of a face to be that of the bar, dark enough to tell faces apart.
+# Light enough for a face to match the colour bar, dark enough to distinguish faces.
 MATTE = {"ambient": 0.35, "diffuse": 0.75, "specular": 0.0, "show_scalar_bar": False}
 COLOUR_READ = MATTE | {"ambient": 0.75, "diffuse": 0.3}
 MESHED = {"show_edges": True, "edge_color": theme.INK, "line_width": 1.5}
 
-# Width and height of a sheet in pixels, and pixels per inch. VTK draws each pixel as a square of
+# Width and height of a sheet in pixels, and pixels per inch. VTK renders each pixel as a square of
 # four, for smooth edges.
 SHEET = (1600, 900)
 DPI = 100
 FINER = 2
 
-# Walls that meet at a larger angle, in degrees, have an edge between them.
+# Angle in degrees above which two walls have an edge between them.
 SHARP = 30.0
 
-# Degrees over which the picture's height is seen: perspective enough for a box to look like one.
+# Vertical angle of view in degrees: enough perspective for a box.
 VIEW_ANGLE = 12.0
 
 OUTLINED = [withStroke(linewidth=5, foreground="white")]
@@ -49,13 +49,13 @@ OUTLINED = [withStroke(linewidth=5, foreground="white")]
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """Looks along y, from negative y and a little from above, so that x runs to the right.
+    """Camera along y, from negative y and slightly from above, so that x runs to the right.
 
     Args:
         centre: (3,) the middle of the picture in m.
-        width: what the picture's width shows at the centre in m.
+        width: of the view at the centre in m.
         pixels: width and height of the picture.
-        elevation: how far from above in degrees.
+        elevation: angle from above in degrees.
     """
 
     centre: Array
@@ -65,7 +65,7 @@ class Camera:
 
     @property
     def axes(self) -> Array:
-        """(3, 3) unit vectors to the right, up and into the picture."""
+        """Unit vectors (3, 3) to the right, up and into the picture."""
         tilt = np.radians(self.elevation)
         right = np.array([1.0, 0.0, 0.0])
         into = np.array([0.0, np.cos(tilt), -np.sin(tilt)])
@@ -73,20 +73,20 @@ class Camera:
 
     @property
     def position(self) -> Array:
-        """(3,) in m."""
+        """Position (3,) in m."""
         half_height = 0.5 * self.width * self.pixels[1] / self.pixels[0]
         distance = half_height / np.tan(np.radians(0.5 * VIEW_ANGLE))
         return np.asarray(self.centre - distance * self.axes[2])
 
     def project(self, points: npt.ArrayLike) -> Array:
-        """(..., 2) pixels right of and above the lower left corner, of points (..., 3) in m."""
+        """Return pixels (..., 2) right of and above the lower left corner, for (..., 3) in m."""
         right, up, depth = np.moveaxis((np.asarray(points) - self.position) @ self.axes.T, -1, 0)
         magnification = 0.5 * self.pixels[1] / np.tan(np.radians(0.5 * VIEW_ANGLE)) / depth
         middle = 0.5 * np.array(self.pixels)
         return np.asarray(np.stack([right, up], axis=-1) * magnification[..., None] + middle)
 
     def see(self, plotter: Any) -> Pixels:
-        """(height, width, 3) what a :func:`stage` shows."""
+        """Return pixels (height, width, 3) of a :func:`stage`."""
         plotter.camera_position = [self.position, self.centre, self.axes[1]]
         plotter.camera.view_angle = VIEW_ANGLE
         plotter.reset_camera_clipping_range()
@@ -97,12 +97,12 @@ class Camera:
 
 @contextmanager
 def stage(pixels: tuple[int, int], part: float = 1.0) -> Iterator[Any]:
-    """A pyvista plotter off-screen on white, for a part of a whole sheet's size each way."""
-    # VTK's libraries may be missing on a machine that is asked for no picture.
+    """Return a pyvista plotter off-screen on white, for a part of a whole sheet's size each way."""
+    # VTK's libraries may be missing on a machine that draws no pictures.
     import pyvista
     from vtkmodules.vtkCommonCore import vtkLogger
 
-    # VTK warns that it found no display before it takes EGL, which needs none.
+    # VTK warns about a missing display before it uses EGL, which needs none.
     verbosity = vtkLogger.GetCurrentVerbosityCutoff()
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
     size = [FINER * round(part * n) for n in pixels]
@@ -117,7 +117,7 @@ def stage(pixels: tuple[int, int], part: float = 1.0) -> Iterator[Any]:
 
 
 def surface(points: Array, triangles: npt.NDArray[np.int32]) -> Any:
-    """A pyvista surface of points (num_points, 3) in m and triangles (num_triangles, 3)."""
+    """Return a pyvista surface of points (num_points, 3) in m and triangles (num_triangles, 3)."""
     import pyvista
 
     kinds: Any = pyvista.PolyData
@@ -125,13 +125,13 @@ def surface(points: Array, triangles: npt.NDArray[np.int32]) -> Any:
 
 
 def sharp_edges(mesh: Any) -> Any:
-    """The free and the sharp edges of a surface; ``number`` tells the points at their ends."""
+    """Return the free and the sharp edges of a surface; ``number`` numbers their end points."""
     mesh["number"] = np.arange(mesh.n_points)
     return mesh.extract_feature_edges(feature_angle=SHARP)
 
 
 class Sheet:
-    """A page: heading, picture, x along the picture's lower edge, and room below it.
+    """Sheet of heading, picture, x along the picture's lower edge, and room below it.
 
     The coordinates of ``picture`` are the pixels of :meth:`Camera.project`. What passes belongs to
     one image; all else is drawn once, for the first one.
@@ -154,13 +154,13 @@ class Sheet:
         self.picture.set(xlim=(0, pixels[0]), ylim=(0, pixels[1]), yticks=[])
 
     def axes(self, left: int, bottom: int, width: int, height: int) -> Axes:
-        """Axes at a place on the sheet, in pixels."""
+        """Return axes at a place on the sheet, in pixels."""
         return self.figure.add_axes(
             (left / SHEET[0], bottom / SHEET[1], width / SHEET[0], height / SHEET[1])
         )
 
     def mark_x(self, camera: Camera, first: float, last: float) -> None:
-        """Put ticks where the camera sees round x in m at the depth of its centre."""
+        """Draw ticks at round values of x at the depth of the camera's centre."""
         _, y, z = camera.centre
         ticks = np.asarray(MaxNLocator(20, steps=[1, 2, 5, 10]).tick_values(first, last))
         ticks = ticks[(ticks > first - 1.0e-9) & (ticks < last + 1.0e-9)]
@@ -169,12 +169,12 @@ class Sheet:
         self.picture.set_xlabel("x along the boom (m)")
 
     def show(self, pixels: Pixels, left: int = 0, bottom: int | None = None) -> None:
-        """Put what a camera saw into the picture, or at a place on the sheet, in pixels."""
+        """Show a camera's view in the picture, or at a place on the sheet, in pixels."""
         up = self._floor if bottom is None else bottom
         self._seen.append((pixels, round(self._part * left), round(self._part * up)))
 
     def pass_by(self, *artists: Artist) -> None:
-        """Let something belong to the next image alone."""
+        """Show an artist in the next image alone."""
         for artist in artists:
             artist.set_animated(True)
         self._passing += artists
@@ -182,7 +182,7 @@ class Sheet:
     def write(self, heading: str, explanation: str) -> None:
         """Write the lines above the picture."""
         centred: dict[str, Any] = {"ha": "center", "va": "top"}
-        # Of three lines the longest is longer than the sheet is wide, unless they are smaller.
+        # The longest of three lines exceeds the sheet's width unless they are smaller.
         size = 17 if explanation.count("\n") > 1 else 19
         self.pass_by(
             self.figure.text(0.5, 0.98, heading, size=26, weight="bold", **centred),
@@ -190,19 +190,19 @@ class Sheet:
         )
 
     def arrow(self, foot: Array, length: float, text: str) -> None:
-        """Draw an upright arrow from (2,) pixels, down by negative lengths, and write beside it."""
+        """Draw a vertical arrow from (2,) pixels, down by negative lengths, with a label."""
         x, y = (float(pixel) for pixel in foot)
         shaft = {"width": 8, "headwidth": 24, "headlength": 22, "color": theme.FORCE}
         letters: dict[str, Any] = {"color": theme.FORCE, "path_effects": OUTLINED, "va": "center"}
         mark = self.picture.annotate
         self.pass_by(
-            # Matplotlib would leave out an arrow whose tip is beyond the picture.
+            # Matplotlib omits an arrow whose tip is beyond the picture.
             mark("", (x, y + length), (x, y), arrowprops=shaft, annotation_clip=False),
             mark(text, (x + 22.0, y + 0.6 * length), **letters),
         )
 
     def ring(self, x: float, y: float, text: str) -> None:
-        """Ring a place, in pixels, and write beside it."""
+        """Draw a ring around a place, in pixels, with a label."""
         look: dict[str, Any] = {"ms": 26, "mfc": "none", "mec": theme.INK, "mew": 3}
         self.pass_by(
             *self.picture.plot([x], [y], "o", path_effects=OUTLINED, **look),
@@ -210,7 +210,7 @@ class Sheet:
         )
 
     def image(self) -> Image.Image:
-        """The sheet as it is now, from which all that passes has gone then."""
+        """Return the current image of the sheet; artists of one image are removed afterwards."""
         if self._still is None:
             self._canvas.draw()
             self._still = self._canvas.copy_from_bbox(self.figure.bbox)
@@ -219,7 +219,7 @@ class Sheet:
         for pixels, left, bottom in self._seen:
             top, (height, width, _) = len(page) - bottom, pixels.shape
             place = page[top - height : top, left : left + width, :3]
-            # Letters that come down into the picture stay.
+            # Characters that reach down into the picture stay.
             np.minimum(place, pixels, out=place)
         for artist in sorted(self._passing, key=Artist.get_zorder):
             self.figure.draw_artist(artist)

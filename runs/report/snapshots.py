@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Snapshots of a run's shells: at which instants, in which files, and with which captions."""
+"""Snapshots of a run's shells: their instants, files and captions."""
 
 from __future__ import annotations
 
@@ -44,19 +44,19 @@ TITLES = {
     "first-contact": "first contact",
 }
 
-# What happens at one station, of a joint or a stop.
+# Events at one station, of a joint or a stop.
 AT_A_STATION = ("largest-force", "first-contact")
 
-# Instants nearer to one another than this part of the run look the same.
+# Instants closer together than this part of the run look the same.
 SAME = 0.02
 
-# What an arrow stands for where there is more than one point to a station.
+# Meaning of an arrow where a station has several points.
 ON_SURFACES = (
     " The segments touch over surfaces: each arrow is the sum of the forces of the points nearest "
     "to its station."
 )
 
-# A time in s that a user has asked for.
+# A time in s that the user has requested.
 _GIVEN = re.compile(r"[0-9.e+-]+s")
 _NAME = re.compile(
     r"(?P<view>boom|overlap|stress)(?P<above>-above)?(-(?P<joint>\d+))?-(?P<when>.+)"
@@ -67,11 +67,11 @@ Render = Callable[[Sequence[Scene], Path, Times], list[Path]]
 
 
 def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Path]:
-    """Draw a shell at some instants.
+    """Draw a shell at given instants.
 
     Args:
         views: of its motion, see :meth:`Scene.views`.
-        folder: gets ``boom-WHEN.png``, ``overlap-WHEN.png`` and ``stress-WHEN.png`` of each
+        folder: of ``boom-WHEN.png``, ``overlap-WHEN.png`` and ``stress-WHEN.png`` of each
             instant (from the second joint on ``overlap-2-WHEN.png``), those of a boom in space
             seen from above too (``boom-above-WHEN.png``).
         times: in s; those of :func:`telling_instants` unless given.
@@ -99,7 +99,7 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
             pictures = {f"boom{above}": draw_boom(view, instants, end)}
             for number, overlap in enumerate(seen.overlaps, start=1):
                 if seen.slides(overlap):
-                    # Its stations do not stay where these pictures look.
+                    # Its stations move out of these pictures' view.
                     continue
                 joint = above if number == 1 else f"{above}-{number}"
                 pictures[f"overlap{joint}"] = draw_overlap(seen, instants, overlap)
@@ -112,7 +112,7 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
 
 
 def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Path]:
-    """Draw the first motion of a shell, magnified as in :func:`render_stills`: ``motion.gif``."""
+    """Draw the initial motion of a shell, magnified as in :func:`render_stills`: ``motion.gif``."""
     scene = views[0]
     film, (begin, _) = _film(scene), _ends(scene)
     with rc_context(theme.PAGE_RC):
@@ -121,7 +121,8 @@ def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> li
         slow = SHOWN / (last - begin) if last > begin else 1.0
         pace = f"; {slow:.3g} times slower than it is" if slow > 1.0 else ""
         pictures = list(draw_boom(view, film, last, pace, SMALL))
-    # All have one palette, that of some one above another: colours would flicker otherwise.
+    # All frames share one palette, that of an image of several frames: colours would flicker
+    # otherwise.
     some = np.concatenate([np.asarray(picture) for picture in pictures[:: len(pictures) // 5 or 1]])
     palette = Image.fromarray(some).quantize(256, Image.Quantize.FASTOCTREE)
     first, *rest = (
@@ -137,21 +138,21 @@ def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> li
     return [folder / ANIMATION]
 
 
-# What is drawn of each shell, at a time.
+# Pictures of each shell, one at a time.
 RENDERED: Sequence[Render] = (render_stills, render_film)
 
 
 def render_files(
     render: Render, fields: Path, trajectories: Path, case: Case, folder: Path, times: Times
 ) -> list[Path]:
-    """What is drawn of netCDF files, ``model`` being the attribute of the fields."""
+    """Draw the pictures of netCDF files, ``model`` being the attribute of the fields."""
     shell, motion = (xr.load_dataset(path, engine="scipy") for path in (fields, trajectories))
     views = Scene.views(shell, motion.sel(model=shell.attrs["model"]), case)
     return render(views, folder, times)
 
 
 def _ends(scene: Scene) -> tuple[float, float]:
-    """Of its motion in s."""
+    """Return start and end of its motion in s."""
     begin, end = scene.motion["time"].values[[0, -1]]
     return float(begin), float(end)
 
@@ -162,7 +163,7 @@ def _film(scene: Scene) -> list[Instant]:
 
 
 def _when(motion: xr.Dataset, times: Times) -> dict[str, float]:
-    """Times in s by the names that their files have."""
+    """Return times in s by the names in their file names."""
     return telling_instants(motion) if times is None else {f"{t:g}s": t for t in times}
 
 
@@ -174,7 +175,7 @@ def _instants(views: Sequence[Scene], when: Mapping[str, float]) -> list[Instant
 
 
 def telling_instants(motion: xr.Dataset) -> dict[str, float]:
-    """Times in s of a model's trajectories that are worth a look, by what happens then.
+    """Return characteristic times in s of a model's trajectories, by their events.
 
     ``first-peak`` of the tip, or ``largest-deflection`` where there is no peak; the
     ``largest-force`` of the run, at any station, unless that is at nearly the same time; the
@@ -198,7 +199,7 @@ def telling_instants(motion: xr.Dataset) -> dict[str, float]:
 
 
 def where_pressed(views: Sequence[Scene], time: float) -> str:
-    """Where the force is largest at a time (s); nothing where there is but one such place."""
+    """Return the place of the maximum force at a time (s); nothing where only one exists."""
     scene = views[0]
     places = [
         (f"joint {number}{' sideways' if seen.from_above else ''}", overlap.stations)
@@ -213,10 +214,10 @@ def where_pressed(views: Sequence[Scene], time: float) -> str:
 
 
 def shells_in(folder: Path) -> list[Path]:
-    """The fields of all shells in a run's folder.
+    """Return the files of the fields of all shells in a run's folder.
 
     Raises:
-        BadInput: there are none, or some that are damaged, or another version's.
+        BadInput: files are missing, damaged, or of another version.
     """
     shells = list(folder.glob(f"*{FIELDS}"))
     for path in shells:
@@ -239,7 +240,7 @@ def drawing(
     Args:
         results: of the run.
         shells: files of fields, ``[SHELL-]fields.nc``.
-        trajectories: file of all.
+        trajectories: file of all models.
         folder: of the run; pictures of other instants stay in it.
         times: in s; the telling ones unless given.
 
@@ -282,14 +283,14 @@ def drawing(
 def _finished(
     first: Future[None], drawn: Sequence[tuple[str, Future[list[Path]]]]
 ) -> list[tuple[str, list[Path]]]:
-    """The pictures of each shell, when all are there."""
+    """Return the pictures of each shell when all are finished."""
     try:
         first.result(opengl.PROBE_SECONDS)
         return [(prefix, pictures.result()) for prefix, pictures in drawn]
     except TimeoutError:
         raise opengl.too_late() from None
     except BrokenProcessPool:
-        # Another process tells what it has died of.
+        # Another process reports its cause of death.
         opengl.require_opengl()
         raise MemoryError("the system has killed the process that draws") from None
     except (ImportError, RuntimeError):
@@ -298,7 +299,7 @@ def _finished(
 
 
 def describe(results: Results, folder: Path) -> list[Figure]:
-    """The snapshots of a run's folder, each with a title and a caption."""
+    """Return the snapshots of a run's folder, each with a title and a caption."""
     return [
         describe_one(results, folder / SNAPSHOTS / name)
         for name in results.summary.snapshots.written
@@ -306,11 +307,11 @@ def describe(results: Results, folder: Path) -> list[Figure]:
 
 
 def describe_one(results: Results, path: Path) -> Figure:
-    """A snapshot with a title and a caption.
+    """Return a snapshot with a title and a caption.
 
     Args:
         results: of the run whose shell it shows.
-        path: as :func:`render_stills` names it, with the shell's name before it where the case
+        path: named by :func:`render_stills`, with the shell's name before it where the case
             has several.
     """
     lines = {m.name: m.contact_line for m in of_kind(Shell, results.case.models)}
@@ -364,7 +365,7 @@ def describe_one(results: Results, path: Path) -> Figure:
 
 
 def _instant(name: str, motion: xr.Dataset) -> tuple[str, str]:
-    """What happens when, and where the tip is then; the name alone where the run has no such."""
+    """Return an event and the tip deflection at its time; the name alone for other runs."""
     event = TITLES.get(name, name.replace("-", " "))
     instants = telling_instants(motion)
     if name in instants:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Tables, for the terminal, for the report, as Markdown and for programs."""
+"""Tables for the terminal, the report, Markdown and programs."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ from runs.report.numerals import NONE, count, fixed, number, repeated
 if TYPE_CHECKING:
     import pandas as pd
 
-# Letters that fit in a line of the report with its usual font, on a telephone, and in a file.
+# Characters that fit in a line of the report with its usual font, on a telephone, and in a file.
 ROOMY, NARROW = 115, 40
 WIDE = 180
 
-# From SI units to those that headings name; others are SI units.
+# Conversion from SI units to those in headings; others are SI units.
 _FACTORS = {"%": TO_PERCENT, "mm": TO_MILLI, "mrad": TO_MILLI, "ms": TO_MILLI, "µs": TO_MICRO}
 _FACTORS |= dict.fromkeys(("kN", "kW", "kJ"), TO_KILO)
 _FACTORS |= dict.fromkeys(("MPa", "MN", "MN/m"), TO_MEGA)
 
-# Text, a number, repetitions of one, or none.
+# A cell: text, a number, repetitions of one, or none.
 Cell = str | float | list[float] | None
-# The same as JSON says it, which knows no number that is not finite.
+# The same in JSON, without numbers that are not finite.
 Plain = str | float | list[float | None] | None
 
 
 def wide_console() -> Console:
-    """Return where to print tables: as wide as they are where nobody watches."""
+    """Return the console for tables, as wide as the tables where the output is no terminal."""
     console = Console()
     return console if console.is_terminal else Console(width=WIDE)
 
@@ -64,7 +64,7 @@ class Column:
 
     @property
     def heading(self) -> str:
-        """The title, and in its second line the unit."""
+        """Title, with the unit in its second line."""
         if not self.unit or not self.title:
             return self.title or self.unit
         between = ", " if "\n" in self.title else "\n"
@@ -72,17 +72,17 @@ class Column:
 
     @property
     def factor(self) -> float:
-        """From SI units to the unit of the heading."""
+        """Conversion factor from SI units to the unit of the heading."""
         return _FACTORS.get(self.unit.partition(" ")[0], 1.0)
 
     @property
     def text(self) -> list[str]:
-        """The cells as they are shown."""
+        """Cells as displayed."""
         return [self._shown(cell) for cell in self.cells]
 
     @property
     def plain(self) -> list[Plain]:
-        """The cells in the unit of the heading."""
+        """Cells in the unit of the heading."""
         return [self._plain(cell) for cell in self.cells]
 
     def _shown(self, cell: Cell) -> str:
@@ -105,7 +105,7 @@ class Column:
         return cell if isinstance(cell, str) or cell is None else self._number(cell)
 
     def _number(self, value: float) -> float | None:
-        """Whole numbers stay so where the unit is their own."""
+        """Return a number, an integer where the cell is one and keeps its unit."""
         if isinstance(value, int) and self.factor == 1.0:
             return value
         return float(self.factor * value) if math.isfinite(value) else None
@@ -143,7 +143,7 @@ class Table:
 
         Args:
             name, title, notes: of the table.
-            columns: heading → form of its numbers; headings alone where all cells are text.
+            columns: heading → format of its numbers; headings alone where all cells are text.
             rows: a cell for each heading.
         """
         forms = columns if isinstance(columns, Mapping) else dict.fromkeys(columns, "")
@@ -155,20 +155,20 @@ class Table:
 
     @property
     def headings(self) -> tuple[str, ...]:
-        """Of the columns, with the unit in the second line."""
+        """Headings of the columns, with the unit in the second line."""
         return tuple(column.heading for column in self.columns)
 
     @property
     def rows(self) -> list[tuple[str, ...]]:
-        """The cells as they are shown, row by row."""
+        """Cells as displayed, row by row."""
         return list(zip_longest(*(column.text for column in self.columns), fillvalue=NONE))
 
     @property
     def frame(self) -> pd.DataFrame:
-        """The cells by their headings, numbers in their units; None for none.
+        """Cells by their headings, numbers in their units; None for empty cells.
 
         Raises:
-            ValueError: a heading is that of two columns.
+            ValueError: two columns have the same heading.
         """
         import pandas as pd
 
@@ -181,7 +181,7 @@ class Table:
 
     @property
     def data(self) -> list[dict[str, Plain]]:
-        """The rows of :attr:`frame`, as JSON can say them."""
+        """Rows of :attr:`frame`, as JSON values."""
         return [
             {str(heading): cell for heading, cell in row.items()}
             for row in self.frame.to_dict("records")
@@ -189,12 +189,12 @@ class Table:
 
     @property
     def anchor(self) -> str:
-        """What a link in the report points to."""
+        """Target of links in the report."""
         return f"table-{self.name}"
 
     @property
     def crowded(self) -> bool:
-        """Whether it takes smaller letters to fit the report's page."""
+        """Whether the table needs smaller letters to fit the report's page."""
         return self._letters > ROOMY
 
     @property
@@ -204,7 +204,7 @@ class Table:
 
     @property
     def _letters(self) -> int:
-        """In a line; headings are broken between words, cells where they say so."""
+        """Characters in a line; headings are broken between words, cells at their line breaks."""
         letters = [
             max(len(part) for part in ("", *of.heading.split(), *"\n".join(of.text).split("\n")))
             for of in self.columns
@@ -212,7 +212,7 @@ class Table:
         return sum(letters, start=2 * len(letters))
 
     def show(self, console: Console) -> None:
-        """Print it."""
+        """Print the table."""
         grid = Grid(title=Text(self.title), title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
         for i, heading in enumerate(self.headings):
             grid.add_column(heading, justify="right" if i else "left", no_wrap=i == 0)
@@ -223,7 +223,7 @@ class Table:
             console.print(Text(note))
 
     def markdown(self) -> str:
-        """Return a heading, the table, the notes."""
+        """Return heading, table and notes as Markdown."""
         ruler = [":--", *["--:"] * (len(self.headings) - 1)]
         lines = [f"| {' | '.join(row)} |" for row in (self.headings, ruler, *self.rows)]
         lines = [line.replace("\n", " ") for line in lines]
@@ -240,13 +240,13 @@ def as_json(data: Any) -> str:
 def write(
     folder: Path, name: str, title: str, data: Mapping[str, Any], tables: Sequence[Table]
 ) -> None:
-    """Write NAME.json and NAME.md, each whole or not at all.
+    """Write NAME.json and NAME.md, each completely or not at all.
 
     Args:
         folder: made where it is missing.
         name: of the files.
         title: heading of the Markdown file.
-        data: what the tables are made of.
+        data: of the tables.
         tables: in their order.
     """
     folder.mkdir(parents=True, exist_ok=True)

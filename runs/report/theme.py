@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How figures look: readable on a telephone, one colour per model everywhere."""
+"""Style of figures: readable on a telephone, one colour per model everywhere."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 
-# On a telephone a figure is shown about half as wide as it is drawn: 11 pt stay readable.
+# A telephone shows a figure about half as wide as drawn: 11 pt stay readable.
 WIDTH = 5.4
 DPI = 150
 
@@ -18,16 +18,16 @@ INK = "#222222"
 RULE = "#d9d9d9"
 PLAY_FREE = "#6b6b6b"
 FAINT = "#a8a8a8"
-# What an energy was lost to, beside the colours of the models.
+# Colours of energy losses, beside those of the models.
 LOSS = "#8c6d1f"
 
-# Okabe and Ito (2008), without what is too pale for a line on white; the purple a little darker,
-# and a violet and an ochre for the series of models that are longer.
+# Okabe and Ito (2008), without colours too pale for lines on white; the purple is slightly darker,
+# and a violet and an ochre extend it to more models.
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#111111", "#b0568c", "#6a3fd0", "#8a6d00")
 
-# Of a pair of segments and of what presses them, which the colour-blind tell apart, too.
+# Colours of two segments and their contact force, safe for the colour-blind.
 OUTER, INNER, FORCE = "#56b4e9", "#e69f00", "#b03000"
-# Colour maps of deflections and of stresses, light where there are none.
+# Colour maps of deflections and of stresses, light at zero.
 DEFLECTION, STRESS = "viridis_r", "cividis_r"
 
 RC: dict[Any, Any] = {
@@ -56,33 +56,33 @@ RC: dict[Any, Any] = {
     "lines.solid_capstyle": "round",
     "legend.frameon": False,
     "legend.fontsize": 11.0,
-    # The longest trajectories overflow the renderer's path buffer unless cut into pieces; between
-    # two of these a bit is missing, which is to be too short to be seen.
+    # The longest trajectories overflow the renderer's path buffer unless cut into pieces; the gap
+    # between two pieces must be too short to be visible.
     "agg.path.chunksize": 1_000_000,
 }
 
-# Of pages around what VTK renders, which are shown as wide as a screen.
+# Style of sheets around VTK's pictures, which are shown at the width of a screen.
 PAGE_RC: dict[Any, Any] = {
     name: value for name, value in RC.items() if name.endswith(("color", "top", "right"))
 } | {"font.size": 20.0}
 
 
 class Canvas(FigureCanvasAgg):
-    """Saves a sheet by the one drawing that lays it out, where others draw it for that before."""
+    """Canvas that saves a sheet with a single drawing, where matplotlib otherwise needs two."""
 
     def print_figure(self, filename: Any, *_: Any, **__: Any) -> None:
-        """Write a PNG file, whatever its name ends with."""
+        """Write a PNG file, whatever the ending of its name."""
         canvas: Any = self
         canvas.print_png(filename)
 
 
 def segment_color(number: int) -> str:
-    """Of a segment in the order of the boom, whatever shows it."""
+    """Return the colour of a segment in the order of the boom, the same in all figures."""
     return PALETTE[number % len(PALETTE)]
 
 
 def tint(color: str, strength: float) -> tuple[float, float, float]:
-    """A colour mixed with white; strength 1 leaves it as it is."""
+    """Return a colour mixed with white; strength 1 leaves it unchanged."""
     red, green, blue = to_rgb(color)
     paper = 1.0 - strength
     return strength * red + paper, strength * green + paper, strength * blue + paper
@@ -97,7 +97,7 @@ class Stroke:
 
 
 def strokes(models: Sequence[str], play_free: Sequence[str]) -> dict[str, Stroke]:
-    """A stroke for each model, the same whichever of them a figure shows.
+    """Return a stroke for each model, independent of the models in a figure.
 
     Args:
         models: names in the order of the case.
@@ -106,7 +106,7 @@ def strokes(models: Sequence[str], play_free: Sequence[str]) -> dict[str, Stroke
     with_play = [name for name in models if name not in play_free]
     drawn = {name: Stroke(PLAY_FREE, "--") for name in play_free}
     for i, name in enumerate(with_play):
-        # Past the palette the colours come again, dashed.
+        # Beyond the palette the colours are repeated, dashed.
         again, color = divmod(i, len(PALETTE))
         drawn[name] = Stroke(PALETTE[color], ("-", "-.", ":")[again % 3])
     return {name: drawn[name] for name in models}

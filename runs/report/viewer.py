@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The deformed boom in a page of its own: to be turned, with its time to be drawn along.
+"""Interactive page of the deformed boom, with rotation and a time slider.
 
-A page holds what moves as a few shapes, 16 bits a number, and stresses as 8 bits.
+A page stores displacements as a few shapes of 16-bit numbers, and stresses as 8-bit numbers.
 """
 
 from __future__ import annotations
@@ -29,24 +29,24 @@ from runs.report.scene import SECTION_DRAWN, Scene, means_around
 
 VIEWER = "viewer.html"
 
-# What shapes may leave of the largest displacement.
+# Truncation error of the shapes, as a part of the largest displacement.
 LEFT = 2.0e-3
-# Finer meshes are for programs that are made for them.
+# Limit of a page's mesh; finer meshes need dedicated programs.
 MOST_POINTS = 60_000
 # Largest numbers of 16 and of 8 bits.
 _SHORT, _BYTE = 32767, 255
 
 
 class Shown(NamedTuple):
-    """What a page shows.
+    """Content of a page.
 
     Args:
-        model: whose motion it is.
+        model: of the motion.
         scene: the boom.
         time: (num_frames,) in s.
         stress: (num_frames, num_points) in MPa.
-        quantity: what stress that is, with its unit.
-        end: of the colours; what is above has the last one.
+        quantity: name of the stress, with its unit.
+        end: of the colour scale, which also colours stresses above it.
     """
 
     model: str
@@ -58,9 +58,9 @@ class Shown(NamedTuple):
 
 
 def viewer(run: Run) -> str | None:
-    """The page as HTML: library and numbers inside, no resource from elsewhere.
+    """Return the page as HTML: library and numbers inside, no external resource.
 
-    None without plotly, and of a mesh that is too fine for a page.
+    Return None without plotly, and for a mesh that is too fine for a page.
     """
     shown = _shown(run) if find_spec("plotly") else None
     if shown is None:
@@ -79,7 +79,7 @@ def viewer(run: Run) -> str | None:
 
 
 def _shown(run: Run) -> Shown | None:
-    """The first shell in motion, or the beam that is read first; none of a finer mesh."""
+    """Return the first shell in motion, or the leading beam; None for finer meshes."""
     results = run.results
     for name, shell in run.shells.items():
         if shell.fields.sizes["point"] > MOST_POINTS:
@@ -97,7 +97,7 @@ def _shown(run: Run) -> Shown | None:
 
 
 def of_shell(model: str, scene: Scene, time: Array) -> Shown:
-    """The von Mises stresses of the walls, the larger of both faces, means around each point."""
+    """Return the von Mises stresses of the plates: larger of both faces, means around points."""
     stress = scene.stress
     assert stress is not None
     means = [
@@ -109,13 +109,13 @@ def of_shell(model: str, scene: Scene, time: Array) -> Shown:
 
 
 def of_beam(model: str, scene: Scene, time: Array, stress: Array) -> Shown:
-    """The bending stresses of :meth:`Scene.of_beam`."""
+    """Return the bending stresses of :meth:`Scene.of_beam`."""
     shown = TO_MEGA * stress
     return Shown(model, scene, time, shown, "bending stress (MPa)", float(shown.max()))
 
 
 def packed(shown: Shown, angle: float) -> dict[str, Any]:
-    """The numbers of a page, of a boom that has risen by an angle in degrees about y."""
+    """Return the numbers of a page, for a boom at an angle in degrees about y."""
     scene = shown.scene
     scale = scene.fitting_scale(shown.time.tolist())
     rest = scene.drawn(np.zeros_like(scene.points), scale)
@@ -125,7 +125,7 @@ def packed(shown: Shown, angle: float) -> dict[str, Any]:
     ]
     parts, flat = few_shapes(np.array(moved).reshape(shown.time.size, -1))
     ways = extensions(scene, shown.time)
-    # Drives move segments along x as they do, not magnified.
+    # Drives move segments along x by true distances, not magnified.
     along = [own[None, :, None] * [1.0, 0.0, 0.0] for own, _ in ways.values()]
     parts = np.column_stack([parts, *(way for _, way in ways.values())])
     rise = Rotation.from_euler("y", -angle, degrees=True).as_matrix().T
@@ -149,7 +149,7 @@ def packed(shown: Shown, angle: float) -> dict[str, Any]:
 
 
 def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
-    """What drives move: name of the inner segment → which points, and by how much.
+    """Return the extension by drives: name of the inner segment → its points, and distances.
 
     1 for each of (num_points,) that moves, else 0; (num_frames,) in m at times (num_frames,) in s.
     """
@@ -165,7 +165,7 @@ def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
 
 
 def few_shapes(moved: Array) -> tuple[Array, Array]:
-    """Parts (num_frames, num_shapes) and shapes (num_shapes, num_values) of what has moved.
+    """Return parts (num_frames, num_shapes) and shapes (num_shapes, num_values) of a motion.
 
     Singular vectors (Eckart and Young 1936), as many as leave at most ``LEFT`` of the largest value
     anywhere.
@@ -183,7 +183,7 @@ def few_shapes(moved: Array) -> tuple[Array, Array]:
 
 
 def _typed(values: Array) -> dict[str, str]:
-    """An array as the page's script reads it."""
+    """Return an array in the format of the page's script."""
     return {
         "kind": values.dtype.name,
         "bytes": base64.b64encode(values.tobytes()).decode("ascii"),

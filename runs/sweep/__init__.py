@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Many runs of one case with values varied, and their charts."""
+"""Runs of one case with varied values, and their charts."""

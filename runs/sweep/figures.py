@@ -2,9 +2,9 @@
 """Design charts of a sweep, as PNG.
 
 One varied key: a panel for each quantity, a line for each model. Two keys: a map of each model for
-each quantity. More: lines over the first key for each combination of the ends of the others. What
-does not change, and what is noise, is left out. Where the one key is how fast a boom is drawn out,
-its swing over the speed has a chart of its own.
+each quantity. More: lines over the first key for each combination of the ends of the others.
+Quantities that do not change, or only by noise, are omitted. Where the one key is the telescoping
+speed, the residual vibration over the speed has a chart of its own.
 """
 
 from __future__ import annotations
@@ -31,31 +31,31 @@ from runs.sweep.quantities import DISTANCES, LEVELS, QUANTITIES, TIP_OFF, UNTIL
 from runs.sweep.residual_vibration import draw_swings
 
 CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
-# Numbers along axes are whole: none is to be added to another one at their end.
+# Numbers along axes are written in full, without an offset at the end of the axis.
 RC = {**theme.RC, "axes.formatter.useoffset": False}
-# Cells of a map that can be read, along each axis.
+# Readable cells of a map along each axis.
 MOST_CELLS = 10
-# From so many of a unit on, or below so many, the numbers of a key are shown in another one.
+# Above the first or below the second number, the values of a key are shown in another unit.
 _LARGE = {"N": (1.0e3, TO_KILO, "kN"), "N m": (1.0e3, TO_KILO, "kN m"),
           "Pa": (1.0e5, TO_MEGA, "MPa"), "N/m": (1.0e6, 1.0e-6, "kN/mm")}  # fmt: skip
 _SMALL = {"m": (1.0, TO_MILLI, "mm")}
-# What changes by less than this part is the same.
+# Relative changes below this part count as none.
 SAME = 1.0e-6
-# From this ratio of the largest to the smallest value on an axis is logarithmic.
+# An axis is logarithmic from this ratio of its largest to its smallest value on.
 DECADES = 100.0
-# Labels along an axis that do not run into one another.
+# Labels along an axis that do not overlap.
 MOST_TICKS = 6
-# Contours through fewer values along an axis would be guesses.
+# Contours need at least this number of values along an axis.
 LEAST_FOR_CONTOURS = 4
 
-# Distances below the first level, between levels, beyond the last one.
+# Levels of distances: below the first, between two, beyond the last.
 _SHADES = ("#2e7d32", "#a5c882", "#f2c14e", "#b23a2e")
-# In percent: more is as bad, and less as good.
+# In percent: limits beyond which differences do not matter.
 _MOST, _LEAST = 100.0, 0.01
-# Where letters stand at the first and the last place along an axis.
+# Alignment of text at the first and the last place along an axis.
 _SIDES: Final = ("left", "right")
 _ENDS: Final = ("bottom", "top")
-# Inches of a map beside another one.
+# Size in inches of a map beside another one.
 _COLUMN = 3.6
 
 _Word = TypeVar("_Word", bound=str)
@@ -93,14 +93,14 @@ def draw(data: xr.Dataset, play_free: Sequence[str], folder: Path) -> None:
 
 
 def _at_ends(data: xr.Dataset, keys: Sequence[str]) -> Iterator[dict[str, float]]:
-    """Each combination of the ends of some keys; one of nothing where there are none."""
+    """Yield each combination of the ends of some keys; an empty one without keys."""
     ends = [(data[key].values[0], data[key].values[-1]) for key in keys]
     for values in product(*ends):
         yield dict(zip(keys, values, strict=True))
 
 
 def _changing(data: xr.Dataset) -> list[Metric]:
-    """Those that a chart says something of; where nothing changes, all that are known."""
+    """Return the quantities that change; where none changes, all known ones."""
     known = [one for one in CHARTED if np.isfinite(data[one.name].values).any()]
 
     def changes(one: Metric) -> bool:
@@ -113,7 +113,7 @@ def _changing(data: xr.Dataset) -> list[Metric]:
 
 
 def in_shown_units(data: xr.Dataset) -> xr.Dataset:
-    """The same with keys in mm, kN and so forth where their numbers are of that size."""
+    """Return the data with keys in mm, kN and so forth where their values are of that size."""
     coordinates = {}
     for name, along in data.coords.items():
         unit = along.attrs.get("units", "")
@@ -121,7 +121,7 @@ def in_shown_units(data: xr.Dataset) -> xr.Dataset:
         for known, fits in ((_LARGE, largest.__ge__), (_SMALL, largest.__lt__)):
             bound, factor, shown = known.get(unit, (0.0, 0.0, ""))
             if shown and largest and fits(bound):
-                # As a person would write them.
+                # Rounded to readable numbers.
                 values = np.array([float(f"{factor * value:.12g}") for value in along.values])
                 coordinates[name] = (along.dims, values, {**along.attrs, "units": shown})
     return data.assign_coords(coordinates)
@@ -156,7 +156,7 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
 
 
 def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
-    """Draw how far models are from a reference: over one key lines of each, over more maps of each.
+    """Draw distances of models from a reference: lines over one key, maps over several.
 
     Args:
         data: of :func:`runs.sweep.output.gather`, without the reference.
@@ -190,7 +190,7 @@ def _strokes(data: xr.Dataset, play_free: Sequence[str]) -> dict[str, theme.Stro
 def _of_models(
     data: xr.Dataset, quantities: Sequence[Metric], strokes: Mapping[str, theme.Stroke]
 ) -> dict[str, dict[str, tuple[Array, theme.Stroke]]]:
-    """Title of each quantity → label of each line → its values and its stroke."""
+    """Return title of each quantity → label of each line → its values and its stroke."""
     return {
         f"{one.title} ({one.shown_unit})": {
             name: (one.factor * data[one.name].sel(model=name).values, stroke)
@@ -203,7 +203,7 @@ def _of_models(
 def _lines(
     along: xr.DataArray, shown: Mapping[str, Mapping[str, tuple[Array, theme.Stroke]]]
 ) -> tuple[Sheet, list[Axes]]:
-    """Panels of lines whose points are seen, as of :func:`_of_models`, with axis and legend."""
+    """Return panels of lines with markers for :func:`_of_models`, with axis and legend."""
     sheet, panels = new_sheet(len(shown), 1.2 + 1.8 * len(shown))
     for axes, (title, lines) in zip(panels, shown.items(), strict=True):
         for label, (values, stroke) in lines.items():
@@ -217,7 +217,7 @@ def _lines(
 
 
 def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) -> None:
-    """One quantity over two keys, a panel for each model that has it, all with one scale."""
+    """Draw a quantity over two keys, a panel for each model that has it, on a common scale."""
     x, y = (data[key] for key in keys)
     values = quantity.factor * data[quantity.name].transpose("model", *keys[::-1])
     failed = data["failed"].transpose("model", *keys[::-1])
@@ -226,7 +226,7 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
     sheet, panels = new_sheet(len(names), 1.4 + 2.4 * len(names))
     low, high = float(values.min()), float(values.max())
     for axes, name in zip(panels, names, strict=True):
-        # Labels of contours stand where they belong if the scales are known before them.
+        # Labels of contours are placed correctly only if the scales are set before them.
         _scale_axis(axes, "x", x)
         _scale_axis(axes, "y", y)
         cells = values.sel(model=name).values
@@ -261,8 +261,9 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
 def _distance_maps(
     data: xr.Dataset, quantity: Metric, keys: Sequence[str], reference: str, folder: Path
 ) -> None:
-    """One distance over the last two keys, for each model that has it and, side by side, each
-    combination of the ends of the keys before them.
+    """Draw a distance over the last two keys, for each model that has it.
+
+    Maps side by side are of the combinations of the ends of the keys before them.
     """
     *before, x, y = keys
     parts = [data.sel(there) for there in _at_ends(data, before)]
@@ -292,7 +293,7 @@ def _distance_maps(
 
 
 def _shade(axes: Axes, off: xr.DataArray) -> ContourSet:
-    """A map in percent, with its levels and from where to where it goes."""
+    """Draw a map in percent, with levels and limits."""
     y, x = (off[dim].values for dim in off.dims)
     least, most = float(off.min()), float(off.max())
     levels = [0.0, *LEVELS, _MOST]
@@ -306,7 +307,7 @@ def _shade(axes: Axes, off: xr.DataArray) -> ContourSet:
 
 
 def _say_until_when(axes: Axes, until: xr.DataArray, longest: float) -> None:
-    """The seconds up to which tips are compared, where these are fewer than elsewhere."""
+    """Write the time up to which tips are compared, where it is shorter than elsewhere."""
     y, x = (until[dim].values for dim in until.dims)
     for row, column in np.argwhere(until.values < longest):
         text = f"{until.values[row, column]:.1f} s"
@@ -315,7 +316,7 @@ def _say_until_when(axes: Axes, until: xr.DataArray, longest: float) -> None:
 
 
 def _inwards(place: int, count: int, outer: tuple[_Word, _Word]) -> _Word | Literal["center"]:
-    """How letters are aligned that are not to leave a panel."""
+    """Return the alignment that keeps text within a panel."""
     return outer[0] if place == 0 else outer[1] if place == count - 1 else "center"
 
 
@@ -324,7 +325,7 @@ def _spans_decades(values: Array) -> bool:
 
 
 def _edges(values: Array) -> Array:
-    """(num_values + 1,) bounds half way between rising values, on the scale of their axis."""
+    """Return bounds (num_values + 1,) halfway between rising values, on the scale of their axis."""
     along: Array = np.log(values) if _spans_decades(values) else values
     between = 0.5 * (along[:-1] + along[1:])
     bounds: Array = np.concatenate(
@@ -341,18 +342,18 @@ def _scale_axis(axes: Axes, which: Literal["x", "y"], values: xr.DataArray) -> N
     if _spans_decades(places):
         axes.set(**{f"{which}scale": "log"})
     elif places.size <= MOST_TICKS and np.ptp(np.diff(places)) <= 1.0e-9 * np.ptp(places):
-        # Nothing is known between them.
+        # No values are available between them.
         axes.set(**{f"{which}ticks": places})
     else:
         axes.locator_params(axis=which, nbins=MOST_TICKS)
 
 
 def _finish(sheet: Sheet, title: str, path: Path) -> None:
-    """Give a sheet its title, and write it."""
+    """Write a sheet with its title."""
     sheet.suptitle(title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
     sheet.savefig(path)
 
 
 def _name(quantity: Metric) -> str:
-    """Of a file."""
+    """Return the name of a file."""
     return f"sweep-{quantity.name.replace('_', '-')}.png"

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The first frequencies of a boom over numbers of its case, without any motion.
+"""First natural frequencies of a boom over numbers of its case, without any motion.
 
-With play a boom has none of its own: what counts are those with its joints pressed as they are at
-rest under its loads (:func:`dynamics.damping.pressed_modes`), and those with its joints tied.
+A boom with play has no natural frequencies of its own. The table gives those with the joints closed
+as they are at rest under the loads (:func:`dynamics.damping.pressed_modes`), and those with bonded
+joints.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 
 NAME = "frequencies"
 MODES = 3
-# Of them in a terminal of 80 columns.
+# Number of frequencies in a terminal of 80 columns.
 SHOWN = 2
 JOINTS = ("pressed", "tied")
 
@@ -43,11 +44,11 @@ JOINTS = ("pressed", "tied")
 def first_frequencies(
     case: Case, model: Model, comm: MPI.Intracomm | None, cache: Cache | None
 ) -> Array:
-    """(2, MODES) in Hz with the joints pressed and tied, NaN where there is none. Collective.
+    """Return frequencies (2, MODES) in Hz, closed and bonded joints, NaN for none. Collective.
 
     Args:
         case: a checked one.
-        model: of the case; one that is tied has no pressed joints.
+        model: of the case; a bonded one has no joints that can close.
         comm: the ranks that share a shell.
         cache: of reduced shells.
     """
@@ -74,12 +75,12 @@ def measure(
     cache: Cache | None,
     tell: Progress = silent,
 ) -> Array:
-    """(num_cases, num_models, 2, MODES) first frequencies in Hz. Collective.
+    """Return first frequencies (num_cases, num_models, 2, MODES) in Hz. Collective.
 
     Args:
         cases: checked ones, of the same models.
         comm, cache: as of :func:`first_frequencies`.
-        tell: told how far it is.
+        tell: called with the progress.
     """
     found = []
     for case in cases:
@@ -104,7 +105,7 @@ def gather(plan: Plan, found: Array) -> xr.Dataset:
 
 
 def table(data: xr.Dataset) -> Table:
-    """Return the lowest frequencies of each point and model."""
+    """Return the lowest frequencies of each point and model as a table."""
     stacked = data["frequency"].stack(
         row=[dim for dim in data.dims if dim not in ("joints", "mode")]
     )
@@ -121,7 +122,7 @@ def table(data: xr.Dataset) -> Table:
 
 
 def write(data: xr.Dataset, folder: Path) -> None:
-    """Write NAME.nc, NAME.csv and, over one key, NAME.png beside what a sweep has left there."""
+    """Write NAME.nc, NAME.csv and, over one key, NAME.png into a sweep's folder."""
     with (
         exclusive(folder),
         changed_folder(folder) as part,

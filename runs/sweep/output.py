@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a sweep leaves for people and programs: labelled numbers, figures, a table."""
+"""Results of a sweep: labelled numbers, figures, a table."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ from runs.sweep.run import Outcome
 NETCDF = "sweep.nc"
 CSV = "sweep.csv"
 
-# Of the distances, which are parts: a hundredth of a percent.
+# Of the distances, which are relative: a hundredth of a percent.
 DIGITS = 4
-# Of the quantities, in a terminal of 80 columns.
+# Quantities in a terminal of 80 columns.
 SHOWN = ("tip_at_rest", "tip_amplitude", "contact_force", "stress")
 
 
 def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
-    """Label the outcomes.
+    """Label the outcomes by the varied keys and the models.
 
     Returns:
         dims: the varied keys, in the unit of the case, and ``model``; the quantities of
         :mod:`runs.sweep.quantities`, NaN where a model has none, and with a reference distances
-        from it, and ``compared_until``, up to when tips are compared;
+        from it, and ``compared_until``, the time up to which tips are compared;
         ``failed``, 1 where the numerics did.
     """
     dims, models = list(plan.coordinates), plan.coordinates["model"]
@@ -85,9 +85,9 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
 
 
 def show(data: xr.Dataset, reference: str | None, console: Console) -> None:
-    """Print the ranges of each model, where its tip goes farthest, and distances from a reference.
+    """Print ranges of each model, its maximum tip deflection, and distances from a reference.
 
-    The energy residual is the largest of all points. How fast it may be drawn out is said below.
+    The energy residual is the largest of all points. Telescoping speeds follow below.
     """
     keys = [variable.name for variable in data.coords.values() if variable.name != "model"]
     by_name = {quantity.name: quantity for quantity in QUANTITIES}
@@ -98,7 +98,7 @@ def show(data: xr.Dataset, reference: str | None, console: Console) -> None:
         ranges = [_range(values[quantity.name], quantity) for quantity in shown]
         worst = number(float(values[residual.name].max()), 1)
         rows.append((str(name), *ranges, worst, _where_largest(values["tip_amplitude"], keys)))
-    # Narrow headings leave the models their names on a terminal of 80 columns.
+    # Narrow headings leave room for the models' names on a terminal of 80 columns.
     headings = [
         *(f"{quantity.title} {quantity.shown_unit}" for quantity in shown),
         residual.title,
@@ -151,10 +151,10 @@ def _where_largest(values: xr.DataArray, keys: Sequence[str]) -> str:
 
 
 def _write_csv(data: xr.Dataset, outcomes: Sequence[Outcome], path: Path) -> None:
-    """One line for each point and model."""
+    """Write a line for each point and model."""
     *keys, model = data["failed"].dims
     table = data.drop_vars("failed").to_dataframe([*keys, model]).reset_index()
-    # As they were given, and not as what was computed from them.
+    # Values as given, not as computed from them.
     table[keys] = table[keys].astype(str)
     names = data[model].values
     table["failure"] = [one.failures.get(name, "") for one in outcomes for name in names]

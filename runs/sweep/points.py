@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The points of a sweep: a checked case for each combination of what is varied.
+"""Points of a sweep: a checked case for each combination of varied values.
 
-A designer who varies the play means the same plates. So the sections that a case infers are
-inferred with the case's own play and then held, and a play for which the boxes have no room is
-refused. What gives or shapes sections by itself (section, height_to_width, mass_per_length,
-second_moment_of_area, density) is set before they are inferred. Where no model needs plates, none
-are inferred, and beams take any play.
+A variation of the play keeps the plates: sections are inferred with the case's own play and then
+fixed, and a play that the boxes cannot accommodate is refused. Keys that define sections (section,
+height_to_width, mass_per_length, second_moment_of_area, density) are set before the inference.
+Where no model needs plates, none are inferred, and beams accept any play.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ from runs.sweep.variation import Tables, Variation, parse, unit_of
 
 Setting = tuple[Variation, float]
 
-# Inferred plates of each segment, None where the case gives them or they cannot be known.
+# Inferred plates of each segment, None where the case gives them or they are unknown.
 Plates = list[SectionTable | None]
 
 _WHOSE_BOXES = " (the boxes are those that the case infers with its own play)"
@@ -40,14 +39,14 @@ _WHOSE_BOXES = " (the boxes are those that the case infers with its own play)"
 class Point:
     """One case of a sweep."""
 
-    values: tuple[float, ...]  #: of what is varied, in the order of the variations
+    values: tuple[float, ...]  #: values of the varied keys, in the order of the variations
     label: str  #: the same for messages, ``joint.play=0.01 payload.mass=200``
     case: Case  #: the effective one, checked
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """A sweep before it runs."""
+    """A sweep before its runs."""
 
     file: str  #: of the case, as the user gave it
     title: str  #: of the case
@@ -59,7 +58,7 @@ class Plan:
 
     @property
     def coordinates(self) -> dict[str, Any]:
-        """What data over all points are labelled by: the varied keys, and the models."""
+        """Labels of data over all points: the varied keys, and the models."""
         return {
             variation.key: (variation.key, np.array(variation.values), {"units": unit or "1"})
             for variation, unit in zip(self.variations, self.units, strict=True)
@@ -67,7 +66,7 @@ class Plan:
 
     @property
     def shape(self) -> list[int]:
-        """How many values each variation has."""
+        """Number of values of each variation."""
         return [len(variation.values) for variation in self.variations]
 
 
@@ -85,10 +84,10 @@ def plan(
         texts: KEY=VALUES each, see :mod:`runs.sweep.variation`.
         models: names; all unless given.
         mesh_size: of all shells in m, the case's unless given.
-        reference: name of the model that the others are held against.
+        reference: name of the model with which the others are compared.
 
     Raises:
-        BadInput: the case, a key, a value, or a point that cannot be; no such reference.
+        BadInput: the case, a key, a value, a point or the reference is invalid.
     """
     whole = case_file.load(file)
     case_file.select(whole, file, models, mesh_size, 0)
@@ -136,7 +135,7 @@ def plan(
 
 
 def _written(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:
-    """Return the case with some of its numbers set, as its author would write it."""
+    """Return the case with some of its numbers set, as in a case file."""
     changed = deepcopy(tables)
     try:
         for variation, value in settings:
@@ -155,7 +154,7 @@ def _written(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:
 
 
 def _checked(file: str, label: str, case: Case, held: bool = False) -> Case:
-    """Return the case, which passes all checks that a case file goes through."""
+    """Return the case after all checks of a case file."""
     try:
         case_file.check(case, file)
     except BadInput as fault:
@@ -177,7 +176,7 @@ def _inferred(case: Case) -> Plates:
 
 
 def _hold(case: Case, plates: Plates) -> Case:
-    """Return the case with inferred plates in it, or with none to infer where none matter."""
+    """Return the case with inferred plates fixed, or without inference where none matter."""
     in_space = any(joint.lateral_play is not None for joint in case.joints)
     matter = in_space or any(model.needs_plates for model in case.models)
     segments = tuple(
@@ -192,7 +191,7 @@ def _hold(case: Case, plates: Plates) -> Case:
 
 
 def _check_influence(file: str, variations: Sequence[Variation], points: Sequence[Point]) -> None:
-    """Refuse a key that nothing of what is run depends on."""
+    """Refuse a key that does not influence any run."""
     digests = [toml.digest(point.case) for point in points]
     stride = len(points)
     for variation in variations:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a sweep charts of each model, and how far models are from one of them, the reference.
+"""Quantities of each model that a sweep charts, and distances of models from a reference.
 
-Tips are compared from moment to moment as long as that says anything: to the end where friction
-under given forces makes motions regular, else until a small change of the loads parts the reference
-from itself. All else is of the whole run.
+Tips are compared at every instant as long as they are predictable: to the end where friction under
+prescribed forces makes motions regular, else until a small change of the loads makes the reference
+diverge from itself. All other quantities are of the whole run.
 """
 
 from __future__ import annotations
@@ -33,27 +33,27 @@ if TYPE_CHECKING:
 
     from runs.folder.cache import Cache
 
-# Name of the quantity → its value in SI, None where a model has none.
+# Name of the quantity → its value in SI units, None where a model has none.
 Measured = dict[str, float | None]
 
 # The tip has settled when it stays within this part of its initial amplitude.
 BAND = 0.05
 # Its final mean is that of the last part of the run, for which it must have stayed there at least.
 FINAL = 0.2
-# A tip at rest, which started in equilibrium say, moves by round-off of this part.
+# A tip at rest, for example started in equilibrium, moves by round-off of this part.
 ROUND_OFF = 1.0e-12
-# The relative change of the loads that tells how long the reference can be predicted.
+# Relative change of the loads that measures the predictability of the reference.
 CHANGE = 1.0e-6
-# In s, over which the force of a pad is averaged: single blows are a matter of microseconds.
+# Time in s over which the force of a pad is averaged: single impacts last microseconds.
 HELD = 0.02
 # Slow peaks stand out by this part of the tip's range.
 OUTSTANDING = 0.2
 
 
-# What declares numbers of a model beside its fields: answers that are records, and its summary.
+# Sources of a model's numbers beside its fields: results that are records, and its summary.
 _DECLARING: list[type] = [*records(ModelAnswers).values(), ModelSummary]
 
-# Of the boom at rest, of its motion, and of what it is worth.
+# Quantities of the boom at rest, of its motion, and of its accuracy.
 QUANTITIES = (
     Metric("tip_at_rest", "m", "tip at rest", TO_MILLI, "mm"),
     Metric("tip_amplitude", "m", "tip amplitude", TO_MILLI, "mm"),
@@ -79,7 +79,7 @@ DISTANCES = (
     Metric("stress_off", "1", "stress off", TO_PERCENT, "%"),
     Metric(TIP_OFF, "1", "tip off", TO_PERCENT, "%"),
 )
-# Up to when tips are compared, in s: of a point, and of all its models.
+# Times in s up to which tips are compared: of a point, and of all its models.
 UNTIL = "compared_until"
 # Contours in percent.
 LEVELS = (1.0, 5.0, 20.0)
@@ -118,7 +118,7 @@ def measure(results: Results, model: str) -> Measured:
         "wall_stress": max(walls, default=None),
         "damage": max(damages, default=None),
         "first_frequency": own.modes[0].frequency if own.modes else None,
-        # Of all segments and of what they carry.
+        # Of all segments and the masses that they carry.
         "mass": sum(segment.mass for segment in results.boom.segments),
         "drive_force": max((one.peak for one in summary.stick_slip.values()), default=None),
         "drive_slip": max((one.slip for one in summary.stick_slip.values()), default=None),
@@ -132,11 +132,12 @@ def measure(results: Results, model: str) -> Measured:
 
 
 def settling_time(time: Array, tip: Array) -> float | None:
-    """Return when the tip begins to stay within 5 % of its initial amplitude around its final mean.
+    """Return the time from which the tip stays within 5 % of its initial amplitude.
 
-    The final mean is that of the last fifth of the run; the initial amplitude is the largest
-    distance from it. None where the tip leaves the band within that last fifth: it does not settle
-    within the run. That fifth must be longer than the slowest oscillation for this to mean much.
+    The band lies around the final mean, that of the last fifth of the run; the initial amplitude is
+    the largest distance from it. None where the tip leaves the band within that last fifth: it does
+    not settle within the run. That fifth must be longer than the slowest oscillation for this to
+    mean much.
 
     Args:
         time: (num_times,) in s, rising.
@@ -147,13 +148,13 @@ def settling_time(time: Array, tip: Array) -> float | None:
     outside = off > max(BAND * off.max(), ROUND_OFF * np.abs(tip).max())
     if outside[last].any():
         return None
-    # What is inside from the start settles at once.
+    # A tip inside from the start settles at once.
     return float(time[np.flatnonzero(outside)[-1] + 1]) if outside.any() else float(time[0])
 
 
 @dataclass(frozen=True, slots=True)
 class Features:
-    """What is compared of a model."""
+    """Compared features of a model."""
 
     tip: Array  #: (num_times,) in m, as long as it is compared
     first_peak: float  #: in m
@@ -163,7 +164,7 @@ class Features:
 
     @classmethod
     def of(cls, results: Results, model: str, stress: float | None, until: float) -> Features:
-        """Return those of a model of a run, whose tip is compared up to a time in s."""
+        """Return the features of a model of a run, whose tip is compared up to a time in s."""
         data = results.trajectories.sel(model=model)
         time = np.asarray(data["time"].values, dtype=float)
         tip = np.asarray(data["tip"].values, dtype=float)
@@ -205,7 +206,7 @@ def slow_period(time: Array, tip: Array) -> float:
 
 
 def held_force(time: Array, forces: Array) -> float:
-    """Return the largest mean over ``HELD`` in N; NaN where nothing is known to touch so long.
+    """Return the largest mean over ``HELD`` in N; NaN where no contact lasts that long.
 
     Args:
         time: (num_times,) in s, evenly spaced.
@@ -226,12 +227,12 @@ def comparable_until(
     comm: MPI.Intracomm | None,
     cache: Cache | None,
 ) -> float:
-    """Return until when motions can be compared from moment to moment, in s.
+    """Return the time in s up to which motions can be compared at every instant.
 
     Args:
         case: a checked one.
         model: the reference, of the case.
-        results: what it has left.
+        results: of its run.
         comm, cache: as of :class:`runs.pipeline.means.Means`.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
@@ -245,7 +246,7 @@ def comparable_until(
         same = plan.integrator.like(plan.trajectory())
         (run,) = run_members([Member(plan.motion, vary, CHANGE, same, ("tip",))])
     except NumericsError:
-        # What one step more or less decides is compared nowhere.
+        # Differences that one time step more or less decides are not compared.
         return float(time[0])
     tip = results.trajectories["tip"].sel(model=model.name).values
     return float(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How fast a boom may be drawn out: its swing over the speed, beside that of the boom at rest."""
+"""Residual vibration over telescoping speed, beside the vibration level of the boom at rest."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ from runs.report import theme
 from runs.report.figure_context import new_sheet
 from runs.report.numerals import number
 
-# A swing that exceeds the level by no more than this part is no larger: steps and blows move it so.
+# A vibration that exceeds the level by at most this part counts as equal: steps and impacts cause
+# such differences.
 _SAME = 1.0e-2
 
-# The ends of the way at which the same boom stands: what they are called, and how they are drawn.
+# Names and line styles of the ends of the extension, at which the same boom is at rest.
 _ENDS = {
     "swing_where_begun": ("where it begins", ":"),
     "swing_where_ended": ("where it ends", "--"),
@@ -27,20 +28,20 @@ _ENDS = {
 
 
 class Swings(NamedTuple):
-    """Of one model over rising mean speeds in m/s: swings in m, and the levels at each end."""
+    """Vibrations in m of one model over rising mean speeds in m/s, and the levels at each end."""
 
     speed: Array
     swing: Array
     levels: dict[str, Array]
 
     def where_known(self, end: str) -> Swings:
-        """Return those at the speeds at which the level of an end is known."""
+        """Return the values at the speeds at which the level of an end is known."""
         known = np.isfinite(self.levels[end])
         return Swings(self.speed[known], self.swing[known], {end: self.levels[end][known]})
 
 
 def swings(data: xr.Dataset) -> dict[str, Swings]:
-    """Return those of each model whose speed a sweep over one key varies.
+    """Return the vibrations of each model whose speed a sweep over one key varies.
 
     Args:
         data: of :func:`runs.sweep.output.gather`.
@@ -60,9 +61,9 @@ def swings(data: xr.Dataset) -> dict[str, Swings]:
 
 
 def fastest_within(swings: Swings, end: str) -> float | None:
-    """Return the speed in m/s up to which no swing exceeds its level, None where all do.
+    """Return the speed in m/s up to which no vibration exceeds its level, None where all do.
 
-    It is linear between speeds.
+    The vibration is interpolated linearly between speeds.
 
 
     >>> speed, swing = np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0])
@@ -83,7 +84,7 @@ def fastest_within(swings: Swings, end: str) -> float | None:
 
 
 def describe(name: str, swings: Swings) -> Iterator[str]:
-    """Return how fast a boom may be drawn out, a sentence for each end of the way."""
+    """Yield a sentence on the admissible telescoping speed for each end of the extension."""
     for end in swings.levels:
         speed, swing, levels = swings.where_known(end)
         level, fastest = levels[end], fastest_within(swings, end)
@@ -100,7 +101,7 @@ def describe(name: str, swings: Swings) -> Iterator[str]:
 
 
 def draw_swings(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Path) -> None:
-    """Draw the swing over the mean speed of the drive, where a sweep varies that.
+    """Draw the vibration over the mean speed of the drive, where a sweep varies that.
 
     Args:
         data: of a sweep over one key.

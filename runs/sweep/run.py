@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Runs the points of a sweep on all cores or ranks, and keeps each one that is done.
+"""Runs of a sweep's points on all cores or ranks, with a cache of finished points.
 
 A point is an entry of a cache in the sweep's folder. Its key is the hash of the point's effective
-case, of the program's sources and of the libraries, so what is done is not done again, whatever
-sweep of the folder asks for it.
+case, of the program's sources and of the libraries, so that no sweep of the folder repeats a
+finished point.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ POINTS = "points"
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What a point leaves, by the model's name."""
+    """Results of a point, by the model's name."""
 
     models: dict[str, Measured]  #: the quantities of those that ran
     failures: dict[str, str]  #: why the others could not be computed, a sentence each
@@ -48,15 +48,15 @@ class Outcome:
 
 
 def prepare(folder: Path, file: str) -> None:
-    """Make the folder of a sweep, or take an earlier sweep's.
+    """Create the folder of a sweep, or take an earlier sweep's.
 
     Args:
         folder: as the user gave it.
         file: the case file, for messages.
 
     Raises:
-        BadInput: it holds something else, or its user is in it.
-        OSError: it cannot be made.
+        BadInput: it holds other files, or the current directory.
+        OSError: it cannot be created.
     """
     key = f"--out {folder}"
     if folder.is_dir() and not (folder / POINTS).is_dir() and any(folder.iterdir()):
@@ -71,7 +71,7 @@ def launched_world(file: str) -> MPI.Intracomm | None:
     """Return all ranks if a launcher such as ``mpirun`` started several, else None.
 
     Raises:
-        BadInput: it did, and mpi4py is not installed.
+        BadInput: a launcher did, and mpi4py is not installed.
     """
     if ending.launched_rank() is None:
         return None
@@ -91,13 +91,13 @@ def run_points(
     progress: Progress,
     cache: Cache | None = None,
 ) -> list[Outcome]:
-    """Run the points that are not done yet, write each when it is, and give those of all.
+    """Run the points that are not finished, write each on completion, and return all outcomes.
 
     Args:
         plan: of the sweep.
         folder: made by :func:`prepare`.
         pool: runs points at a time.
-        progress: told about every finished point.
+        progress: called for every finished point.
         cache: of reduced shells.
 
     Raises:
@@ -116,7 +116,7 @@ def run_points(
     done = len(points) - len(futures)
     progress("sweep", stage, done / len(points))
     try:
-        # Nobody waits for what they compute.
+        # Their results are not needed.
         with when_interrupted(end):
             for future in as_completed(futures):
                 i = futures[future]

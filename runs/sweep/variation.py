@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What ``--vary KEY=VALUES`` says: which numbers of a case take which values.
+"""Parser of ``--vary KEY=VALUES``: numbers of a case and the values that they take.
 
-KEY is a path into the case as its author writes it, counted from 1. Without a number in brackets
+KEY is a path into the case file, counted from 1. Without a number in brackets
 it means all tables of that name: ``joint.play``, ``joint[1].play``, ``segment[2].span[2]``,
 ``payload.mass``. VALUES are START:STOP:COUNT, evenly spaced, or a list 0.0,0.005,0.014.
 """
@@ -25,10 +25,10 @@ from runs.case.units import scaled
 # A case file as plain tables and lists.
 Tables = dict[str, Any]
 
-# Weeks of computing: what asks for more is a slip of the pen.
+# Weeks of computing: a request for more is an error.
 MOST_POINTS = 10_000
 
-# Evenly spaced numbers are rounded to what a person would write, so that a finer sweep meets them.
+# Evenly spaced numbers are rounded to readable ones, so that a finer sweep contains them.
 _DIGITS = 12
 
 _STEP = re.compile(r"([^\[\]]+?)(?:\[([0-9]{1,9})\])?")
@@ -40,29 +40,29 @@ _REMEDY = "give KEY=START:STOP:COUNT or KEY=A,B,..."
 class Place:
     """One number of a case."""
 
-    steps: tuple[str | int, ...]  #: the way to it through :data:`Tables`
-    size: Fraction = Fraction(1)  #: how many of its SI unit are one of what it is set in
+    steps: tuple[str | int, ...]  #: the path to it through :data:`Tables`
+    size: Fraction = Fraction(1)  #: SI units in one of the unit in which it is set
 
     @property
     def name(self) -> str:
-        """How messages call it, counted from 1."""
+        """Name in messages, counted from 1."""
         parts = (f".{step}" if isinstance(step, str) else f"[{step + 1}]" for step in self.steps)
         return "".join(parts).removeprefix(".")
 
     def put(self, tables: Tables, value: Any) -> None:
-        """Set it, tables that are not given made on the way."""
+        """Set the number; create missing tables on the path."""
         here: Any = tables
         for step in self.steps[:-1]:
             here = here.setdefault(step, {}) if isinstance(step, str) else here[step]
         if isinstance(value, float):
             value = scaled(value, self.size)
-        # A whole number fits keys of both kinds.
+        # An integer fits keys of both kinds.
         whole = isinstance(value, float) and value.is_integer()
         here[self.steps[-1]] = int(value) if whole else value
 
     @property
     def shapes_sections(self) -> bool:
-        """As :attr:`Variation.shapes_sections`."""
+        """Whether the number shapes sections, as in :attr:`Variation.shapes_sections`."""
         if self.steps[0] == "segment":
             return self.steps[2:] == ("material", "density") or self.steps[2] in {
                 "mass_per_length", "second_moment_of_area", "height_to_width", "section",
@@ -73,11 +73,11 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """One ``--vary``."""
+    """One option ``--vary``."""
 
     key: str  #: as the user gave it
     values: tuple[float, ...]  #: rising, in the unit of the case
-    places: tuple[Place, ...]  #: what takes them, all the same at a time
+    places: tuple[Place, ...]  #: its places, all set to the same value
 
     @property
     def shapes_sections(self) -> bool:
@@ -90,11 +90,11 @@ def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
 
     Args:
         texts: KEY=VALUES each.
-        tables: the case that the keys are looked up in.
+        tables: the case to which the keys refer.
         file: of the case, for messages.
 
     Raises:
-        BadInput: an option that cannot be understood, or with no place in the case.
+        BadInput: an option is invalid, or has no place in the case.
     """
     variations: list[Variation] = []
     for text in texts:
@@ -119,7 +119,7 @@ def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
 
 
 def unit_of(place: Place, case: Case) -> str:
-    """Return the SI unit of a number that a case has, '' for none."""
+    """Return the SI unit of a number of a case, '' for none."""
     here: Any = case
     units: tuple[str, ...] = ()
     for step in place.steps:
@@ -135,11 +135,11 @@ def unit_of(place: Place, case: Case) -> str:
 
 
 class Unplaced(Exception):
-    """Why a key has no place in the case, or an option no values."""
+    """Reason why a key has no place in the case, or an option no values."""
 
 
 def find(key: str, tables: Tables) -> tuple[Place, ...]:
-    """Return the places of a case that a key means.
+    """Return the places of a case to which a key refers.
 
     Raises:
         Unplaced: there are none.
@@ -154,7 +154,7 @@ def find(key: str, tables: Tables) -> tuple[Place, ...]:
 def _places(
     here: Any, path: Sequence[tuple[str, int | str | None]], before: Place
 ) -> Iterator[Place]:
-    """Yield all numbers that a path leads to, whether they are there yet or not."""
+    """Yield all numbers to which a path leads, whether they exist yet or not."""
     if not path:
         yield before
         return
@@ -164,7 +164,7 @@ def _places(
     found = here.get(name)
     place = Place((*before.steps, name))
     if found is None:
-        # The schema knows whether there is such a key.
+        # The schema decides whether such a key exists.
         yield from _places({}, rest, place)
         return
     tables = isinstance(found, list) and (not found or isinstance(found[0], Mapping))
