@@ -32,11 +32,11 @@ STANDARD_GRAVITY = 9.80665
 def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
     """Return the loads: weights and loads from t = 0 on, loads released then, and initial impulses.
 
-    :func:`dynamics.motion.begin` makes of the last two what they leave at t = 0.
+    :func:`dynamics.motion.begin` turns the last two into the state at t = 0.
 
     Raises:
-        BoomError: a name that is no segment, a history that cannot be, a payload's own gravity
-            beside that of all.
+        BoomError: an unknown segment, an invalid history, a payload's own gravity beside the
+            common one.
     """
     if case.gravity is not None and case.payload is not None and case.payload.gravity is not None:
         raise BoomError(
@@ -132,10 +132,10 @@ def with_weight(
     10.0
 
     Args:
-        boom: without weight.
-        angle: of luffing in degrees, positive where the tip is up.
-        acceleration: of gravity in m/s².
-        thrusts: other forces along the boom, such as a hoist rope's.
+        boom: the boom without weight.
+        angle: luffing angle in degrees, positive where the tip is up.
+        acceleration: acceleration of gravity in m/s².
+        thrusts: other axial forces, such as a hoist rope's.
     """
     gravity = GravityTable(acceleration=float(acceleration), angle=float(angle))
     segments = with_compression(boom.segments, boom.joints, thrusts, along(gravity))
@@ -147,8 +147,8 @@ def thrusts(case: Case, segments: Sequence[Segment]) -> tuple[Thrust, ...]:
     """Return the axial forces on the boom except weights.
 
     Raises:
-        BoomError: a name that is no segment, a place that is not on it, a rope that carries
-            nothing, a force given in two ways or none.
+        BoomError: an unknown segment, a place outside it, a rope without payload, a force given in
+            two ways or none.
     """
     return tuple(
         _thrust(f"axial[{number}]", table, case, segments)
@@ -220,7 +220,7 @@ def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:
     """Return the stops on the ground.
 
     Raises:
-        BoomError: a name that is no segment, a rest that nothing can press.
+        BoomError: an unknown segment, a stop that nothing can touch.
     """
     for number, table in enumerate(case.stops, start=1):
         if table.stiffness == 0.0 and not table.stiffness_below:
@@ -246,7 +246,7 @@ def cylinders(case: Case, segments: Sequence[Segment]) -> tuple[Cylinder, ...]:
     """Return the luffing cylinders.
 
     Raises:
-        BoomError: a name that is no segment.
+        BoomError: an unknown segment.
     """
     return tuple(
         Cylinder(
@@ -285,7 +285,7 @@ def called(where: str, name: str, segments: Sequence[Segment | SegmentTable]) ->
     """Return the index of the segment with a name.
 
     Raises:
-        BoomError: none has.
+        BoomError: no segment has the name.
     """
     names = [segment.name for segment in segments]
     if name not in names:

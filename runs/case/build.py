@@ -55,7 +55,7 @@ def build_boom(case: Case) -> Boom:
     """Return the boom of a case; infer sections that are not given.
 
     Raises:
-        BoomError: no boom can be like that.
+        BoomError: the boom is invalid.
     """
     check_names("segment", [segment.name for segment in case.segments])
     _check_flat(case)
@@ -85,7 +85,7 @@ def check_varied(case: Case, boom: Boom) -> None:
     """Check that the case has the data that the members of an ensemble vary.
 
     Raises:
-        BoomError: there is not.
+        BoomError: the data are missing.
     """
     if case.ensemble is None or all(model.play_free for model in case.models):
         return
@@ -135,7 +135,7 @@ def check_names(where: str, names: Sequence[str]) -> None:
     """Check that names are unique.
 
     Raises:
-        BoomError: at the second one.
+        BoomError: a name occurs twice.
     """
     for number, name in enumerate(names, start=1):
         if name in names[: number - 1]:

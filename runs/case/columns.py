@@ -66,14 +66,14 @@ def read_pairs(
     """Read two columns of a CSV file.
 
     Args:
-        path: of the case file, from which the file's is seen, for messages.
-        key: that names the file, for messages.
+        path: path of the case file, to which that of the CSV file is relative, for messages.
+        key: key of the file, for messages.
         file: its path.
-        names: of the two columns in its heading; its only two unless given.
-        columns: what they are to hold.
+        names: names of the two columns in its heading; by default its only two.
+        columns: their expected content.
 
     Raises:
-        BadInput: the file cannot be read, or holds something else.
+        BadInput: the file cannot be read, or has other content.
     """
     remedy = (
         f"give a CSV file of two columns, {columns[0]} and {columns[1]}; a heading may say other "
@@ -113,7 +113,7 @@ class _Unfit(Exception):
 
     Args:
         what: the fault.
-        remedy: of its own; else to give the right file.
+        remedy: a specific remedy; by default to give the right file.
     """
 
     def __init__(self, what: str, remedy: str = "") -> None:
@@ -182,7 +182,7 @@ def _chosen(
     """Return indices, unit factors and ``measured`` (see :class:`Pairs`) of the two columns.
 
     Raises:
-        _Unfit: a name that is not there, too many columns, a unit that does not fit.
+        _Unfit: a missing name, too many columns, an incompatible unit.
     """
     if not headings:
         if names is not None:

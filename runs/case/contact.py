@@ -57,7 +57,7 @@ def table_law(points: Sequence[tuple[float, float]], damping: float = 0.0) -> Ta
     """Return a contact law through pairs of a penetration in m and a force in N.
 
     Raises:
-        ValueError: no contact can be like that.
+        ValueError: the law is invalid.
     """
     from dynamics.contact_table import TableContact
 
@@ -77,11 +77,11 @@ def _check_law(table: JointTable | ContactTable, of_power: Sequence[str]) -> Non
     """Check that a power law has a stiffness, and that tables and pads with a thickness have none.
 
     Args:
-        table: with all its keys, in whatever order these are declared.
-        of_power: keys that belong to power laws alone.
+        table: the table with all its keys, in any order.
+        of_power: keys of power laws only.
 
     Raises:
-        ValidationError: at the key that is missing, or given in vain.
+        ValidationError: a key is missing or useless.
     """
     tables = [key for key in ("force_table", "force_file") if getattr(table, key)]
     pad = table.thick_pads if isinstance(table, JointTable) else None

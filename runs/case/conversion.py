@@ -20,10 +20,10 @@ def in_si(case: Case) -> Case:
     Defaults are in SI units already.
 
     Args:
-        case: that stands alone, without files.
+        case: a case that stands alone, without files.
 
     Raises:
-        OverflowError: a number has none in SI units.
+        OverflowError: a number overflows in SI units.
     """
     if case.units == "SI":
         return case

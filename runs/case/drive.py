@@ -63,10 +63,10 @@ class DriveTable(Table):
         """Return the history of the extension in m.
 
         Args:
-            where: its key.
+            where: key of the drive.
 
         Raises:
-            BoomError: keys contradict one another, or lack one.
+            BoomError: keys contradict one another, or one is missing.
         """
         given = [key for key in _WAYS if getattr(self, key) is not None]
         if not given:
@@ -124,12 +124,12 @@ class DriveTable(Table):
         """Return the drive; None where it moves nothing.
 
         Args:
-            where: the key of its joint.
-            stations, locked_at: of the joint.
-            inner: the name of the segment that is drawn, and its tail's x in m.
+            where: key of its joint.
+            stations, locked_at: those of the joint.
+            inner: name of the moving segment, and its tail's x in m.
 
         Raises:
-            BoomError: as :meth:`history`, and where a station sits on no segment.
+            BoomError: as :meth:`history`, and for a station on no segment.
         """
         history = self.history(f"{where}.drive")
         name, tail = inner

@@ -24,8 +24,8 @@ def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
     """Return the data of each drive of finite stiffness, by the index of its joint.
 
     Args:
-        case: a checked one.
-        boom: of the case.
+        case: a checked case.
+        boom: that of the case.
     """
     return {
         number: ElasticDrive(
@@ -60,7 +60,7 @@ def check_elastic_drives(case: Case, boom: Boom) -> None:
     """Check the data of elastic drives.
 
     Raises:
-        BoomError: it cannot.
+        BoomError: the data are invalid.
     """
     for number, joint, drive in _drives(case):
         where = f"joint[{number + 1}].drive"

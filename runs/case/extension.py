@@ -16,11 +16,11 @@ def spans(
     """Return the x of the ends of each segment in m.
 
     Args:
-        segments: with a name each; the first one starts at 0 where it is given by its length.
-        joints: of segments that are among them.
+        segments: segments with a name each; the first one starts at 0 if it has a length only.
+        joints: joints of these segments.
 
     Raises:
-        BoomError: a segment has no place, or two.
+        BoomError: a segment has no position, or two.
     """
     lengths = {segment.name: segment.length for segment in segments}
     ends = {segment.name: segment.span for segment in segments if segment.span is not None}

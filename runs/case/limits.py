@@ -60,8 +60,8 @@ class Table(BaseModel):
         """Return the units of the numbers of a key, as of :class:`In`; empty for other values.
 
         Args:
-            key: as the class calls it.
-            exponent: of the contact law that a table without one belongs to.
+            key: its name in the class.
+            exponent: that of the contact law of a table without one.
         """
         declared = declared_units(type(self).model_fields[key])
         n = self.exponent_of(key) or exponent

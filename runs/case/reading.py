@@ -45,7 +45,7 @@ def load(path: str) -> Case:
     """Read and check a case file.
 
     Raises:
-        BadInput: the file cannot be read, or what it says cannot be.
+        BadInput: the file cannot be read, or its content is invalid.
     """
     return declared(path).case
 
@@ -66,7 +66,7 @@ def check(case: Case, path: str) -> Declared:
     """Check a case beyond its schema, and return its boom and models.
 
     Raises:
-        BadInput: it cannot.
+        BadInput: the case is invalid.
     """
     found = Declared(case)
     try:
@@ -92,16 +92,16 @@ def select(
     """Return the case with the named models only, and with other shells and ensembles.
 
     Args:
-        case: a checked one.
-        path: of its file, for messages.
-        models: names; all unless given.
-        mesh_size: in m, of uniform meshes.
-        members: of each ensemble; 0 for none.
-        modes: of the shells: a number, or ``auto``.
+        case: a checked case.
+        path: path of its file, for messages.
+        models: names of the models; by default all.
+        mesh_size: size of uniform meshes in m.
+        members: number of members of each ensemble; 0 for none.
+        modes: modes of the shells: a number, or ``auto``.
 
     Raises:
-        BadInput: a name that the case does not know, a mesh size or modes that cannot be or that
-            nothing would use, a single member, members of which nothing changes.
+        BadInput: an unknown name, an invalid or unused mesh size or number of modes, a single
+            member, members without variation.
     """
     chosen = case.models
     if models is not None:

@@ -25,7 +25,7 @@ class ShapeTable(Table):
         """Return the section of these numbers.
 
         Raises:
-            SectionError: there is none.
+            SectionError: the section is invalid.
         """
 
 

@@ -46,7 +46,7 @@ class Unit:
         """Return the unit of a name such as ``kN/m``, ``m/s^2``, ``m/s²``, ``N m``, ``g``.
 
         Raises:
-            ValueError: no such unit is known.
+            ValueError: the unit is unknown.
         """
         above, *below = text.replace("**", "^").translate(_PLAIN).split("/")
         # Decimal sizes are exact fractions: a density in t/mm³ is to be exactly 1e12 kg/m³.
@@ -112,6 +112,6 @@ def scaled(value: float, size: Fraction) -> float:
     """Return value times size in decimal arithmetic: 9.7 mm are 0.0097 m to the last bit.
 
     Raises:
-        OverflowError: no number can be so large.
+        OverflowError: the number is too large.
     """
     return float(Fraction(repr(float(value))) * size)

@@ -33,11 +33,11 @@ def check_left(folder: Path, file: str, key: str) -> None:
     """Refuse to replace the working folder: a shell would stay in the old one, which is then empty.
 
     Args:
-        folder: that another one is to take the place of.
-        file, key: for messages.
+        folder: the folder to replace.
+        file, key: names for messages.
 
     Raises:
-        BadInput: this process has been started in it.
+        BadInput: it is the working folder of this process.
     """
     if Path.cwd().is_relative_to(real(folder)):
         raise BadInput(
@@ -49,8 +49,8 @@ def read_text(path: Path) -> str:
     """Return the text of a file.
 
     Raises:
-        OSError: it cannot be read, is no regular file, or a too large one.
-        ValueError: it is not UTF-8, or no path.
+        OSError: the file cannot be read, is too large, or is no regular file.
+        ValueError: the content is not UTF-8, or the path is invalid.
     """
     return _read(path).decode("utf-8-sig")
 

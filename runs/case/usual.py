@@ -33,12 +33,12 @@ class Usual(NamedTuple):
     """A number of a case, and its usual range.
 
     Args:
-        key: in the case file.
-        what: it is, ``friction of 'fly'`` say.
-        value: in SI units.
-        unit: of the SI, ``1`` for none.
-        least, most: usual values.
-        margin: factor beyond these from which on no boom can be meant.
+        key: key in the case file.
+        what: description, for example ``friction of 'fly'``.
+        value: value in SI units.
+        unit: SI unit, ``1`` for none.
+        least, most: limits of usual values.
+        margin: factor beyond these limits from which on a value is impossible.
     """
 
     key: str
@@ -80,7 +80,7 @@ def check_usual(case: Case, boom: Boom) -> None:
     """Refuse a number that is impossible for a boom.
 
     Raises:
-        BoomError: at the first one.
+        BoomError: a number is impossible.
     """
     for one in usual_numbers(case, boom):
         if one.impossible:

@@ -2,9 +2,9 @@
 """A cache of results under the hash of their inputs.
 
 An entry is a file whose first line is the SHA-256 of its key and of what follows, so that a disk
-error and a file that was copied from elsewhere are detected. It is complete or absent,
-and never changes. Nobody requests an outdated entry again, so that it becomes the least
-recently used, and is removed.
+error and a file that was copied from elsewhere are detected. It is complete or absent, and
+never changes. Nobody requests an outdated entry again, so that it becomes the least recently used,
+and is removed.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def key(*content: Any) -> str:
     """Return the SHA-256 of content, numbers to the last bit, and of the program that computes.
 
     Raises:
-        TypeError: something cannot be a record's, see :func:`runs.folder.records.write`.
+        TypeError: a part is not valid in a record, see :func:`runs.folder.records.write`.
     """
     digest = sha256()
     records.write((content, program()), SimpleNamespace(write=digest.update))
@@ -61,7 +61,7 @@ class Cache:
     """Entries by key.
 
     Args:
-        folder: of the entries; made when the first one is kept.
+        folder: folder of the entries; the first entry creates it.
     """
 
     folder: Path
@@ -130,8 +130,8 @@ class Cache:
         """Store an entry.
 
         Raises:
-            OSError: it cannot be written.
-            TypeError: it cannot be a record.
+            OSError: the entry cannot be written.
+            TypeError: the entry is not valid as a record.
         """
         with whole(self._entry(key)) as part, part.open("w+b") as file:
             file.write(bytes(_HEAD))
@@ -203,10 +203,10 @@ def remembered(
     processes that want the same shell at a time one makes it, and the others wait for it.
 
     Args:
-        cache: of the user.
-        content: all that the shell depends on.
+        cache: cache of the user.
+        content: all inputs of the shell.
         comm: the ranks that share the work; the first one reads and writes.
-        compute: the shell. Collective.
+        compute: computes the shell. Collective.
     """
     from shell_model.reduced_shell import ReducedShell
 

@@ -2,10 +2,9 @@
 """Results as a line of JSON and its arrays, in numpy's own format.
 
 Everything is restored to the last bit: tuples as tuples, and this program's dataclasses, named
-tuples and
-pydantic models as what they were, checks of their own included. Files hold data alone: whoever
-writes them has no say in what runs when they are read, other than which of these classes are made
-of what.
+tuples and pydantic models as objects of their classes, validation included. Files hold data only:
+their author has no influence on the code that runs at reading, except for the choice of these
+classes and their data.
 """
 
 from __future__ import annotations

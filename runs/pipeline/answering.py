@@ -75,12 +75,12 @@ def answer_model(
     """Return the design results of one model, on the first rank.
 
     Args:
-        boom: of the case.
-        case: the model's.
-        model: one of the case's.
-        built: the model before it moved.
+        boom: that of the case.
+        case: the case of the model.
+        model: a model of the case.
+        built: the model before its motion.
         trajectory: its motion.
-        shell: what it leaves besides.
+        shell: its output besides the trajectory; None for a beam.
     """
     system, shown = built.system.gathered(), boom.play_free if model.play_free else boom
     lines = with_cylinders(shown, system, model.lines(boom, built))
@@ -159,7 +159,7 @@ def answer_run(
         boom: that of the case.
         case: the case of the run.
         summary: that of the run, without design results.
-        models: those that ran.
+        models: those without failure.
     """
     found = statics(case, boom)
     ran = [model for model in case.models if model.name in models]

@@ -20,19 +20,20 @@ class ModelAnswers:
     """Design results of one model.
 
     Args:
-        rests: under the loads of t = 0, and where these change also those of the instants at which
-            they are largest; none where it has no rest.
-        drawn: where drives have drawn it farthest out or in, under the loads of then and under the
-            largest while it is there.
-        tied: as ``rests``, without play; of the instants at which drives have it where it begins.
-        modes: the first ones at rest under the loads of t = 0; none where it has no rest.
-        tied_modes: of what ``tied`` is of, without their shapes.
-        moved: over the run.
-        tied_moved: what it would have gone through without play; None without any, and where that
+        rests: static states under the loads of t = 0, and for variable loads also under the
+            extreme ones; empty without an equilibrium.
+        drawn: static states at the largest and least extension, under the loads of that time and
+            under the extreme ones at that extension.
+        tied: as ``rests``, without play, at the instants with the initial extension.
+        modes: the first modes at rest under the loads of t = 0; empty without an equilibrium.
+        tied_modes: those of the boom without play, without their shapes.
+        moved: extreme values of the run.
+        tied_moved: extreme values without play; None for a model without play, and where they
             cannot be computed. Walls of shells are left out.
-        life: of each segment whose section is known, where cycles can be counted.
+        life: fatigue damage of each segment with a known section, where cycles can be counted.
         tied_life: likewise without play.
-        swing: while it is drawn out; None where it is not, before drives end, and without a rest.
+        swing: vibration during the extension; None without extension, for a run that ends before
+            its drives, and without an equilibrium.
     """
 
     rests: list[AtRest] = field(default_factory=list)
@@ -58,8 +59,8 @@ class Added:
 
     Args:
         what: as of :class:`Peak`, or ``deflection at rest``, ``first frequency``, ``stress``.
-        where: the place; empty where it is of the whole boom.
-        unit: of the SI.
+        where: the place; empty for the whole boom.
+        unit: SI unit.
         played, tied: the number with play and without, by its absolute value.
     """
 
@@ -85,9 +86,8 @@ class PlayAdds:
     """The increases of numbers by play in one model.
 
     Args:
-        model: with play.
-        numbers: at rest, of the modes, of the motions, each beside that of the same model without
-            play.
+        model: name of the model with play.
+        numbers: numbers at rest, of modes and of motions, with and without play.
     """
 
     model: str
@@ -100,7 +100,7 @@ class QualityNote:
 
     Args:
         what: ``agreement``, ``horizon``, ``reduction``, ``mesh``, ``energy`` or ``step``.
-        line: says it.
+        line: the statement.
     """
 
     what: str
@@ -112,13 +112,13 @@ class Answers:
     """Design results of a run.
 
     Args:
-        models: by their names.
-        reactions: at rest under the loads of t = 0, of beam elements, as ``check`` has them; none
-            where there is no rest.
+        models: design results by the model's name.
+        reactions: support reactions of beam elements at rest under the loads of t = 0, as in
+            ``check``; empty without an equilibrium.
         tied_reactions: the same without play.
-        modes: of the models side by side; None where fewer than two have any.
-        play: of each model with play.
-        trust: how far to trust them.
+        modes: modes of all models side by side; None if fewer than two models have any.
+        play: increases by play of each model with play.
+        trust: statements about the accuracy.
     """
 
     models: dict[str, ModelAnswers]
@@ -133,8 +133,8 @@ def added(models: list[Model], answers: Mapping[str, ModelAnswers]) -> list[Play
     """Return the increases by play of each model with play.
 
     Args:
-        models: of the case, those that ran.
-        answers: of each.
+        models: those of the case without failure.
+        answers: design results of each.
     """
     return [
         PlayAdds(model.name, [*_at_rest(own), *_in_motion(own)])

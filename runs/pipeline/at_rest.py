@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Static states of a model of the boom, under the loads of the instants at which these are largest.
 
-Forces of a section are those of the part beyond it on the part before it: the normal force pulls
-where it is positive, a moment where it is positive pulls at the top (a lateral one at larger y).
+Section forces are those of the part behind the section on the part before it. A positive normal
+force is tension; a positive moment causes tension at the top (a lateral one at larger y).
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ class Diagram:
 
     Args:
         segment: its name.
-        x: (num_places) in m; a place where something jumps stands twice.
+        x: (num_places) in m; a place with a jump occurs twice.
         normal: N in N.
-        curves: what the model knows of the other quantities of :data:`dynamics.line.Quantity`:
+        curves: available other quantities of :data:`dynamics.line.Quantity`:
             ``deflection`` in m, ``shear`` in N, ``moment`` in N·m; in space ``lateral`` in m,
             ``twist`` in rad, ``lateral_shear``, ``lateral_moment``, ``torque``.
     """
@@ -56,8 +56,8 @@ class Tilt:
 
     Args:
         inner, outer: names of the segments.
-        rotation: of the inner one in the outer one in rad, towards a larger slope.
-        tip: what that moves the tip by as a lever, in m.
+        rotation: rotation of the inner one in the outer one in rad, towards a larger slope.
+        tip: tip displacement by that rotation in m.
     """
 
     inner: str
@@ -71,13 +71,13 @@ class Pressed:
     """A station at rest: its contact force and compression.
 
     Args:
-        place: its name, as trajectories have it.
+        place: its name, as in trajectories.
         x: in m.
         direction: z or y.
         force: in N, positive where the inner segment presses up (along y: towards larger y).
-        pad: the most that one of its pads bears in N, not negative, where those of a side share its
-            force as they are stiff and shims press first; None without pads.
-        depth: how far the contact that is pressed most is pressed in, in m.
+        pad: largest force on one of its pads in N, not negative, where stiffness and shims
+            determine the distribution over the pads of a side; None without pads.
+        depth: largest compression of a contact in m.
     """
 
     place: str
@@ -93,13 +93,13 @@ class AtRest:
     """A static state of a model of the boom.
 
     Args:
-        time: whose loads act, and as far drawn out as it is then, in s.
-        tip: its deflection in m.
+        time: time of the loads and of the extension in s.
+        tip: tip deflection in m.
         tip_lateral: likewise along y, in space.
-        diagrams: of each segment.
-        tilts: of the joints with play and two stations at least.
-        stations: of the joints with play, and of stops.
-        cylinders: forces along them in N by the names of the results.
+        diagrams: those of each segment.
+        tilts: those of the joints with play and at least two stations.
+        stations: those of the joints with play, and of stops.
+        cylinders: axial forces in N by the names of the results.
     """
 
     time: float
@@ -114,7 +114,7 @@ class AtRest:
 def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:
     """Return a name for each station: its x in m, followed by ``y`` for a lateral station.
 
-    ``#2`` and so forth stands behind the name where others are at the same place.
+    ``#2`` and so forth follows the name where several stations share a place.
     """
     names = [f"{x:g}" + ("y" if direction == "y" else "") for x, direction in stations]
     before = [names[:i].count(name) for i, name in enumerate(names)]
@@ -127,8 +127,8 @@ def instants(system: GapSystem, duration: float) -> list[float]:
     """Return 0 and the times in s at which a variable load has an extreme value.
 
     Args:
-        system: all that stays constant is in its ``load``.
-        duration: of the motion in s.
+        system: its ``load`` has all constant loads.
+        duration: duration of the motion in s.
     """
     times, values = _over_time(system.excitations, system, duration)
     return _distinct(times, values, [0, *values.argmax(axis=1), *values.argmin(axis=1)])
@@ -138,8 +138,8 @@ def extended_instants(system: GapSystem, duration: float) -> list[float]:
     """Return the times in s of the largest and least extension, and of the extreme loads meanwhile.
 
     Args:
-        system: all that stays constant is in its ``load``.
-        duration: of the motion in s.
+        system: its ``load`` has all constant loads.
+        duration: duration of the motion in s.
     """
     times, ways = _over_time(system.travels, system, duration)
     _, loads = _over_time(system.excitations, system, duration)
@@ -174,11 +174,11 @@ def _distinct(times: Array, values: Array, steps: Sequence[int]) -> list[float]:
 def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float, Array]:
     """Return the equilibria (num_modes,) by the instants in s whose loads act.
 
-    Instants under whose loads it has no rest are left out; there is none without the first one.
+    Instants without an equilibrium are left out; without the first one all are.
 
     Args:
-        system: of a model, all that stays constant in its ``load``.
-        times: of :func:`instants`.
+        system: that of a model; its ``load`` has all constant loads.
+        times: those of :func:`instants`.
     """
     found: dict[float, Array] = {}
     for time in times:
@@ -195,8 +195,8 @@ def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]
     """Return the equilibria at the largest and least extension, in addition to :func:`positions`.
 
     Args:
-        system: of a model, all that stays constant in its ``load``.
-        duration: of the motion in s.
+        system: that of a model; its ``load`` has all constant loads.
+        duration: duration of the motion in s.
     """
     known = instants(system, duration)
     found: dict[float, Array] = {}
@@ -213,11 +213,11 @@ def at_rest(
     """Return the static state at an equilibrium.
 
     Args:
-        boom: with the play that the system has.
-        system: of the model.
-        lines: along its segments.
-        time: whose loads act, and as far drawn out as it is then, in s.
-        position: (num_modes,) of the rest.
+        boom: the boom, with the play of the system.
+        system: that of the model.
+        lines: those along its segments.
+        time: time of the loads and of the extension in s.
+        position: equilibrium (num_modes,).
     """
     system, diagrams = system.standing(time), []
     for number, line in enumerate(lines):

@@ -35,7 +35,7 @@ def drive_lines(boom: Boom, system: System) -> Iterator[str]:
 
     Args:
         boom: whose joints may have drives.
-        system: the units to say it in.
+        system: the units of the sentences.
     """
     for joint in boom.joints:
         if joint.drive is None:
@@ -60,10 +60,10 @@ class Slipping:
     """The stick-slip behaviour of a drive of finite stiffness, estimated before the motion.
 
     Args:
-        inner: the name of the segment.
-        pulled: what goes along.
-        friction: R in N where pads press most at rest.
-        fastest: the largest speed that is asked, in m/s.
+        inner: name of the segment.
+        pulled: data of the elastic drive.
+        friction: largest friction R at rest in N.
+        fastest: largest commanded speed in m/s.
     """
 
     inner: str
@@ -142,9 +142,9 @@ def lag_cautions(boom: Boom, data: xr.Dataset, system: System) -> Iterator[str]:
     """Yield a caution for each segment whose lag moves its pads to other places.
 
     Args:
-        boom: of a case.
+        boom: that of a case.
         data: the trajectories of its models.
-        system: of the lines.
+        system: the units of the cautions.
     """
     for number, joint in enumerate(boom.joints, start=1):
         name = "drive_lag" if number == 1 else f"drive_lag-{number}"

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Estimates of the memory and time of a run, from the numbers of its case.
 
-Estimates are to be high by a factor of up to about four rather than low. Steps of beams are those
-that they will make; a shell has not been meshed yet, and its steps follow from a beam's. The
-constants were measured on one core of an AMD EPYC (``python -m studies.cost.bench``, and
+Estimates may be high by a factor of up to about four, but not low. Steps of beams are those of the
+run; a shell is not meshed yet, and its steps follow from a beam's. The constants were
+measured on one core of an AMD EPYC (``python -m studies.cost.bench``, and
 tests/runs/test_estimates.py for the memory).
 """
 
@@ -68,7 +68,7 @@ class Preview:
     """The motions of the models of a case, each model built once as beams before the run.
 
     Args:
-        declared: by the case.
+        declared: the case with its boom and models.
     """
 
     declared: Declared
@@ -78,8 +78,8 @@ class Preview:
         """Return the motion of a model as the case defines it.
 
         Args:
-            model: one of the case's.
-            beam: itself, or what stands for it.
+            model: a model of the case.
+            beam: the model itself, or its stand-in.
 
         Raises:
             NumericsError: there is no equilibrium to start from.

@@ -27,9 +27,9 @@ class Means:
     Args:
         comm: the ranks that share the shells and the ensembles; a case without shells can do
             without.
-        progress: told about every stage.
-        cache: of reduced shells.
-        kept: where motions are that have ended before, and those that end now are kept.
+        progress: receives the progress of every stage.
+        cache: cache of reduced shells.
+        kept: store of completed motions, earlier ones and those of this run.
     """
 
     comm: MPI.Intracomm | None = None

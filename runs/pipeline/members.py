@@ -68,8 +68,8 @@ def rank_executor(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
 def slow_below(boom: Boom, time: TimeTable) -> float | None:
     """Return the cut-off of the slow motion in Hz, a part of the lowest frequency without play.
 
-    None where the run is too short for it, too coarsely reported, or about a boom that no model
-    can compute either, as each of them will say.
+    Return None if the run is too short for it, its output too coarse, or the boom invalid for every
+    model, in which case each model reports the error.
     """
     try:
         with np.errstate(all="ignore"):
@@ -90,7 +90,7 @@ def sum_up_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> EnsembleSu
     """Return the summary of one model's ensemble.
 
     Args:
-        ensemble: of :func:`dynamics.predictability.ensemble.integrate_ensemble`.
+        ensemble: that of :func:`dynamics.predictability.ensemble.integrate_ensemble`.
         peaks: the tip's slow peaks that all members have; None without a cut-off.
     """
     shares = zip(SHARES, horizons_of(ensemble), strict=True)
@@ -130,12 +130,12 @@ def measure_predictability(
     """Return when changes of several sizes have grown, at what rate, and whether by the step.
 
     Args:
-        motion: of the model.
-        integrator: of its system.
-        vary: what is changed.
-        unchanged: the motion as it is.
-        executor: who makes the runs; threads of our own unless given.
-        progress: told the part that is done.
+        motion: that of the model.
+        integrator: that of its system.
+        vary: the varied data.
+        unchanged: the trajectory without change.
+        executor: executor of the runs; by default threads of this process.
+        progress: receives the completed part.
     """
     found = measure_horizons(
         motion,
@@ -161,12 +161,12 @@ def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsFor
     """Integrate with longer and longer steps, and find those that keep the first slow peaks.
 
     Args:
-        motion: from rest, of whose duration as much is taken as the peaks need.
-        peaks: the ensemble's.
-        cutoff: of the slow motion in Hz.
+        motion: motion from rest; the peaks determine the used part of its duration.
+        peaks: those of the ensemble.
+        cutoff: cut-off of the slow motion in Hz.
 
     Returns:
-        None where there are not as many peaks.
+        The trials; None if there are fewer peaks.
     """
     if peaks.times.size < PEAKS:
         return None

@@ -42,10 +42,10 @@ class ShellOutput:
     Args:
         fields: points, triangles, segment, modes and stresses of the mesh, ``state`` (time,
             mode), and ``pressed_mode_shape`` (pressed_mode in Hz, mode) of the boom
-            with its joints pressed.
+            with closed contacts.
         stresses: von Mises stresses near stations and supports over time.
-        largest: the largest of them, and what the walls carry then.
-        meshes: name of the segment → its mesh.
+        largest: the largest of them, and the section forces in the walls at that time.
+        meshes: mesh by the name of the segment.
     """
 
     fields: xr.Dataset
@@ -71,7 +71,7 @@ class ShellOutput:
 
         Args:
             boom: that of the shell.
-            name: of the model.
+            name: name of the model.
             reduced: the shell.
             trajectory: its motion.
         """
@@ -91,8 +91,8 @@ class ShellOutput:
         """Write stresses, series and meshes to a run's folder that already has the fields.
 
         Args:
-            folder: of the run.
-            prefix: of the files' names.
+            folder: the run's folder.
+            prefix: prefix of the file names.
         """
         self.stresses.assign_attrs(Conventions=CONVENTIONS).to_netcdf(
             folder / f"{prefix}{STRESSES}", engine="scipy"

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Accuracy of the results of a run: comparison of models, statements of accuracy, cautions.
 
-Every model is held against one of them. Where ensembles are known, at three levels, each with what
-it can decide; where segments rub, from the beginning to the end: friction takes what impacts would
-otherwise let grow.
+Every model is compared with one reference. Ensembles allow comparisons at three levels, each with
+its own scope. With friction, the comparison covers the whole run: friction dissipates differences
+that impacts would otherwise amplify.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def reference_of(models: Iterable[Model]) -> str | None:
 def leading(case: Case, models: Sequence[str]) -> set[str]:
     """Return the main models: the last shell, the last beam with play, the first without.
 
-    All of up to three, and of kinds that a run lacks the last one with play.
+    Up to three models are all main ones.
     """
     if len(models) <= 3:
         return set(models)
@@ -76,10 +76,10 @@ def compare_models(
     """Return the summary of the differences of models; None where there is nothing to compare.
 
     Args:
-        case: which model is which.
+        case: the case with the models.
         trajectories: dims ``model``, ``time``; ``tip`` in m.
         ensembles: dims ``model``, ``member``, ``time``; ``tip`` in m.
-        cutoff: of the slow motion in Hz.
+        cutoff: cut-off of the slow motion in Hz.
     """
     ran = trajectories["model"].values
     reference = reference_of(model for model in case.models if model.name in ran)
@@ -118,9 +118,9 @@ def quality_notes(summary: Summary, answers: Answers, duration: float) -> Iterat
     """Yield statements about the accuracy of a run.
 
     Args:
-        summary: of its models.
-        answers: of its models.
-        duration: of the motion in s.
+        summary: that of the run.
+        answers: its design results.
+        duration: duration of the motion in s.
     """
     models = summary.models
     for line in _agreement(answers):
@@ -208,10 +208,10 @@ def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list
     """Return the limits of validity of the results.
 
     Args:
-        case: of the run.
-        boom: of the case.
+        case: that of the run.
+        boom: that of the case.
         data: the trajectories of its models.
-        summary: of the run, with all that has failed.
+        summary: that of the run, with all failures.
     """
     return [
         *slips(case, boom),

@@ -79,19 +79,19 @@ def run_model(
 ) -> ModelRun | None:
     """Build, move and sum up a model, on rank 0; None elsewhere. Collective.
 
-    A motion that has ended before comes from where the run keeps motions, and goes there as soon as
-    it ends, so that the next run goes on from there.
+    A motion that an earlier run completed comes from the store of motions. A new one goes there as
+    soon as it ends, so that the next run continues from there.
 
     Args:
-        boom: of the case.
-        model: one of the case's.
-        case: of the run.
-        cutoff: of the slow motion in Hz; None without one.
-        means: of the run.
+        boom: that of the case.
+        model: a model of the case.
+        case: that of the run.
+        cutoff: cut-off of the slow motion in Hz; None without one.
+        means: the context of the run.
 
     Raises:
         NumericsError: the model cannot be computed.
-        SharedFailure: likewise, of a shell that several ranks share.
+        SharedFailure: likewise, for a shell that several ranks share.
     """
     begin, comm = perf_counter(), means.comm
     stages = Stages(partial(means.progress, model.name))
@@ -217,9 +217,9 @@ def calibration_card(boom: Boom, system: GapSystem, calibration: Calibration) ->
     """Return the stiffness of a calibrated beam and the springs of its stations.
 
     Args:
-        boom: as the case has it.
-        system: of the model, whose contact rows are the calibration's.
-        calibration: of it.
+        boom: that of the case.
+        system: that of the model, with the contact rows of the calibration.
+        calibration: that of the model.
     """
     return CalibrationCard(
         segments=[

@@ -29,10 +29,10 @@ def build(case: Case, boom: Boom, model: Model, workshop: Workshop | None = None
     """Build a model of a case. Collective for a meshed model.
 
     Args:
-        case: its joints have the contact laws.
-        boom: of the case.
-        model: one of the case's.
-        workshop: for a meshed one.
+        case: the case, with the contact laws of the joints.
+        boom: that of the case.
+        model: a model of the case.
+        workshop: the context for a meshed model.
 
     Raises:
         BoomError: the boom lacks what the model needs.
@@ -70,8 +70,8 @@ class MotionPlan:
     """The motion of one of the models of a case, and its integrator.
 
     Args:
-        motion: of the system under the loads from t = 0 on.
-        integrator: with the step of the model or the case, else by the tolerance.
+        motion: motion of the system under the loads from t = 0 on.
+        integrator: integrator with the step of the model or the case, else with error control.
     """
 
     motion: Motion

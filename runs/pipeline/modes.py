@@ -47,10 +47,10 @@ class Mode:
 
     Args:
         frequency: in Hz.
-        way: what moves most: ``bending in z``, ``bending in y``, ``twist``.
-        number: among the model's modes of this way, from 1 on.
-        share: of that way in the kinetic energy, from 0 to 1.
-        shapes: of each segment, what moves most 1 m or 1 rad at most.
+        way: dominant motion: ``bending in z``, ``bending in y``, ``twist``.
+        number: number among the model's modes of this way, from 1 on.
+        share: part of that way in the kinetic energy, from 0 to 1.
+        shapes: those of each segment, scaled to a maximum of 1 m or 1 rad of the dominant motion.
     """
 
     frequency: float
@@ -65,10 +65,10 @@ class Match:
     """A mode of another model that matches one of the reference.
 
     Args:
-        number: among the other model's modes, from 1 on.
+        number: number among the other model's modes, from 1 on.
         frequency: in Hz.
-        off: by what part it differs from the reference's.
-        alike: the modal assurance criterion of both shapes, from 0 to 1.
+        off: relative difference from the reference's.
+        alike: modal assurance criterion of both shapes, from 0 to 1.
     """
 
     number: int
@@ -82,9 +82,9 @@ class ModesBeside:
     """The modes of all models beside those of a reference.
 
     Args:
-        reference: the name of the model.
-        matches: of each other model with play, for each mode of the reference; None where it has
-            none like it.
+        reference: name of the model.
+        matches: modes of each other model with play, for each mode of the reference; None without
+            a match.
     """
 
     reference: str
@@ -94,14 +94,14 @@ class ModesBeside:
 def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> list[Mode]:
     """Return the first modes, by rising frequency.
 
-    A mode's way is that of the largest part of the kinetic energy, without that of turning
-    cross-sections and of point masses.
+    The way of a mode is that with the largest part of the kinetic energy, without rotary inertia of
+    cross-sections and without point masses.
 
     Args:
-        boom: whose segments the lines read.
-        system: of the model.
-        lines: along its segments.
-        rest: (num_modes,) where it rests.
+        boom: the boom of the lines.
+        system: that of the model.
+        lines: those along its segments.
+        rest: equilibrium (num_modes,).
     """
     omega, shapes = pressed_modes(system, rest)
     ways: list[Quantity] = [name for name in _WAYS if name in lines[0].rows]
@@ -152,11 +152,11 @@ def inertia(segment: Segment, way: Quantity) -> float:
 def matched(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) -> list[Match | None]:
     """Return for each mode of a reference the best match of another model, each once; else None.
 
-    Alike by the modal assurance criterion of the deflections and twists along the segments, each
-    weighted by its inertia (Allemang 2003).
+    The match is by the modal assurance criterion of the deflections and twists along the segments,
+    each weighted by its inertia (Allemang 2003).
 
     Args:
-        boom: of both.
+        boom: that of both models.
         reference, other: their modes.
     """
     here, there = (np.array([_vector(boom, mode) for mode in of]) for of in (reference, other))

@@ -27,8 +27,8 @@ class Envelope:
 
     Args:
         segment: its name.
-        x: (num_places) in m; a place where something jumps stands twice.
-        low, high: of each curve over the run, as of :class:`Diagram`.
+        x: (num_places) in m; a place with a jump occurs twice.
+        low, high: extreme values of each curve over the run, as in :class:`Diagram`.
     """
 
     segment: str
@@ -42,17 +42,17 @@ class Peak:
     """The largest value of a motion beside the largest at rest, by their absolute values.
 
     Args:
-        what: ``deflection``, ``contact force``, ``cylinder force``, ``reaction``, where something
-            acts along the boom also ``reaction along the boom`` and ``reaction, across and along``,
-            ``moment at the support`` or ``bending moment``; in space those to the sides, called
+        what: ``deflection``, ``contact force``, ``cylinder force``, ``reaction``, with axial
+            loads also ``reaction along the boom`` and ``reaction, across and along``,
+            ``moment at the support`` or ``bending moment``; in space the lateral ones, called
             ``lateral``, and ``torque at the support``.
-        where: the place, as the results or the case name it.
-        unit: of the SI.
-        largest: of the motion; of contacts the mean over an output interval, which is what a pad
-            feels, not the peak of a blow.
-        time: when, in s.
-        at_rest: the largest at rest under the largest loads, wherever it is drawn to; None where
-            there is no rest.
+        where: the place, by its name in the results or the case.
+        unit: SI unit.
+        largest: largest value of the motion; for contacts the mean over an output interval, the
+            design load of a pad, not the peak of an impact.
+        time: its time in s.
+        at_rest: largest value at rest under the largest loads, at any extension; None without an
+            equilibrium.
     """
 
     what: str
@@ -73,10 +73,10 @@ class Moved:
     """The extreme values of a model's motion.
 
     Args:
-        envelopes: of each segment.
-        peaks: largest over static.
-        fibres: of each segment whose section is known; none of rigid ones.
-        walls: of shells.
+        envelopes: those of each segment.
+        peaks: largest values beside the static ones.
+        fibres: stresses of each segment with a known section; none for rigid ones.
+        walls: wall stresses of shells.
     """
 
     envelopes: list[Envelope]
@@ -105,12 +105,12 @@ class Motions:
     """A motion and the static states for comparison.
 
     Args:
-        boom: with the play that the model has.
-        lines: along its segments.
+        boom: the boom, with the play of the model.
+        lines: those along its segments.
         trajectory: the motion.
-        positions: (num_rests, num_modes) of the rests; none where there is no rest.
-        rests: what is told of them.
-        jumps: whether lines jump where forces act, as those of series do not.
+        positions: equilibria (num_rests, num_modes); empty without any.
+        rests: the static states there.
+        jumps: whether lines jump at point forces, which those of series do not.
     """
 
     boom: Boom
@@ -124,7 +124,7 @@ class Motions:
 def gone_through(motions: Motions) -> tuple[Moved, list[Varying]]:
     """Return the extreme values of a beam's motion, or of a shell's without its walls.
 
-    Beside it stands the stress of each segment where it varies most.
+    The second value is the stress of each segment where it varies most.
     """
     boom, envelopes, peaks = motions.boom, [], list(_observed(motions))
     fibres, varying = [], []

@@ -50,8 +50,8 @@ def pressed_pads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PressedPa
     """Yield the governing pads of every station of joints with play, in each model.
 
     Args:
-        case: of the run.
-        boom: of the case.
+        case: that of the run.
+        boom: that of the case.
         data: the trajectories of its models.
     """
     if not any(table.pad or table.pads for table in case.joints):
@@ -99,10 +99,10 @@ def _of_each(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array)
     """Return the largest force in N of each pair of pads for given total forces.
 
     Args:
-        joint: of the pads.
-        direction: along which.
-        law: of a station.
-        pushed: (num_pushes,) in N, of those on the side 1 less those on the side −1.
+        joint: the joint of the pads.
+        direction: direction of the forces.
+        law: contact law of a station.
+        pushed: net forces (num_pushes,) in N, those on the side 1 less those on the side −1.
     """
     laws = []
     for pad in (pad for pad in joint.pads if SIDES[pad.side][0] == direction):

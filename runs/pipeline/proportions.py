@@ -212,9 +212,9 @@ def of_period(where: str, frequency: float, case: Case) -> list[str]:
     """Return a caution against a run that is shorter than one period of the boom.
 
     Args:
-        where: ``in MODEL``, say.
-        frequency: the first one in Hz, with the joints pressed.
-        case: that says how long it runs.
+        where: for example ``in MODEL``.
+        frequency: first frequency in Hz, with closed contacts.
+        case: the case, which has the duration.
     """
     if case.time.duration * frequency >= 1.0:
         return []
@@ -228,7 +228,7 @@ def static_tip(system: GapSystem) -> float:
     """Return the static tip deflection in m under the constant loads; NaN without an equilibrium.
 
     Args:
-        system: all that stays constant from t = 0 on is in its ``load``.
+        system: its ``load`` has all constant loads from t = 0 on.
     """
     try:
         return float(system.observers["tip"].row @ equilibrium(system, system.load))
@@ -240,8 +240,8 @@ def of_buckling(name: str, critical_factor: float | None) -> list[str]:
     """Return a caution against a model's axial forces, if they are too large.
 
     Args:
-        name: of the model.
-        critical_factor: of its axial forces, None where it is not known or there are none.
+        name: name of the model.
+        critical_factor: buckling factor of its axial forces; None if unknown or without any.
     """
     if critical_factor is None or critical_factor * CLOSE >= 1.0:
         return []
@@ -255,9 +255,9 @@ def of_tip(where: str, tip: float | None, boom: Boom) -> list[str]:
     """Return a caution against a static deflection, if it is too large.
 
     Args:
-        where: ``in MODEL``, say.
-        tip: in m, NaN or None where there is no rest.
-        boom: from whose first end to its tip is its length.
+        where: for example ``in MODEL``.
+        tip: deflection in m, NaN or None without an equilibrium.
+        boom: the boom, whose length is that from its first end to its tip.
     """
     if tip is None or not abs(tip) > FAR * boom.length:
         return []

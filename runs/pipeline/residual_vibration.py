@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Vibration of the tip while a boom extends, beside that of the same boom without extension.
 
-The swing is the largest distance of the tip from where it would rest, drawn out as far as it is and
-under the loads of that moment.
+The amplitude is the largest distance of the tip from its equilibrium at the current extension and
+under the current loads.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from runs.case.schema import Case, Model
 from runs.pipeline.metrics import Metric, Record
 from runs.pipeline.models import MotionPlan
 
-# At so many places along all that changes rests are found, linear between them, and so many from
-# where something turns back to where the next does; none where they do more often than the most.
+# Numbers of equilibria along all changes (linear between them), of those between two reversals, and
+# of the most reversals; with more of them there are no equilibria.
 _RESTS, _BETWEEN_TURNS, _MOST_TURNS = 60, 4, 100
 
 _TIP = ("tip", "tip_lateral")
 
-# A length, and one that is a level beside a curve.
+# Formats of a length, and of one that is a constant beside a curve.
 _metres = partial(Metric, unit="m", factor=TO_MILLI, shown_unit="mm")
 _level, _AT = partial(_metres, charted=False), "at rest where\nit "
 
@@ -41,11 +41,11 @@ class Swing(Record):
     """Vibration of the tip during and after the extension.
 
     Args:
-        tip: the swing in m.
-        time: when it is, in s.
-        where_begun, where_ended: those of the same boom that stands where drives begin and end,
-            under the same loads, in m; None where that cannot be computed.
-        speed: the mean speed of the fastest drive while it moves, in m/s.
+        tip: largest distance of the tip from equilibrium in m.
+        time: its time in s.
+        where_begun, where_ended: those of the same boom at constant initial and final extension,
+            under the same loads, in m; None where they cannot be computed.
+        speed: mean speed of the fastest drive while it moves, in m/s.
     """
 
     title = "Swing while it is drawn"
@@ -73,10 +73,10 @@ def swing(system: GapSystem, trajectory: Trajectory, case: Case, model: Model) -
     """Return the vibration of a model that extends; None without extension or an equilibrium path.
 
     Args:
-        system: of the model, all that stays constant in its load.
+        system: that of the model; its ``load`` has all constant loads.
         trajectory: its motion.
-        case: the model's.
-        model: one of the case's.
+        case: the case of the model.
+        model: a model of the case.
     """
     ends = [time for travel in system.travels for time in travel.history.kinks]
     if not ends or max(ends) > trajectory.time[-1]:
@@ -97,11 +97,11 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
     """Return the largest distance from equilibrium in m, and its time in s.
 
     Args:
-        system: all that stays constant is in its ``load``.
+        system: its ``load`` has all constant loads.
         trajectory: its motion.
 
     Raises:
-        NumericsError: it has no rest, or loads turn back too often to follow it.
+        NumericsError: there is no equilibrium, or loads reverse too often to follow it.
     """
     time = trajectory.time
     changes = [x.history for x in system.excitations] + [x.history for x in system.travels]

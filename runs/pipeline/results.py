@@ -52,13 +52,13 @@ class Results:
     ['kantorovich-4']
 
     Args:
-        case: the effective one, with every default filled in.
+        case: the effective case, with all defaults.
         trajectories: dims ``model`` (names, in the case's order), ``time`` in s, ``station`` in
-            m, with the ``direction`` in which it touches, and its name ``place``; deflections
-            ``tip``, ``head``, ``tail`` in m (from the second joint on ``head-2`` and so forth),
+            m, with the ``direction`` of its contact, and its name ``place``; deflections
+            ``tip``, ``head``, ``tail`` in m (``head-2`` and so forth from the second joint on),
             ``contact_force``, ``contact_force_peak`` and ``friction_force`` in N, ``gap`` in m,
             energies in J; NaN where a model has none.
-        summary: what ``summary.json`` holds.
+        summary: the content of ``summary.json``.
         ensembles: dims ``model`` (those with play), ``member`` (the first one unchanged),
             ``time``; ``tip``, ``head`` in m; None where the case asks for none.
     """
@@ -73,7 +73,7 @@ class Results:
         """Read a run's folder.
 
         Raises:
-            BadInput: it is not a run's folder, or not a whole one.
+            BadInput: it is not a run's folder, or an incomplete one.
         """
         folder = Path(folder)
         if not folder.is_dir():
@@ -167,7 +167,7 @@ def read_fields(path: Path) -> xr.Dataset:
     """Read the fields of a shell in a run's folder, with all data of pictures.
 
     Raises:
-        BadInput: the file is damaged, or another version's.
+        BadInput: the file is damaged, or of another version.
     """
     fields: xr.Dataset = _read(path, _whole_fields)
     return fields
@@ -182,8 +182,8 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
     """Gather the trajectories of all models, which share their times, in one dataset.
 
     Args:
-        boom: its stations are the dimension ``station``.
-        trajectories: by the model's name.
+        boom: the boom, whose stations are the dimension ``station``.
+        trajectories: trajectories by the model's name.
     """
     stations = [x for x, _ in boom.stations]
     everything = [trajectory.data for trajectory in trajectories.values()]
@@ -238,7 +238,7 @@ def _read(path: Path, how: Callable[[Path], Any]) -> Any:
     """Read a file of a run's folder.
 
     Raises:
-        BadInput: it is missing, damaged, or another version's.
+        BadInput: the file is missing, damaged, or of another version.
     """
     try:
         check_regular(path)

@@ -58,10 +58,10 @@ class Run:
     def answer(self) -> None:
         """Put the design results and the limits of validity into the summary.
 
-        A model that has moved and cannot be answered for is in ``failures``, too.
+        A model whose design results cannot be computed is in ``failures``, too.
 
         Raises:
-            NumericsError: what models share, such as their comparisons, is not finite.
+            NumericsError: a common result of the models, such as their comparison, is not finite.
         """
         case, boom, summary = self.results.case, self.results.boom, self.results.summary
         answers = {}
@@ -85,13 +85,13 @@ class Run:
 def run_case(case: Case, file: str, means: Means) -> Run | None:
     """Run all models of a case without design results, see :meth:`Run.answer`. Collective.
 
-    None but on rank 0. A model that cannot be computed is in the summary's ``failures``, by its
-    name, with the reason.
+    Return None except on rank 0. The summary's ``failures`` name each model that cannot be
+    computed, with the reason.
 
     Args:
-        case: a checked one.
-        file: how messages call it.
-        means: of the run.
+        case: a checked case.
+        file: its name in messages.
+        means: the context of the run.
 
     Raises:
         NumericsError: no model can be computed, or a shell that several ranks share.
@@ -165,8 +165,8 @@ def _attempt_all(
 ) -> dict[str, ModelRun | Exception | None]:
     """Return the result or the failure of each model, in the order of the models.
 
-    Where no other rank waits beams move while shells are made: their compiled loops do not hold the
-    interpreter.
+    Where no other rank waits, beams are integrated while shells are built: the compiled loops
+    release the interpreter.
     """
     if not alone or not any(model.needs_shell for model in models):
         return {model.name: attempt(model) for model in models}

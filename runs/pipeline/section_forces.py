@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Section forces of a segment: those of its line, and the normal force.
 
-N is that of the axial forces, which are given, and of what luffing cylinders push along the boom
-between their lugs and the foot that holds it there.
+N comes from the given axial forces, and from the axial forces of luffing cylinders between their
+lugs and the foot of the boom.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ def with_cylinders(boom: Boom, system: GapSystem, lines: Sequence[Line]) -> list
     """Return lines with the axial forces of cylinders as normal forces.
 
     Args:
-        boom: of the system.
-        system: whose observers read the cylinders' forces.
-        lines: along its segments.
+        boom: that of the system.
+        system: the system, whose observers give the cylinders' forces.
+        lines: those along its segments.
     """
     found = list(lines)
     for number, cylinder in enumerate(boom.cylinders, start=1):
@@ -61,10 +61,10 @@ def section_forces(
     """Return the values (..., num_places) of a line at states (..., num_modes), with N in N.
 
     Args:
-        boom: it may be drawn out.
-        number: of the line's segment.
-        line, states: of a model.
-        time: (...) of the states in s.
+        boom: the boom, which may extend.
+        number: index of the line's segment.
+        line, states: those of a model.
+        time: times (...) of the states in s.
     """
     read = line.read(states)
     # Slightly before or behind themselves where places occur twice.

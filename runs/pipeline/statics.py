@@ -38,8 +38,8 @@ class Reaction:
         x: in m.
         force: along z in N.
         moment: towards a larger slope in N·m.
-        depth: how far a stop is pressed in, in m; None of what does not give way so.
-        along: along the boom, towards its tip, in N.
+        depth: compression of a stop in m; None for other reactions.
+        along: axial force towards the tip in N.
     """
 
     segment: str
@@ -53,7 +53,7 @@ class Reaction:
 class Statics(NamedTuple):
     """The boom at rest under the loads of t = 0, as beam elements, and the same without play.
 
-    Both are without play where no model of the case has any.
+    Both are without play if no model of the case has any.
     """
 
     played: StaticState

@@ -2,7 +2,7 @@
 """Stresses of a motion, in outer fibres and in the walls of shells, and their fatigue damage.
 
 σ = N/A + M z/J + M_y y/J_y, as beams have it (Navier 1826); of a shell with the integrals of its
-walls' stresses, so that both are the nominal stress of the same section.
+walls' stresses, so that both give the nominal stress of the same section.
 
 Cycles are counted by the rainflow method (Matsuishi and Endo 1968; ASTM E1049). A range does damage
 by the curve of its detail category after EN 1993-1-9, 7.1, in Miner's sum: N = 2e6 (C/Δσ)³ up to
@@ -47,12 +47,12 @@ class FibreStress:
 
     Args:
         segment: its name.
-        x, y, z: where, in m; y is 0 in a flat boom.
-        stress: in Pa, positive where it pulls.
-        time: when, in s.
-        utilisation: of the yield strength; None where the case does not tell that.
+        x, y, z: position in m; y is 0 in a flat boom.
+        stress: stress in Pa, positive in tension.
+        time: its time in s.
+        utilisation: utilisation of the yield strength; None if the case does not give that.
         at_rest: the largest |stress| of the segment at rest under the largest loads in Pa; None
-            where there is no rest.
+            without an equilibrium.
     """
 
     segment: str
@@ -71,11 +71,11 @@ class WallStress:
 
     Args:
         segment: its name.
-        x: of the place near which the patch is, in m.
-        patch: the mean over a patch of a wall in Pa, which settles as the mesh refines.
-        time: of that, in s.
-        triangle: of any triangle in Pa, which may grow as the mesh refines.
-        utilisation: of the patch, as of :class:`FibreStress`.
+        x: position of the station or support near the patch in m.
+        patch: mean over a patch of a wall in Pa, which converges with the mesh.
+        time: its time in s.
+        triangle: largest stress of a triangle in Pa, which may grow as the mesh refines.
+        utilisation: that of the patch, as in :class:`FibreStress`.
     """
 
     segment: str
@@ -92,15 +92,14 @@ class Life:
 
     Args:
         segment: its name.
-        x, y, z: where, in m.
-        cycles: how many are counted in the run, of whatever range.
-        largest: range in Pa.
-        equivalent: the range in Pa that, once in a run, does as much as all of them at a slope
-            of 3.
-        ranges: (num_classes) the middles of classes of ranges in Pa, rising, and
-        counts: how many cycles each has.
-        damage: of the run, of the case's detail category; None without one.
-        life_damage: of as many runs as the case tells.
+        x, y, z: position in m.
+        cycles: number of cycles of any range in the run.
+        largest: largest range in Pa.
+        equivalent: range in Pa whose single cycle does the same damage as the run at a slope of 3.
+        ranges: rising middles of classes of ranges (num_classes) in Pa.
+        counts: number of cycles of each class.
+        damage: damage of the run for the case's detail category; None without one.
+        life_damage: damage of the number of runs in the case.
     """
 
     segment: str
@@ -131,9 +130,9 @@ class Fibres:
     Args:
         x: (num_places,) in m.
         y, z: (num_fibres, num_places) in m.
-        of_moment, of_lateral: (num_fibres, num_places) the stress of a moment of 1 N·m, along z and
+        of_moment, of_lateral: stress (num_fibres, num_places) of a moment of 1 N·m, along z and
             along y, in Pa.
-        of_normal: (num_places,) of a normal force of 1 N, in Pa.
+        of_normal: stress (num_places,) of a normal force of 1 N, in Pa.
     """
 
     x: Array
@@ -185,7 +184,7 @@ def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
 def outer_corners(section: Section) -> tuple[Array, Array]:
     """Return y and z (num_corners,) in m of the outer corners of the plates, from the centroid.
 
-    Of plates that meet, those of the surface whose normal is nearer to the direction count.
+    At a corner, the surface whose normal is nearer to the direction counts, for each of y and z.
     """
     places, beyond = [], []
     for before, after in zip(
@@ -209,9 +208,9 @@ def largest_stresses(
     """Return the stress of a segment where it is largest, and where it varies most.
 
     Args:
-        segment, fibres: of which.
-        curves: (num_times, num_places) of its section forces.
-        still: (num_rests, num_places) of them at rest.
+        segment, fibres: the segment and its fibres.
+        curves: its section forces (num_times, num_places).
+        still: those at rest (num_rests, num_places).
         time: (num_times,) in s.
     """
     largest, where = 0.0, (0, 0, 0)
@@ -249,8 +248,8 @@ def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
     """Return the largest wall stresses of each segment of a shell near stations and supports.
 
     Args:
-        boom: of the shell.
-        stresses: of :func:`shell_model.stress.history.near_places`.
+        boom: that of the shell.
+        stresses: those of :func:`shell_model.stress.history.near_places`.
     """
     found = []
     for segment in boom.segments:
@@ -292,8 +291,8 @@ def endurance(sizes: Array, category: float) -> Array:
     """Return the cycles (num_ranges,) to failure of ranges in Pa; infinite below the cut-off.
 
     Args:
-        sizes: the ranges.
-        category: in Pa.
+        sizes: the ranges in Pa.
+        category: detail category in Pa.
     """
     limit = category * (NAMED / LIMIT) ** (1.0 / STEEP)
     cut_off = limit * (LIMIT / CUT_OFF) ** (1.0 / FLAT)
@@ -307,7 +306,7 @@ def life(varying: Varying, table: LifeTable) -> Life:
 
     Args:
         varying: the stress.
-        table: of the case.
+        table: the case's table of fatigue.
     """
     sizes, counts = counted(varying.stress)
     damage = None

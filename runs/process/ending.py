@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The early end of a process, by Ctrl-C or SIGTERM, or by an error on one rank.
 
-A signal ends a command with one line at any time. There is no clean-up: incomplete files
-lie beside their places until they are complete, so that a process may end at any moment. Python
-runs a signal's handler between two of its own instructions. Where a compiled loop, or a message of
-another rank, keeps it waiting, a thread of its own does the same.
+A signal ends a command with one line at any time. There is no clean-up: incomplete files lie
+beside their places until they are complete, so that a process may end at any moment. Python runs a
+signal's handler between two of its own instructions. Where a compiled loop, or a message of another
+rank, delays the handler, a separate thread does the same.
 
-MPI itself is entered for a shell alone: a beam's run neither needs nor imports mpi4py, and the
+MPI starts only for a shell: a beam's run neither needs nor imports mpi4py, and the
 other processes of ``mpirun -n N protractile`` have nothing to do.
 """
 
@@ -86,11 +86,11 @@ def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
     """End all ranks, with one line on stderr.
 
     Args:
-        line: what went wrong.
+        line: the error.
         code: exit status.
-        comm: None as long as MPI has not been entered. Until then all ranks do the same and
-            end by themselves; the status is rank 0's, since a launcher would cut its message
-            short if another one ended before it with a status other than 0.
+        comm: None before MPI starts. Until then all ranks do the same and end by themselves; the
+            status is rank 0's, since a launcher would cut its message short if another one ended
+            before it with a status other than 0.
     """
     if comm is None or comm.size == 1:
         if launched_rank():
@@ -112,7 +112,7 @@ def _wait_until_read(stream: int) -> None:
     Otherwise Open MPI 5 puts our line after its own on the abort, on the same line.
 
     Args:
-        stream: a file descriptor that can be written; only a pipe is waited for.
+        stream: a writable file descriptor; the function waits for pipes only.
     """
     if not stat.S_ISFIFO(os.fstat(stream).st_mode):
         return

@@ -24,7 +24,7 @@ def display(models: Sequence[str] = ()) -> Iterator[Tell]:
     """Give a function that displays the progress of each stage on stderr.
 
     Args:
-        models: names of those that run, in their order.
+        models: names of the models to run, in order.
     """
     console = Console(stderr=True)
     if not console.is_terminal:
@@ -47,9 +47,9 @@ class Lines:
     """A printer of each model's stage and of the elapsed time.
 
     Args:
-        models: names, in their order.
-        say: gets a line.
-        clock: in s.
+        models: names, in order.
+        say: receives each line.
+        clock: returns the time in s.
     """
 
     def __init__(

@@ -46,8 +46,8 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
     Arguments and results are pickled.
 
     Args:
-        count: of processes; None for one on each core.
-        prepare: what each does first.
+        count: number of processes; None for one on each core.
+        prepare: first call of each process.
     """
     # A process takes these from here when it starts.
     outside = {name: os.environ[name] for name in _OF_WORKERS if name in os.environ}

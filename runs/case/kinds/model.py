@@ -138,11 +138,11 @@ class ModelTable(Table):
         """Make a model of a boom.
 
         Args:
-            boom: that it is a model of.
-            keys: those of its table in a case file; the name is the kind unless given.
+            boom: the boom of the model.
+            keys: keys of its table in a case file; the default name is the kind.
 
         Raises:
-            ValidationError: a key that the table does not have, or a value that cannot be.
+            ValidationError: an unknown key, or an invalid value.
         """
         kind = get_args(type(self).model_fields["kind"].annotation)[0]
         super().__init__(**{"name": kind, "kind": kind, **keys})
@@ -180,7 +180,7 @@ class ModelTable(Table):
         """Return the model with the table of its calibrating shell in place of the name.
 
         Args:
-            models: of its case, by their names.
+            models: those of its case, by their names.
         """
         return self
 
@@ -188,7 +188,7 @@ class ModelTable(Table):
         """Return the model, or a coarser one that suffices for the checks and is fast.
 
         Args:
-            boom: of its case.
+            boom: that of its case.
         """
         return self
 
@@ -212,7 +212,7 @@ class ModelTable(Table):
             joined: the boom and its contacts.
 
         Raises:
-            BoomError: it is not.
+            BoomError: the model is not valid for it.
         """
         for number, segment in enumerate(joined.boom.segments, start=1):
             if self.needs_plates and segment.section is None:
@@ -240,7 +240,7 @@ class ModelTable(Table):
 
         Args:
             joined: the boom and its contacts.
-            workshop: for a meshed one.
+            workshop: the context for a meshed model.
 
         Raises:
             BoomError: the boom lacks what the model needs.
@@ -250,7 +250,7 @@ class ModelTable(Table):
         """Return a boom as the model sees it: with the model's own contact, if it has one.
 
         Raises:
-            BoomError: a joint has no contact, or what shims press follows no such law.
+            BoomError: a joint has no contact, or its law does not admit shims.
         """
         if self.contact is not None:
             along_z, along_y = self.contact.law("z"), self.contact.law("y")
@@ -281,7 +281,7 @@ class ModelTable(Table):
         66
 
         Raises:
-            BoomError: the boom cannot be modelled so.
+            BoomError: the model is not valid for the boom.
         """
         if self._boom is None:
             raise BoomError(self.name, "missing; give the boom that it is a model of")
@@ -313,13 +313,13 @@ class ModelTable(Table):
         0.032 s
 
         Args:
-            duration, output_step, at_rest, damping_ratio, rayleigh: of the motion, as of
+            duration, output_step, at_rest, damping_ratio, rayleigh: data of the motion, as in
                 :func:`dynamics.motion.begin`.
-            tolerance: the part of the deflections' range by which the step may change them; the
-                model's own ``step`` is fixed.
+            tolerance: permitted change of the deflections by the step, as a part of their range;
+                the model's own ``step`` is fixed.
 
         Raises:
-            BoomError: the boom cannot be modelled so.
+            BoomError: the model is not valid for the boom.
             NumericsError: the motion cannot be computed.
         """
         from dynamics.integrator import AdaptiveStep, FixedStep

@@ -128,7 +128,7 @@ class Shell(ModelTable):
         shell = with_plays_and_loads(made, joined.boom)
         factor = shell.critical_factor
         if boom.driven and factor is not None:
-            # Until the shell is built, only beams give this.
+            # At other extensions only beams give the factor.
             on_the_way = self.critical_factor(replace(joined, boom=boom))
             factor = min(factor, on_the_way or factor)
         return Built(shell.system, shell.num_dofs, shell.seconds, factor, shell)
@@ -255,7 +255,7 @@ def check_mesh_size(where: str, size: float, boom: Boom) -> None:
     Args:
         where: the key.
         size: edge length in m.
-        boom: that is meshed.
+        boom: the boom to mesh.
 
     Raises:
         BoomError: too many triangles.
