@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a designer is answered, against the lever rule, exact beams, and published cycles."""
+"""Study of design results against the lever rule, exact beams, and published cycles."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ from runs.pipeline.strength import counted, endurance
 from studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
 from studies.study import Held, Proof, Tell, titled
 
-# Of the paper's boom: N/m on both segments.
+# Stiffness of the paper's boom: N/m on both segments.
 OUTER, INNER = 83.16, 55.07
 # Stations, the far support and the tip in m, the play in m, the contacts in N/m.
 TAIL, HEAD, SUPPORT, TIP, PLAY, STIFF = 9.0, 10.0, 2.0, 19.0, 0.014, 1.0e9
 MODELS = ("timoshenko", "shell")
-# Between them section forces are read.
+# Section forces are read between them.
 ALONG_OUTER, ALONG_INNER = 5.5, 14.0
 # N/m on a cantilever.
 LOAD = -100.0
@@ -50,7 +50,7 @@ LEVERS: Held = ("analytic", "lever rule", EXACT)
 
 @titled("answers", "What a designer asks")
 def study(tell: Tell) -> Iterator[Proof]:
-    """The paper's boom at rest, a cantilever in motion, cycles by hand."""
+    """Compare the paper's boom at rest, a cantilever in motion, and cycle counts by hand."""
     tell("the paper's boom at rest")
     answers = answered()
     for name in MODELS:
@@ -64,7 +64,7 @@ def study(tell: Tell) -> Iterator[Proof]:
 
 
 def answered() -> Answers:
-    """Of the paper's boom, which hardly moves in so short a time."""
+    """Return the design results of the paper's boom in a run too short for much motion."""
     case = case_file.load(str(CASES / "coarse.toml"))
     time = case.time.model_copy(update={"duration": 0.01})
     models = tuple(model for model in case.models if model.name in MODELS)
@@ -76,14 +76,14 @@ def answered() -> Answers:
 
 
 def station_forces() -> tuple[float, float]:
-    """At tail and head in N, upwards on the outer segment: by the lever rule."""
+    """Return the forces at tail and head in N, upwards on the outer segment, by the lever rule."""
     load = INNER * (TIP - TAIL)
     head = load * (0.5 * (TIP + TAIL) - TAIL) / (HEAD - TAIL)
     return load - head, head
 
 
 def support_forces() -> tuple[float, float]:
-    """At 0 and at the far support in N, upwards, of the outer segment."""
+    """Return the support forces of the outer segment at 0 and the far support in N, upwards."""
     tail, head = station_forces()
     far = -(0.5 * OUTER * HEAD**2 + tail * TAIL + head * HEAD) / SUPPORT
     return -OUTER * HEAD - tail - head - far, far
@@ -114,12 +114,12 @@ def _at_rest(name: str, own: ModelAnswers) -> Iterator[Proof]:
 
 
 def read(diagram: Diagram, what: str, place: float) -> float:
-    """A curve at a place in m."""
+    """Return the value of a curve at a place in m."""
     return float(np.interp(place, diagram.x, diagram.curves[what]))
 
 
 def _cantilever() -> Iterator[Proof]:
-    """Its modes and its stress at rest by elements, and its swing in one coordinate."""
+    """Compare a cantilever: modes and static stress by elements, vibration in one coordinate."""
     arm = Segment.of_section("arm", 0.0, LENGTH, STEEL, BOX, supports=(CLAMP,), load=LOAD)
     boom = Boom((arm,), ())
     elements = finite_element_segments(boom, 0.2, "euler-bernoulli", rotary_inertia=False)
@@ -145,7 +145,7 @@ def _cantilever() -> Iterator[Proof]:
 
 
 def swung(boom: Boom, segments: list[SegmentModel]) -> ModelAnswers:
-    """A boom of one segment that its load meets suddenly, for half a second."""
+    """Return half a second of motion of a single-segment boom under a sudden load."""
     system, along = tied_system(boom, segments), lines(boom, segments)
     rest = positions(system)[0.0]
     told = [at_rest(boom, system, along, 0.0, rest)]

@@ -30,13 +30,13 @@ from studies.then.survey import ABOUT, METHODS, TOLERANCES, WITH, WITHOUT, Surve
 
 OUT = Path("runs/out/then")
 TITLE = "Statements of the paper as they were computed then"
-# Figures show energy from nowhere up to so much, in percent, and so many points of a curve.
+# Figures show unaccounted energy up to this many percent, and this many points of a curve.
 CUT, POINTS = 150.0, 1000
 
 
 @titled("as-computed-then", TITLE)
 def study(tell: Tell) -> Iterator[Piece]:
-    """Both examples by every scheme, with few modes, gaps iterated or lagged, at three steps."""
+    """Run both examples by every scheme with few modes, gaps iterated or lagged, three steps."""
     survey = Survey.of(tell)
     yield from tables(survey)
     yield from proofs()
@@ -44,13 +44,13 @@ def study(tell: Tell) -> Iterator[Piece]:
 
 
 def tables(survey: Survey) -> list[Table]:
-    """All of a survey."""
+    """Return all tables of a survey."""
     made = outcome_table, free_table, rubbed_table, printed_table, reach_table
     return [table(survey) for table in made]
 
 
 def outcome_table(survey: Survey) -> Table:
-    """A row for each statement."""
+    """Return a table with a row for each statement."""
     rows = [
         (key, "yes" if found.shown else "no", found.why) for key, found in survey.outcomes.items()
     ]
@@ -68,7 +68,7 @@ def outcome_table(survey: Survey) -> Table:
 
 
 def free_table(survey: Survey) -> Table:
-    """Without friction: a row for each numerics, and one for both examples solved well."""
+    """Return the table without friction: a row for each numerics, and an accurate one."""
     example = survey.without
     peak = np.mean([one.elements.first_peak for one in example.well])
     rows: list[Sequence[Cell]] = []
@@ -93,7 +93,7 @@ def free_table(survey: Survey) -> Table:
 
 
 def rubbed_table(survey: Survey) -> Table:
-    """With friction: the same."""
+    """Return the table with friction: the same rows."""
     rows: list[Sequence[Cell]] = []
     example = survey.with_friction
     for how, samples in (("solved well", example.well), *survey.rubbed.items()):
@@ -122,7 +122,7 @@ def rubbed_table(survey: Survey) -> Table:
 
 
 def printed_table(survey: Survey) -> Table:
-    """When elements are lost whose contacts are as soft as the print has them."""
+    """Return the table of lost elements, with contacts as soft as printed."""
     gained, ends = "elements gain more than\nwas put in at (s), ", "energy at the end\n(%), "
     headings = [part + which for which in ("free", "friction") for part in (gained, ends)]
     rows: list[Sequence[Cell]] = [
@@ -139,7 +139,7 @@ def printed_table(survey: Survey) -> Table:
 
 
 def reach_table(survey: Survey) -> Table:
-    """How far the general solver comes."""
+    """Return the table of the times that the general solver reaches."""
     rows: list[Sequence[Cell]] = []
     for method, tolerance in product(METHODS, TOLERANCES):
         ways = [(method, tolerance, *way[::-1]) for way in product((False, True), SERIES)]
@@ -154,7 +154,7 @@ def reach_table(survey: Survey) -> Table:
 
 
 def plots(survey: Survey) -> Iterator[Plot]:
-    """The tip by both iterated schemes at the paper's step, and their energy."""
+    """Plot the tip by both iterated schemes at the paper's step, and their energy."""
     for name, what, example, samples in (
         ("then-free", "Without friction", survey.without, survey.free),
         ("then-rubbed", "With friction", survey.with_friction, survey.rubbed),
@@ -193,21 +193,21 @@ def plots(survey: Survey) -> Iterator[Plot]:
 
 
 def _energies(runs: Sequence[Moved]) -> tuple[str, str]:
-    """When their energy breaks out, and what is gained or lost where it does not."""
+    """Return when the energy diverges, and the gain or loss otherwise."""
     breaks = [run.breaks for run in runs]
     ends = [TO_PERCENT * run.balance[-1] for run in runs]
     return _span(breaks), _span([end for end in ends if end < TO_PERCENT])
 
 
 def _parting(peaks: Sequence[tuple[float, float]]) -> tuple[float, float, float]:
-    """Medians of how far peaks are apart early and late, and the runs that show S3, in percent."""
+    """Return medians of peak distances early and late, and the runs that show S3, in percent."""
     early, late = np.median(peaks, axis=0)
     shown = share(before <= DIVERGENCE < after for before, after in peaks)
     return TO_PERCENT * float(early), TO_PERCENT * float(late), TO_PERCENT * shown
 
 
 def _span(values: Sequence[float] | Array) -> str:
-    """From the smallest to the largest, with two digits; none that is not finite."""
+    """Return the range from the smallest to the largest with two digits, of finite values."""
     finite = [float(value) for value in values if np.isfinite(value)]
     if not finite:
         return NONE
@@ -217,7 +217,7 @@ def _span(values: Sequence[float] | Array) -> str:
 
 
 def _curve(time: Array, values: Array) -> tuple[list[float], list[float]]:
-    """For a figure, as many points as can be seen."""
+    """Return a curve with as many points as are visible in a figure."""
     shown = slice(None, None, max(1, time.size // POINTS))
     return time[shown].tolist(), values[shown].tolist()
 
@@ -233,7 +233,7 @@ def leave(survey: Survey, made: Sequence[Table], folder: Path) -> None:
 
 
 def main() -> None:
-    """Print the tables, and leave them where the verdicts look for them."""
+    """Print the tables, and write them for the verdicts."""
     survey = Survey.of(lambda what: print(f"{what} ...", flush=True))
     made = tables(survey)
     for table in made:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The shell element on the field's benchmarks, and on what it must do exactly."""
+"""Shell element on published benchmarks and on tests with exact results."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from studies.reference_models.prismatic import ANGLE, BOX, PlainBox
 from studies.refined import Reference, Refined, error_plot, refined_table
 from studies.study import Held, Piece, Proof, Tell, titled
 
-# Thickness of the plates that vibrate over their longer side.
+# Thickness of the plates that vibrate, over their longer side.
 THIN, THICK = 0.001, 0.1
 
 NOTES = (
@@ -58,13 +58,13 @@ class Sizes:
 def refined(
     what: str, unit: str, edges: Sequence[int], values: Sequence[float], reference: Reference
 ) -> Refined:
-    """A benchmark on meshes of so many edges, whose sizes are told over the finest."""
+    """Run a benchmark on meshes of so many edges; sizes are relative to the finest."""
     sizes = [edges[-1] / n for n in edges]
     return Refined(f"{what}, {edges[-1]} edges", unit, sizes, values, reference)
 
 
 def published(sizes: Sizes) -> list[Refined]:
-    """The benchmarks with published values."""
+    """Run the benchmarks with published values."""
     stiff_in_shear = partial(benchmarks.pinched_cylinder, shear_correction=SHEAR_RIGID)
     twisted = [benchmarks.twisted_beam(n) for n in sizes.twisted]
     macneal, beam = "MacNeal and Harder 1985", PUBLISHED.twisted_beam
@@ -87,7 +87,7 @@ def published(sizes: Sizes) -> list[Refined]:
 
 
 def plates(sizes: Sizes) -> list[Refined]:
-    """Lowest and fourth frequency of simply supported plates, thin and moderately thick."""
+    """Compare lowest and fourth frequency of simply supported plates, thin and moderately thick."""
     thin, thick = (SupportedPlate(1.0, 0.8, thickness) for thickness in (THIN, THICK))
     found = []
     for name, plate, exact, source in (
@@ -103,7 +103,7 @@ def plates(sizes: Sizes) -> list[Refined]:
 
 
 def torsion(sizes: Sizes) -> Iterator[Refined]:
-    """Torsion constants of an open and of a closed section."""
+    """Compare torsion constants of an open and of a closed section."""
     for name, member, source, allowed in (
         ("angle 100 × 100 × 1 mm", ANGLE, "Σ b t³/3, Saint-Venant 1855", 0.005),
         ("box 100 × 60 × 1 mm", BOX, "4 A² t/Σ b + Σ b t³/3, Bredt 1896", 0.001),
@@ -114,7 +114,7 @@ def torsion(sizes: Sizes) -> Iterator[Refined]:
 
 
 def exactness(box: PlainBox, sizes: Sizes) -> Iterator[Proof]:
-    """What holds to round-off: patches under constant strain, and a turned box."""
+    """Check what is exact up to round-off: patches under constant strain, and a rotated box."""
     patch = Patch.of()
     held: Held = ("analytic", "the field that is held on its edges", 1.0e-11)
     for state in constant_strains():
@@ -130,12 +130,12 @@ def exactness(box: PlainBox, sizes: Sizes) -> Iterator[Proof]:
 
 
 def drilling(box: PlainBox, y: float, sizes: Sizes) -> Iterator[Table | Proof]:
-    """Boxes under ties up to 100 times their default, a twisted beam from its own default on.
+    """Vary the drilling tie of boxes up to 100 times its default, and of a twisted beam.
 
     Args:
         box: an outer segment.
         y: where the inner segment presses on it, in m from the middle.
-        sizes: what is measured.
+        sizes: parameters of the study.
     """
     powers = 10.0 ** np.arange(sizes.decades + 1)
     soft, stiff = DRILLING * 1.0e-2 * powers, DRILLING_OF_CURVED * powers
@@ -167,7 +167,7 @@ def drilling(box: PlainBox, y: float, sizes: Sizes) -> Iterator[Table | Proof]:
 
 @titled("benchmarks", "The shell element")
 def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Benchmarks, patches, plates, torsion, a turned box, and the drilling tie."""
+    """Run benchmarks, patches, plates, torsion, a rotated box, and the drilling tie."""
     sizes = sizes or Sizes()
     outer, inner = (segment.section for segment in build_boom(friction_case()).segments)
     assert outer is not None

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A short pair of boxes, one in the other, as shells and as solids.
+"""Short pair of telescoped boxes, as shells and as solids.
 
-Both are taken by families of mirrored motions, on a quarter, and read the same way, so that
-whatever is measured of one can be measured of the other.
+Both are reduced by symmetry classes to a quarter, and read the same way, so that all quantities of
+one can be compared with those of the other.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ KRYLOV = KrylovOptions(shifts=(20.0, 800.0), moments=5)
 
 
 class Probe(NamedTuple):
-    """What is read of a segment, and pushed."""
+    """Reading of a segment, and force on it."""
 
     what: str  #: its name
     family: Family  #: of the motions that it belongs to
@@ -67,12 +67,12 @@ class Probe(NamedTuple):
     read: Callable[[Outline], Row]  #: of the section
 
     def row(self, outline: Callable[[float], Outline]) -> Row:
-        """Over all places; ``outline`` gives the section at x."""
+        """Return the row over all places; ``outline`` gives the section at x."""
         return sum((weight * self.read(outline(x)) for x, weight in self.places.items()), Row())
 
 
 def pad_squeeze(outline: Outline) -> Row:
-    """How much farther the flanges are apart under pads in the corners, in m."""
+    """Return the increase of the flanges' distance under pads in the corners, in m."""
     half = 0.5 * outline.section.size("y")
     rows = (
         side * weight * outline.flange_deflection(side, y)
@@ -99,14 +99,15 @@ PROBES: tuple[Sequence[Probe], Sequence[Probe]] = (
 
 @dataclass(frozen=True, slots=True)
 class Quarter:
-    """A family of a segment's motions."""
+    """Symmetry class of a segment's motions."""
 
     model: Shell  #: a quarter of a shell or of a solid, with the energies of the whole segment
     rows: Mapping[str, Array]  #: name of a probe → (num_dofs,)
 
     def measure(self) -> dict[str, float]:
-        """``FREQUENCY`` → the lowest of its elastic modes, in Hz; name of a probe → what a unit
-        force on it moves it by at ``SLOW``, in m/N or rad/(N·m). By one factorisation.
+        """Return the lowest elastic frequency in Hz under ``FREQUENCY``, and compliances by probe.
+
+        Compliances are at ``SLOW``, in m/N or rad/(N·m). There is one factorisation.
         """
         model = self.model
         solve = ShiftedSolver(model, SLOW)
@@ -134,7 +135,7 @@ class Quarter:
 
 @dataclass(frozen=True, slots=True)
 class Blow:
-    """How the inner box hits the outer one."""
+    """Impact of the inner box on the outer one."""
 
     time: Array  #: (num_times,) in s
     force: Array  #: (num_times,) at the contact in N
@@ -144,7 +145,7 @@ class Blow:
 
     @property
     def told(self) -> dict[tuple[str, str], float]:
-        """What of all its touches, and the unit → the value."""
+        """Values of the impact by quantity and unit."""
         return {
             ("largest force", "kN"): 1.0e-3 * float(self.force.max()),
             ("impulse", "N·s"): float(self.force.sum() * OUTPUT_STEP),
@@ -154,7 +155,7 @@ class Blow:
 
 
 def pair(wall: float) -> tuple[Segment, Segment]:
-    """The outer box on two supports, and the free inner one.
+    """Return the outer box on two supports, and the free inner one.
 
     Args:
         wall: thickness of all walls in m.
@@ -164,7 +165,7 @@ def pair(wall: float) -> tuple[Segment, Segment]:
 
 
 def shell_parts(segment: Segment, probes: Sequence[Probe], size: float) -> dict[Family, Quarter]:
-    """A segment's families as shells, with triangles of a size in m."""
+    """Return a segment's symmetry classes as shells, with triangles of a size in m."""
     whole = shell_alone(segment, size, [x for probe in probes for x in probe.places])
     rows = np.column_stack([whole.row(probe.row(whole.outline)) for probe in probes])
     folding = Folding(whole)
@@ -189,7 +190,7 @@ def solid_parts(
     splits: int,
     layers: int = 2,
 ) -> dict[Family, Quarter]:
-    """A segment's families as solids; see :func:`mesh_quarter` for the sizes."""
+    """Return a segment's symmetry classes as solids; see :func:`mesh_quarter` for the sizes."""
     assert isinstance(segment.section, BoxSection)
     read = (x for probe in probes for x in probe.places)
     held = (support.x for support in segment.supports)
@@ -211,11 +212,11 @@ def solid_parts(
 
 
 def blow(outer: Quarter, inner: Quarter, wall: float) -> Blow:
-    """The inner box thrown up against the head of the outer one.
+    """Return the impact of the inner box against the head of the outer one.
 
     Args:
-        outer, inner: their families along z.
-        wall: thickness in m, which tells the contact's stiffness.
+        outer, inner: their symmetry classes along z.
+        wall: thickness in m, which determines the contact's stiffness.
     """
     coordinates = []
     for part, struck_at in ((outer, "head"), (inner, "struck")):
@@ -257,6 +258,6 @@ def box(
     wall: float,
     supports: tuple[Support, ...] = (),
 ) -> Segment:
-    """A box of steel, with the distances in m of its mid-lines."""
+    """Return a box of steel, with the distances in m of its mid-lines."""
     section = BoxSection(*middles, wall, wall)
     return Segment.of_section(name, start, end, STEEL, section, supports=supports)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How near a beam that a shell calibrates comes to that shell.
+"""Accuracy of a beam that is calibrated by a shell, relative to that shell.
 
 The paper's boom with friction over plays and loads up to ten times the paper's, near webs and with
 pads: textbook beams, the beam with springs, the beam with the fields of its section, and between
-them the shell in ever more of its coordinates. All share one mesh: what they are held against is
-the shell of that mesh, whose own error is another study's (``working_load``).
+them the shell in more and more coordinates. All share one mesh: the reference is
+the shell of that mesh, whose own error is the subject of another study (``working_load``).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from studies.pads import with_pads
 from studies.study import Held, Piece, Plot, Proof, Tell, titled
 from studies.working_load import Moved, Point, at_point
 
-# What is allowed of the tip, as parts of its range, of first peaks, and of frequencies.
+# Permitted errors of the tip, as parts of its range, of first peaks, and of frequencies.
 SPRINGS, FIELDED, PEAK, FREQUENCY = 0.025, 0.01, 0.003, 0.001
 # Frequencies of the pressed boom that springs and fields are to keep; those beyond have the inertia
 # of the section in them.
@@ -38,7 +38,7 @@ SPRUNG, WITH_FIELDS = "with springs", "with section fields"
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured."""
+    """Parameters of the study."""
 
     mesh_size: float = 0.2  #: of the shells in m
     plays: Sequence[float] = (0.0, 2.0e-3, 4.0e-3, 7.0e-3, 10.0e-3, 14.0e-3)  #: 2Δ in m
@@ -51,7 +51,7 @@ class Sizes:
 def move_all(
     systems: Mapping[str, GapSystem], points: Sequence[Point], duration: float
 ) -> dict[str, list[Moved]]:
-    """Each system's motions of so many s at all points."""
+    """Return each system's motions of so many s at all points."""
     return {
         name: side_by_side(
             partial(Moved.of, duration=duration), (at_point(system, point) for point in points)
@@ -61,18 +61,18 @@ def move_all(
 
 
 def tips_off(moved: Sequence[Moved], shell: Sequence[Moved]) -> Array:
-    """(num_points,) the tip's largest distance as a part of the shell's range."""
+    """Return the tip's largest distance (num_points,) as a part of the shell's range."""
     return np.array([one.tip_off(other) for one, other in zip(moved, shell, strict=True)])
 
 
 def peaks_off(moved: Sequence[Moved], shell: Sequence[Moved]) -> Array:
-    """(num_points,) relative errors of the first peaks; NaN without one."""
+    """Return relative errors (num_points,) of the first peaks; NaN without one."""
     return np.array([one.peaks_off(other)[0] for one, other in zip(moved, shell, strict=True)])
 
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """All models of one way to touch."""
+    """All models of one type of contact."""
 
     where: str  #: segments touch
     points: Sequence[Point]  #: of all motions
@@ -82,16 +82,16 @@ class Compared:
     seconds: tuple[float, float]  #: of its reduction, and of the calibration
 
     def off(self, name: str) -> Array:
-        """(num_points,) of the tip."""
+        """Return the errors (num_points,) of the tip."""
         return tips_off(self.moved[name], self.moved[SHELL])
 
     def peaks_off(self, name: str) -> float:
-        """The worst of all points that have a first peak."""
+        """Return the worst error of all points that have a first peak."""
         return float(np.nanmax(peaks_off(self.moved[name], self.moved[SHELL])))
 
     def frequencies_off(self, name: str, count: int) -> float:
-        """The worst relative error of the first frequencies with the joints pressed."""
-        # At rest without play all that presses is pressed.
+        """Return the worst relative error of the first frequencies with closed joints."""
+        # At rest without play all contacts are closed.
         point = self.points[0]._replace(play=0.0)
         pressed = [
             pressed_modes(at_point(self.systems[one], point))[0][:count] for one in (SHELL, name)
@@ -99,7 +99,7 @@ class Compared:
         return float(np.abs(pressed[1] / pressed[0] - 1.0).max())
 
     def rows(self) -> Iterator[Sequence[Cell]]:
-        """A row of every model."""
+        """Return a row for every model."""
         seconds = {name: sum(one.seconds for one in moved) for name, moved in self.moved.items()}
         for name, system in self.systems.items():
             if name == SHELL:
@@ -118,7 +118,7 @@ class Compared:
             )
 
     def proofs(self) -> Iterator[Proof]:
-        """What is asked of springs and of fields."""
+        """Return the proofs of springs and of fields."""
         for name, allowed, count in (
             (SPRUNG, SPRINGS, OF_SPRINGS),
             (WITH_FIELDS, FIELDED, OF_FIELDS),
@@ -137,7 +137,7 @@ class Compared:
 
 
 def calibrated(case: Case, model: Model, fields: bool) -> Model:
-    """A beam that a shell of the case calibrates, with its contact."""
+    """Return a beam calibrated by a shell of the case, with its contact."""
     return BeamElements.model_validate(
         {
             "name": "calibrated",
@@ -150,7 +150,7 @@ def calibrated(case: Case, model: Model, fields: bool) -> Model:
 
 
 def measure(case: Case, where: str, sizes: Sizes) -> Compared:
-    """All models at all points."""
+    """Run all models at all points."""
     shell = shell_of(case).model_copy(update={"mesh_size": sizes.mesh_size})
     models = {
         SHELL: shell,
@@ -172,7 +172,7 @@ def measure(case: Case, where: str, sizes: Sizes) -> Compared:
 
 
 def summary_table(compared: Sequence[Compared], sizes: Sizes) -> Table:
-    """A row of every model and way to touch."""
+    """Return a table with a row for every model and type of contact."""
     columns = {
         "contact": "", "model": "", "coordinates": ".0f", "tip, worst\n(% of range)": ".2f",
         "tip, median\n(% of range)": ".2f", "worst at": "", "first peak,\nworst (%)": ".3f",
@@ -197,7 +197,7 @@ def summary_table(compared: Sequence[Compared], sizes: Sizes) -> Table:
 
 
 def point_table(compared: Compared) -> Table:
-    """Every point of one way to touch, a column for each model."""
+    """Return a table of every point of one type of contact, a column for each model."""
     names = [name for name in compared.moved if name != SHELL]
     rows = zip(map(str, compared.points), *(100.0 * compared.off(n) for n in names), strict=True)
     return Table.of_rows(
@@ -209,7 +209,7 @@ def point_table(compared: Compared) -> Table:
 
 
 def plot(compared: Sequence[Compared]) -> Plot:
-    """Coordinates of a segment against the worst error."""
+    """Plot the worst error over the coordinates of a segment."""
     curves = {}
     for one in compared:
         worst = {
@@ -234,7 +234,7 @@ def plot(compared: Sequence[Compared]) -> Plot:
 
 @titled("calibrated-beams", "Beams that a shell calibrates")
 def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """The paper's boom with friction, near its webs and with pads."""
+    """Study the paper's boom with friction, near its webs and with pads."""
     sizes = sizes or Sizes()
     case = friction_case()
     compared = []

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What walls give way under contacts of every size, on ever finer meshes and by plate theory.
+"""Local compliance of walls under contacts of every size, on finer meshes and by plate theory.
 
 The paper's boom with friction, its stations squeezed
-(:mod:`shell_model.contact.local_compliance`), without a reduction; and its first peak, which tells
-what that is worth.
+(:mod:`shell_model.contact.local_compliance`), without a reduction; and its first peak, which
+shows the effect on the motion.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from studies.pads import with_pads
 from studies.refined import Refined, refined_table
 from studies.study import Held, Piece, Proof, Tell, titled
 
-# Allowed of the local compliance and of a pressed wall.
+# Permitted errors of the local compliance and of a pressed wall.
 ALLOWED = 0.01
 NANO = 1.0e9
 UNIT = "1e-9 m/N"
 
-# N/m of an elastic support, which what is in balance does not feel.
+# N/m of an elastic support, without effect on self-balanced forces.
 SPRING = 1.0e6
-# How far beside a support its force is in balance, in m: beyond its fine mesh.
+# Distance beside a support at which its force is balanced, in m: beyond its fine mesh.
 BESIDE = 0.33
 
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured."""
+    """Parameters of the study."""
 
     #: Edge lengths over the default ones, each half the one before.
     meshes: Sequence[float] = (1.0, 0.5, 0.25)
@@ -51,7 +51,7 @@ class Sizes:
 
 
 class Contact(NamedTuple):
-    """A way to touch: its name and case, and length and width in m of what is pressed."""
+    """Contact: its name and case, and length and width in m of the pressed area."""
 
     name: str
     case: Case
@@ -60,7 +60,7 @@ class Contact(NamedTuple):
 
 
 def contacts_of(case: Case, sizes: Sizes) -> list[Contact]:
-    """Corners and pads."""
+    """Return contacts at corners and at pads."""
     corners = []
     for length in sizes.lengths:
         joints = tuple(joint.model_copy(update={"contact_length": length}) for joint in case.joints)
@@ -73,7 +73,7 @@ def contacts_of(case: Case, sizes: Sizes) -> list[Contact]:
 
 
 def squeezed(contact: Contact, part: float) -> Array:
-    """(num_stations,) local compliance in m/N, edges so many times as long as the default ones."""
+    """Return the local compliance (num_stations,) in m/N with edges a multiple of the default."""
     from shell_model.boom_shell import assemble_segments
     from shell_model.contact.local_compliance import full_compliance, local_compliance
     from shell_model.contact.rows import Touching
@@ -92,14 +92,14 @@ def squeezed(contact: Contact, part: float) -> Array:
 
 
 def supported(case: Case, parts: Sequence[float]) -> list[float]:
-    """What the outer segment's walls give way at its last support, in m/N, a value for each mesh.
+    """Return the local compliance of the outer segment at its last support in m/N for each mesh.
 
     An elastic support pulls the walls there, and halves of its force push the same walls back on
     both sides, where all meshes have a line.
 
     Args:
-        case: of the boom.
-        parts: of the default edge lengths, falling.
+        case: that of the boom.
+        parts: ratios of the edge lengths to the default ones, falling.
     """
     from shell_model.boom_shell import assemble_segments
     from shell_model.contact.local_compliance import shell_compliance
@@ -127,7 +127,7 @@ def supported(case: Case, parts: Sequence[float]) -> list[float]:
 
 
 def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
-    """The tip's first peak in m under each load, on the default mesh."""
+    """Return the tip's first peak in m under each load, on the default mesh."""
     model = finer(shell_of(contact.case), sizes.default)
     system = gap_system(contact.case, build_boom(contact.case), model)
     loaded = (replace(system, load=load * system.load) for load in sizes.loads)
@@ -135,7 +135,7 @@ def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
 
 
 def plate_proofs(sizes: Sizes) -> Iterator[Proof]:
-    """A wall under a patch beside its edge."""
+    """Check a wall under a patch beside its edge."""
     from studies.reference_models.plates import flange
 
     held: Held = ("analytic", "Reissner and Mindlin's plate, by Ritz's method", ALLOWED)
@@ -148,7 +148,7 @@ def plate_proofs(sizes: Sizes) -> Iterator[Proof]:
 
 @titled("contact-size", "What walls give way where segments touch")
 def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Corners and pads of several sizes, a support, and a plate."""
+    """Study corners and pads of several sizes, a support, and a plate."""
     sizes = sizes or Sizes()
     default = sizes.meshes.index(sizes.default)
     held: Held = ("other code", f"edges {1.0 / sizes.meshes[-1]:g} times as short", ALLOWED)

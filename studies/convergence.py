@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What proves the models: ``python -m studies.convergence``.
+"""Verification of the models: ``python -m studies.convergence``.
 
 Studies of benchmarks, meshes, steps and other models; each prints its tables when it is done, and
 all together leave a report, and a page of every value beside its reference.
@@ -39,7 +39,7 @@ def draw(plot: Plot, folder: Path) -> Figure:
     """Draw a plot.
 
     Args:
-        plot: of a study.
+        plot: that of a study.
         folder: gets ``NAME.png``.
     """
     with rc_context(theme.RC):
@@ -48,7 +48,7 @@ def draw(plot: Plot, folder: Path) -> Figure:
         axes = sheet.add_subplot()
         strokes = theme.strokes(list(plot.curves), [])
         for i, (label, (x, y)) in enumerate(plot.curves.items()):
-            # Many points are a curve, few are measurements.
+            # Many points are drawn as a curve, few as measurements.
             marker = MARKERS[i % len(MARKERS)] if len(x) <= 20 else ""
             stroke = strokes[label]
             axes.plot(
@@ -94,7 +94,7 @@ table to `runs/out/convergence/verification.md` is
 
 
 def proof_table(study: Study) -> Table:
-    """The proofs of one study."""
+    """Return the proofs of one study as a table."""
     return Table.of_rows(
         f"proofs-{study.name}",
         study.title,
@@ -104,7 +104,7 @@ def proof_table(study: Study) -> Table:
 
 
 def markdown(studies: Sequence[Study]) -> str:
-    """The page of all studies that prove something."""
+    """Return the page of all studies with proofs."""
     proving = [study for study in studies if study.proofs]
     return "\n".join([INTRODUCTION, *(proof_table(study).markdown() for study in proving)])
 
@@ -158,7 +158,7 @@ STUDIES = (
 
 
 def run(name: str) -> tuple[Study, float]:
-    """One study, and the seconds that it takes; it tells of its steps on stdout."""
+    """Run one study; return it and its time in s, and print its progress."""
     start = perf_counter()
     study: Study = import_module(f"studies.{name}").study(
         lambda what: print(f"{name}: {what} ...", flush=True)

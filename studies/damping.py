@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Damping ratios asked for against those with which pressed booms swing."""
+"""Requested damping ratios against those measured in vibrations of booms with closed contacts."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ RATIOS = (0.005, 0.02, 0.05)
 MODES = 3
 # The numbers of the loads of the cases are those of the masses.
 GRAVITY = 9.80665
-# For which each mode swings, and steps of each.
+# Number of periods of each mode, and steps of each.
 PERIODS, STEPS = 1.1, 2000
-# What a swing changes of a contact's penetration.
+# Change of a contact's penetration by the vibration.
 SWING = 0.02
 
 NOTE = (
@@ -50,7 +50,7 @@ NOTE = (
 
 @dataclass(frozen=True, slots=True)
 class PressedBoom:
-    """A boom that its weight presses, at rest."""
+    """Boom under its weight, at rest."""
 
     system: GapSystem  #: under its weight, without damping and friction
     rest: Array  #: (num_modes,) in √kg·m
@@ -59,14 +59,14 @@ class PressedBoom:
 
     @classmethod
     def of(cls, system: GapSystem) -> PressedBoom:
-        """A boom without stops under a load whose numbers are its masses."""
+        """Create a boom without stops under a load whose numbers are its masses."""
         system = replace(without_friction(system), load=-GRAVITY * system.load)
         omega, shapes = pressed_modes(system)
         rest = equilibrium(system, system.load)
         return cls(system, rest, omega[:MODES], shapes[:, :MODES])
 
     def measured(self, ratio: float, mode: int) -> tuple[float, float]:
-        """The ratio by the logarithmic decrement of a mode's swing, and its energy residual."""
+        """Return a mode's ratio by the logarithmic decrement, and its energy residual."""
         gaps = self.system.rows @ self.rest
         laws = list(zip(self.system.laws, gaps, strict=True))
         pressed = [float(law.force(gap)) != 0.0 for law, gap in laws]
@@ -89,7 +89,7 @@ class PressedBoom:
 
 @titled("damping", "Damping ratios asked for and measured")
 def study(tell: Tell) -> Iterator[Piece]:
-    """Every boom and model at every ratio."""
+    """Measure every boom and model at every ratio."""
     rows, residuals = [], []
     held: Held = ("analytic", "logarithmic decrement 2πζ/√(1 − ζ²)", 0.05)
     for (boom, file), model in product(BOOMS.items(), MODELS):

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The reduced shell against the unreduced one, moved by another integrator.
+"""Reduced shell against the unreduced one with another integrator.
 
 The paper's boom with friction, whose motion is regular: on one mesh, all degrees of freedom by the
 generalised-α method with ever shorter steps, and the reduction by the time step of every run. A
-reduction with more coordinates tells what is left of the difference to the one, and what to the
-other. Once as the paper loads it, near webs, and once with pads under ten times the load.
+reduction with more coordinates separates the errors of reduction and integration.
+Once as the paper loads it, near webs, and once with pads under ten times the load.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from studies.motions import STEP, friction_case, gap_system, lasting, loaded, sh
 from studies.pads import with_pads
 from studies.study import Held, Piece, Plot, Proof, Tell, titled
 
-# Allowed of the tip, as a part of its range.
+# Permitted error of the tip, as a part of its range.
 ALLOWED = 0.005
 
 METHOD = "all degrees of freedom, generalised-α (Chung and Hulbert 1993)"
@@ -42,7 +42,7 @@ NOTE = (
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured."""
+    """Parameters of the study."""
 
     mesh: float = 0.2  #: edge length in m
     duration: float = 1.0  #: of the motion in s
@@ -57,7 +57,7 @@ class Sizes:
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """One motion."""
+    """Motion with one model and step."""
 
     how: str  #: it was moved
     unknowns: int  #: degrees of freedom, or modal coordinates
@@ -69,13 +69,13 @@ class Run:
 
 
 def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, tell: Tell) -> list[Run]:
-    """The shell reduced, with more coordinates, then unreduced from the longest step on.
+    """Return motions of the shell reduced, with more coordinates, then unreduced by falling steps.
 
     Args:
         case: in the plane, with prescribed normal forces and a model ``shell``.
-        steps: of the unreduced one in s.
-        sizes: what is measured.
-        tell: told what is being moved.
+        steps: those of the unreduced one in s.
+        sizes: parameters of the study.
+        tell: reports the progress.
     """
     from shell_model.boom_shell import ShellOptions, assemble_boom
     from shell_model.reduced_shell import reduce_boom
@@ -121,13 +121,13 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, tell: Tell) -> lis
 
 
 def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterator[Piece]:
-    """All motions of a case beside the reduced shell's and beside that with more coordinates.
+    """Compare all motions of a case with the reduced shell's and that with more coordinates.
 
     Args:
-        runs: of :func:`runs_of`.
-        name: of the table and the figures.
-        where: the segments touch, and under which load.
-        sizes: what is measured.
+        runs: results of :func:`runs_of`.
+        name: name of the table and the figures.
+        where: type of contact, and load.
+        sizes: parameters of the study.
     """
     from studies.reference_models.unreduced import LOSS_BOUND
 
@@ -201,7 +201,7 @@ def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterato
 
 @titled("direct", "The reduction against the full order")
 def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """The paper's boom with friction, all its degrees of freedom against few coordinates."""
+    """Study the paper's boom with friction, all its degrees of freedom against few coordinates."""
     sizes = sizes or Sizes()
     case = friction_case()
     runs = runs_of(case, sizes.steps, sizes, tell)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Whether loads that change with time do what their histories ask, wherever their kinks lie."""
+"""Responses to loads with histories against closed forms, for any position of kinks."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ OUTPUT_STEP, STEP = 0.02, 2.0e-5
 DURATION = 4.0
 # ω of masses of 1 kg on springs in rad/s: free, of a boom, of the plates of a shell.
 OMEGAS = (0.0, 2.0, 19.0, 300.0, 5.0e3)
-# The one whose swing is told.
+# The one with reported vibration.
 BOOM = 19.0
 # Force in N.
 FORCE = 10.0
@@ -37,9 +37,10 @@ KINKED: Mapping[str, Ramp | Table] = {
 
 
 def response(omega: float, history: Ramp | Table, time: Array) -> Array:
-    """(num_times,) closed form of 1 kg from rest on a spring ω² in N/m under 1 N times a history.
+    """Return the closed form (num_time,) of 1 kg from rest under 1 N times a history.
 
-    A constant load from t = 0 on, and at each kink a ramp by as much as the slope changes there.
+    The mass is on a spring ω² in N/m. The terms are a constant load from t = 0 on, and at each kink
+    a ramp by as much as the slope changes there.
 
     Args:
         omega: in rad/s, 0 without a spring.
@@ -60,7 +61,7 @@ def response(omega: float, history: Ramp | Table, time: Array) -> Array:
 
 
 def masses(history: Ramp | Sine | Table) -> GapSystem:
-    """A mass for each of ``OMEGAS`` under 1 N times a history, each observed by its ω."""
+    """Create a mass for each of ``OMEGAS`` under 1 N times a history, each observed by its ω."""
     n = len(OMEGAS)
     return GapSystem(
         omega2=np.square(OMEGAS),
@@ -76,7 +77,7 @@ def masses(history: Ramp | Sine | Table) -> GapSystem:
 
 @titled("histories", f"Loads in time, steps of {STEP:g} s")
 def study(tell: Tell) -> Iterator[Proof]:
-    """Swings that kinked histories leave, and the largest error of each, against closed forms."""
+    """Compare vibrations after kinked histories, and largest errors, with closed forms."""
     for what, history in KINKED.items():
         tell(what)
         run = FixedStep(STEP)(Motion(masses(history), DURATION, OUTPUT_STEP))

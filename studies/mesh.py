@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How near the shell of the paper's boom is to one of infinitely fine mesh."""
+"""Mesh error of the shell of the paper's boom relative to the limit of fine meshes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from studies.motions import finer, friction_case, gap_system, lasting, shell_of
 from studies.refined import Refined, error_plot, refined_table
 from studies.study import Piece, Tell, titled
 
-# What is allowed of the default mesh, relative to the limit of infinitely fine ones.
+# Permitted error of the default mesh, relative to the limit of infinitely fine ones.
 ALLOWED = 0.01
 
 NOTE = (
@@ -29,7 +29,7 @@ NOTE = (
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured."""
+    """Parameters of the study."""
 
     #: Edge lengths over the default ones, each half the one before, three at least.
     meshes: Sequence[float] = (4.0, 2.0, 1.0, 0.5)
@@ -42,7 +42,7 @@ class Sizes:
 
 @titled("mesh", "Meshes of the paper's boom")
 def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Frequencies, flexibilities and tip peaks of the paper's boom on ever finer meshes."""
+    """Compare frequencies, flexibilities and tip peaks of the paper's boom on finer meshes."""
     sizes = sizes or Sizes()
     case = lasting(friction_case(), sizes.duration)
     results = []
@@ -71,7 +71,7 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
 
 
 def peak_heights(motion: Trajectory) -> list[float]:
-    """Heights in m of the tip's peaks, on parabolas through the three highest output values."""
+    """Return heights in m of the tip's peaks by parabolas through the three highest outputs."""
     tip = np.asarray(motion.data["tip"].values)
     places, _ = find_peaks(tip, prominence=0.2 * np.ptp(tip))
     before, top, after = tip[places - 1], tip[places], tip[places + 1]
@@ -82,7 +82,7 @@ def peak_heights(motion: Trajectory) -> list[float]:
 def _quantities(
     system: GapSystem, motion: Trajectory, sizes: Sizes
 ) -> dict[tuple[str, str], float]:
-    """What and unit → value."""
+    """Return the quantities and values by unit."""
     from shell_model.contact.local_compliance import compliance, local_compliance
 
     elastic = system.frequencies[system.frequencies > 0.0][: sizes.frequencies]

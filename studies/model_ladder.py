@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What of the distance from the paper's series to the shell each thing makes.
+"""Contributions of single model features to the difference between series and shell.
 
-One thing after another is changed that the series leaves out and the shell has.
+Features that the shell has and the series lacks are added one after another.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from studies.motions import CASE, friction_case, gap_system, model_of, trajector
 from studies.pads import flexibility_table
 from studies.study import Tell, titled
 
-# From the paper's series to the shell: what is changed, and the model that has it.
+# From the paper's series to the shell: change, and model with it.
 LADDER = (
     ("the paper's five-term series", "kantorovich-5"),
     ("linear contact", "kantorovich-5-linear"),
@@ -38,8 +38,9 @@ EXPLAINED = 5.0
 
 
 def rungs(case: Case) -> Table:
-    """Each rung of ``LADDER``: what it changes of the tip, and what it leaves to the shell, largest
-    differences as parts of the shell's range.
+    """Compare the rungs of ``LADDER``: change of the tip, and remaining difference to the shell.
+
+    Differences are the largest ones, as parts of the shell's range.
 
     Args:
         case: with its models.
@@ -75,7 +76,7 @@ def rungs(case: Case) -> Table:
 
 @titled("model-ladder", "From the paper's series to the shell")
 def study(tell: Tell) -> Iterator[Table]:
-    """The ladder, and how much more the shell's stations give way than a beam's."""
+    """Run the ladder, and compare the compliance of the shell's stations with a beam's."""
     case = friction_case()
     tell("the models from the series to the shell")
     yield rungs(case)

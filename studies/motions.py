@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The motion that the studies share: the paper's example with friction.
+"""Motion shared by the studies: the paper's example with friction.
 
 It is regular, so that two runs may be compared from moment to moment.
 """
@@ -40,17 +40,17 @@ STEP = 2.0e-5
 _Task = TypeVar("_Task")
 _Found = TypeVar("_Found")
 
-# At which the flexibility of a station is read: below all elastic modes, above the rigid ones.
+# Frequency for the flexibility of a station: below all elastic modes, above the rigid ones.
 SLOW = 5.0
 
 
 def friction_case() -> Case:
-    """The paper's example with friction, and the models from its series to the shell."""
+    """Return the paper's example with friction, and the models from its series to the shell."""
     return case_file.load(str(CASE))
 
 
 def loaded(case: Case, times: float) -> Case:
-    """The case with its segments' loads so many times as large."""
+    """Return the case with its segments' loads multiplied by a factor."""
     segments = tuple(
         segment.model_copy(update={"load": times * segment.load}) for segment in case.segments
     )
@@ -58,31 +58,31 @@ def loaded(case: Case, times: float) -> Case:
 
 
 def lasting(case: Case, duration: float) -> Case:
-    """The case for so long, in s."""
+    """Return the case with another duration in s."""
     time = case.time.model_copy(update={"duration": duration})
     return case.model_copy(update={"time": time})
 
 
 def model_of(case: Case, name: str) -> Model:
-    """A model by its name."""
+    """Return a model by its name."""
     return next(model for model in case.models if model.name == name)
 
 
 def shell_of(case: Case) -> Shell:
-    """The shell by the name that the cases give it."""
+    """Return the shell by the name that the cases give it."""
     (shell,) = of_kind(Shell, [model_of(case, "shell")])
     return shell
 
 
 def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
-    """Any model of a case as a gap system, shells on this process alone."""
+    """Return any model of a case as a gap system, with shells on this process alone."""
     from mpi4py import MPI
 
     return build(case, boom, model, Workshop(MPI.COMM_SELF)).system
 
 
 def all_built(case: Case, models: Mapping[str, Model]) -> dict[str, Built]:
-    """Several models of a case, each shell reduced once."""
+    """Return several models of a case, with each shell reduced once."""
     from mpi4py import MPI
 
     boom = build_boom(case)
@@ -92,7 +92,7 @@ def all_built(case: Case, models: Mapping[str, Model]) -> dict[str, Built]:
 
 
 def finer(shell: Shell, part: float) -> Shell:
-    """The shell with all edges this part of what they were."""
+    """Return the shell with all edge lengths multiplied by a factor."""
     tolerance = shell.contact_tolerance
     if tolerance != "any":
         tolerance *= part**2
@@ -101,20 +101,20 @@ def finer(shell: Shell, part: float) -> Shell:
 
 
 def trajectories(case: Case) -> list[Trajectory]:
-    """The motions of all models of a case, in their order, side by side on the cores."""
+    """Return the motions of all models of a case, in their order, in parallel on the cores."""
     boom = build_boom(case)
     plans = [MotionPlan.of(gap_system(case, boom, m), case, m) for m in case.models]
     return side_by_side(lambda plan: plan.trajectory(lambda part: None), plans)
 
 
 def side_by_side(move: Callable[[_Task], _Found], tasks: Iterable[_Task]) -> list[_Found]:
-    """What each task gives, as many at a time as there are cores."""
+    """Return the result of each task, as many at a time as there are cores."""
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return list(pool.map(move, tasks))
 
 
 def without_friction(system: GapSystem) -> GapSystem:
-    """The system with rows that press alone."""
+    """Return the system with contact rows alone."""
     return replace(system, friction_rows=np.zeros((0, system.num_modes)), frictions=())
 
 
@@ -124,5 +124,5 @@ def move(system: GapSystem, duration: float, step: float = STEP) -> Trajectory:
 
 
 def compliance(system: GapSystem, rows: Array) -> Array:
-    """(num_rows,) diagonal of B (Ω² + σ)⁻¹ Bᵀ in m/N, at σ = (2π · ``SLOW``)²."""
+    """Return the diagonal (num_rows,) of B (Ω² + σ)⁻¹ Bᵀ in m/N, at σ = (2π · ``SLOW``)²."""
     return np.asarray((rows**2 / (system.omega2 + (2.0 * np.pi * SLOW) ** 2)).sum(axis=1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What the size of a slide pad does to the flexibility of the stations."""
+"""Effect of the size of a slide pad on the flexibility of the stations."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from studies.study import Proof
 
 
 def with_pads(case: Case, length: float, width: float) -> Case:
-    """The case with pads of a size, in m, at all its joints."""
+    """Return the case with pads of a size, in m, at all its joints."""
     pad = PadTable.model_validate({"length": length, "width": width})
     joints = tuple(joint.model_copy(update={"pad": pad}) for joint in case.joints)
     return case.model_copy(update={"joints": joints})
 
 
 def flexibility_table(contacts: Sequence[tuple[str, Case, GapSystem]]) -> Table:
-    """How much more stations give way than those of Timoshenko's beam.
+    """Return a table of the flexibility of stations beyond that of Timoshenko's beam.
 
     Args:
         contacts: names, cases (with the model ``timoshenko``, in the plane and with friction), and
@@ -60,7 +60,7 @@ def flexibility_table(contacts: Sequence[tuple[str, Case, GapSystem]]) -> Table:
 
 
 def _middles(boom: Boom) -> Boom:
-    """The boom with its stations in the middles of their pads."""
+    """Return the boom with its stations in the middles of their pads."""
     places = {
         pad.x: pad.x if pad.patch is None else 0.5 * (pad.patch.start + pad.patch.end)
         for pad in pads(boom)
@@ -72,7 +72,7 @@ def _middles(boom: Boom) -> Boom:
 
 
 def upper_rows(system: GapSystem) -> Array:
-    """(num_stations, num_modes) the mean approach above each station, by the points' shares."""
+    """Return the mean approach (num_stations, num_modes) above each station, by point shares."""
     above = np.array(
         [sum(term.stiffness for term in law.terms if term.side > 0.0) for law in system.laws]
     )
@@ -81,12 +81,12 @@ def upper_rows(system: GapSystem) -> Array:
 
 
 def pad_proofs(case: Case, size: tuple[float, float], system: GapSystem) -> Iterator[Proof]:
-    """A pressed pad's resultant: how large, and where.
+    """Check magnitude and place of a pressed pad's resultant.
 
-    What its row reads of a rigid motion is the work of its force, read the other way.
+    The value of its row for a rigid motion is the work of its unit force.
 
     Args:
-        case: with the pads.
+        case: one with the pads.
         size: their length and width in m.
         system: the shell with them.
     """
@@ -103,7 +103,7 @@ def pad_proofs(case: Case, size: tuple[float, float], system: GapSystem) -> Iter
 
 
 def rigid_motion(system: GapSystem, tail: float, tip: float) -> Array:
-    """(num_modes,) the state in which the free inner segment's ends are so high, in m."""
+    """Return the rigid state (num_modes,) of the inner segment with its ends at heights in m."""
     free = np.flatnonzero(system.omega2 == 0.0)
     rows = np.array([system.observers[name].row[free] for name in ("tail", "tip")])
     state = np.zeros(system.num_modes)

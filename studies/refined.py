@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Values on ever finer meshes, and how far they are from where refinement leads (Roache 1994)."""
+"""Values on successively finer meshes, and their distance from the limit (Roache 1994)."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from typing import NamedTuple
 from runs.report.tables import Table
 from studies.study import Kind, Plot, Proof
 
-# Of a grid convergence index of three or more grids (Roache 1998).
+# Safety factor of a grid convergence index of three or more grids (Roache 1998).
 SAFETY = 1.25
-# Below it the meshes do not tell where they lead.
+# Below it the values on the meshes do not converge.
 LEAST_ORDER = 0.5
 
 
 class Reference(NamedTuple):
-    """What a value should be, and the relative error with which it counts as proven."""
+    """Reference value, and the permitted relative error."""
 
     value: float
     kind: Kind
@@ -28,7 +28,7 @@ class Reference(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Refined:
-    """A quantity on ever finer meshes."""
+    """Quantity on successively finer meshes."""
 
     what: str  #: it is
     unit: str  #: of the values; empty for a pure number, or where the source names none
@@ -38,7 +38,7 @@ class Refined:
 
     @property
     def order(self) -> float:
-        """Observed on the three finest; NaN where values do not go one way by ever less."""
+        """Observed order on the three finest; NaN without monotonic convergence."""
         if len(self.values) < 3:
             return math.nan
         coarse, medium, fine = self.values[-3:]
@@ -61,39 +61,39 @@ class Refined:
 
     @property
     def settles(self) -> bool:
-        """Whether the meshes tell where they lead."""
+        """Whether the values on the meshes converge."""
         return self.order > LEAST_ORDER  # False where there is none
 
     @property
     def settled(self) -> float:
-        """Where refinement leads it; the finest mesh's value where that cannot be told."""
+        """Limit of refinement; the finest mesh's value without convergence."""
         return self.limit if self.settles else self.values[-1]
 
     @property
     def errors(self) -> list[float]:
-        """Of each mesh, relative to the reference, or to the limit where there is none."""
+        """Error of each mesh, relative to the reference, or to the limit without one."""
         exact = self.limit if self.reference is None else self.reference.value
         return [abs(value / exact - 1.0) for value in self.values]
 
     @property
     def proof(self) -> Proof:
-        """The finest mesh against the reference."""
+        """Return the proof of the finest mesh against the reference."""
         assert self.reference is not None
         value, kind, source, allowed = self.reference
         order = self.order if math.isfinite(self.order) else None
         return Proof(self.what, self.values[-1], value, self.unit, kind, source, allowed, order)
 
     def against_limit(self, what: str, size: float, finest: str, allowed: float) -> Proof:
-        """One mesh against where refinement leads.
+        """Return the proof of one mesh against the limit of refinement.
 
         Args:
-            what: is proven.
-            size: of the mesh.
-            finest: name of the finest mesh, the reference where there is no limit.
-            allowed: relative error.
+            what: the quantity.
+            size: that of the mesh.
+            finest: name of the finest mesh, the reference if there is no limit.
+            allowed: permitted relative error.
 
         Raises:
-            ValueError: the finest mesh has no limit to be held against.
+            ValueError: there is no limit for the comparison.
         """
         if not self.settles and size == self.sizes[-1]:
             raise ValueError(f"{what}: the finest mesh would be held against itself")
@@ -117,11 +117,11 @@ class Refined:
 def refined_table(
     name: str, title: str, found: Sequence[Refined], mesh: str, notes: Sequence[str] = ()
 ) -> Table:
-    """One row a quantity: its values, order, limit and index.
+    """Return a table with one row per quantity: its values, order, limit and index.
 
     Args:
-        name, title, notes: of the table.
-        found: on the same sizes, or on some of the finest.
+        name, title, notes: those of the table.
+        found: quantities on the same sizes, or on some of the finest.
         mesh: name of a mesh of a size, "edges × {:g}" say.
     """
     sizes = max((one.sizes for one in found), key=len)
@@ -149,10 +149,10 @@ def refined_table(
 
 
 def error_plot(name: str, title: str, x: str, found: Sequence[Refined], caption: str) -> Plot:
-    """Errors against the sizes of the meshes, of what has a reference or a limit.
+    """Plot errors over the mesh sizes, for quantities with a reference or a limit.
 
     Args:
-        name, title, x, caption: of the figure.
+        name, title, x, caption: those of the figure.
         found: its curves.
     """
     curves = {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How the motion settles as steps, series, elements and meshes refine."""
+"""Convergence of the motion with steps, series, elements and meshes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ NOTE = (
 
 
 def orders(sizes: Sequence[float], differences: Sequence[float]) -> list[float]:
-    """Observed orders: slopes of the differences over the sizes in a log-log plot."""
+    """Return observed orders: slopes of the differences over the sizes in a log-log plot."""
     slopes = np.diff(np.log(differences)) / np.diff(np.log(sizes[: len(differences)]))
     return [float(order) for order in np.abs(slopes)]
 
@@ -35,12 +35,12 @@ def orders(sizes: Sequence[float], differences: Sequence[float]) -> list[float]:
 def refine(
     case: Case, name: str, model: Model, sizes: Sequence[float], at: Callable[[Model, float], Model]
 ) -> list[Sequence[Cell]]:
-    """Run one model at several sizes: a row for each.
+    """Run one model at several sizes; return a row for each.
 
     Args:
         case: the model's.
-        name: of the rows.
-        model: of the case.
+        name: that of the rows.
+        model: one of the case.
         sizes: from the coarsest to the finest.
         at: the model at a size.
     """
@@ -59,7 +59,7 @@ def refine(
 
 @titled("refinement", "How the motion settles")
 def study(tell: Tell) -> Iterator[Table]:
-    """Steps of all integrations, terms, elements, meshes, each of the case with friction."""
+    """Refine steps of all integrations, terms, elements and meshes of the case with friction."""
     case = friction_case()
     rows: list[Sequence[Cell]] = []
     for what, name, sizes, unit, at in (
@@ -87,5 +87,5 @@ def study(tell: Tell) -> Iterator[Table]:
 
 
 def with_step(model: Model, step: float) -> Model:
-    """The model by steps in s."""
+    """Return the model with steps in s."""
     return model.model_copy(update={"step": step})

@@ -30,7 +30,8 @@ SLOW = 20.0
 def compliance(omega2: Array, rows: Array) -> Array:
     """Return the compliance B (Ω² + σ)⁻¹ Bᵀ (num_rows, num_rows) in m/N of the rows B.
 
-    The shift is σ = (2π · ``SLOW``)²."""
+    The shift is σ = (2π · ``SLOW``)².
+    """
     return np.asarray(rows / (omega2 + (2.0 * np.pi * SLOW) ** 2) @ rows.T)
 
 

@@ -205,7 +205,8 @@ def gauss(start: float, end: float, count: int) -> tuple[Array, Array]:
 def _shares(corners: Array, place: Array) -> Array:
     """Return barycentric coordinates (num_triangles, 3) of a place.
 
-    The corners are (num_triangles, 3, 2)."""
+    The corners are (num_triangles, 3, 2).
+    """
     sides = corners[:, 1:] - corners[:, :1]
     offset = place - corners[:, 0]
     area = sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]

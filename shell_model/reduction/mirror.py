@@ -56,7 +56,8 @@ class Family(NamedTuple):
     def held(self, axis: int) -> list[tuple[int, int]]:
         """Return the components that are zero in a mirror.
 
-        They are (0, i) of the displacement and (1, i) of the rotation."""
+        They are (0, i) of the displacement and (1, i) of the rotation.
+        """
         signs = self.signs[1 if axis == 1 else 2]
         return [(int(i) // 3, int(i) % 3) for i in np.flatnonzero(signs < 0.0)]
 

@@ -83,7 +83,8 @@ class SegmentShell(Shell):
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
         """Return the load (num_owned,) of 1 N/m between mesh lines at two x in m, or all along.
 
-        Collective."""
+        Collective.
+        """
         if span is None:
             return self.unit_loads[direction]
         start, end = span

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What runs cost, measured."""
+"""Measured cost of runs."""

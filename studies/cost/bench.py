@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What the time step and a shell cost: ``python -m studies.cost.bench``.
+"""Cost of the time step and of a shell: ``python -m studies.cost.bench``.
 
-Everything is measured in one process; methods that are compared take turns, so that what else
-the machine does falls on all of them.
+Everything is measured in one process; compared methods take turns, so that other load
+of the machine affects all of them.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ OUT = Path("runs/out/bench")
 # Goal: wall s of the ensemble of series.
 ENSEMBLE_GOAL = 10.0
 
-# Steps in s, and solvers that are to err no more.
+# Steps in s, and solvers with at most the same error.
 LEVELS = (
     (1.0e-3, ("LSODA", "DOP853", "odeint")),
     (1.0e-4, ("LSODA", "DOP853", "Radau", "odeint")),
@@ -83,7 +83,7 @@ STEP, MEMBERS_STEP = 1.0e-5, 1.0e-4
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """How much is measured."""
+    """Parameters of the measurements."""
 
     duration: float = 10.0  #: of ensembles and of telescoping booms, in s
     #: Models with friction, their motion in s, its steps in s and the step of the converged one.
@@ -109,7 +109,7 @@ class Sizes:
 
 
 class Method(NamedTuple):
-    """A way to move the series: a row of the table, and what moves it once."""
+    """Method that computes the series: a row of the table, and its function."""
 
     solver: str
     rates: str  #: its right-hand side, where it needs one
@@ -119,7 +119,7 @@ class Method(NamedTuple):
 
 
 def five_terms(case: Case) -> GapSystem:
-    """The five-term series of a case."""
+    """Return the five-term series of a case."""
     return gap_system(case, build_boom(case), model_of(case, "kantorovich-5"))
 
 
@@ -129,7 +129,7 @@ def off(tip: Array, exact: Array) -> float:
 
 
 def errors(sizes: Sizes) -> Table:
-    """Errors and costs over the step, of models whose motion friction makes regular."""
+    """Measure errors and costs over the step, of models with regular motion by friction."""
     case, rows = friction_case(), []
     boom = build_boom(case)
     for name in sizes.models:
@@ -168,7 +168,7 @@ def errors(sizes: Sizes) -> Table:
 
 
 def compare(case: Case, sizes: Sizes) -> Table:
-    """The time step against generic solvers that err no more."""
+    """Compare the time step with generic solvers of at most the same error."""
     system = five_terms(case)
     motion, row = Motion(system, sizes.early, OUTPUT_STEP), system.observers["tip"].row
     rates = {NUMPY: array_rates(system), COMPILED: compiled_rates(system)}
@@ -218,7 +218,7 @@ def compare(case: Case, sizes: Sizes) -> Table:
 
 
 def pressed_system(num_modes: int, num_rows: int) -> GapSystem:
-    """A made-up system all of whose rows press all the time, which makes the dearest steps.
+    """Return an artificial system with all rows always in contact, which has the dearest steps.
 
     Two rigid modes, the others 20 Hz apart up to a few kHz as those of a shell; 1000 kg, stops
     of 1e7 N/m without clearance at places along a bar, 10 kN.
@@ -238,7 +238,7 @@ def pressed_system(num_modes: int, num_rows: int) -> GapSystem:
 
 
 def steps(sizes: Sizes) -> Table:
-    """What a step costs, by modes and rows."""
+    """Measure the cost of a step by modes and rows."""
     kinds = [(n, m) for n in sizes.modes for m in sizes.rows]
     made = {n: 10 * math.ceil(sizes.updates / (10 * n)) for n in sizes.modes}
     runs = [
@@ -260,7 +260,7 @@ def steps(sizes: Sizes) -> Table:
 
 
 def ensembles(case: Case, sizes: Sizes) -> Table:
-    """What ensembles cost, by threads."""
+    """Measure the cost of ensembles by threads."""
     cores = len(os.sched_getaffinity(0))
 
     def run(whole: GapSystem, count: int, integrator: Integrator, threads: int) -> None:
@@ -295,7 +295,7 @@ def ensembles(case: Case, sizes: Sizes) -> Table:
 
 
 def leaving(models: Sequence[str]) -> Table:
-    """Wall and processor time of what comes after the motion, with snapshots and without.
+    """Measure wall and processor time of the output after the motion, with and without snapshots.
 
     Args:
         models: of the lift; its shell is left out where there is no FEniCSx.
@@ -328,7 +328,7 @@ def leaving(models: Sequence[str]) -> Table:
 
 
 def _processor_time() -> float:
-    """Of this process and of those that it has ended, in s."""
+    """Return the processor time of this process and of those that it has ended, in s."""
     used = getrusage(RUSAGE_SELF), getrusage(RUSAGE_CHILDREN)
     return sum(each.ru_utime + each.ru_stime for each in used)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A gap system by solvers that know nothing of it, to measure ours against."""
+"""Generic solvers of a gap system, for comparison with the time step."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Rates = Callable[[float, Array], Array]
 METHODS = ("LSODA", "DOP853", "Radau")
 SOLVERS = (*METHODS, "odeint")
 
-# Of which the loosest is taken that errs no more than ours.
+# The loosest with no more error than ours is taken.
 TOLERANCES = 10.0 ** np.arange(-3.0, -13.5, -0.5)
 # Absolute tolerance over the relative one: of 1, 0.01, 1e-3, 1e-4 and 1e-5 the one with which
 # LSODA took the least time for the same energy residual.
@@ -30,7 +30,7 @@ ABSOLUTE = 1.0e-3
 
 
 def compiled_rates(system: GapSystem) -> Rates:
-    """t, (a, ȧ) → (ȧ, ä) of an undamped system, compiled with its data as constants."""
+    """Return t, (a, ȧ) → (ȧ, ä) of an undamped system, compiled with its data as constants."""
     omega2, load, rows = system.omega2.copy(), system.load.copy(), system.rows.copy()
     terms = contact_terms(system.laws)
     n = system.num_modes
@@ -58,7 +58,7 @@ def compiled_rates(system: GapSystem) -> Rates:
 
 
 def array_rates(system: GapSystem) -> Rates:
-    """The same in NumPy, as one writes it for a generic solver; friction by its speed's sign."""
+    """Return the same in NumPy, as for a generic solver; friction by its speed's sign."""
     n = system.num_modes
     terms = contact_terms(system.laws)
     side, stiffness, onset, exponent = (
@@ -85,7 +85,7 @@ def array_rates(system: GapSystem) -> Rates:
 
 
 def generic(name: str, rates: Rates, num_states: int, duration: float, tolerance: float) -> Array:
-    """(num_times, num_states) from rest by one of scipy's solvers, at the output steps of ours."""
+    """Return states (num_times, num_states) from rest by a scipy solver, at our output steps."""
     times = OUTPUT_STEP * np.arange(round(duration / OUTPUT_STEP) + 1)
     start = np.zeros(num_states)
     tolerances = {"rtol": tolerance, "atol": ABSOLUTE * tolerance}

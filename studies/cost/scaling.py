@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a shell costs by its size and by ranks: ``python -m studies.cost.scaling``.
+"""Cost of a shell by its size and by ranks: ``python -m studies.cost.scaling``.
 
 Every run has processes of its own, so that its peak memory is its own.
 """
@@ -44,7 +44,7 @@ MILLION_GOALS = 300.0, 8.0
 
 STAGES = ("mesh", "assembly", "rows", "reduction", "fields", "mesh error")
 
-# Stages whose peaks of memory are told.
+# Stages with reported memory peaks.
 REMEMBERED = ("mesh", "assembly", "reduction", "fields")
 
 # Of the motions in s; the last is that of the goal.
@@ -53,7 +53,7 @@ STEPS = (1.0e-4, 1.0e-5)
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """How much is measured."""
+    """Parameters of the measurements."""
 
     #: Edge lengths in m, falling; the last makes about a million degrees of freedom a segment.
     meshes: Sequence[float] = (0.1, 0.06, 0.035, 0.018)
@@ -65,7 +65,7 @@ class Sizes:
 
 
 def measured(sizes: Sizes) -> Iterator[Table]:
-    """The default mesh from plates to its motion, by ranks; then ever finer meshes on the most."""
+    """Measure the default mesh from plates to motion, by ranks; then finer meshes on most ranks."""
     runs = [
         _measured(ranks, "move", name, sizes.default, sizes.duration)
         for ranks in sizes.ranks
@@ -95,7 +95,7 @@ def measured(sizes: Sizes) -> Iterator[Table]:
     )
     dofs, last, (seconds, peak) = [run["dofs"] for run in runs], runs[-1], MILLION_GOALS
     wall = _exponent(dofs, [run["total_seconds"] for run in runs])
-    # What starts up with the processes is there without any shell.
+    # Processes occupy this much at their start, without any shell.
     memory = _exponent(dofs, [run["peaks"]["fields"] - run["idle"] for run in runs])
     yield Table.of_rows(
         "scaling-goals",
@@ -111,7 +111,7 @@ def measured(sizes: Sizes) -> Iterator[Table]:
 
 
 def _stages(name: str, title: str, runs: Sequence[Mapping[str, Any]], note: str) -> Table:
-    """What each stage of each run takes."""
+    """Return the time of each stage of each run."""
     columns = {
         "case": "", "mesh m": ".2g", "ranks": ".0f", "dofs a segment": ".0f",
         **{f"{stage} s": ".2f" for stage in STAGES}, "all s": ".2f", "modes": ".0f",
@@ -132,12 +132,12 @@ def _stages(name: str, title: str, runs: Sequence[Mapping[str, Any]], note: str)
 
 
 def _exponent(sizes: Sequence[float], values: Sequence[float]) -> float:
-    """p of the power law values ~ sizesᵖ that fits best."""
+    """Return p of the power law values ~ sizesᵖ with the best fit."""
     return float(np.polyfit(np.log(sizes), np.log(values), 1)[0]) if len(sizes) > 1 else math.nan
 
 
 def _measured(ranks: int, *what: object) -> dict[str, Any]:
-    """What a run of its own processes tells."""
+    """Return the results of a run in processes of its own."""
     launcher = [] if ranks == 1 else ["mpirun", "-n", str(ranks), "--oversubscribe"]
     if launcher and shutil.which("mpirun") is None:
         raise FileNotFoundError("several ranks take mpirun, which is not installed")
@@ -155,7 +155,7 @@ def _measured(ranks: int, *what: object) -> dict[str, Any]:
 
 
 def _run(what: str, name: str, size: str, duration: str = "0") -> None:
-    """One run, in processes that are its own; rank 0 prints what it took."""
+    """Run once in processes of its own; rank 0 prints the measurements."""
     from mpi4py import MPI
 
     from shell_model.boom_shell import ShellOptions
@@ -211,8 +211,8 @@ def _motion(system: GapSystem, duration: float, step: float) -> list[float]:
 
 
 def _peak() -> float:
-    """This program's largest resident set so far, in GB."""
-    # getrusage would tell the parent's as well, which was this process before it began.
+    """Return this program's largest resident set so far, in GB."""
+    # getrusage would include the parent's, which was this process before it began.
     status = Path("/proc/self/status").read_text(encoding="ascii")
     (line,) = (line for line in status.splitlines() if line.startswith("VmHWM:"))
     return float(line.split()[1]) * 1024.0 / 1.0e9

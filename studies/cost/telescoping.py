@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What it costs to telescope a boom while it moves: ``python -m studies.cost.telescoping``.
+"""Cost of telescoping during the motion: ``python -m studies.cost.telescoping``.
 
-Models may be named behind it. The paper's boom is drawn out by 4 m through all of the motion,
-beside the same boom, pads and all, that stays where it begins.
+Models may be named behind it. The paper's boom extends by 4 m during the motion; the same boom
+with the same pads at a fixed extension is the reference.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ DURATION = 10.0
 # Goals: processor time over that at rest, and processor s from the mesh of a shell to its system.
 BEAM_GOAL, SHELL_GOAL, BUILT_GOAL = 3.0, 5.0, 15.0
 
-# What resists: prescribed forces in N that press pads sideways, or dashpots in N·s/m.
+# Lateral resistance: prescribed forces in N that press pads sideways, or dashpots in N·s/m.
 RESISTED: Mapping[str, Mapping[str, Any]] = {
     "nothing": {},
     "friction": {"joint.normal_forces": [450.0, 500.0]},
@@ -44,7 +44,7 @@ _PAD = 0.1
 
 
 class Cost(NamedTuple):
-    """Processor s until there is a system of so many modes, and of its motion."""
+    """Processor time in s of a system with so many modes, and of its motion."""
 
     modes: int
     built: float
@@ -89,7 +89,7 @@ def telescoping(models: Sequence[str] = MODELS, duration: float = DURATION) -> T
 
 
 def _cases(duration: float, values: Mapping[str, Any]) -> tuple[Case, Case]:
-    """Telescoping, and at rest."""
+    """Return the cases with telescoping and at a fixed extension."""
     case = case_file.load(str(CASE))
     times = {"time.duration": duration, "joint.drive.time": duration}
     moving = change(case, **times, **values, **{"joint.contact_length": _PAD})

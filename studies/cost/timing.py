@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Wall times of what is compared, taken in turns; and where tables of them go."""
+"""Wall times of compared runs, measured in turns, and output of their tables."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rich.console import Console
 
 from runs.report.tables import Table, write
 
-# What takes less is run as often as takes so many seconds together, and the mean counts.
+# Shorter runs are repeated for this many seconds together, and the mean counts.
 MEASURABLE = 0.05
 
 NOISE = (
@@ -22,11 +22,11 @@ NOISE = (
 
 
 def by_turns(runs: Sequence[Callable[[], object]], most: int, budget: float) -> list[list[float]]:
-    """Wall seconds of each run, all once before any is repeated.
+    """Return wall seconds of each run; all run once before any is repeated.
 
     Args:
-        runs: what takes the time.
-        most: repetitions of each.
+        runs: functions to time.
+        most: largest number of repetitions of each.
         budget: wall seconds of one run, all its repetitions, beyond which it is not repeated.
     """
     seconds: list[list[float]] = [[] for _ in runs]
@@ -58,11 +58,11 @@ def leave(
     """Print tables as they are made, and write them as NAME.json and NAME.md.
 
     Args:
-        folder: made where it is missing.
-        name: of the files.
+        folder: created if missing.
+        name: name of the files.
         title: heading of the Markdown file.
-        data: beside the tables' own in the JSON file.
-        tables: of what was measured.
+        data: in the JSON file in addition to the tables' own.
+        tables: measurements.
         console: for the tables.
     """
     shown = []

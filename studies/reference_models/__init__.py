@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Models that serve proofs alone: other shells, solids, the unreduced shell."""
+"""Reference models for verification: other shells, solids, the unreduced shell."""

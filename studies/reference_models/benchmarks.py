@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The shells on which shell elements are measured (MacNeal and Harder 1985).
+"""Shell benchmarks (MacNeal and Harder 1985).
 
 Curved surfaces are made of flat facets between points on them, in a structured grid. Lengths,
 forces and moduli are in the units of the sources, which are consistent.
@@ -18,7 +18,7 @@ from shell_model.segment.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
 from studies.reference_models.static_shell import StaticShell, hold
 
 X, Y, Z = 0, 1, 2
-# In place of 5/6: no shear strain to speak of.
+# In place of 5/6: negligible shear strain.
 SHEAR_RIGID = 100.0
 
 
@@ -33,7 +33,7 @@ class TwistedBeam(NamedTuple):
 
 
 class Published(NamedTuple):
-    """What the functions of the same names are to give."""
+    """Published values of the functions of the same names."""
 
     scordelis_lo_roof: float
     pinched_cylinder: float
@@ -45,7 +45,7 @@ PUBLISHED = Published(0.3024, 1.8248e-5, 0.0940, TwistedBeam(5.4245e-3, 1.7532e-
 
 
 def grid(surface: Callable[[Array, Array], Array], n: int, m: int) -> tuple[Array, Indices]:
-    """Triangles between points on a surface, their diagonals in turns one way and the other.
+    """Return triangles between points on a surface, with alternating diagonals.
 
     ``surface`` has (num, 3) places of parameters (num,) from 0 to 1, with n and m edges along.
     Gives points ((n + 1)(m + 1), 3) and triangles (2 n m, 3).
@@ -63,7 +63,7 @@ def grid(surface: Callable[[Array, Array], Array], n: int, m: int) -> tuple[Arra
 
 
 def scordelis_lo_roof(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
-    """Sag of the middle of the free edges of a barrel vault under its own weight.
+    """Return the sag of the middle of the free edges of a barrel vault under its own weight.
 
     Scordelis and Lo (1964): radius 25, length 50, thickness 0.25, 40° to either side, on
     diaphragms at its ends. A quarter of it, of n edges along each side.
@@ -86,7 +86,7 @@ def scordelis_lo_roof(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
 def pinched_cylinder(
     n: int, drilling: float = DRILLING_OF_CURVED, shear_correction: float = SHEAR_CORRECTION
 ) -> float:
-    """How far two opposite forces of 1 push into the middle of a cylinder.
+    """Return the displacement under two opposite forces of 1 on the middle of a cylinder.
 
     Radius 300, length 600, thickness 3, diaphragms at its ends (Flügge 1960; Belytschko et al.
     1985). An eighth of it. The published value is that of a shell without shear strain, where a
@@ -115,7 +115,7 @@ def pinched_cylinder(
 
 
 def hemisphere(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
-    """How far two pairs of forces of 2, one pair out and one in, move the equator they act on.
+    """Return the displacement of the equator of a hemisphere under two pairs of forces of 2.
 
     Radius 10, thickness 0.04, a hole of 18° at the pole. A quarter of it, of n edges each side.
     """
@@ -138,9 +138,9 @@ def hemisphere(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
 
 
 def twisted_beam(n: int, drilling: float = DRILLING_OF_CURVED) -> TwistedBeam:
-    """A strip that turns by 90° over its length: length 12, width 1.1, thickness 0.32.
+    """Return tip deflections of a strip with a twist of 90° over its length.
 
-    Of n edges over the width and 6 n along.
+    Length 12, width 1.1, thickness 0.32; n edges over the width and 6 n along.
     """
     length, width = 12.0, 1.1
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""One segment alone as a shell: what it gives way at rest, and its natural frequencies."""
+"""Single segment as a shell: its static compliance and natural frequencies."""
 
 from __future__ import annotations
 
@@ -25,8 +25,9 @@ STATIC = 0.01
 
 
 def shell_alone(segment: Segment, size: float, places: Sequence[float] = ()) -> SegmentShell:
-    """On this process, with edges of a size in m, and mesh lines at its ends, its supports, its
-    stiffeners, and at places x in m.
+    """Return the shell on this process, with edges of a size in m, and mesh lines.
+
+    The lines are at its ends, supports and stiffeners, and at places x in m.
     """
     assert segment.section is not None
     plates = diaphragm_breaks(segment)
@@ -38,7 +39,7 @@ def shell_alone(segment: Segment, size: float, places: Sequence[float] = ()) -> 
 
 
 def at_rest(shell: SegmentShell, forces: Array) -> Array:
-    """(num_dofs, num_forces) displacements under forces of the same shape in N."""
+    """Return displacements (num_dofs, num_forces) under forces of the same shape in N."""
     solve = ShiftedSolver(shell, STATIC)
     moved = solve(forces)
     solve.destroy()
@@ -46,7 +47,7 @@ def at_rest(shell: SegmentShell, forces: Array) -> Array:
 
 
 def compliances(shell: SegmentShell, *rows: Row) -> list[float]:
-    """What a unit force on each row moves its own reading by, in m/N."""
+    """Return the compliance of each row's own reading under a unit force, in m/N."""
     forces = np.column_stack([shell.row(row) for row in rows])
     moved = at_rest(shell, forces)
     return [
@@ -56,14 +57,14 @@ def compliances(shell: SegmentShell, *rows: Row) -> list[float]:
 
 
 def natural_frequencies(shell: Shell, count: int) -> Array:
-    """The lowest natural frequencies in Hz, rising, rigid motions included. Collective.
+    """Return the lowest natural frequencies in Hz, rising, with rigid motions. Collective.
 
     Shift-and-invert at a negative shift: K − σ M is then positive definite also for a free
     segment, and held degrees of freedom, at infinite frequency, stay out of the way.
 
     Args:
         shell: the full model.
-        count: how many.
+        count: number of frequencies.
 
     Raises:
         NumericsError: fewer converged.

@@ -29,22 +29,22 @@ OBLIQUE = np.asarray(Rotation.from_rotvec([0.7, -1.1, 0.4]).as_matrix())
 
 
 def rigidities(thickness: float) -> tuple[float, float]:
-    """D in N m and S = 5/6 G t in N/m of a plate of steel, t in m."""
+    """Return D in N m and S = 5/6 G t in N/m of a plate of steel, t in m."""
     bending = STEEL.youngs_modulus * thickness**3 / (12.0 * (1.0 - STEEL.poissons_ratio**2))
     return bending, SHEAR_CORRECTION * STEEL.shear_modulus * thickness
 
 
 def rectangle(length: float, width: float) -> Field:
-    """Places (num, 3) in m on [0, length] × [0, width], of parameters (num,) from 0 to 1."""
+    """Return places (num, 3) in m on [0, length] × [0, width], of parameters from 0 to 1."""
     return lambda x, y: np.stack([length * x, width * y, np.zeros_like(x)], axis=1)
 
 
 @dataclass(frozen=True, slots=True)
 class ConstantStrain:
-    """A state of a plate on [0, 1]² whose strains are the same everywhere.
+    """State of a plate on [0, 1]² with uniform strains.
 
     Args:
-        name: for people.
+        name: label in tables.
         displacement: (num, 3) along the plate's x, y and normal in m, at x, y (num,) in m.
         rotation: (num, 3) about them in rad.
         membrane, bending: (2, 2) ε, and κ in 1/m.
@@ -60,13 +60,13 @@ class ConstantStrain:
 
     @property
     def couple(self) -> Array:
-        """(3,) in N m/m² with which the state is in balance: e3 × Q, Q the shear force."""
+        """Couple (3,) in N m/m² that balances the state: e3 × Q, Q the shear force."""
         q1, q2 = rigidities(PATCH_THICKNESS)[1] * self.shear
         return np.array([-q2, q1, 0.0])
 
 
 def constant_strains() -> list[ConstantStrain]:
-    """Every membrane, bending and shear strain at once in each of three states.
+    """Return three states with every membrane, bending and shear strain at once.
 
     Bending is u_z = −κ_xx x²/2 − κ_yy y²/2 − κ_xy x y with normals that stay normal.
     """
@@ -110,7 +110,7 @@ def constant_strains() -> list[ConstantStrain]:
 
 @dataclass(frozen=True, slots=True)
 class Patch:
-    """A distorted mesh of the plate on [0, 1]², oblique in space.
+    """Distorted mesh of the plate on [0, 1]², oblique in space.
 
     Args:
         points: (num_points, 3) in m.
@@ -124,7 +124,7 @@ class Patch:
 
     @classmethod
     def of(cls, n: int = 4) -> Patch:
-        """With n edges along each side; inner points are off their places by a fifth of one."""
+        """Create a patch with n edges along each side, inner points shifted by a fifth of one."""
 
         def surface(x: Array, y: Array) -> Array:
             inside = (np.abs(x - 0.5) < 0.5 - ON_LINE) & (np.abs(y - 0.5) < 0.5 - ON_LINE)
@@ -136,7 +136,7 @@ class Patch:
         return cls(points, triangles, StaticShell(points, triangles, PATCH_THICKNESS, STEEL))
 
     def exact(self, state: ConstantStrain) -> Array:
-        """(num_dofs,) the known solution."""
+        """Return the known solution (num_dofs,)."""
         shell = self.shell
         solution = np.zeros(shell.num_dofs)
         for places, dofs, field in (
@@ -148,7 +148,7 @@ class Patch:
         return solution
 
     def solve(self, state: ConstantStrain) -> Array:
-        """(num_dofs,) the solution between edges that are held as it is known to be."""
+        """Return the solution (num_dofs,) with the known solution prescribed at the edges."""
         shell, exact = self.shell, self.exact(state)
         held: dict[int, float] = {}
         for places, dofs in (
@@ -160,7 +160,7 @@ class Patch:
         return shell.solve(held, shell.surface_load(np.zeros(3), OBLIQUE @ state.couple))
 
     def error(self, state: ConstantStrain) -> float:
-        """Largest error of a displacement or rotation, relative to the largest of its kind."""
+        """Return the largest error of a displacement or rotation, relative to the largest one."""
         found, exact = self.solve(state), self.exact(state)
         return max(
             float(np.abs(found[dofs] - exact[dofs]).max() / np.abs(exact[dofs]).max())
@@ -179,7 +179,7 @@ class SupportedPlate:
     thickness: float
 
     def frequencies(self, n: int, count: int) -> Array:
-        """(count,) lowest natural frequencies in Hz of the shell, n edges along each side."""
+        """Return the lowest frequencies (count,) in Hz of the shell, n edges along each side."""
         # The drilling tie and the wall's inertia have frequencies of their own, from
         # √(12 DRILLING G/ρ)/(2π t) on: in a thick plate a soft tie comes too near.
         shell = StaticShell(
@@ -195,13 +195,13 @@ class SupportedPlate:
         return natural_frequencies(shell.held(held), count)
 
     def kirchhoff(self, count: int) -> Array:
-        """(count,) lowest frequencies in Hz without shear and rotary inertia (Navier 1823)."""
+        """Return frequencies (count,) in Hz without shear and rotary inertia (Navier 1823)."""
         t = self.thickness
         speed2 = STEEL.youngs_modulus * t**2 / (12.0 * (1.0 - STEEL.poissons_ratio**2))
         return self._lowest(self._wave_numbers2() * np.sqrt(speed2 / STEEL.density), count)
 
     def mindlin(self, count: int) -> Array:
-        """(count,) lowest frequencies in Hz (Mindlin 1951).
+        """Return the lowest frequencies (count,) in Hz (Mindlin 1951).
 
         With k² = (mπ/a)² + (nπ/b)² and the slope along the wave, ω² is the lower root of
         (S k² − ρt ω²)(D k² + S − ρt³/12 ω²) = S² k², S = 5/6 G t.
@@ -233,7 +233,7 @@ DEGREES = 20
 
 @dataclass(frozen=True, slots=True)
 class PressedPlate:
-    """A plate of steel on [0, length] × [0, width], pressed across.
+    """Plate of steel on [0, length] × [0, width], pressed across.
 
     Args:
         length, width: in m.
@@ -250,7 +250,7 @@ class PressedPlate:
     edges: Edges
 
     def shell(self, size: float) -> float:
-        """Mean deflection of the patch under a unit force spread over it, in m/N, by the shell.
+        """Return the mean deflection of the patch by the shell under a spread unit force, in m/N.
 
         Args:
             size: edge length in m, of which sides and places of the patch are whole multiples.
@@ -271,9 +271,9 @@ class PressedPlate:
         return float(load @ shell.solve(held, load))
 
     def theory(self) -> float:
-        """The same of the plate of Reissner and Mindlin, by Ritz's method (1909).
+        """Return the same of the plate of Reissner and Mindlin, by Ritz's method (1909).
 
-        Deflection and slopes are polynomials that keep the supports.
+        Deflection and slopes are polynomials that satisfy the supports.
         """
         nu, (plate, shear) = STEEL.poissons_ratio, rigidities(self.thickness)
         (x, along), (y, over) = (_gauss(0.0, side) for side in (self.length, self.width))
@@ -329,7 +329,7 @@ class _Field(NamedTuple):
 
     @classmethod
     def of(cls, plate: PressedPlate, x: Array, y: Array, free: tuple[bool, bool]) -> _Field:
-        """At places (num_x,) and (num_y,); zero at the ends of a side that are not free."""
+        """Create the field at places (num_x,) and (num_y,); zero at the fixed ends of a side."""
         (f, df), (g, dg) = (
             _polynomials(places, side, ends)
             for places, side, ends in zip((x, y), (plate.length, plate.width), free, strict=True)
@@ -338,7 +338,7 @@ class _Field(NamedTuple):
 
 
 def flange(edges: Edges) -> PressedPlate:
-    """Nearly the outer flange of the paper's boom, 0.3 m wide, under a pad beside its web."""
+    """Return nearly the outer flange of the paper's boom, under a pad beside its web."""
     return PressedPlate(0.6, 0.3, 6.64e-3, (0.25, 0.025), (0.35, 0.075), edges)
 
 
@@ -354,7 +354,7 @@ def _polynomials(places: Array, side: float, free: bool) -> tuple[Array, Array]:
 
 
 def _gauss(start: float, end: float) -> tuple[Array, Array]:
-    """Places and weights of Gauss's rule, exact for products of the polynomials."""
+    """Return places and weights of Gauss's rule, exact for products of the polynomials."""
     nodes, weights = legendre.leggauss(DEGREES + 2)
     half = 0.5 * (end - start)
     return start + half * (nodes + 1.0), half * weights

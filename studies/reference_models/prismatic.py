@@ -39,13 +39,14 @@ class Member:
 
     @property
     def widths(self) -> Array:
-        """(num_walls,) in m."""
+        """Widths (num_walls,) in m."""
         return np.asarray(np.linalg.norm(np.diff(self._line, axis=0), axis=1))
 
     @property
     def thin_walled_constant(self) -> float:
         """Torsion constant J in m⁴: Σ b t³/3 (Saint-Venant 1855), and 4 A² t/Σ b where the
-        section is closed (Bredt 1896)."""
+        section is closed (Bredt 1896).
+        """
         around = float(self.widths.sum())
         constant = around * self.thickness**3 / 3.0
         if self.closed:
@@ -60,7 +61,7 @@ class Member:
         return np.array([*self.corners, *last])
 
     def mesh(self, n: int, m: int) -> tuple[Array, Indices]:
-        """Points (num_points, 3) in m, triangles: n edges over the width of each wall, m along."""
+        """Return points (num_points, 3) in m, triangles: n edges across each wall, m along."""
         line = self._line
         count = n * (len(line) - 1)
 
@@ -80,7 +81,7 @@ class Member:
         return points, triangles
 
     def torsion_constant(self, n: int, m: int) -> float:
-        """J in m⁴ of the shell: torque over G times the rate of twist of its middle half.
+        """Return J in m⁴ of the shell: torque over G times the rate of twist of its middle half.
 
         The ends turn as stiff sections that are free to warp; the rate is read a quarter of the
         length away from them, so that their bent walls have no part in it. n edges over the width
@@ -113,7 +114,7 @@ BOX = Member([(-0.03, -0.05), (0.03, -0.05), (0.03, 0.05), (-0.03, 0.05)], True,
 
 @dataclass(frozen=True, slots=True)
 class PlainBox:
-    """A box of steel along x from 0.
+    """Box of steel along x from 0.
 
     Args:
         section: its plates.
@@ -130,7 +131,7 @@ class PlainBox:
         turn: Array | None = None,
         breaks: Mapping[str, float] | None = None,
     ) -> StaticShell:
-        """Its shell.
+        """Return the shell of the box.
 
         Args:
             size: target edge length in m.
@@ -147,14 +148,14 @@ class PlainBox:
     def free_frequencies(
         self, size: float, count: int, drilling: float = DRILLING, turn: Array | None = None
     ) -> Array:
-        """(count,) lowest elastic natural frequencies in Hz, see :meth:`shell`."""
+        """Return the lowest elastic frequencies (count,) in Hz, see :meth:`shell`."""
         free = self.shell(size, drilling, turn).held({})
         return np.asarray(natural_frequencies(free, 6 + count)[6:])
 
     def compliance(
         self, size: float, supports: Sequence[float], x: float, y: float, drilling: float = DRILLING
     ) -> float:
-        """In m/N, of the top flange at x to a force along z on the points ±y of it there.
+        """Return the compliance in m/N of the top flange at x along z, on the points ±y.
 
         Args:
             size: target edge length in m.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The forces of contact and friction of one implicit step, to round-off.
+"""Forces of contact and friction of one implicit step, to round-off.
 
 Rows that resist read z = free − C p, with their forces p and the compliance C that the step gives
 them. A contact row follows its law, p = F(z), with F as in (4) of Rusiński and Wyciślok (1997); a
@@ -37,14 +37,14 @@ class ResistingRows:
     """Contact and friction rows from step to step, from rest.
 
     Args:
-        laws: of the contact rows, without damping.
-        frictions: of the rows that follow, with prescribed normal forces.
-        compliance: (num_rows, num_rows) C in m/N, of what the rows read at the time of the forces.
-        onward: what a change of that reading makes over the whole step.
+        laws: those of the contact rows, without damping.
+        frictions: those of the rows that follow, with prescribed normal forces.
+        compliance: (num_rows, num_rows) C in m/N, of the readings at the time of the forces.
+        onward: factor of a change of that reading over the whole step.
 
     Attributes:
         readings: (num_rows,) at the end of the step, in m.
-        friction_loss: so far, in J.
+        friction_loss: dissipated energy so far, in J.
     """
 
     def __init__(
@@ -62,10 +62,10 @@ class ResistingRows:
         self.friction_loss = 0.0
 
     def forces(self, free: Array) -> Array:
-        """(num_rows,) forces of the next step in N, positive against a positive reading.
+        """Return the forces (num_rows,) of the next step in N, positive against a positive reading.
 
         Args:
-            free: (num_rows,) what the rows would read without, in m.
+            free: (num_rows,) readings without these forces, in m.
 
         Raises:
             NumericsError: they are not found.
@@ -83,7 +83,7 @@ class ResistingRows:
 
     @property
     def contact_energy(self) -> float:
-        """In J."""
+        """Energy of the contacts in J."""
         return float(contact_energy(self.readings[: self._contacts], self._terms))
 
 
@@ -120,7 +120,7 @@ def resist(problem: Problem, force: Array) -> bool:
 
 @njit(**LOOP)
 def _defect(problem: Problem, force: Array, left: Array, slope: Array) -> float:
-    """Largest way in m by which a row misses its answer to the others; the answers' slopes."""
+    """Return the largest residual of a row in m, and the slopes of the rows' responses."""
     compliance, free, _, _, _ = problem
     worst = 0.0
     for j in range(free.size):
@@ -132,7 +132,7 @@ def _defect(problem: Problem, force: Array, left: Array, slope: Array) -> float:
 
 @njit(**LOOP)
 def _excess(compliance: Array, free: Array, force: Array, change: float, j: int) -> float:
-    """A change of row j's force, as a multiple of one that is round-off."""
+    """Return a change of row j's force, as a multiple of one that is round-off."""
     reach = abs(free[j])
     for k in range(free.size):
         reach += abs(compliance[j, k] * force[k])
@@ -141,7 +141,7 @@ def _excess(compliance: Array, free: Array, force: Array, change: float, j: int)
 
 @njit(**LOOP)
 def _answer(problem: Problem, force: Array, j: int) -> tuple[float, float]:
-    """The force of row j under those of the others, and its slope over what it would read."""
+    """Return the force of row j under those of the others, and its slope over its reading."""
     compliance, free, terms, bound, place = problem
     alone = free[j]
     for i in range(free.size):

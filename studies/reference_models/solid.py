@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A family of a segment's motions as a solid: elasticity in space, which judges the shell.
+"""Solid model of a symmetry class of a segment's motions, the reference of the shell.
 
-It answers whatever a family of a shell is asked. Where a shell's reading takes the displacement of
-a wall's mid-surface, the solid gives the mean over the wall's thickness; at a corner, the mean
-over the square in which two walls meet. A force is spread the same way.
+It has the same interface as a symmetry class of a shell. Where a shell's reading takes the
+displacement of a wall's mid-surface, the solid gives the mean over the wall's thickness; at a
+corner, the mean over the square in which two walls meet. A force is spread the same way.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def mesh_quarter(
             the largest away from them.
         around: largest edge length in m around the section, about; edges grow to it from the
             corners, where they are as long as the wall is thick.
-        splits: into how many each edge around the section is split, to refine the mesh evenly.
+        splits: number of parts of each edge around the section, to refine the mesh evenly.
         layers: of hexahedra through a wall, an even number.
 
     Raises:
@@ -102,7 +102,7 @@ def mesh_quarter(
 
 
 def _growing(length: float, smallest: float, largest: float, growth: float) -> Array:
-    """Edges of a length, each longer than the one before until they are the largest."""
+    """Return edges of growing length, up to the largest."""
     edges = [min(smallest, largest)]
     while sum(edges) < length:
         edges.append(min(growth * edges[-1], largest))
@@ -110,14 +110,14 @@ def _growing(length: float, smallest: float, largest: float, growth: float) -> A
 
 
 def _across(distance: float, wall: float, size: float, splits: int, layers: int) -> Array:
-    """Planes from the middle to the outside of a wall, whose mid-line is at half the distance."""
+    """Return planes from the middle to the outside of a wall with mid-line at half the distance."""
     clear = _growing(0.5 * (distance - wall), wall, size, _GROWTH_AROUND)[::-1]
     edges = [np.repeat(clear / splits, splits), np.full(layers, wall / layers)]
     return np.concatenate([[0.0], np.cumsum(np.concatenate(edges))])
 
 
 def _walls(planes: tuple[Array, Array, Array], layers: int) -> tuple[Array, Indices]:
-    """Points and cells of a lattice that lie in the outermost layers."""
+    """Return points and cells of a lattice in the outermost layers."""
     shape = tuple(plane.size for plane in planes)
     number = np.arange(np.prod(shape)).reshape(shape)
     j, k = np.indices((shape[1] - 1, shape[2] - 1))
@@ -136,7 +136,7 @@ def _walls(planes: tuple[Array, Array, Array], layers: int) -> tuple[Array, Indi
 
 @dataclass(frozen=True, slots=True)
 class SolidFamily(Shell):
-    """K u = f and M ü of a quarter of a segment, with the energies of the whole one.
+    """Solid model K u = f and M ü of a quarter, with the energies of the whole segment.
 
     It is on one process, and there are no rotations.
 
@@ -157,16 +157,16 @@ class SolidFamily(Shell):
 
     @property
     def owned(self) -> tuple[int, int]:
-        """All rows."""
+        """Range of all rows."""
         return 0, self.num_dofs
 
     def outline(self, x: float) -> Outline:
-        """The means at x, a plane of the mesh; :meth:`row` alone understands what it reads."""
+        """Return the means at x, a plane of the mesh; only :meth:`row` accepts their readings."""
         at = np.flatnonzero(np.abs(self.middles[:, 0] - x) < ON_LINE)
         return Outline(x, self.middles[at], 3 * at[:, None] + np.arange(3), self.section)
 
     def row(self, weights: Row) -> Array:
-        """(num_dofs,) what a reading of means reads of the family's motions."""
+        """Return the row (num_dofs,) of a reading of means for the motions of the class."""
         of_means = np.zeros(self.means.shape[0])
         of_means[list(weights)] = list(weights.values())
         of_means = self.means.T @ of_means
@@ -181,7 +181,7 @@ class SolidForms(NamedTuple):
 
 
 def solid_forms(space: Any, material: Material) -> SolidForms:
-    """Linear elasticity in space (Navier 1821) of an isotropic material, on a ``solid_space``."""
+    """Return forms of linear elasticity (Navier 1821), isotropic, on a ``solid_space``."""
     domain = space.mesh
     shear, nu = material.shear_modulus, material.poissons_ratio
     mu, lame, density = (
@@ -197,11 +197,11 @@ def solid_forms(space: Any, material: Material) -> SolidForms:
 
 
 class SolidMatrices(Matrices):
-    """Matrices of four quarters on this process, assembled when they are asked for.
+    """Matrices of four quarters on this process, assembled on first use.
 
     Args:
         forms: of one quarter.
-        held: (num_held,) degrees of freedom that stay at zero.
+        held: (num_held,) constrained degrees of freedom.
     """
 
     def __init__(self, forms: SolidForms, held: Indices) -> None:
@@ -227,18 +227,18 @@ class SolidMatrices(Matrices):
 
 
 def assemble_solid(segment: Segment, mesh: SolidMesh, family: Family) -> SolidFamily:
-    """Assemble one family of a segment's motions on this process.
+    """Assemble one symmetry class of a segment's motions on this process.
 
-    A pinned support holds the whole section against y and z, which leaves it free to tilt; a
-    clamped one holds every displacement of it.
+    A pinned support fixes the whole section along y and z, which leaves it free to tilt; a
+    clamped one fixes every displacement of it.
 
     Args:
         segment: with a box section, on rigid supports.
         mesh: of a quarter, with planes at supports and wherever an outline is read.
-        family: of the motions.
+        family: the symmetry class.
 
     Raises:
-        ValueError: the segment has what the solid does not know.
+        ValueError: the solid does not model a feature of the segment.
     """
     section = segment.section
     assert isinstance(section, BoxSection)
@@ -281,11 +281,11 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: Family) -> SolidFa
 
 
 def _means(mesh: SolidMesh, nodes: Array, family: Family) -> tuple[Array, csr_matrix]:
-    """Places on the mid-surfaces of the whole segment, and what takes the means there."""
+    """Return places on the mid-surfaces of the whole segment, and the rows of the means there."""
     places, quarter = _quarter_means(mesh, nodes)
     parts: list[tuple[Array, csr_matrix]] = []
     for signs, sides in zip(family.signs[:, :3], _SIDES, strict=True):
-        # What lies in a mirror is one place, not two.
+        # A place in a mirror counts once.
         mine = ~((on_plane(places, 1) & (sides[1] < 0)) | (on_plane(places, 2) & (sides[2] < 0)))
         image = diags(np.tile(signs, len(places))) @ quarter
         parts.append((places[mine] * sides, image[np.repeat(mine, 3)]))
@@ -321,9 +321,9 @@ def _quarter_means(mesh: SolidMesh, nodes: Array) -> tuple[Array, csr_matrix]:
 
 
 def _stencils(num_y: int, num_z: int, layers: int) -> Iterator[tuple[Indices, Indices, Array]]:
-    """Positions along y and z, and weights, of the nodes that the mean at each place takes.
+    """Return positions along y and z, and weights, of the nodes of the mean at each place.
 
-    With ``layers`` of cells through a wall.
+    There are ``layers`` of cells through a wall.
     """
     # Simpson's rule is exact for the quadratic displacement of a cell.
     simpson = np.zeros(2 * layers + 1)

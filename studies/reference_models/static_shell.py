@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Any triangle mesh as a shell under a load that does not move, on one process.
+"""Static shell of any triangle mesh, on one process.
 
 Degrees of freedom are components in space, so that supports, loads and readings are named by
 places, whatever the facets' frames are.
@@ -25,15 +25,15 @@ from shell_model.segment.forms import DRILLING, SHEAR_CORRECTION, ShellForms
 from shell_model.segment.shell import ON_LINE, Matrices, Plates, Shell, owned_nodes
 from shell_model.segment.solver import times
 
-# Part of the load that may be left over.
+# Permitted residual as a part of the load.
 _UNBALANCED = 1.0e-3
 
-# Degree of freedom → the value in m or rad at which it is held.
+# Degree of freedom → the prescribed value in m or rad.
 Held = Mapping[int, float]
 
 
 class StaticShell:
-    """A shell that nothing holds yet.
+    """Shell without supports.
 
     Args:
         points: (num_points, 3) in m.
@@ -76,32 +76,32 @@ class StaticShell:
         return int(self.stiffness.getSize()[0])
 
     def node_at(self, place: Array) -> int:
-        """Number of the displacement node at a place (3,) in m."""
+        """Return the number of the displacement node at a place (3,) in m."""
         distance = np.linalg.norm(self.nodes - place, axis=1)
         node = int(distance.argmin())
         assert distance[node] < ON_LINE, f"no node at {place}"
         return node
 
     def at(self, axis: int, place: float) -> Mask:
-        """(num_nodes,) which displacement nodes lie at a place in m along an axis."""
+        """Return which displacement nodes (num_nodes,) lie at a place in m along an axis."""
         return np.asarray(np.abs(self.nodes[:, axis] - place) < ON_LINE)
 
     def hold_at(
         self, axis: int, place: float, along: Sequence[int], about: Sequence[int] = ()
     ) -> dict[int, float]:
-        """What holds components along and about axes of all nodes at a place in m along an axis."""
+        """Return constraints along and about axes of all nodes at a place in m along an axis."""
         turned = np.abs(self.rotation_nodes[:, axis] - place) < ON_LINE
         moved = self.node_dofs[self.at(axis, place)]
         return hold(moved[:, list(along)]) | hold(self.rotation_dofs[turned][:, list(about)])
 
     def mirror(self, axis: int) -> dict[int, float]:
-        """What holds a half on the plane through the origin across an axis, as the other half."""
+        """Return the symmetry constraints on the plane through the origin across an axis."""
         return self.hold_at(axis, 0.0, [axis], [i for i in range(3) if i != axis])
 
     def surface_load(
         self, force: Array, couple: Array | None = None, on: Mask | None = None
     ) -> Array:
-        """(num_dofs,) of a uniform force (3,) in N/m² and couple (3,) in N m/m².
+        """Return the load (num_dofs,) of a uniform force (3,) in N/m² and couple (3,) in N m/m².
 
         On the facets that ``on`` (num_triangles,) names, or all.
         """
@@ -118,13 +118,13 @@ class StaticShell:
         return compat.assemble_vector(form)
 
     def point_load(self, place: Array, force: Array) -> Array:
-        """(num_dofs,) of a force (3,) in N on the node at a place (3,) in m."""
+        """Return the load (num_dofs,) of a force (3,) in N on the node at a place (3,) in m."""
         load = np.zeros(self.num_dofs)
         load[self.node_dofs[self.node_at(place)]] = force
         return load
 
     def line_load(self, on_line: Mask, force: Array) -> Array:
-        """(num_dofs,) of a force (3,) in N that is spread evenly over a straight line of edges.
+        """Return the load (num_dofs,) of a force (3,) in N spread evenly over a line of edges.
 
         ``on_line`` (num_nodes,) names nodes: points and middles by turns.
         """
@@ -143,10 +143,10 @@ class StaticShell:
         return load
 
     def solve(self, held: Held, load: Array) -> Array:
-        """(num_dofs,) displacements in m and rotations in rad, by MUMPS.
+        """Return displacements in m and rotations in rad (num_dofs,), by MUMPS.
 
         Args:
-            held: what is held, enough to leave no rigid motion.
+            held: constraints, enough to leave no rigid motion.
             load: (num_dofs,) in N and N m.
 
         Raises:
@@ -177,11 +177,11 @@ class StaticShell:
         return np.asarray(found)
 
     def forces(self, solution: Array) -> Array:
-        """(num_dofs,) forces in N and moments in N m that keep a solution, K times it."""
+        """Return K times a solution (num_dofs,): forces in N and moments in N m."""
         return np.asarray(times(self.stiffness, solution[:, None])[:, 0])
 
     def held(self, dofs: Held) -> Shell:
-        """The shell with some degrees of freedom held at zero, ready to vibrate."""
+        """Return the shell with some degrees of freedom fixed, for vibration."""
         rows = np.fromiter(dofs, dtype=np.int32, count=len(dofs))
         zero = fem.Function(self._plates.space)
         holds = [fem.dirichletbc(zero, np.sort(rows))]
@@ -202,6 +202,6 @@ class StaticShell:
 
 
 def hold(dofs: Indices, values: float | Array = 0.0) -> dict[int, float]:
-    """Degrees of freedom, any shape, held at a value or at values of the same shape."""
+    """Return constraints of degrees of freedom at a value or at values of the same shape."""
     values = np.broadcast_to(np.asarray(values, dtype=float), dofs.shape)
     return dict(zip(dofs.ravel().tolist(), values.ravel().tolist(), strict=True))

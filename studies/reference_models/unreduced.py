@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The motion of the unreduced shells: what the reduction is held against.
+"""Motion of the unreduced shells, the reference of the reduction.
 
-Every segment goes by the generalised-α method, its matrix factorised once. Contact and friction
-are condensed: a step is one back-substitution for each segment as if nothing resisted, then a small
+Every segment moves by the generalised-α method, its matrix factorised once. Contact and friction
+are condensed: a step is one back-substitution for each segment without them, then a small
 problem in the forces of the rows, whose compliance does not change from step to step, then their
 displacements, which are known combinations of columns. The forces are those at the time of the
 method's own balance, friction opposes the way over the whole step, and what it holds stays where it
@@ -17,10 +17,10 @@ with the forces p of contact and friction on the rows R. In the unknown d* = d_{
 
     (K + σ M) d* = q − Rᵀ p + M (σ x − αm a_n),    σ = (1 − αm)/c,    c = (1 − αf) β h²
 
-where x is what d* would be if a_{n+1} were nothing. The matrix is the same in every step.
+where x is d* for a_{n+1} = 0. The matrix is the same in every step.
 
-Energy that is not accounted for is what the method takes, and what a step misses of a contact that
-opens or closes within it. Any number of ranks may share the shells.
+Unaccounted energy is the algorithmic dissipation, and the error of a step in which a contact
+opens or closes. Any number of ranks may share the shells.
 """
 
 from __future__ import annotations
@@ -48,12 +48,12 @@ _START = 1.0e-12
 
 @dataclass(frozen=True, slots=True)
 class GeneralisedAlpha:
-    """The parameters of one step, (17) and (25) of Chung and Hulbert (1993).
+    """Parameters of one step, (17) and (25) of Chung and Hulbert (1993).
 
     Args:
         step: h in s, positive.
-        radius: ρ∞, what a step leaves of the fastest modes, from 0 to 1. At 1 it is the midpoint
-            rule, which keeps the energy.
+        radius: ρ∞, amplitude ratio of the fastest modes per step, from 0 to 1. At 1 it is the
+            midpoint rule, which keeps the energy.
 
     Raises:
         ValueError: an argument is out of its range.
@@ -70,37 +70,37 @@ class GeneralisedAlpha:
 
     @property
     def mass_shift(self) -> float:
-        """αm."""
+        """Parameter αm."""
         return (2.0 * self.radius - 1.0) / (self.radius + 1.0)
 
     @property
     def force_shift(self) -> float:
-        """αf."""
+        """Parameter αf."""
         return self.radius / (self.radius + 1.0)
 
     @property
     def gamma(self) -> float:
-        """γ, with which the method is of second order."""
+        """Parameter γ, for second-order accuracy."""
         return 0.5 - self.mass_shift + self.force_shift
 
     @property
     def beta(self) -> float:
-        """β, with which it takes most from the fastest modes and least from the slow ones."""
+        """Parameter β, with most dissipation of fast modes and least of slow ones."""
         return 0.25 * (1.0 - self.mass_shift + self.force_shift) ** 2
 
     @property
     def reach(self) -> float:
-        """c in s²: what an acceleration a_{n+1} adds to d*."""
+        """Factor c in s² of an acceleration a_{n+1} in d*."""
         return (1.0 - self.force_shift) * self.beta * self.step**2
 
     @property
     def shift(self) -> float:
-        """σ in 1/s²."""
+        """Shift σ in 1/s²."""
         return (1.0 - self.mass_shift) / self.reach
 
 
 class SegmentStepper:
-    """One segment on its way, from rest. Collective; its PETSc objects live until ``destroy``.
+    """Stepper of one segment from rest. Collective; PETSc objects live until ``destroy``.
 
     Args:
         shell: the segment.
@@ -132,7 +132,7 @@ class SegmentStepper:
         self._start()
 
     def free_response(self) -> None:
-        """d* if no row pushed: the only solution of a large system in a step."""
+        """Return d* without forces on rows: the only solution of a large system in a step."""
         alpha, h = self._alpha, self._alpha.step
         part = (1.0 - alpha.force_shift) * h
         self._d.copy(self._x)
@@ -144,11 +144,11 @@ class SegmentStepper:
         self._star.array[:] = self._effective(self._scratch.array[:, None])[:, 0]
 
     def read(self) -> Array:
-        """(num_rows,) this rank's part of what the rows read of d*, in m."""
+        """Return this rank's part (num_rows,) of the readings of d*, in m."""
         return np.asarray(self._rows @ self._star.array)
 
     def push(self, forces: Array) -> None:
-        """End the step under the forces (num_rows,) in N with which the rows resist."""
+        """Complete the step under the forces (num_rows,) in N of the rows."""
         alpha, h = self._alpha, self._alpha.step
         self._star.array[:] -= self._columns @ forces
         self._v.axpy(h * (1.0 - alpha.gamma), self._a)
@@ -159,11 +159,11 @@ class SegmentStepper:
         self._d.axpby(onward, 1.0 - onward, self._star)
 
     def displacement(self) -> Array:
-        """(num_owned,) d in m."""
+        """Return d (num_owned,) in m."""
         return np.asarray(self._d.array)
 
     def energies(self) -> tuple[float, float, float]:
-        """Kinetic energy, strain energy and the work of the load so far, in J. Collective."""
+        """Return kinetic energy, strain energy and work of the load so far, in J. Collective."""
         self._shell.mass.mult(self._v, self._scratch)
         kinetic = 0.5 * float(self._v.dot(self._scratch))
         self._shell.stiffness.mult(self._d, self._scratch)
@@ -171,13 +171,13 @@ class SegmentStepper:
         return kinetic, strain, float(self._load.dot(self._d))
 
     def destroy(self) -> None:
-        """Give back PETSc's memory."""
+        """Free PETSc's memory."""
         vectors = self._load, self._scratch, self._d, self._v, self._a, self._x, self._star
         for thing in (self._effective, *vectors):
             thing.destroy()
 
     def _start(self) -> None:
-        """a_0 from M a_0 = q. The mass matrix is well conditioned once scaled by its diagonal."""
+        """Solve M a_0 = q for a_0. The mass matrix is well conditioned after diagonal scaling."""
         solver = PETSc.KSP().create(self._shell.comm)
         solver.setOperators(self._shell.mass)
         solver.setType(PETSc.KSP.Type.CG)
@@ -192,17 +192,17 @@ class SegmentStepper:
 
 RADIUS = 0.8
 
-# The energy residual beyond which a motion is not a result: the method takes energy where its
+# The largest energy residual of a valid result: the method dissipates energy if its
 # steps are long.
 LOSS_BOUND = 1.0e-2
 
-# How often a motion looks whether its energies can be trusted.
+# Number of checks of the energies during a motion.
 _CHECKS = 20
 
 
 @dataclass(frozen=True, slots=True)
 class DirectMotion:
-    """A motion of the unreduced shells.
+    """Motion of the unreduced shells.
 
     Args:
         time: (num_times,) in s.
@@ -211,7 +211,7 @@ class DirectMotion:
             the time, positive where the inner segment presses up.
         friction_forces: (num_times, num_frictions) in N, likewise, positive where they push the
             inner segment along its row.
-        slides: (num_times, num_frictions) what the friction rows read, in m.
+        slides: (num_times, num_frictions) readings of the friction rows, in m.
         energies: (num_times, 7), the columns of ``ENERGIES`` in J.
         step: in s.
     """
@@ -249,7 +249,7 @@ def integrate_directly(
         energy_bound: largest energy residual that passes.
 
     Raises:
-        BoomError: it has what the direct integration does not take.
+        BoomError: the direct integration does not support a feature of the boom.
         NumericsError: forces are not found, numbers are not finite, or the energy residual passes
             its bound.
     """
@@ -295,7 +295,7 @@ def _march(
     substeps: int,
     energy_bound: float,
 ) -> DirectMotion:
-    """Make ``substeps`` steps for each of the outputs."""
+    """Compute ``substeps`` steps for each of the outputs."""
     rows = ResistingRows(
         [contact.law for contact in full.rows.contacts],
         [friction.law for friction in full.rows.frictions],
@@ -339,6 +339,6 @@ def _march(
 
 
 def _rows(readings: Sequence[Reading], number: int, shell: SegmentShell) -> scipy.sparse.csr_matrix:
-    """(num_readings, num_owned) this rank's part of what readings read of a segment."""
+    """Return this rank's part (num_readings, num_owned) of the readings of a segment."""
     parts = [shell.row(reading.get(number, Row())) for reading in readings]
     return scipy.sparse.csr_matrix(np.array(parts).reshape(-1, shell.free.size))
