@@ -37,7 +37,7 @@ class BoomModes:
     Segments connected by a bonded joint have common modes, under the influence of cylinders.
 
     Args:
-        boom: its joints say what is tied, and whether it is in space.
+        boom: with its joints, bonded or with play, flat or in space.
         models: one for each segment.
 
     Attributes:

@@ -54,7 +54,7 @@ class Calibration:
     Args:
         segments: their stiffness.
         residual: (num_resisting, num_resisting) in m/N what contact rows, friction rows and
-            dashpots give way beyond the beam, see :mod:`dynamics.reduction`.
+            dashpots deflect beyond the beam, see :mod:`dynamics.reduction`.
     """
 
     segments: Sequence[Stiffness]

@@ -64,7 +64,7 @@ class Elements:
     """The segments of a boom as elements that are exact in statics, with or without play.
 
     Args:
-        boom: whose joints may be tied or not.
+        boom: with joints bonded or with play.
     """
 
     boom: Boom
@@ -135,7 +135,7 @@ def handed_on(boom: Boom, holds: Sequence[Hold]) -> list[Hold]:
 
     Args:
         boom: at rest.
-        holds: of all its segments, of which those of an outer one lack what the inner one hands on.
+        holds: of all its segments; those of an outer one lack the forces that the inner transfers.
     """
     whole = {hold[:2]: hold for hold in holds}
     for joint in sorted(boom.joints, key=lambda joint: -joint.inner):

@@ -48,7 +48,7 @@ def with_compression(
 ) -> tuple[Segment, ...]:
     """Return the segments with the axial forces that they carry.
 
-    A boom that stands upright weighs on its base:
+    The base of an upright boom carries its weight:
 
     >>> arm, fly = with_compression(boom.segments, boom.joints, [], gravity=9.80665)
     >>> masses = [segment.mass_per_length * segment.length for segment in (arm, fly)]
@@ -58,7 +58,7 @@ def with_compression(
 
     Args:
         segments: from the base to the tip.
-        joints: say where each segment is locked in the next one.
+        joints: give the places where each segment is locked in the next one.
         thrusts: on the segments.
         gravity: acceleration towards the base in m/s², by which all masses weigh, collars and
             diaphragms among them.
@@ -133,7 +133,7 @@ def pin_moments(
     the axial forces N, which do N d w′ of work: a constant moment N d at the pin.
 
     Args:
-        segments: with what they carry.
+        segments: with their axial forces.
         joints: between them.
         bodies: of the segments.
     """
@@ -178,10 +178,10 @@ def carried(
     """Return P of a segment in N, (..., num_places) at x in m and times (...) in s.
 
     Args:
-        segments: with what they carry at the start.
-        joints: some may be drawn out.
+        segments: with their initial axial forces.
+        joints: some may telescope.
         number: of the segment.
-        x, time: where and when; at a jump either of both.
+        x, time: place and time; at a jump either value.
     """
     total = np.broadcast_to(segments[number].compression(x), (*time.shape, x.size))
     for position, joint in enumerate(joints):

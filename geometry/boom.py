@@ -134,7 +134,7 @@ class Boom:
 
     @property
     def spatial(self) -> bool:
-        """Whether the segments also move along y and twist."""
+        """True if the segments also move along y and twist."""
         return any(joint.lateral_play is not None for joint in self.joints)
 
     @cached_property
@@ -145,12 +145,12 @@ class Boom:
 
     @property
     def driven(self) -> bool:
-        """Whether a joint telescopes during the motion."""
+        """True if a joint telescopes during the motion."""
         return any(joint.drive is not None for joint in self.joints)
 
     @property
     def compressed(self) -> bool:
-        """Whether a segment carries an axial force."""
+        """True if a segment carries an axial force."""
         return any(segment.compression for segment in self.segments)
 
     @property
@@ -238,7 +238,7 @@ class Boom:
     def recorded(self, of_ends: Sequence[Quantity]) -> list[Observation]:
         """Return what a model records: several quantities of every end, then the observations.
 
-        Behind an end's name stands the quantity, ``tip_rotation``, unless it is the deflection.
+        The quantity follows an end's name, ``tip_rotation``, unless it is the deflection.
         """
         return [*self._at_ends(of_ends), *self.observations]
 
@@ -490,7 +490,7 @@ def check_place(where: str, x: float, segment: Segment) -> None:
     Args:
         where: its key.
         x: m.
-        segment: whose name the message tells.
+        segment: its name is in the message.
 
     Raises:
         BoomError: it is not.

@@ -106,13 +106,13 @@ class Pad:
             it presses down, 0 both ways.
         inner, outer: (y, z) in m of the points from the axes of their segments.
         weight: the part of the joint's law on this side that the pad carries.
-        rubs: the direction in which it slides.
+        rubs: direction of sliding.
         normal_force: of its friction in N; None where its own contact presses.
-        pressed: what it presses of the corners of the inner and of the outer segment.
+        pressed: its stretches of the corners of the inner and of the outer segment.
         patch: the wall that it covers; None where it is a point.
-        raised: how far it stands out beyond the joint's clearance in m.
+        raised: its protrusion into the joint's clearance in m.
         face: of the inner segment in space, which touches in a corner of it; None in a flat boom.
-        carrier: the segment on which it sits as the joint is drawn out; None where it is not.
+        carrier: the segment to which it is fixed as the joint telescopes; None without a drive.
         moved: m by which it has moved along the inner and the outer segment.
     """
 
@@ -187,7 +187,7 @@ class Pad:
 
     @property
     def covered(self) -> tuple[Offset, Offset]:
-        """(y, z) in m of the middles of its areas on both segments, from their axes."""
+        """Middles (y, z) in m of its areas on both segments, from their axes."""
         step = (self.across, 0.0) if self.direction == "z" else (0.0, self.across)
         (a, b), (c, d) = self.inner, self.outer
         return (a + step[0], b + step[1]), (c + step[0], d + step[1])
@@ -279,7 +279,7 @@ class Rest:
         station: position in ``Boom.stations``.
         stop: the stop.
         pressed: of the corners.
-        reach: how far in and out its segment is drawn, in m.
+        reach: range of its segment's extension in m.
     """
 
     station: int

@@ -43,7 +43,7 @@ class Cylinder:
         ground: x of the other end in m, and how far it is above the axis, which is straight.
         stiffness: along its line in N/m, of two side by side together.
         dashpot: along its line in N·s/m, likewise.
-        spread: m along y between two side by side, in space; one in the middle unless given.
+        spread: distance along y in m of two side by side, in space; one in the middle unless given.
     """
 
     segment: SegmentRef

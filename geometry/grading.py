@@ -106,7 +106,7 @@ def _too_large(mesh: SegmentMesh, mirrors: Sequence[Direction], spots: Sequence[
     places[:, mirrored] = np.abs(places[:, mirrored])
     places = near * np.round(places / near)
     allowed = np.min([spot.allowed(places) for spot in spots], axis=0, initial=np.inf)
-    # Of the right triangle with equal sides and the same longest edge.
+    # Legs of the isosceles right triangle with the same longest edge.
     sides = _edges(places[mesh.triangles]).max(axis=1) / np.sqrt(2.0)
     return np.asarray(sides - allowed[mesh.triangles].min(axis=1) > near)
 

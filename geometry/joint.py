@@ -56,7 +56,7 @@ class SlidePad(PadSize):
     Args:
         side: on which wall of the inner segment.
         stiffness: beside which those of the same side share its force, in N/m.
-        shim: in m by which it stands out into the joint's play.
+        shim: its protrusion into the joint's play in m.
     """
 
     side: PadSide = "below"
@@ -80,10 +80,10 @@ class Joint:
         outer, inner: names of the two; in a boom their positions in ``Boom.segments``.
         stations: x at which they may touch, rising.
         play: 2Δ in m, the clearance above and below together.
-        contact: what presses at each station across the play, a
-            :class:`dynamics.contact.ContactLaw`; a tied joint needs none.
+        contact: law of each station across the play, a
+            :class:`dynamics.contact.ContactLaw`; a bonded joint needs none.
         lateral_play: the play along y in m; None in a flat boom.
-        lateral_contact: what presses along y; as ``contact`` unless given.
+        lateral_contact: law along y; as ``contact`` unless given.
         play_above, lateral_play_right: the part of a play in m that is there; half of it unless
             given.
         interference, lateral_interference: by how much shims press from both sides together in m,
@@ -91,7 +91,7 @@ class Joint:
         friction: μ of (28), and of (10) and (11) in space.
         normal_forces: N of (28) in N, one for each station; empty in space, where what presses
             is the contact force of the other plane.
-        tied: the segments deflect (and in space twist) alike at the stations, without play.
+        tied: bonded: the segments deflect (and in space twist) alike at the stations.
         pad: of the slide pads in the corners; shells touch in the corners themselves without it.
         pads: in place of it, where there are several at each station.
         contact_length: of these in m; a tenth of the overlap unless given.
@@ -99,8 +99,8 @@ class Joint:
         locked_at: x in m where the inner segment's axial force enters the outer one, at a pin;
             below the inner segment, the foot of the cylinder that pushes its tail. The tail unless
             given.
-        drive: what draws the inner segment out while the boom moves; it stays where it is unless
-            given.
+        drive: extends the inner segment while the boom moves; without it the joint keeps its
+            extension.
     """
 
     outer: SegmentRef
@@ -151,7 +151,7 @@ class Joint:
 
     @property
     def padded(self) -> bool:
-        """Whether it has pads of a given size."""
+        """True if it has pads of a given size."""
         return self.pad is not None or bool(self.pads)
 
     def pads_of(
@@ -184,7 +184,7 @@ class Stop:
         segment: its name; in a boom its position.
         x: m.
         play: 2Δ in m, half of it each way.
-        contact: what presses across the play, a :class:`dynamics.contact.ContactLaw`; one-sided
+        contact: law across the play, a :class:`dynamics.contact.ContactLaw`; one-sided
             where the ground is on one side alone.
         contact_length: of the segment's corners that it presses, in m; a fifth of the height of
             its box unless given.
@@ -227,8 +227,8 @@ class Drive:
     Args:
         history: in m since the start, 0 at t = 0; a history of the dynamics.
         carriers: the segment on which each station of the joint sits.
-        least_overlap: in m, below which the overlap must not come.
-        locked: the segment on which the place sits where the inner one's axial force passes.
+        least_overlap: minimum overlap in m.
+        locked: the segment to which the place is fixed where the inner one's axial force passes.
     """
 
     history: Any
@@ -238,7 +238,7 @@ class Drive:
 
     @cached_property
     def times(self) -> Array:
-        """(num_times,) times from t = 0 on in s, with its kinks."""
+        """Times (num_times,) from t = 0 on in s, with its kinks."""
         kinks = np.array([0.0, *self.history.kinks])
         times = np.union1d(kinks, np.linspace(kinks.min(), kinks.max(), _TIMES))
         return np.asarray(times[times >= 0.0])

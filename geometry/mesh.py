@@ -54,12 +54,12 @@ class SegmentMesh:
 
     @property
     def on_walls(self) -> Mask:
-        """(num_triangles,) True on walls, False on diaphragms."""
+        """Mask (num_triangles,): True on walls, False on diaphragms."""
         return np.asarray(self.walls < len(self.plates))
 
     @property
     def along(self) -> Array:
-        """(num_triangles,) x in m of the middles of the triangles."""
+        """Middles (num_triangles,) of the triangles, x in m."""
         return np.asarray(self.points[self.triangles, 0].mean(axis=1))
 
     def write(self, path: Path) -> None:
@@ -109,7 +109,7 @@ def mesh_segment(
         breaks: name → x in m of each outline that must be a mesh line; the smallest and the
             largest x are the ends of the segment. Two names may share a place.
         size: target edge length in m; every patch gets the nearest whole number of edges.
-        closed: names of the breaks at which a diaphragm stands, in their order.
+        closed: names of the breaks with a diaphragm, in their order.
         along: x in m of further outlines → target edge length in m along the boom from there on;
             ``size`` before the first of them.
 
@@ -291,7 +291,7 @@ def _edges(length: float, size: float) -> int:
 def _extract(surfaces: Sequence[Sequence[int]], plates: tuple[str, ...]) -> SegmentMesh:
     mesh = gmsh.model.mesh
     tags, coordinates, _ = mesh.getNodes()
-    # What is held in a mirror's plane must lie in it to the last bit.
+    # Points in a mirror's plane must lie in it to the last bit.
     coordinates[np.abs(coordinates) < _ROUND_OFF * np.ptp(coordinates)] = 0.0
     number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     number[tags] = np.arange(tags.size)

@@ -89,7 +89,7 @@ def tapered_mesh(segment: Segment, mesh: PlatedMesh) -> PlatedMesh:
         ends = np.roll(starts, -1, axis=0)
         arms = (starts - middle)[number[here]], (ends - middle)[number[here]]
         points[here, 1:] = middle + first[here, None] * arms[0] + last[here, None] * arms[1]
-    # What is held in a mirror's plane must lie in it to the last bit.
+    # Points in a mirror's plane must lie in it to the last bit.
     points[np.abs(points) < near] = 0.0
     return replace(mesh, points=points)
 

@@ -106,7 +106,7 @@ class PolygonSection(Section):
 
     @cached_property
     def centroid(self) -> Offset:
-        """(y, z) in m in the axes of the corners."""
+        """Centroid (y, z) in m in the axes of the corners."""
         parts = _moments(trapezoids(_plates(*self._upwards)))
         return float(parts[0]), float(parts[1])
 

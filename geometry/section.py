@@ -63,12 +63,12 @@ class Plate(NamedTuple):
 
     @property
     def middle(self) -> Offset:
-        """(y, z) in m of the middle of the mid-line."""
+        """Middle (y, z) of the mid-line in m."""
         return 0.5 * (self.start[0] + self.end[0]), 0.5 * (self.start[1] + self.end[1])
 
     @property
     def tangent(self) -> Array:
-        """(2,) unit vector from the start to the end."""
+        """Unit vector (2,) from the start to the end."""
         return np.asarray(np.subtract(self.end, self.start) / self.length)
 
     def distance(self, places: Array) -> Array:
@@ -347,7 +347,7 @@ class BoxSection(Section):
 
     @property
     def centroid(self) -> Offset:
-        """(y, z) in m from the middle of the mid-lines."""
+        """Centroid (y, z) in m from the middle of the mid-lines."""
         y, _ = _hollow_rectangle(self.height, self.width, *self._walls)
         z, _ = _hollow_rectangle(self.width, self.height, *reversed(self._walls))
         return y, z

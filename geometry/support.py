@@ -25,7 +25,7 @@ class Support:
     Args:
         x: m.
         kind: ``pinned`` leaves the slopes free, ``clamped`` holds them too.
-        stiffness: of a pinned support whose deflections give way, in N/m, the same along y and
+        stiffness: of an elastic pinned support, in N/m, the same along y and
             along z; rigid unless given. The twist is held rigidly all the same.
         lateral_kind: whether the slope along y is held; as that along z unless given.
         rotation_stiffness: against the slopes that are not held, in N·m/rad; none unless given.
@@ -48,7 +48,7 @@ class Support:
 
     @property
     def clamped(self) -> bool:
-        """Whether it holds both slopes rigidly."""
+        """True if it holds both slopes rigidly."""
         return self.holds_slope("z") and self.holds_slope("y")
 
     def turned(self) -> Support:
@@ -62,7 +62,7 @@ def check_support(where: str, support: Support) -> None:
     """Check that a support is possible; ``where`` is its key.
 
     Raises:
-        BoomError: it is rigid and gives way at once, or a number is none that can be.
+        BoomError: it is both rigid and elastic, or a number is impossible.
     """
     at = f"at {support.x:g} m"
     if support.stiffness is not None and (support.holds_slope("z") or support.holds_slope("y")):

@@ -29,7 +29,7 @@ class Course:
     Args:
         joints: their positions in ``Boom.joints``, from the base.
         drives: theirs.
-        stations: positions in ``Boom.stations`` of what moves.
+        stations: positions in ``Boom.stations`` of the stations that move.
     """
 
     joints: tuple[int, ...]
