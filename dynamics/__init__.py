@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How gap systems move, and what their motion is worth."""
+"""Motion of gap systems, and its predictability."""

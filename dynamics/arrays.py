@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Arrays of numpy as annotations name them; ``geometry``, which is not known here, has its own."""
+"""Array types for annotations. ``geometry`` is independent of this package and has its own."""
 
 import numpy as np
 import numpy.typing as npt

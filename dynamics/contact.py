@@ -22,14 +22,14 @@ from dynamics.contact_term import (
     slope_of,
 )
 
-# In N: smaller than any force that matters; and the logarithm of a penetration beyond all.
+# In N: smaller than any force that matters; and the logarithm of an upper bound of penetrations.
 _LEAST, _DEEPEST = 1.0e-300, 300.0
 
 
 class ContactLaw(ABC):
-    """What presses two bodies that touch, by their relative displacement y = u − w.
+    """Contact force between two bodies by their relative displacement y = u − w.
 
-    A law of one's own derives from this class, is a frozen dataclass, and gives
+    A user's law derives from this class, is a frozen dataclass, and gives
 
     1. ``terms``, whose sum is the elastic force: never attractive, and zero at y = 0, where the
        bodies begin to touch unless the law is :meth:`behind` a clearance;
@@ -52,33 +52,33 @@ class ContactLaw(ABC):
 
     @abstractmethod
     def one_sided(self, side: int) -> ContactLaw | None:
-        """The law on the side of this sign alone; None where it never touches."""
+        """Return the law on the side of this sign alone; None where it never touches."""
 
     @abstractmethod
     def shared(self, weight: float) -> ContactLaw:
-        """The part ``weight`` of the law, for one of several points that carry it together."""
+        """Return a part of the law by ``weight``, for one of several points that share it."""
 
     def behind(self, above: float, below: float | None = None) -> Gap:
         """Return the law behind a clearance in m, and behind another one below if it is given."""
         return Gap(self, above, above if below is None else below)
 
     def scaled(self, factor: float) -> ContactLaw:
-        """Return the law behind so many times its clearances."""
+        """Return the law with its clearances times a factor."""
         return self
 
     @property
     def play(self) -> float:
-        """From one side to the other in m; twice the clearance where there is but one."""
+        """Distance from one side to the other in m; twice the clearance of a one-sided law."""
         onsets = self.onset(1.0), self.onset(-1.0)
         whole = sum(onsets) if np.isfinite(onsets).all() else 2.0 * min(onsets)
         return max(whole, 0.0)
 
     def onset(self, side: float) -> float:
-        """Return where a side begins to touch in m; infinite where it never does."""
+        """Return the gap in m at which a side begins to touch; infinite where it never does."""
         return min((term.onset for term in self.terms if term.side == side), default=np.inf)
 
     def force(self, y: Array) -> Array:
-        """Elastic force in N that the outer segment feels; the inner one feels its opposite.
+        """Return the elastic force in N on the outer segment; the inner one has the opposite.
 
         Args:
             y: relative displacement u − w in m, any shape.
@@ -86,22 +86,22 @@ class ContactLaw(ABC):
         return self._sum(force_of, y)
 
     def energy(self, y: Array) -> Array:
-        """Potential of :meth:`force` in J. Shape of ``y``."""
+        """Return the potential of :meth:`force` in J, in the shape of ``y``."""
         return self._sum(energy_of, y)
 
     def slope(self, y: Array) -> Array:
-        """dF/dy in N/m. Shape of ``y``."""
+        """Return dF/dy in N/m, in the shape of ``y``."""
         return self._sum(slope_of, y)
 
     def depth(self, y: float) -> float:
-        """How far in m it is pressed in at a gap in m, 0 where it is open."""
+        """Return the penetration in m at a gap in m, 0 where it is open."""
         return max(0.0, *(term.side * y - term.onset for term in self.terms))
 
     def slope_at(self, force: float) -> float:
-        """Return dF/dy in N/m where the law presses with a force in N, on its stiffer side."""
+        """Return dF/dy in N/m at a contact force in N, on the law's stiffer side."""
         from scipy.optimize import brentq
 
-        # In logarithms a power is a line.
+        # A power law is linear in logarithms.
         wanted = np.log(max(force, _LEAST))
 
         def slope(side: float) -> float:
@@ -113,7 +113,7 @@ class ContactLaw(ABC):
             depth = brentq(excess, -_DEEPEST, _DEEPEST) if ends[0] < 0.0 < ends[1] else 0.0
             return float(self.slope(np.array(side * np.exp(depth))))
 
-        # What overflows far beyond the force is none that matters.
+        # Overflow occurs only far beyond the force, where values do not matter.
         with np.errstate(over="ignore"):
             return max(slope(side) for side in {term.side for term in self.terms})
 
@@ -169,7 +169,7 @@ class Gap(ContactLaw):
         return replace(self, law=self.law.shared(weight))
 
     def behind(self, above: float, below: float | None = None) -> Gap:
-        """Return the law behind clearances that are so much larger in m."""
+        """Return the law behind clearances that are larger by these lengths in m."""
         more = above if below is None else below
         return replace(self, above=self.above + above, below=self.below + more)
 
@@ -177,7 +177,7 @@ class Gap(ContactLaw):
         return replace(self, above=factor * self.above, below=factor * self.below)
 
     def slope_at(self, force: float) -> float:
-        # Beside a clearance the least penetration would be lost.
+        # A small penetration would be lost to round-off beside a clearance.
         return self.law.slope_at(force)
 
     def __str__(self) -> str:
@@ -234,11 +234,11 @@ class PowerContact(ContactLaw):
         return tuple(Term(side, k, 0.0, self.exponent) for side, k in sides if k > 0.0)
 
     def upper(self) -> PowerContact:
-        """The same law on the side y > 0 alone."""
+        """Return the same law on the side y > 0 alone."""
         return replace(self, stiffness_below=0.0)
 
     def lower(self) -> PowerContact:
-        """The same law on the side y < 0 alone."""
+        """Return the same law on the side y < 0 alone."""
         return replace(self, stiffness=0.0, stiffness_below=self.below)
 
     def one_sided(self, side: int) -> PowerContact | None:
@@ -255,17 +255,17 @@ class PowerContact(ContactLaw):
 
 
 def contact_terms(laws: Sequence[ContactLaw]) -> Terms:
-    """The terms of the laws of rows, by row, for the compiled loops."""
+    """Return the terms of the laws of rows, by row, for the compiled loops."""
     return np.array([(row, *term) for row, law in enumerate(laws) for term in law.terms], TERM)
 
 
 def contact_limits(laws: Sequence[ContactLaw]) -> Limits:
-    """Where rows touch, for the compiled loops; infinite on a side where one never does."""
+    """Return the gaps where rows touch, for compiled loops; infinite on a side that does not."""
     return np.array([(-law.onset(-1.0), law.onset(1.0), law.damping) for law in laws], LIMITS)
 
 
 def restitution_damping(restitution: float, speed: float) -> float:
-    """Damping d in s/m with which a mass that hits a contact rebounds with a part of its speed.
+    """Return the damping d in s/m with which a mass rebounds from a contact with restitution e.
 
     With F = k pⁿ (1 + d ṗ), ṗ dṗ/(1 + d ṗ) = −(k/m) pⁿ dp. Over the whole impact the right side
     adds up to nothing, whatever k, n and m, hence (e + 1) v = ln[(1 + d v)/(1 − d e v)]/d.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A contact whose force is measured: straight lines between points of a table."""
+"""Contact with a measured force: linear interpolation between points of a table."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from dynamics.contact_term import Term
 
 @dataclass(frozen=True, slots=True)
 class TableContact(ContactLaw):
-    """A contact whose force follows a table of the penetration, beyond it its last line.
+    """A contact whose force follows a table of the penetration, extrapolated by its last line.
 
-    A change of slope is a linear spring that begins there, so that the law is a sum of such.
+    A change of slope is a linear spring that begins there, so that the law is a sum of springs.
 
     >>> pad = pt.TableContact(depths=(0.001, 0.002), forces=(1e3, 4e3))
     >>> round(float(pad.force(np.array(0.0015))), 6)

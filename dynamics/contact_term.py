@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """One-sided powers of a penetration, of which contact laws are sums.
 
-What these few numbers say is said here once, for Python and for the compiled loops; the potential
-stands beside the force, because the energy ledger of every trajectory is the first check of a
+The formulas are here for both Python and the compiled loops. The potential is beside the force,
+because the energy balance of every trajectory is the first check of a contact simulation.
 contact simulation.
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Damping ratios of a boom whose joints are pressed.
+"""Modal damping of a boom with its joints in contact.
 
-A boom with play is described by the modes of its separate segments, and much of its swing is in
+A boom with play is described by the modes of its separate segments, and much of its vibration is in
 their rigid motions, which no damping of those modes reaches. Its own modes are those with the
 joints pressed: Φ (num_modes, r), Φᵀ Φ = 1, of frequencies ω. With ρ and ε the rigid and elastic
 coordinates of Φ, Ω the frequencies of the segments, and ε⁺ the pseudo-inverse,
@@ -25,14 +25,14 @@ from dynamics.equilibrium import equilibrium
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 
-# Modes that get their ratio: in space, three of each direction and two of twisting.
+# Number of modes with the given ratio: in space, three of each direction and two of twisting.
 DAMPED_MODES = 8
 
 # Motions of the pressed boom that bend its segments less than this part of what others do are left
 # to what damps the rigid segments.
 _BENT = 5.0e-3
 
-# A dashpot's rate, as a part of the largest, that is round-off.
+# Fraction of the largest dashpot rate that is round-off.
 _ROUND_OFF = 1.0e-9
 
 
@@ -40,7 +40,7 @@ def pressed_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, 
     """Return ω (num_shapes,) in rad/s, rising, and shapes (num_modes, num_shapes), joints pressed.
 
     Rows that press at rest have the stiffness that they have there. Where none does at a station
-    between segments, all of it are tied.
+    between segments, all rows of it are bonded.
 
     Args:
         system: of a boom.
@@ -54,7 +54,7 @@ def pressed_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, 
     omega2, combination = eigh(
         free.T @ (system.omega2[:, None] * free) + (rows.T * stiffness) @ rows
     )
-    # Rigid segments have no frequency of their own to tell motions from round-off.
+    # Rigid segments have no frequency of their own to distinguish motions from round-off.
     least = min(system.omega2[system.omega2 > 0.0], default=_ROUND_OFF * omega2.max(initial=0.0))
     moving = omega2 > 1.0e-6 * least
     return np.sqrt(omega2[moving]), free @ combination[:, moving]

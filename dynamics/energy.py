@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The energy balance of a motion: stored energies, work and losses."""
+"""Energy balance of a motion: stored energies, work and losses."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 from dynamics.arrays import Array
 from dynamics.failure import NumericsError
 
-# The energy residual, as a part of the energy put in, beyond which a run is not a result. The time
-# step leaves round-off, below 1e-9 of the work.
+# Largest energy residual of a valid run, as a part of the energy put in. The time step leaves
+# round-off, below 1e-9 of the work.
 ENERGY_BOUND = 1.0e-6
 
 # Stored energies, work of the loads, losses.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The static equilibrium of a gap system under a constant load.
+"""Static equilibrium of a gap system under a constant load.
 
 Strain and contact energies are convex, so that the rest position is the minimum of the potential
 energy; under axial forces, which let a segment tip within its play, it is a near one. Dry friction
@@ -37,7 +37,7 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
         NumericsError: nothing holds the system against the load.
     """
     pressed = [float(law.force(np.zeros(()))) for law in system.laws]
-    # What shims press where nothing has moved yet.
+    # Force of shims at zero displacement.
     pushed = load - np.array(pressed) @ system.rows
     if not pushed.any():
         return np.zeros(system.num_modes)
@@ -98,9 +98,9 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
 
 
 def rest_at(system: GapSystem, time: float = 0.0) -> Array:
-    """Return where a system rests, (num_modes,) in √kg·m, at a time in s.
+    """Return the rest position (num_modes,) in √kg·m of a system at a time in s.
 
-    It is extended as it is then, under the loads of then.
+    Its extension and loads are those of this time.
 
     Raises:
         NumericsError: nothing holds it against them.
@@ -109,7 +109,7 @@ def rest_at(system: GapSystem, time: float = 0.0) -> Array:
 
 
 def _of_rows(of_term: OfTerm, y: Array, terms: Terms) -> Array:
-    """(num_rows,) what the terms of each row say of its gap.
+    """Return the sum (num_rows,) of a function over the terms of each row at its gap.
 
     Finding a rest takes less time than numba does to load the loop over many.
     """

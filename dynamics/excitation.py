@@ -17,7 +17,7 @@ from dynamics.arrays import Array
 
 @runtime_checkable
 class History(Protocol):
-    """A factor without unit over the time, continuous from t = 0 on."""
+    """A dimensionless factor over time, continuous from t = 0 on."""
 
     @property
     def kinks(self) -> Sequence[float]:
@@ -29,15 +29,15 @@ class History(Protocol):
 
     @property
     def fastest(self) -> float:
-        """Highest frequency between the kinks in rad/s; 0 where all between them is straight."""
+        """Highest frequency between the kinks in rad/s; 0 if it is linear there."""
 
     def __call__(self, time: Array) -> Array:
-        """Value at each time in s, any shape."""
+        """Return the value at each time in s, any shape."""
 
 
 # Evenly spaced times at least, times in a period of the fastest history, and times at most.
 _TIMES, _OF_SWING, _MOST_TIMES = 2001, 100, 1_000_001
-# Part of the duration below which two times are the same.
+# Fraction of the duration below which two times are the same.
 _SAME_TIME = 1.0e-9
 
 
@@ -60,7 +60,7 @@ def followed(histories: Sequence[History], duration: float) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """1 from t = 0 on.
+    """Constant 1 from t = 0 on.
 
     >>> pt.Step()(np.array([0.0, 1.0]))
     array([1., 1.])
@@ -76,7 +76,7 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Ramp:
-    """From 0 to 1 within ``duration`` in s, then 1.
+    """Linear rise from 0 to 1 within ``duration`` in s, then 1.
 
     >>> pt.Ramp(0.5)(np.array([0.0, 0.25, 1.0]))
     array([0. , 0.5, 1. ])
@@ -93,7 +93,7 @@ class Ramp:
 
     @property
     def kinks(self) -> tuple[float, float]:
-        """Where it begins and ends."""
+        """Start and end of the rise in s."""
         return 0.0, self.duration
 
     def __call__(self, time: Array) -> Array:
@@ -102,7 +102,7 @@ class Ramp:
 
 @dataclass(frozen=True, slots=True)
 class Sine:
-    """sin(2π f t + φ).
+    """Harmonic history sin(2π f t + φ).
 
     >>> pt.Sine(frequency=2.0)(np.array([0.0, 0.125])).round(6)
     array([0., 1.])
@@ -126,7 +126,7 @@ class Sine:
 
     @property
     def fastest(self) -> float:
-        """2π f."""
+        """Circular frequency 2π f in rad/s."""
         return 2.0 * np.pi * self.frequency
 
     def __call__(self, time: Array) -> Array:
@@ -135,7 +135,7 @@ class Sine:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Straight lines between points, held constant outside them.
+    """Linear interpolation between points, constant outside them.
 
     >>> gust = pt.Table(times=[0.0, 1.0, 3.0], values=[0.0, 2.0, 0.0])
     >>> gust(np.array([0.5, 2.0, 9.0])), gust.peak
@@ -169,7 +169,7 @@ class Table:
 
     @property
     def kinks(self) -> Sequence[float]:
-        """Its times."""
+        """Times of the table in s."""
         return self.times
 
     def __call__(self, time: Array) -> Array:
@@ -178,12 +178,12 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Released:
-    """In place of a history: the load has acted for ever, and is let go at t = 0."""
+    """In place of a history: the load acts before t = 0 and is removed at t = 0."""
 
 
 @dataclass(frozen=True, slots=True)
 class Thrown:
-    """In place of a history: its impulse, as if it had acted for 1 s, is given at t = 0."""
+    """In place of a history: an impulse at t = 0, that of the load within 1 s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,7 +224,7 @@ class Excitation:
 
     @property
     def constant(self) -> bool:
-        """Whether the load stays what it is at t = 0."""
+        """True if the load stays constant from t = 0 on."""
         ahead = [time for time in self.history.kinks if time > 0.0]
         times = np.array([0.0, *ahead, 1.0 + max(ahead, default=0.0)])
         return self.history.fastest == 0.0 and bool(np.ptp(self.history(times)) == 0.0)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The one way in which a computation says that its numbers cannot be trusted."""
+"""Error of computations whose result is not reliable."""
 
 import numpy as np
 
 
 class NumericsError(RuntimeError):
-    """The result is not finite, or its energy is out of bound. The message names the remedy."""
+    """A result that is not finite or out of its energy bound. The message gives the remedy."""
 
 
-# What numbers out of proportion may lead to, wherever they come to light.
+# Errors that data out of proportion may cause anywhere in a computation.
 NUMERICS = NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""From what touches, rubs and is observed to a gap system, whatever reads it.
+"""Construction of gap systems from contacts, friction and observations, for beams and shells.
 
-A beam reads a place by its modes at once; a shell gathers forms of reading, reduces itself on
-them, and reads them by the modes that it then has. Both press and rub by the same rules.
+A beam reads a place by its modes at once. A shell collects readings, reduces itself on them, and
+reads them by its remaining modes. Contact and friction follow the same rules in both.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ R = TypeVar("R")
 
 
 class Contact(NamedTuple, Generic[R]):
-    """One contact row: the approach it reads, the law it follows, its station."""
+    """Contact row: the approach that it reads, its law, its station."""
 
     reading: R
     law: ContactLaw
@@ -32,21 +32,21 @@ class Contact(NamedTuple, Generic[R]):
 
 
 class Friction(NamedTuple, Generic[R]):
-    """One friction row: the slide it reads, and what rubs."""
+    """Friction row: the slide that it reads, and its friction."""
 
     reading: R
     law: DryFriction
 
 
 class Dashpot(NamedTuple, Generic[R]):
-    """A dashpot across a station: its coefficient in N·s/m, and weights of what it reads."""
+    """Dashpot across a station: its coefficient in N·s/m, and weights of what it reads."""
 
     coefficient: float
     parts: list[tuple[float, R]]
 
 
 class Observed(NamedTuple, Generic[R]):
-    """One output, as :class:`dynamics.gap_system.Observer`, of what it reads."""
+    """Output, as :class:`dynamics.gap_system.Observer`, of what it reads."""
 
     reading: R
     unit: str = "m"
@@ -55,7 +55,7 @@ class Observed(NamedTuple, Generic[R]):
 
 @dataclass(frozen=True, slots=True)
 class GapBuilder(Generic[R]):
-    """Contact and friction rows in the order in which they come, and dashpots.
+    """Contact rows, friction rows and dashpots, in the order in which they are added.
 
     Args:
         contacts, frictions: the rows, as something of type R that can be read.
@@ -75,7 +75,7 @@ class GapBuilder(Generic[R]):
         points: Iterable[tuple[int, float, R]],
         raised: float = 0.0,
     ) -> tuple[int, ...]:
-        """Contact through points: on each the side, the part of the law there, and the approach.
+        """Add contact through points: on each the side, its part of the law, and the approach.
 
         Side 1 touches where the approach is positive, −1 where it is negative, 0 both ways by the
         whole law. On a side where the law never touches there is no row. What is raised, by so many
@@ -94,7 +94,7 @@ class GapBuilder(Generic[R]):
         return tuple(range(first, len(self.contacts)))
 
     def stop(self, station: int, law: ContactLaw, points: Iterable[tuple[int, float, R]]) -> None:
-        """Contact with the ground, as of :meth:`press`."""
+        """Add contact with the ground, as :meth:`press` does between segments."""
         self.grounded.append(station)
         self.press(station, law, points)
 
@@ -106,8 +106,8 @@ class GapBuilder(Generic[R]):
         normal_force: float | None,
         pressing: tuple[int, ...],
     ) -> None:
-        """Friction μ where something presses: by the prescribed N in N, or by that of the rows at
-        ``pressing`` where it is None. No row without μ, or where nothing presses.
+        """Add friction μ with the prescribed normal force in N, or with that of the contact rows at
+        ``pressing`` where it is None. There is no row if μ is 0 or ``pressing`` is empty.
         """
         if coefficient > 0.0 and pressing:
             pressed_by = pressing if normal_force is None else ()
@@ -117,7 +117,7 @@ class GapBuilder(Generic[R]):
     def drag(
         self, station: int, coefficient: float, points: Iterable[tuple[int, float, R]]
     ) -> None:
-        """A dashpot in N·s/m resists the mean speed of points of a station, as of :meth:`press`."""
+        """Add a dashpot in N·s/m against the mean speed of points, see :meth:`press`."""
         if coefficient > 0.0:
             dashpot = self.dashpots.setdefault(station, Dashpot(coefficient, []))
             # The weights of each of two sides sum to one.
@@ -126,11 +126,11 @@ class GapBuilder(Generic[R]):
 
     @property
     def dragged(self) -> list[R]:
-        """All that dashpots read."""
+        """All readings of dashpots."""
         return [reading for dashpot in self.dashpots.values() for _, reading in dashpot.parts]
 
     def moving(self, stations: Sequence[int]) -> list[tuple[Kind, int]]:
-        """Kinds and positions of the rows at some stations, as a gap system stacks them."""
+        """Return kinds and positions of the rows at some stations, in the order of a gap system."""
         where = (
             [contact.station for contact in self.contacts],
             [friction.law.station for friction in self.frictions],
@@ -144,7 +144,7 @@ class GapBuilder(Generic[R]):
         ]
 
     def some_rows(self, moving: Sequence[tuple[Kind, int]], read: Callable[[R], Array]) -> Array:
-        """(num_moving, num_modes) rows of :meth:`moving`, each reading by its row."""
+        """Return the rows (num_moving, num_modes) of :meth:`moving`, each from its reading."""
         dragged = self.dashpot_rows(read) if any(kind == "dashpots" for kind, _ in moving) else []
         of_kind: dict[Kind, Callable[[int], Array]] = {
             "rows": lambda position: read(self.contacts[position].reading),
@@ -154,7 +154,7 @@ class GapBuilder(Generic[R]):
         return np.array([of_kind[kind](position) for kind, position in moving])
 
     def dashpot_rows(self, read: Callable[[R], Array]) -> list[Array]:
-        """(num_modes,) of the dashpots across stations, in 1/√s, by the rows of what they read."""
+        """Return the dashpots' rows (num_modes,) across stations, in 1/√s, from their readings."""
         return [
             np.sqrt(dashpot.coefficient)
             * sum(part * read(reading) for part, reading in dashpot.parts)
@@ -172,7 +172,7 @@ class GapBuilder(Generic[R]):
         lines: Sequence[tuple[str, Array, float, float]] = (),
         damping: Array | None = None,
     ) -> GapSystem:
-        """The gap system in modal coordinates.
+        """Return the gap system in modal coordinates.
 
         Args:
             read: (num_modes,) the row of what is read.
@@ -182,7 +182,7 @@ class GapBuilder(Generic[R]):
             loads: (num_modes,) what pushes beside ``load``, and when.
             lines: to the ground: what a trajectory calls the force of the spring, pressed where it
                 is positive, or nothing; what reads the length (num_modes,); the stiffness in N/m,
-                which the modes heed already; the dashpot in N·s/m.
+                which the modes include already; the dashpot in N·s/m.
             damping: (num_modes,) in 1/s; none unless given.
         """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The one form that every model takes before it moves.
+"""Gap system: the common form of all models.
 
     ä_i + Σ_k C_ik ȧ_k + ω_i² a_i = Q_i + Σ_e Q_ei g_e(t) − Σ_j B_ji F_j(y_j) + Σ_l D_li R_l(ṡ_l)
     y_j = Σ_i B_ji a_i,    s_l = Σ_i D_li a_i,    C = diag(c) + Gᵀ G
@@ -79,7 +79,7 @@ class GapSystem:
         excitations: loads that change with time.
         station_directions: the direction of each station's relative displacement; "z" for all
             unless given.
-        released: (num_modes,) modal load in N/√kg that has acted for ever and is let go at t = 0,
+        released: (num_modes,) modal load in N/√kg that acts before t = 0 and is removed at t = 0,
             and
         thrown: (num_modes,) modal impulse in N·s/√kg that is given then, for whoever starts a
             motion; zero unless given.
@@ -87,7 +87,7 @@ class GapSystem:
         travels: the extensions of segments over time, and the rows that they change; none unless
             given.
         softening: (num_modes, num_modes) what axial forces take from the stiffness besides, of a
-            boom that stands as it is drawn out; none unless given. Before such a system moves,
+            boom at a given extension; none unless given. Before such a system moves,
             :meth:`in_own_modes`.
 
     Raises:
@@ -168,43 +168,43 @@ class GapSystem:
 
     @property
     def observes_rates(self) -> bool:
-        """Whether velocities are read, and not coordinates alone."""
+        """True if velocities are observed, and not coordinates alone."""
         return any(seen.derivative for seen in self.observers.values())
 
     @property
     def stiffness(self) -> Array:
-        """(num_modes, num_modes) in 1/s²."""
+        """Stiffness (num_modes, num_modes) in 1/s²."""
         own = np.diag(self.omega2)
         return own - self.softening if self.softening.size else own
 
     @property
     def damping_matrix(self) -> Array:
-        """(num_modes, num_modes) C in 1/s."""
+        """Damping matrix C (num_modes, num_modes) in 1/s."""
         return np.diag(self.damping) + self.dashpots.T @ self.dashpots
 
     @property
     def omega(self) -> Array:
-        """(num_modes,) ω in rad/s; 0 of modes that do not swing."""
+        """Circular frequency ω (num_modes,) in rad/s; 0 of modes that do not oscillate."""
         return np.asarray(np.sqrt(np.maximum(self.omega2, 0.0)))
 
     @property
     def frequencies(self) -> Array:
-        """(num_modes,) natural frequencies without contact in Hz, rising."""
+        """Natural frequencies (num_modes,) without contact in Hz, rising."""
         return np.sort(self.omega) / (2.0 * np.pi)
 
     @property
     def row_masses(self) -> Array:
-        """(num_rows,) 1 / B_j B_jᵀ in kg: the mass that a blow on one row moves at once."""
+        """Effective mass 1 / B_j B_jᵀ (num_rows,) in kg of an impact on one row."""
         return np.asarray(1.0 / np.einsum("ij,ij->i", self.rows, self.rows))
 
     @property
     def largest_load(self) -> Array:
-        """(num_modes,) |Q| and the largest of every excitation, in N/√kg."""
+        """Largest modal load (num_modes,) |Q|, with that of every excitation, in N/√kg."""
         excited = [np.abs(x.load) * x.history.peak for x in self.excitations]
         return np.asarray(np.sum([np.abs(self.load), *excited], axis=0))
 
     def load_at(self, time: float) -> Array:
-        """Return what acts at a time in s, (num_modes,) in N/√kg."""
+        """Return the modal load (num_modes,) at a time in s, in N/√kg."""
         changing = (x.load * x.history(np.array([time]))[0] for x in self.excitations)
         return sum(changing, self.load.copy())
 

@@ -45,7 +45,7 @@ Progress = Callable[[float], None]
 
 
 class Integrator(Protocol):
-    """A way to compute a motion. A user's own needs these three methods."""
+    """Method of computing a motion. A user's own needs these three methods."""
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
         """Return the trajectory; ``progress`` is called with the part done, 0 to 1."""
@@ -56,7 +56,7 @@ class Integrator(Protocol):
         ...
 
     def finer(self) -> Integrator:
-        """Return an integrator with smaller errors, to see what they change."""
+        """Return an integrator with smaller errors, for comparison."""
         ...
 
 
@@ -165,7 +165,7 @@ class AdaptiveStep:
         fewest = _whole_power(2.0 * output_step * fastest / _HISTORY_PHASE, _FEWEST, MOST_STEPS)
         affordable = MOST_STEPS * np.sqrt(TOLERANCE / self.tolerance) / outputs
         most = _whole_power(affordable, fewest, MOST_STEPS)
-        # Few long steps tell the range.
+        # A few long steps give the range.
         pilot = Integration.begin(motion)
         pilot.advance(0, outputs, fewest, pilot.state, pilot.part(0, outputs))
         scale = error.scale(pilot.output.states)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What is read along a segment of a gap system: deflections and section forces."""
+"""Lines: deflections and section forces along a segment of a gap system."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Quantity = Literal[
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """Rows that read along one segment.
+    """Rows that read quantities along one segment.
 
     Args:
         x: (num_places,) in m, rising; a place where something may jump stands twice.

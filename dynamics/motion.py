@@ -18,7 +18,7 @@ MOST_STEPS = 250_000
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """The motion of a gap system from its initial state; what every integrator takes.
+    """Motion of a gap system from its initial state, as input of every integrator.
 
     >>> motion = Motion(ball, duration=1.0, position=[0.5])
     >>> motion.outputs, motion.from_rest
@@ -60,12 +60,12 @@ class Motion:
 
     @property
     def outputs(self) -> int:
-        """How many output steps are made."""
+        """Number of output steps."""
         return max(1, round(self.duration / self.output_step))
 
     @property
     def from_rest(self) -> bool:
-        """Whether nothing moves or is bent at t = 0."""
+        """True if velocities and deformations are zero at t = 0."""
         return not (self.position.any() or self.velocity.any())
 
 
@@ -114,5 +114,5 @@ def rest_of(system: GapSystem, at_rest: bool, position: Array) -> Array | None:
 
 
 def _held(system: GapSystem, at_rest: bool) -> Array:
-    """Return (num_modes,) in N/√kg, what has acted for ever before t = 0."""
+    """Return the load (num_modes,) in N/√kg that acts before t = 0."""
     return system.released + system.load_at(0.0) if at_rest else system.released

@@ -2,7 +2,7 @@
 """Gap systems derived from others: in fewer coordinates, with residual springs, without play.
 
 **Condensed.** Some modes stay as they are: a few as the slowest, the others as those whose inertia
-answers most to what pushes. Under a push b a mode gives way by b²/ω², its inertia by b²/ω⁴. Of the
+answers most to what pushes. Under a load b a mode deflects by b²/ω², its inertia by b²/ω⁴. Of the
 rest the motions that forces excite are kept, matched with ``MOMENTS`` derivatives at rest, so that
 statics is exact and the inertia of what gives way is right to the first orders (MacNeal 1971; Rubin
 1975, whose residual modes are the first block).
@@ -10,12 +10,12 @@ statics is exact and the inertia of what gives way is right to the first orders 
 **With springs.** With B the rows of contacts, friction and dashpots and C = B Ω⁻² Bᵀ over the
 elastic modes, the residual compliance of a coarse model beside a fine one is D = C_fine − C_coarse
 (MacNeal 1971). Both have the same rigid motions, so forces that no support carries are carried by
-inertia alike, and D is what pressed places alone give way. Its positive part D = Σ g gᵀ is as many
+inertia alike, and D is the local compliance alone. Its positive part D = Σ g gᵀ is as many
 springs without mass, each a coordinate with the rows ω_s g and a frequency ω_s well above the
 motion.
 
-**Tied.** Contacts that press at rest are held where they would touch without play, and at stations
-where none does all of them. What they press still gives way, as it does with play: the wall of a
+**Bonded.** Contacts that press at rest are held where they touch without play; at stations where
+none does, all contacts are held. Under pressure they still deform, as with play: the wall of a
 shell, say.
 """
 
@@ -30,20 +30,20 @@ from scipy.linalg import eigh, null_space
 from dynamics.arrays import Array, Indices
 from dynamics.gap_system import GapSystem
 
-# Blocks Ω⁻²ᵏ Bᵀ of what is pushed.
+# Number of blocks Ω⁻²ᵏ Bᵀ of the load vectors.
 MOMENTS = 2
 # Blocks take no more than this part of the coordinates, unless one alone does.
 _OF_ALL = 1.0 / 3.0
-# Of the coordinates, the slowest modes whether anything pushes them or not.
+# Fraction of the coordinates for the slowest modes, whether loaded or not.
 _SLOWEST = 1.0 / 8.0
-# A push that is left with less than this part of its size is in the space already.
+# A load vector with a remainder below this fraction of its size is in the space already.
 _DEPENDENT = 1.0e-6
-# ω_s/2π in Hz: the swing of a boom is slower by a factor of ten and more.
+# ω_s/2π in Hz: the vibration of a boom is slower by a factor of ten and more.
 SPRING_FREQUENCY = 400.0
 
-# A pattern of forces that gives way by less than this part of what others do, does not.
+# A pattern of forces is rigid if its compliance is below this fraction of that of others.
 _NOTHING = 1.0e-3
-# Of the least of the segments' own ω²: motions below it are rigid.
+# Fraction of the least ω² of the segments: motions below it are rigid.
 _RIGID = 1.0e-6
 
 
@@ -184,7 +184,7 @@ def _resisting(system: GapSystem) -> Array:
 
 
 def tied_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, Array]:
-    """Return the tied system and its shapes (num_modes, num_tied_modes).
+    """Return the bonded system and its shapes (num_modes, num_tied_modes).
 
     Its stations are those of the ground.
 

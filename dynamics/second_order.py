@@ -24,7 +24,7 @@ def softened(omega2: Array, geometric: Array) -> tuple[Array, Array]:
     """
     # The upper triangle leaves the low modes their digits, see ``natural_modes`` of the beams.
     found, combination = eigh(np.diag(omega2) - geometric, lower=False)
-    # What translates keeps its ω of exactly 0.
+    # Translations keep ω of exactly 0.
     rigid = omega2 == 0.0
     lost = np.abs(np.linalg.eigvalsh(geometric[np.ix_(rigid, rigid)]))
     kept = np.count_nonzero(lost <= _ROUND_OFF * lost.max(initial=0.0))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How long the stages of a computation take, and how far each is."""
+"""Duration and progress of the stages of a computation."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from time import perf_counter
 
 
 class Stages:
-    """Wall time of stages in s, and how far each is.
+    """Wall time of stages in s, and their progress.
 
     >>> stages = Stages(print)
     >>> with stages.stage("mesh") as tell:
@@ -30,7 +30,7 @@ class Stages:
     def stage(
         self, name: str, number: int = 0, count: int = 1
     ) -> Iterator[Callable[[float], None]]:
-        """Run the part ``number`` of ``count`` of a stage; give what tells how far that is."""
+        """Run the part ``number`` of ``count`` of a stage; yield its progress function."""
         begin = perf_counter()
         self.tell(name, number / count)
         yield lambda part: self.tell(name, (number + part) / count)

@@ -39,7 +39,7 @@ from dynamics.kernels.row_forces import row_laws, row_problem
 from dynamics.motion import Motion
 from dynamics.trajectory import OF_DRIVES, Output, Trajectory
 
-# How often a step is halved whose forces do not converge.
+# Number of halvings of a step whose forces do not converge.
 _HALVINGS = 10
 
 # Gauss's points and weights on [0, 1], exact for polynomials of the fifth degree.
@@ -101,7 +101,7 @@ class Integration:
 
     @property
     def _flies(self) -> bool:
-        """Whether constant loads alone act while all contacts are open."""
+        """True if constant loads alone act while all contacts are open."""
         system = self.motion.system
         others = len(system.excitations), len(system.travels), len(system.dashpots)
         rubbed = any(friction.normal_force for friction in system.frictions)
@@ -172,7 +172,7 @@ class Integration:
         """
         motion, output, tally = self.motion, self.output, self.state.tally
         step = motion.output_step / max(substeps)
-        # What the loads give within an output interval is round-off beside any motion.
+        # The work of the loads within an output interval is round-off beside any motion.
         load = motion.system.largest_load
         least = 0.5 * step**2 * float((load * load).sum())
         check_energy(output.energies, least=least)

@@ -251,12 +251,12 @@ class Trajectory:
 
     @property
     def time(self) -> Array:
-        """(num_times,) in s."""
+        """Times (num_times,) in s."""
         return np.asarray(self.data["time"].values)
 
     @property
     def tip(self) -> xr.DataArray:
-        """(time,) deflection of the tip in m, which its ``plot()`` draws."""
+        """Deflection (time,) of the tip in m; its ``plot()`` draws it."""
         return self.data["tip"]
 
     @property
@@ -266,7 +266,7 @@ class Trajectory:
 
     @property
     def first_contact(self) -> float:
-        """When a row first closes in s, NaN if it never does."""
+        """Time in s at which a row first closes; NaN if it never does."""
         return float(self.data.attrs["first_contact"])
 
     def first_peak(self, observer: str = "tip") -> tuple[float, float]:

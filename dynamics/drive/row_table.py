@@ -20,14 +20,14 @@ import numpy as np
 
 from dynamics.arrays import Array
 
-# What a cubic may miss, as a part of the largest entry; the motion takes the cubic for the row.
+# Largest error of a cubic, as a part of the largest entry; the motion takes the cubic for the row.
 TOLERANCE = 1.0e-9
 
 # Halvings of a piece before it is taken as it is.
 _MOST_HALVINGS = 16
 
-# Where in a piece a cubic meets the rows, its coefficients by the values there (Lagrange), and
-# where it is tested.
+# Places in a piece where a cubic meets the rows, its coefficients by the values there (Lagrange),
+# and places where it is tested.
 _MET = np.array([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0])
 _COEFFICIENTS = 0.5 * np.array(
     [[2.0, 0.0, 0.0, 0.0], [-11.0, 18.0, -9.0, 2.0], [18.0, -45.0, 36.0, -9.0],
@@ -145,7 +145,7 @@ class MovingThrust:
 
     @cached_property
     def slopes(self) -> Array:
-        """(num_pieces, 3, num_planes, num_modes) of w′ per m, of the powers of a part passed."""
+        """Slopes w′ (num_pieces, 3, num_planes, num_modes) per m, by powers of a part passed."""
         factors = np.arange(1.0, 4.0)[:, None, None]
         lengths = np.diff(self.table.knots)[:, None, None, None]
         return np.asarray(factors * self.table.coefficients[:, 1:] / lengths)

@@ -213,7 +213,7 @@ class Travel:
 
     @property
     def moves(self) -> bool:
-        """Whether the extension changes after t = 0."""
+        """True if the extension changes after t = 0."""
         later = [time for time in self.history.kinks if time > 0.0]
         if self.history.peak == 0.0:
             return False

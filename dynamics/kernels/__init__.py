@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The compiled loops of the integrators."""
+"""Compiled loops of the integrators."""
 
 from dynamics.kernels.compiled import find_folder
 

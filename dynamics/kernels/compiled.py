@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How numba compiles the time loops, and where it keeps them."""
+"""Compilation of the time loops by numba, and their cache."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LOOP: Mapping[str, Any] = MappingProxyType(
     {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 )
 
-# What is made part of whatever calls it.
+# Options of functions that are inlined in their callers.
 PART: Mapping[str, Any] = MappingProxyType({**LOOP, "forceinline": True})
 
 # Loops over modes, whose sums may be taken in any order. They are made part of whatever calls them:

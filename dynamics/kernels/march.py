@@ -172,7 +172,7 @@ def _note_peaks(
 ) -> None:  # fmt: skip
     """Keep the largest contact forces: at the end of a step that resolves the press, else its mean.
 
-    An unresolved press swings about its mean from step to step. What resolves it is told by the
+    An unresolved press oscillates about its mean from step to step. What resolves it is told by the
     slope at its deepest place, where the row's kinetic energy, (y_free − y₀)²/(4 C), is stored too.
     """
     for j in range(laws.limits.size):

@@ -54,7 +54,7 @@ class PeakDifferences:
 
     @property
     def explained(self) -> Mask:
-        """(num_peaks,) whether both time and height differ by no more than the spreads."""
+        """True (num_peaks,) where both time and height differ by no more than the spreads."""
         return (np.abs(self.times) <= self.time_spreads) & (
             np.abs(self.heights) <= self.height_spreads
         )
@@ -62,7 +62,7 @@ class PeakDifferences:
 
 @dataclass(frozen=True, slots=True)
 class Distributions:
-    """What values the members take once both models are unpredictable, the one's and the other's.
+    """Distributions of the members' values once both models are unpredictable, of one and other.
 
     Args:
         since: the later of both horizons at the last of ``SHARES`` in s.

@@ -10,8 +10,8 @@ from scipy.signal import butter, find_peaks, sosfiltfilt
 
 from dynamics.arrays import Array
 
-# Cut-off as a part of the lowest elastic frequency of the closed system: with play the boom swings
-# more slowly than the closed structure, and the ripple of impacts is faster.
+# Cut-off as a part of the lowest elastic frequency of the closed system. With play the boom
+# vibrates more slowly than the closed structure, and the ripple of impacts is faster.
 CUTOFF_SHARE = 0.8
 # Order of the filter, which is passed twice, forwards and backwards.
 ORDER = 4
