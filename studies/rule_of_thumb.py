@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How far a beam will be off the shell, told before there is a shell: a rule, and its scatter.
+"""Estimate of a beam's error relative to the shell without a shell: a rule, and its scatter.
 
-The beam lacks a part δ of the tip's static deflection: what shear gives, and what the walls give
-where the segments press. A mass that falls through the play and is caught by the boom as by a
-spring tells what becomes of it in motion: with γ the free way of the tip over its static deflection
-and s = √(2γ), the first peak is off by δ/√(1 + s²), and after n slow periods the tip by
+The beam lacks a part δ of the tip's static deflection: that of shear, and that of the local
+compliance of walls at contacts. A mass that falls through the play and is caught by the boom as by
+a spring tells what becomes of it in motion: with γ the free way of the tip over its static
+deflection and s = √(2γ), the first peak is off by δ/√(1 + s²), and after n slow periods the tip by
 
     δ (1/√(1 + s²) + n μ ψ)
     ψ = ½ (χ + s/(1 + s²)) / (s + χ),   μ = 2 (s + χ) √(1 + s²) / (s²/2 + 1 + √(1 + s²))
 
 where χ = π − arctan s, ψ is the part of δ by which the period is off, and μ the way that the tip
 makes at its highest speed in a period, over its range. Booms of other proportions than the paper's,
-with its friction, tell what that is worth.
+with its friction, show the accuracy of the rule.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _DENSITY = 7850.0
 
 @dataclass(frozen=True, slots=True)
 class Proportions:
-    """Of a boom of two boxes, the paper's unless given."""
+    """Proportions of a boom of two boxes, the paper's by default."""
 
     length: float = 10.0  #: of each segment in m
     overlap: float = 1.0  #: in m
@@ -80,7 +80,7 @@ BOOMS: Mapping[str, Proportions] = {
 
 
 def boom_case(given: Proportions) -> Case:
-    """The paper's case with friction, of these proportions, under its weight at 1 m/s²."""
+    """Return the paper's case with friction, of these proportions, under its weight at 1 m/s²."""
     case = friction_case()
     walls = given.walls * OUTER_WALL, given.walls * INNER_WALL
     width = HEIGHT / given.aspect
@@ -97,12 +97,12 @@ def boom_case(given: Proportions) -> Case:
             support.model_copy(update={"x": 0.2 * head if number else 0.0})
             for number, support in enumerate(table.supports)
         )
-        # The box tells its own numbers.
+        # The box determines its own properties.
         of_box = "height_to_width", "mass_per_length", "second_moment_of_area", "rotary_inertia"
         own = {"section": box, "span": span, "supports": supports}
         own["load"] = _DENSITY * box.section().area
         segments.append(table.model_copy(update=dict.fromkeys(of_box) | own))
-    # Friction as large a part of the weight as the paper's.
+    # Friction has the same ratio to the weight as the paper's.
     lighter = sum(table.load for table in segments) / sum(table.load for table in case.segments)
     forces = tuple(
         0.1 * head * lighter * force for joint in case.joints for force in joint.normal_forces
@@ -122,17 +122,17 @@ PADS = 1.8
 FLANGES = 0.065
 # What shear gives beyond that of Timoshenko's beam, since it is not even over the webs, as a part.
 UNEVEN = 0.09
-# A mode of the shell is the beam's if its frequency is as near, as a part.
+# A mode of the shell corresponds to the beam's if its frequency is as near, as a part.
 _NEAR = 0.15
-# What is allowed of the geometric mean of measured errors over those of the rule, and of springs.
+# Permitted geometric mean of measured errors over those of the rule, and of springs.
 MEAN_OFF, PEAK = 0.25, 0.005
-# Rules of more than this say no more than that the tip is lost.
+# Rules above this value mean that the tip's motion is unpredictable.
 LOST = 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured."""
+    """Parameters of the study."""
 
     booms: Mapping[str, Proportions] = field(default_factory=lambda: BOOMS)  #: by their names
     mesh_size: float = 0.2  #: of the shells in m
@@ -145,7 +145,7 @@ class Sizes:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """What is known of a boom before there is a shell."""
+    """Data of a boom for the rule, without a shell."""
 
     #: Parts of the tip's static deflection under its weight at 1 m/s² in m, the second one
     #: Timoshenko's.
@@ -157,7 +157,7 @@ class Rule:
 
     @classmethod
     def of(cls, given: Proportions, case: Case) -> Rule:
-        """From the boom's beams without play, and statics."""
+        """Create the rule from the boom's beams without play, and statics."""
         boom = build_boom(case)
         tied = [
             model_of(case, name).without_play(boom) for name in ("beam-fe-rotary", "timoshenko")
@@ -180,24 +180,24 @@ class Rule:
 
     @property
     def deflection(self) -> float:
-        """All of it in m."""
+        """Static deflection of the tip in m."""
         return self.bending + (1.0 + UNEVEN) * self.shear + self.pressed
 
     def lacking(self, name: str) -> float:
-        """δ of a kind of beam."""
+        """Return δ of a kind of beam."""
         known = self.bending + (0.0 if name == EULER else self.shear)
         return 1.0 - known / self.deflection
 
     def swing(self, point: Point) -> float:
-        """s = √(2γ)."""
+        """Return s = √(2γ)."""
         return float(np.sqrt(self.lever * point.play / (point.load * self.deflection)))
 
     def peak_off(self, name: str, point: Point) -> float:
-        """Of the first peak, as a part of it."""
+        """Return the error of the first peak, as a part of it."""
         return self.lacking(name) / float(np.hypot(1.0, self.swing(point)))
 
     def tip_off(self, name: str, point: Point, duration: float) -> float:
-        """Of the tip within so many s, as a part of its range."""
+        """Return the error of the tip within so many s, as a part of its range."""
         s = self.swing(point)
         root, chi = float(np.hypot(1.0, s)), np.pi - float(np.arctan(s))
         periods = duration * np.pi * self.frequency / (s + chi)
@@ -207,7 +207,7 @@ class Rule:
 
 
 def giving_way(given: Proportions, case: Case) -> float:
-    """What a station gives way for each N, of both walls, in m/N."""
+    """Return the compliance of a station in m/N, of both walls."""
     material = case.material
     assert material is not None
     e = material.youngs_modulus
@@ -224,7 +224,7 @@ def giving_way(given: Proportions, case: Case) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """A boom's beams against its shell at all points."""
+    """Errors of a boom's beams against its shell at all points."""
 
     rule: Rule  #: of it
     points: Sequence[Point]  #: play and load
@@ -237,7 +237,7 @@ class Measured:
 
 
 def flange_frequency(case: Case) -> float:
-    """Of a strip of the inner segment's flange, which rests on the webs, in Hz."""
+    """Return the frequency in Hz of a strip of the inner segment's flange on the webs."""
     inner = build_boom(case).segments[1]
     box, material = inner.section, inner.material
     assert isinstance(box, BoxSection)
@@ -246,7 +246,7 @@ def flange_frequency(case: Case) -> float:
 
 
 def inner_bending(shell: GapSystem, beam: GapSystem) -> dict[str, float]:
-    """First frequency of the free inner segment in Hz: that mode moves the tip much."""
+    """Return the first frequency of the free inner segment in Hz, whose mode moves the tip much."""
     own, shown = _moving_tip(beam), _moving_tip(shell)
     bending = min(own)
     near = {f: moves for f, moves in shown.items() if abs(f / bending - 1.0) < _NEAR}
@@ -254,14 +254,14 @@ def inner_bending(shell: GapSystem, beam: GapSystem) -> dict[str, float]:
 
 
 def _moving_tip(system: GapSystem) -> dict[float, float]:
-    """How much those modes move the tip that move it much, by their frequencies in Hz."""
+    """Return the tip amplitudes of the modes with large ones, by their frequencies in Hz."""
     frequencies, moves = system.omega / (2.0 * np.pi), np.abs(system.observers["tip"].row)
     much = (frequencies > 0.0) & (moves > 0.1 * moves.max())
     return dict(zip(frequencies[much].tolist(), moves[much].tolist(), strict=True))
 
 
 def measure(given: Proportions, sizes: Sizes) -> Measured:
-    """Move the beams and the shell of a boom."""
+    """Run the beams and the shell of a boom."""
     case = boom_case(given)
     rule = Rule.of(given, case)
     fine = {"mesh_size": sizes.mesh_size, "contact_tolerance": sizes.contact_tolerance}
@@ -288,7 +288,7 @@ def measure(given: Proportions, sizes: Sizes) -> Measured:
 
 
 def ratios(found: Sequence[Measured], name: str, tips: bool) -> Array:
-    """(num_ratios,) errors of a beam over those of the rule, of all booms and points."""
+    """Return the errors of a beam over those of the rule (num_ratios,), of all booms and points."""
     pairs = [
         (
             off,
@@ -301,7 +301,7 @@ def ratios(found: Sequence[Measured], name: str, tips: bool) -> Array:
 
 
 def boom_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
-    """What each boom's beams lack, by the rule and as its shell without play has it."""
+    """Return a table of δ of each boom's beams by the rule and by its shell without play."""
     rows: list[Sequence[Cell]] = []
     for name, one in found.items():
         rule, given = one.rule, sizes.booms[name]
@@ -325,7 +325,7 @@ def boom_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
 
 
 def scatter_table(found: Sequence[Measured], sizes: Sizes) -> Table:
-    """How far the rule is off what was measured, over all booms and points."""
+    """Return a table of the scatter of measured errors about the rule, over all points."""
     rows: list[Sequence[Cell]] = []
     for tips, what in ((False, "first peak"), (True, "tip")):
         for name in (EULER, PLAIN):
@@ -352,7 +352,7 @@ def scatter_table(found: Sequence[Measured], sizes: Sizes) -> Table:
 
 
 def springs_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
-    """What springs leave, at the worst point of each boom, and the flanges' part in it."""
+    """Return a table of the errors with springs at the worst points, and the flanges' part."""
     rows: list[Sequence[Cell]] = []
     for name, one in found.items():
         bending, flange = one.bending[SHELL], flange_frequency(boom_case(sizes.booms[name]))
@@ -379,7 +379,7 @@ def springs_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
 
 
 def proofs(found: Sequence[Measured]) -> Iterator[Proof]:
-    """The rule against the shells, and springs."""
+    """Return the proofs of the rule against the shells, and of springs."""
     booms = f"{len(found)} booms"
     for name in (EULER, PLAIN):
         what = f"{name}: first tip peak's error over that of the rule of thumb, geometric mean of "
@@ -392,7 +392,7 @@ def proofs(found: Sequence[Measured]) -> Iterator[Proof]:
 
 @titled("rule-of-thumb", "A rule of thumb for beams")
 def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Booms of other proportions than the paper's, with its friction."""
+    """Study booms of other proportions than the paper's, with its friction."""
     sizes = sizes or Sizes()
     found = {}
     for name, given in sizes.booms.items():

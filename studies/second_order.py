@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Columns against what is known of them: Euler's cases, Greenhill's, beam-columns, frequencies."""
+"""Columns against known solutions: Euler's cases, Greenhill's, beam-columns, frequencies."""
 
 from __future__ import annotations
 
@@ -43,43 +43,43 @@ EULER: Mapping[str, tuple[tuple[Support, ...], float]] = {
     "clamped": ((CLAMP, FIXED), 4.0),
 }
 CRITICAL = np.pi**2 * STIFFNESS / LENGTH**2
-# Part of the critical force under which columns bend and swing; of that of the cantilever.
+# Part of the critical force under which columns bend and vibrate; of that of the cantilever.
 SHARE = 0.3
 
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A way to compute a column, with its system and the critical factor of its axial force."""
+    """Model of a column, with its system and the critical factor of its axial force."""
 
     of: Callable[[Boom], tuple[GapSystem, float | None]]  #: a boom of one segment
     in_shear: bool  #: whether shear bends it, too
     allowed: float  #: relative error
 
     def factor(self, boom: Boom) -> float:
-        """The critical one of its axial force."""
+        """Return the critical factor of its axial force."""
         _, factor = self.of(boom)
         assert factor is not None
         return factor
 
     def critical(self, euler: float) -> float:
-        """Critical force in N of a column that shear bends, from Euler's (Engesser 1891)."""
+        """Return the critical force in N with shear, from Euler's (Engesser 1891)."""
         return euler / (1.0 + euler / SHEAR_STIFFNESS) if self.in_shear else euler
 
 
 def elements(boom: Boom, theory: Theory = "euler-bernoulli") -> tuple[GapSystem, float | None]:
-    """Beam elements of either theory, without rotary inertia."""
+    """Return beam elements of either theory, without rotary inertia."""
     models = finite_element_segments(boom, ELEMENT, theory, rotary_inertia=False)
     return gap_system(boom, models), critical_factor(boom, models)
 
 
 def series(boom: Boom) -> tuple[GapSystem, float | None]:
-    """The complete series."""
+    """Return the complete series."""
     models = kantorovich_segments(boom, [TERMS], "complete", rotary_inertia=False)
     return gap_system(boom, models), critical_factor(boom, models)
 
 
 def shell(boom: Boom) -> tuple[GapSystem, float | None]:
-    """The box of plates, reduced."""
+    """Return the box of plates, reduced."""
     reduced = reduce_boom(boom, ShellOptions(mesh_size=MESH_SIZE), MPI.COMM_SELF)
     return reduced.system, reduced.critical_factor
 
@@ -97,12 +97,12 @@ MODELS: Mapping[str, Model] = {
 def column(
     supports: tuple[Support, ...], force: float, gravity: float = 0.0, point: float | None = None
 ) -> Boom:
-    """A column under a uniform load of 1 N/m, or 1 N at a place.
+    """Create a column under a uniform load of 1 N/m, or 1 N at a place.
 
     Args:
-        supports: of its ends.
-        force: at its tip along it, in N.
-        gravity: along it, in m/s².
+        supports: those of its ends.
+        force: axial force at its tip, in N.
+        gravity: acceleration along it, in m/s².
         point: x in m of the load.
     """
     alone = Segment.of_section("column", 0.0, LENGTH, STEEL, BOX, supports=supports)
@@ -115,7 +115,7 @@ def column(
 
 @titled("second_order", "Columns: buckling, swing and deflection")
 def study(tell: Tell) -> Iterator[Proof]:
-    """Every model."""
+    """Study every model."""
     for name, model in MODELS.items():
         tell(name)
         yield from _euler(name, model)
@@ -125,7 +125,7 @@ def study(tell: Tell) -> Iterator[Proof]:
 def _euler(name: str, model: Model) -> Iterator[Proof]:
     source = "Euler 1744, shear by Engesser 1891" if model.in_shear else "Euler 1744"
     for case, (supports, part) in EULER.items():
-        # Not known in closed form for a column that shear bends.
+        # No closed form is known for a shear-flexible column.
         if model.in_shear and case == "clamped and hinged":
             continue
         reference = model.critical(part * CRITICAL)
@@ -141,7 +141,7 @@ def _greenhill(name: str, model: Model) -> Proof:
     factor = model.factor(column((CLAMP,), 0.0, gravity))
     found = factor * mass * gravity * LENGTH**3 / STIFFNESS
     what = f"ρ g A L³/(E J) of a column that buckles under its own weight, {name}"
-    # Shear, of which Greenhill does not know, takes 0.16 % here.
+    # Shear, which Greenhill neglects, takes 0.16 % here.
     allowed = max(model.allowed, 2e-3) if model.in_shear else model.allowed
     return Proof(what, found, 7.8373474, "", "analytic", "Greenhill 1881", allowed)
 
@@ -158,8 +158,10 @@ def _swing(name: str, model: Model) -> Proof:
 
 
 def _berry(name: str, model: Model) -> Proof:
-    """A load Q across the tip. With k² = P/(c E J), c = 1 − P/(G A_s), the tip rests at
-    (Q/P) (tan(k L)/(c k) − L); without shear this is Berry's function times Q L³/(3 E J).
+    """Return the static tip deflection (Berry) under a load Q across the tip.
+
+    With k² = P/(c E J), c = 1 − P/(G A_s), the tip is at (Q/P) (tan(k L)/(c k) − L); without
+    shear this is Berry's function times Q L³/(3 E J).
     """
     force, flexibility = SHARE * 0.25 * CRITICAL, 1.0 / SHEAR_STIFFNESS if model.in_shear else 0.0
     left = 1.0 - force * flexibility

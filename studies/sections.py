@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Polygons of flat plates: their numbers, how their rings unfold, how booms follow their beams."""
+"""Polygonal sections of flat plates: properties, compliance of rings, motion of booms."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from studies.study import Held, Piece, Proof, Tell, titled
 
 LAW = PowerContact(stiffness=1.0e9, exponent=1.0)
 
-# Outer and inner sections in the paper's place.
+# Outer and inner sections in place of the paper's.
 SHAPES: Mapping[str, tuple[PolygonSection, PolygonSection]] = {
     "hexagon": (
         hexagon(0.50, 0.45, 0.25, 0.0065, 0.0065, 0.0065),
@@ -61,9 +61,9 @@ ELSEWHERE: Mapping[str, Sequence[float]] = {
 }
 CENTRE_OF_U = -8.64726e-3
 
-# A ring that is short bends as bars do.
+# A short ring bends as bars do.
 RING, RING_MESH = 0.02, 0.01
-# Of the cantilevers that are turned, in m.
+# Length of the rotated cantilevers, in m.
 ARM, ARM_MESH = 4.0, 0.2
 # Around each station, of this thickness in m.
 COLLAR = 0.010
@@ -84,7 +84,7 @@ NOTE = (
 
 
 def boom_of(outer: Section, inner: Section) -> Boom:
-    """The paper's spans, supports and play, loaded by the segments' weight at 1 m/s²."""
+    """Return a boom with the paper's spans, supports and play, under its weight at 1 m/s²."""
     loads = [STEEL.density * one.area for one in (outer, inner)]
     held = Support(0.0), Support(2.0)
     return Boom(
@@ -97,7 +97,7 @@ def boom_of(outer: Section, inner: Section) -> Boom:
 
 
 def collared(boom: Boom, thickness: float) -> Boom:
-    """With collars around both segments at both stations."""
+    """Return the boom with collars around both segments at both stations."""
     spans = ((8.85, 9.15), (9.85, 10.0)), ((9.0, 9.15), (9.85, 10.15))
     segments = (
         replace(segment, collars=tuple(Collar(*span, thickness) for span in own))
@@ -113,26 +113,26 @@ def first_peak(system: GapSystem) -> float:
 
 
 def beam_peak(boom: Boom) -> float:
-    """Of Timoshenko elements."""
+    """Return the peak of Timoshenko elements."""
     elements = finite_element_segments(boom, 0.25, "timoshenko", True)
     return first_peak(gap_system(boom, elements))
 
 
 def shell_peak(boom: Boom) -> float:
-    """Of shells."""
+    """Return the peak of shells."""
     options = ShellOptions(MESH_SIZE, contact_tolerance=TOLERANCE)
     return first_peak(reduce_boom(boom, options, MPI.COMM_WORLD).system)
 
 
 def ring_of_bars(section: Section, length: float) -> float:
-    """How a ring's top and bottom give way under forces on their corners, in m/N.
+    """Return the compliance of a ring's top and bottom under forces on its corners, in m/N.
 
     Plates as straight bars that stretch and bend without shear, rigidly joined, by their stiffness
     matrices (Przemieniecki 1968).
 
     Args:
-        section: with a flat top and bottom.
-        length: of the ring in m.
+        section: one with a flat top and bottom.
+        length: that of the ring in m.
     """
     count = len(section.plates)
     stiffness = np.zeros((3 * count, 3 * count))
@@ -161,7 +161,7 @@ def ring_of_bars(section: Section, length: float) -> float:
 
 
 def ring_of_shell(section: Section, length: float, size: float) -> float:
-    """The same of a shell with edges of a size in m."""
+    """Return the same of a shell with edges of a size in m."""
     segment = Segment.of_section("ring", 0.0, length, STEEL, section)
     shell, stretch = shell_alone(segment, size), Stretch.on(segment, 0.5 * length, length)
     corners = CornerLines(shell)
@@ -170,7 +170,7 @@ def ring_of_shell(section: Section, length: float, size: float) -> float:
 
 
 def tip_of_shell(section: Section, direction: Direction, size: float) -> float:
-    """How the tip of a cantilever of shell gives way along a direction, in m/N."""
+    """Return the tip compliance of a shell cantilever along a direction, in m/N."""
     clamp = Support(0.0, "clamped")
     segment = Segment.of_section("arm", 0.0, ARM, STEEL, section, supports=(clamp,))
     shell = shell_alone(segment, size)
@@ -179,7 +179,7 @@ def tip_of_shell(section: Section, direction: Direction, size: float) -> float:
 
 @titled("sections", "Polygons of flat plates")
 def study(tell: Tell) -> Iterator[Piece]:
-    """Numbers of sections, rings, and first peaks of booms."""
+    """Study properties of sections, rings, and first peaks of booms."""
     yield from _numbers()
     rows: list[tuple[str | float, ...]] = []
     frame: Held = ("other code", "plane frame, Przemieniecki 1968", 3.0e-3)
@@ -205,7 +205,7 @@ def study(tell: Tell) -> Iterator[Piece]:
 
 
 def _numbers() -> Iterator[Proof]:
-    """Against closed forms, and against finite elements over the section."""
+    """Compare with closed forms, and with finite elements over the section."""
     sides, radius, wall = 240, 0.2, 1.0e-4
     turns = 2.0 * np.pi * np.arange(sides) / sides
     corners = radius * np.column_stack([np.cos(turns), np.sin(turns)])
@@ -229,7 +229,7 @@ def _numbers() -> Iterator[Proof]:
 
 
 def _turned() -> Iterator[Proof]:
-    """Sections that lie on their side or on their head move as they do upright."""
+    """Check that sections rotated by 90° or 180° move as upright ones do."""
     for name, (section, _) in SHAPES.items():
         upright = tip_of_shell(section, "z", ARM_MESH)
         over = PolygonSection(tuple((y, -z) for y, z in section.corners), section.thicknesses)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How far the shell is from a solid as walls become thicker.
+"""Error of the shell relative to a solid for walls of growing thickness.
 
-A short pair of boxes keeps its mid-lines while its walls grow. Of both models every quantity is
-taken where refinement leads it, so that what is left is the theory's error: a shell's walls end on
-one another's mid-lines, where a solid has corners.
+A short pair of boxes keeps its mid-lines while its walls grow. Every quantity of
+both models is the limit of refinement, so that only the theory's error remains: a shell's walls end
+on one another's mid-lines, where a solid has corners.
 """
 
 from __future__ import annotations
@@ -36,14 +36,14 @@ from studies.reference_models.solid import SolidFamily, assemble_solid, mesh_qua
 from studies.refined import Refined, refined_table
 from studies.study import Held, Piece, Plot, Proof, Tell, titled
 
-# What is allowed of the thinnest walls; on a line at a free end, between the corners, a shell does
-# worst.
+# Permitted error of the thinnest walls; on a line at a free end, between the corners, a shell is
+# least accurate.
 ALLOWED, ALLOWED_OF_A_SQUEEZE = 0.01, 0.04
 
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured."""
+    """Parameters of the study."""
 
     #: Thicknesses in m, rising.
     walls: Sequence[float] = tuple(np.geomspace(0.004, 0.04, 4).round(4).tolist())
@@ -57,7 +57,7 @@ class Sizes:
 
 
 class Measured(NamedTuple):
-    """A quantity of the pair."""
+    """Quantity of the pair."""
 
     what: str  #: it is
     label: str  #: in figures
@@ -68,7 +68,7 @@ class Measured(NamedTuple):
     allowed: float = ALLOWED  #: what counts as proven of the thinnest walls
 
     def of(self, answers: Sequence[Mapping[Family, Mapping[str, float]]]) -> float:
-        """Its value in one of the models."""
+        """Return its value in one of the models."""
         return answers[self.segment][self.family][self.probe]
 
 
@@ -93,7 +93,7 @@ EVERY = FREQUENCIES + COMPLIANCES
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A pair of one wall thickness, as shells and as solids."""
+    """Pair of boxes of one wall thickness, as shells and as solids."""
 
     wall: float  #: in m
     #: Of each quantity.
@@ -103,27 +103,27 @@ class Comparison:
 
     @property
     def walls(self) -> str:
-        """For people."""
+        """Label of the wall thickness."""
         return f"{1.0e3 * self.wall:g} mm"
 
     def error(self, what: Measured) -> float:
-        """Of the shell, relative to the solid."""
+        """Return the error of the shell, relative to the solid."""
         return self.shell[what].settled / self.solid[what].settled - 1.0
 
     def uncertainty(self, measured: Sequence[Measured]) -> float:
-        """Largest grid convergence index of both models' finest meshes, where there is one."""
+        """Return the largest grid convergence index of both models' finest meshes, if any."""
         indices = [model[what].index for what in measured for model in (self.shell, self.solid)]
         return max((index for index in indices if math.isfinite(index)), default=math.nan)
 
     def slenderness(self, what: Measured) -> float:
-        """Wall thickness over the width of the box."""
+        """Return wall thickness over the width of the box."""
         section = pair(self.wall)[what.segment].section
         assert section is not None
         return self.wall / section.size("y")
 
 
 def compare(sizes: Sizes, tell: Callable[[str], None]) -> list[Comparison]:
-    """Measure the pair at every wall thickness; ``tell`` is told which."""
+    """Measure the pair at every wall thickness; ``tell`` reports the progress."""
 
     def compared(wall: float) -> Comparison:
         boxes = pair(wall)
@@ -151,7 +151,7 @@ def _refined(
     sizes: Sequence[_Size],
     parts_of: Callable[[int, _Size], Mapping[Family, Quarter]],
 ) -> tuple[dict[Measured, Refined], Blow]:
-    """Every quantity on every mesh, and the blow on the finest but one."""
+    """Return every quantity on every mesh, and the impact on the finest but one."""
     answers = []
     for size in sizes:
         outer, inner = parts_of(0, size), parts_of(1, size)
@@ -167,19 +167,19 @@ def _refined(
 
 
 def measure(parts: Sequence[Mapping[Family, Quarter]]) -> list[dict[Family, dict[str, float]]]:
-    """Of both segments."""
+    """Return the quantities of both segments."""
     return [{family: part.measure() for family, part in of.items()} for of in parts]
 
 
 def order(comparisons: Sequence[Comparison], what: Measured) -> float:
-    """Power of the thickness with which the shell's error grows, over the two thickest walls."""
+    """Return the power of the thickness in the shell's error, over the two thickest walls."""
     thin, thick = comparisons[-2:]
     growth = thick.error(what) / thin.error(what)
     return math.log(growth) / math.log(thick.wall / thin.wall) if growth > 0.0 else math.nan
 
 
 def slenderness_at(comparisons: Sequence[Comparison], what: Measured, limit: float) -> str:
-    """Wall over width at which the error passes a limit, on a power law between two walls."""
+    """Return the wall over width with a given error, on a power law between two walls."""
     errors = [abs(one.error(what)) for one in comparisons]
     ratios = [one.slenderness(what) for one in comparisons]
     above = [error > limit for error in errors]
@@ -187,7 +187,7 @@ def slenderness_at(comparisons: Sequence[Comparison], what: Measured, limit: flo
         return f"> {ratios[-1]:.3f}"
     if above[0]:
         return f"< {ratios[0]:.3f}"
-    # The last time: an error that changes its sign is small in between.
+    # The last crossing: an error that changes its sign is small in between.
     last = max(i for i in range(1, len(above)) if above[i] and not above[i - 1])
     part = math.log(limit / errors[last - 1]) / math.log(errors[last] / errors[last - 1])
     return f"{ratios[last - 1] * (ratios[last] / ratios[last - 1]) ** part:.3f}"
@@ -200,7 +200,7 @@ ROUND_OFF = 1.0e-8
 
 
 def solid_proofs() -> Iterator[Proof]:
-    """Mass, stretch, pure bending and a rod's lowest frequency."""
+    """Check mass, stretch, pure bending and a rod's lowest frequency."""
     section, steel, length = BAR.section, BAR.material, BAR.length
     assert section is not None
     stretched, bent = _solid(BREATHING), _solid(ALONG_Z)
@@ -238,7 +238,7 @@ def _solid(family: Family) -> SolidFamily:
 
 # Errors of which the table says how thick a wall they take.
 LIMITS = (0.01, 0.02, 0.05)
-# What is allowed of a blow, which is on finite meshes.
+# Permitted error of an impact, which is on finite meshes.
 ALLOWED_OF_A_BLOW = 0.02
 
 NOTES = (
@@ -255,7 +255,7 @@ SIZES_NOTE = "On the coarsest of the three meshes, which refine the edges around
 
 
 def error_table(comparisons: Sequence[Comparison]) -> Table:
-    """The shell's error at every thickness, its order, and where it passes each limit."""
+    """Return a table of the shell's error by thickness, its order, and limits of thickness."""
     columns = {
         "quantity": "", **{f"{one.walls}\n(%)": ".2f" for one in comparisons}, "order in t": ".2f",
         **{f"{100.0 * limit:g} %\nat t/b": "" for limit in LIMITS},
@@ -278,14 +278,14 @@ def error_table(comparisons: Sequence[Comparison]) -> Table:
 
 
 def refinements(comparisons: Sequence[Comparison]) -> Table:
-    """How well both models are refined themselves."""
+    """Return tables of the convergence of both models."""
     models = [model for one in comparisons for model in (one.shell, one.solid)]
     found = [model[what] for what in EVERY for model in models]
     return refined_table("solid-index", "Both models on ever finer meshes", found, "edges × {:g}")
 
 
 def other_sizes(sizes: Sizes) -> Table:
-    """What the solid's edges along x and its layers change, which are not refined elsewhere."""
+    """Return a table of the effects of the solid's edges along x and its layers."""
     smallest, largest = sizes.along
     variants = (sizes.along, 2), ((0.5 * smallest, 0.5 * largest), 2), (sizes.along, 4)
     rows: list[Sequence[Cell]] = []
@@ -312,7 +312,7 @@ def other_sizes(sizes: Sizes) -> Table:
 
 
 def blow_table(comparisons: Sequence[Comparison]) -> Table:
-    """One blow of the inner box against the outer one."""
+    """Return a table of one impact of the inner box on the outer one."""
     worst = max(struck.reduction_error for one in comparisons for struck in one.blows)
     return Table.of_rows(
         "solid-blow",
@@ -331,7 +331,7 @@ def blow_table(comparisons: Sequence[Comparison]) -> Table:
 
 
 def shell_proofs(thinnest: Comparison) -> Iterator[Proof]:
-    """The shell of the thinnest walls against the solid."""
+    """Return the proofs of the shell of the thinnest walls against the solid."""
     walls, source = f"walls of {thinnest.walls}", "elasticity in space"
     for of in EVERY:
         shell, solid = thinnest.shell[of].settled, thinnest.solid[of].settled
@@ -344,7 +344,7 @@ def shell_proofs(thinnest: Comparison) -> Iterator[Proof]:
 
 @titled("solid", "Shells against solids")
 def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """The shell against a solid, and the solid against formulas."""
+    """Compare the shell with a solid, and the solid with formulas."""
     sizes = sizes or Sizes()
     tell("the solid against formulas")
     yield from solid_proofs()
@@ -372,7 +372,7 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
 
 
 def _blows(one: Comparison) -> list[tuple[str, str, float, float]]:
-    """What of a blow, its unit, and its values of the shell and of the solid."""
+    """Return quantities of an impact, units, and values of the shell and of the solid."""
     shell, solid = (struck.told for struck in one.blows)
     return [(what, unit, shell[what, unit], solid[what, unit]) for what, unit in shell]
 

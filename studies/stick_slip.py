@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a drive of a given stiffness moves: cycles of sticking and slipping, and what lags behind.
+"""Drives of finite stiffness: cycles of stick and slip, and the lag of the segment.
 
-The motion across the boom goes by the drive as asked: how far that is off is told by moving it
-again along the extension that the segment has reached.
+The motion across the boom follows the prescribed extension. A second run along the extension that
+the segment has reached shows the error.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ CYCLE = "sticking until the spring is taut, slipping on a circle"
 
 @titled("stick_slip", "Drives of a given stiffness, on which segments stick and slip")
 def study(tell: Tell) -> Iterator[Piece]:
-    """Cycles, critical speeds, the stiff limit; and the boom along the way that it has gone."""
+    """Study cycles, critical speeds, the stiff limit, and the boom along its actual extension."""
     tell("a mass on a spring")
     yield from _cycle()
     yield from map(_critical, RATIOS)
@@ -70,7 +70,7 @@ def _followed(pulled: ElasticDrive, speed: float, time: Array) -> DriveMotion:
 
 
 def _cycle() -> Iterator[Proof]:
-    """Ten cycles at a constant speed without damping."""
+    """Return ten cycles at a constant speed without damping."""
     omega, slack = np.sqrt(STIFFNESS / MASS), (STICKING - 1.0) * FRICTION / STIFFNESS
     radius, first = np.hypot(slack, SPEED / omega), STICKING * FRICTION / STIFFNESS / SPEED
     slipping = 2.0 / omega * (np.pi - np.arctan(slack * omega / SPEED))
@@ -93,7 +93,7 @@ def _cycle() -> Iterator[Proof]:
 
 
 def _critical(ratio: float) -> Proof:
-    """The speed below which it comes to stick again, by halving."""
+    """Return the speed below which sticking recurs, by bisection."""
     pulled = replace(ROPE, dashpot=2.0 * ratio * np.sqrt(STIFFNESS * MASS))
     expected = pulled.critical_speed(FRICTION)
     low, high = 0.5 * expected, 2.0 * expected
@@ -107,7 +107,7 @@ def _critical(ratio: float) -> Proof:
 
 
 def _stiff() -> Proof:
-    """The force of a drive of 1e9 N/m in the middle of an S-curve's first half."""
+    """Return the force of a drive of 1e9 N/m in the middle of an S-curve's first half."""
     way, time = SCurve(travel=2.0, duration=4.0), np.linspace(0.0, 1.0, 1001)
     pulled = ElasticDrive(MASS, 1.0e9, dashpot=0.2 * np.sqrt(1.0e9 * MASS))
     found = follow(pulled, way, time, np.full(time.size, FRICTION))
@@ -118,7 +118,7 @@ def _stiff() -> Proof:
 
 
 def _one_way(stiffness: float) -> list[float]:
-    """A row of the table."""
+    """Return a row of the table."""
     case = _weighing(stiffness)
     boom = build_boom(case)
     plan = MotionPlan.of(build(case, boom, case.models[0]).system, case, case.models[0])
@@ -144,7 +144,7 @@ def _moved(plan: MotionPlan) -> Trajectory:
 
 
 def _weighing(stiffness: float) -> Case:
-    """The paper's boom under its weight, at rest until a rope telescopes it."""
+    """Return the paper's boom under its weight, at rest until a rope telescopes it."""
     case = reading.load(str(CASES / "drawn-out.toml"))
     masses = [one.mass_per_length or 0.0 for one in case.segments]
     rope = {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What collars and diaphragms make of the flexibility where the boom's segments touch.
+"""Effect of collars and diaphragms on the flexibility at the contacts of the boom's segments.
 
 A collar goes around the head of the outer segment or the tail of the inner one, a diaphragm closes
 the tail alone: the inner segment slides through the head. Flexibility is static, so that the mass
@@ -31,7 +31,7 @@ ALLOWED = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured."""
+    """Parameters of the study."""
 
     mesh: float = 0.05  #: edge length in m on the boom
     collar: float = 0.3  #: length of a collar in m
@@ -48,7 +48,7 @@ class Sizes:
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """One segment with its stiffeners."""
+    """Segment with its stiffeners."""
 
     what: str  #: it is, and has
     mass: float  #: of all its plates in kg
@@ -60,13 +60,13 @@ class Variant:
 
     @property
     def row(self) -> list[Cell]:
-        """Of the table."""
+        """Row of the table."""
         flexibilities = np.column_stack([self.together, self.one_more]).ravel()
         return [self.what, self.mass, *flexibilities, *self.frequencies]
 
 
 def stiffened(boom: Boom, sizes: Sizes) -> tuple[dict[str, Segment], dict[str, Segment]]:
-    """What each of two segments has → the segment with it: nothing first, the most last."""
+    """Return each of two segments by its stiffeners, from none to all."""
     outer, inner = boom.segments
     head, tail = (outer.end - sizes.collar, outer.end), (inner.start, inner.start + sizes.collar)
     outers, inners = {"nothing": outer}, {"nothing": inner}
@@ -83,7 +83,7 @@ def stiffened(boom: Boom, sizes: Sizes) -> tuple[dict[str, Segment], dict[str, S
 
 
 def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes) -> Variant:
-    """A segment's mass, flexibility at the stations, x in m, and lowest frequencies."""
+    """Return a segment's mass, flexibility at the stations, x in m, and lowest frequencies."""
     shell = shell_alone(segment, sizes.mesh, stations)
     held, standing = segment, shell
     if not segment.supports:
@@ -111,7 +111,7 @@ def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes
 
 
 def _timoshenko(segment: Segment, x: float) -> float:
-    """Deflection in m of an overhanging beam under 1 N at x, beside its two pins."""
+    """Return the deflection in m of an overhanging beam under 1 N at x, beside its two pins."""
     section, material = segment.section, segment.material
     assert section is not None
     near, far = sorted((support.x for support in segment.supports), key=lambda pin: abs(pin - x))
@@ -121,7 +121,7 @@ def _timoshenko(segment: Segment, x: float) -> float:
 
 
 def racking(outline: Outline) -> Row:
-    """How far the section leans into a parallelogram: turn of the webs less that of the flanges.
+    """Return the racking of the section: rotation of the webs less that of the flanges.
 
     Twice the twist, with its flanges the other way round.
     """
@@ -132,10 +132,10 @@ def racking(outline: Outline) -> Row:
 def racking_stiffness(
     section: BoxSection, material: Material, thickness: float, size: float
 ) -> float:
-    """What a diaphragm adds to the moment in N m that leans a section by one radian.
+    """Return a diaphragm's contribution to the racking stiffness in N m per radian.
 
     Args:
-        section: of a box one metre long, with the plate in its middle.
+        section: that of a box one metre long, with the plate in its middle.
         material: of both.
         thickness: of the plate in m.
         size: of the mesh in m.
@@ -149,10 +149,10 @@ def racking_stiffness(
 
 
 def ring_flexibility(section: BoxSection, young: float, collar: float, size: float) -> float:
-    """How a ring of box gives way to opposite forces on the middles of its flanges, in m²/N.
+    """Return the compliance of a ring of box under opposite forces on its flanges, in m²/N.
 
     Args:
-        section: of a ring whose length is a twentieth of its perimeter.
+        section: that of a ring whose length is a twentieth of its perimeter.
         young: Young's modulus in Pa; without Poisson's ratio plates bend as beams do.
         collar: thickness in m that is added all around.
         size: of the mesh in m.
@@ -171,11 +171,11 @@ def ring_flexibility(section: BoxSection, young: float, collar: float, size: flo
 
 
 def frame_flexibility(section: BoxSection, young: float, collar: float) -> float:
-    """The same of a frame of Timoshenko beams of the thickness t without Poisson's ratio.
+    """Return the same of a frame of Timoshenko beams of the thickness t without Poisson's ratio.
 
-    A flange is a beam of span b that bears P in its middle, and whose ends the corner moment
-    P b² / 8 (b + h) turns back until flange and web have one slope there; it bends, and gives way
-    to shear. The webs shorten under P / 2 each.
+    A flange is a shear-flexible beam of span b that carries P in its middle. The corner moment
+    P b² / 8 (b + h) at its ends gives flange and web the same slope there. The webs shorten under P
+    / 2 each.
     """
     b, h, t = section.width, section.height, section.flange + collar
     bending = 24.0 * (b**3 / 48.0 - b**4 / (64.0 * (b + h))) / t**3
@@ -187,12 +187,12 @@ def frame_flexibility(section: BoxSection, young: float, collar: float) -> float
 def _piece(
     material: Material, section: BoxSection, length: float, **stiffeners: tuple[object, ...]
 ) -> Segment:
-    """A free piece of box."""
+    """Return a free piece of box."""
     return Segment.of_section("piece", 0.0, length, material, section, **stiffeners)
 
 
 def table(found: Sequence[Variant], stations: Sequence[float], sizes: Sizes) -> Table:
-    """One row a variant."""
+    """Return a table with one row per variant."""
     flexibility = "both flanges (nm/N)", "one flange more (nm/N)"
     columns = {
         "segment, with": "", "mass (kg)": ".1f",
@@ -217,7 +217,7 @@ def table(found: Sequence[Variant], stations: Sequence[float], sizes: Sizes) -> 
 def sums(
     outer: Sequence[Variant], inner: Sequence[Variant], stations: Sequence[float], sizes: Sizes
 ) -> Table:
-    """What both segments of a joint give way together, for some pairs of variants."""
+    """Return the compliance of both segments of a joint together, for some pairs of variants."""
     head, tail, closed = outer[-1], inner[len(sizes.collars)], inner[-2]
     return Table.of_rows(
         "stiffened-stations",
@@ -239,7 +239,7 @@ def sums(
 
 
 def proofs(boom: Boom, sizes: Sizes) -> Iterator[Proof]:
-    """Stiffeners that are simple enough for a formula."""
+    """Check stiffeners that are simple enough for a formula."""
     inner = boom.segments[1]
     section, material = inner.section, inner.material
     assert isinstance(section, BoxSection)
@@ -264,7 +264,7 @@ def proofs(boom: Boom, sizes: Sizes) -> Iterator[Proof]:
 
 @titled("stiffeners", "Collars and diaphragms")
 def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Collars and diaphragms at the joint of the paper's boom."""
+    """Study collars and diaphragms at the joint of the paper's boom."""
     sizes = sizes or Sizes()
     boom = build_boom(friction_case())
     stations = boom.joints[0].stations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How right the recovered stresses are: away from contacts a beam's, near them as the mesh refines.
+"""Accuracy of recovered stresses: against a beam away from contacts, by refinement near them.
 
 The inner segment of the paper's boom rests on the forces that its contacts need under its
 load: a static state with known moments, and known forces where it touches.
@@ -42,7 +42,7 @@ NOTE = (
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured."""
+    """Parameters of the study."""
 
     #: Edge lengths in m, each half the one before, three at least.
     meshes: Sequence[float] = (0.2, 0.1, 0.05, 0.025)
@@ -52,14 +52,14 @@ class Sizes:
 
 @dataclass(frozen=True, slots=True)
 class Pressed:
-    """The inner segment at rest between its contacts."""
+    """Inner segment at rest between its contacts."""
 
     boom: Boom  #: the paper's
     stress: ShellStress  #: of the segment alone, whose number there is 0
 
     @classmethod
     def on_mesh(cls, boom: Boom, size: float) -> Pressed:
-        """From a static solution of the full shell.
+        """Create the state from a static solution of the full shell.
 
         Args:
             boom: with two stations.
@@ -80,11 +80,11 @@ class Pressed:
 
     @classmethod
     def reduced(cls, boom: Boom, size: float) -> Pressed:
-        """The same state from the coordinates that a run moves in.
+        """Create the same state from the coordinates of a run.
 
         Args:
-            boom: with two stations.
-            size: of the mesh in m.
+            boom: one with two stations.
+            size: that of the mesh in m.
         """
         shell = reduce_boom(boom, ShellOptions(size), MPI.COMM_SELF)
         system, fields = shell.system, shell.fields
@@ -102,7 +102,7 @@ class Pressed:
         return cls(boom, ShellStress.still(shell.meshes[INNER], modes.astype(np.float32)))
 
     def top(self, x: float) -> tuple[float, float]:
-        """Mean σ_x over the width of the top in Pa, and what a beam has there.
+        """Return mean σ_x over the width of the top in Pa, and the beam's value.
 
         σ = M z / J, with the mean of M over the row of elements that holds x.
         """
@@ -118,7 +118,7 @@ class Pressed:
         return float(found), moment * 0.5 * section.size("z") / section.second_moment_of_area
 
     def shear(self, x: float) -> tuple[float, float]:
-        """Force that the webs carry in N, and what equilibrium asks for."""
+        """Return the shear force of the webs in N, and that of equilibrium."""
         segment = self.boom.segments[INNER]
         forces = wall_forces(self.stress, 0.0, 0, x)
         row = self.stress.row(0, x)
@@ -127,15 +127,16 @@ class Pressed:
         return found, segment.load * (segment.end - middle)
 
     def near(self, x: float) -> tuple[float, float]:
-        """The largest von Mises stress in the band round x, and that of a patch, in Pa."""
+        """Return the largest von Mises stress in the band round x, and that of a patch, in Pa."""
         found = near_places(self.stress, [x], [self.boom.segments[INNER].name]).isel(time=0)
         return float(found["von_mises"].item()), float(found["von_mises_patch"].item())
 
 
 def contact_forces(boom: Boom) -> dict[float, tuple[int, float]]:
-    """x → side and strength in N of what presses on the inner segment, from its equilibrium.
+    """Return side and strength in N of the contact forces on the inner segment by x.
 
-    Its load lifts it: it presses up at the outer segment's end, and down at its own tail.
+    They follow from its equilibrium. Its load lifts it: it presses up at the outer segment's end,
+    and down at its own tail.
     """
     segment, (tail, head) = boom.segments[INNER], boom.joints[0].stations
     lift = segment.load * segment.length
@@ -145,7 +146,7 @@ def contact_forces(boom: Boom) -> dict[float, tuple[int, float]]:
 
 
 def stresses(pressed: Sequence[Pressed], sizes: Sizes) -> dict[tuple[float, str], Refined]:
-    """x of each contact, and "triangle" or "patch" → the largest von Mises stress near it."""
+    """Return x of each contact, and the largest von Mises stress of a triangle or patch near it."""
     return {
         (x, what): Refined(
             f"largest {what} at {x:g} m",
@@ -161,8 +162,9 @@ def stresses(pressed: Sequence[Pressed], sizes: Sizes) -> dict[tuple[float, str]
 def proofs(
     default: Pressed, reduced: Pressed, near: Mapping[tuple[float, str], Refined], sizes: Sizes
 ) -> Iterator[Proof]:
-    """The default mesh against a beam, equilibrium, and the limit of the refinement; and the
-    reduced shell against the full one.
+    """Check the default mesh against a beam, equilibrium, and the limit of the refinement.
+
+    Check the reduced shell against the full one, too.
     """
     mesh, finest = (f"mesh of {size:g} m" for size in (sizes.default, sizes.meshes[-1]))
     for x in sizes.places:
@@ -183,7 +185,7 @@ def proofs(
 
 @titled("stress", "Stresses of the inner segment between its contacts")
 def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Stresses of the inner segment of the paper's boom, on ever finer meshes."""
+    """Compare stresses of the inner segment of the paper's boom on successively finer meshes."""
     sizes = sizes or Sizes()
     case = friction_case()
     boom = build_boom(case)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The one form of a study: values beside their references, tables of numbers, curves."""
+"""Common form of a study: values beside their references, tables of numbers, curves."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import Literal, ParamSpec
 
 from runs.report.tables import Plain, Table
 
-# Told which step of a study comes next.
+# Callback with the next step of a study.
 Tell = Callable[[str], None]
 
-# What a value is held against: a formula, a published value, another code or another theory of
+# Kind of reference: a formula, a published value, another code or another theory of
 # this project, or its own earlier value.
 Kind = Literal["analytic", "external", "other code", "non-regression"]
 # The last of a proof's numbers, which several may share: kind, source, and what is allowed.
@@ -22,7 +22,7 @@ Held = tuple[Kind, str, float]
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """A value beside its reference."""
+    """Value beside its reference."""
 
     what: str  #: is measured, and on what
     value: float  #: measured
@@ -35,12 +35,12 @@ class Proof:
 
     @property
     def error(self) -> float:
-        """Relative to the reference; the value itself where the reference is zero."""
+        """Error relative to the reference; the value itself if the reference is zero."""
         return abs(self.value - self.reference) / (abs(self.reference) or 1.0)
 
     @property
     def holds(self) -> bool:
-        """Whether the error is one that is allowed."""
+        """Whether the error is within the permitted one."""
         return self.error <= self.allowed
 
 
@@ -62,7 +62,7 @@ class Plot:
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """Everything that one study leaves."""
+    """Results of one study."""
 
     name: str  #: of its part of the files
     title: str  #: heading
@@ -72,7 +72,7 @@ class Study:
 
     @property
     def data(self) -> dict[str, list[dict[str, Plain]]]:
-        """The numbers of each table by its name, as JSON."""
+        """Numbers of each table by its name, as JSON."""
         return {table.name: table.data for table in self.tables}
 
 
@@ -83,7 +83,7 @@ _Given = ParamSpec("_Given")
 def titled(
     name: str, title: str
 ) -> Callable[[Callable[_Given, Iterable[Piece]]], Callable[_Given, Study]]:
-    """Make a study of what yields its tables, proofs and plots, each in the order of its kind."""
+    """Make a study of a generator of tables, proofs and plots, each in the order of its kind."""
 
     def titling(parts: Callable[_Given, Iterable[Piece]]) -> Callable[_Given, Study]:
         @wraps(parts)

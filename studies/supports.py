@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Booms on hinges, cylinders, springs against rotation and dashpots, against closed forms."""
+"""Booms on hinges, cylinders, rotational springs and dashpots, against closed forms."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from geometry.section import BoxSection
 from studies.second_order import STEEL
 from studies.study import Held, Proof, Tell, titled
 
-# Thick walls: the section hardly distorts.
+# Thick walls: the section has little distortion.
 BOX = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
 LENGTH = 10.0
 # 0.3 m below the axis at 2.5 m, from the ground 1.8 m below it.
@@ -36,25 +36,25 @@ ROTATION = 2.0e7
 # In N·s/m: of a support, of a cylinder, of each of two stations.
 DASHPOT = 2.0e3
 
-# Beams of rigid cross-sections; series lack the bend of moments at the lug; walls give way.
+# Beams of rigid cross-sections; series lack the kink of moments at the lug; walls are flexible.
 EXACT, SERIES, WALLS, DECREMENT = 1.0e-6, 1.0e-3, 5.0e-3, 1.0e-4
 LEVERS: Held = ("analytic", "lever arms", EXACT)
 
 
 def lever(cylinder: Cylinder) -> float:
-    """Arm in m of a cylinder's line about a hinge on the axis at x = 0."""
+    """Return the arm in m of a cylinder's line about a hinge on the axis at x = 0."""
     along, up = cylinder.direction
     return cylinder.x * up + cylinder.depth * along
 
 
 def tip_compliance(segment: Segment, cylinder: Cylinder, shear_stiffness: float) -> float:
-    """m/N at the tip of a boom on a hinge at x = 0 and a cylinder (Castigliano 1879).
+    """Return m/N at the tip of a boom on a hinge at x = 0 and a cylinder (Castigliano 1879).
 
-    1 N at the tip asks L/r of the cylinder and L/r s_z − 1 = R of the hinge, and bends by R x up to
-    the lug, by L − x beyond it.
+    1 N at the tip takes L/r of the cylinder and L/r s_z − 1 = R of the hinge, and bends by R x up
+    to the lug, by L − x beyond it.
 
     Args:
-        segment: from x = 0.
+        segment: one from x = 0.
         cylinder: its lug is at x in m.
         shear_stiffness: G A_s in N; infinite of a beam that is rigid in shear.
     """
@@ -67,7 +67,7 @@ def tip_compliance(segment: Segment, cylinder: Cylinder, shear_stiffness: float)
 
 
 def first_frequency(segment: Segment, rotation_stiffness: float) -> float:
-    """Hz of a beam on a hinge with a spring against rotation (Blevins 1979).
+    """Return the frequency in Hz of a beam on a hinge with a rotational spring (Blevins 1979).
 
     (kL/EJ) (1 + cos λ cosh λ) = λ (sin λ cosh λ − cos λ sinh λ)
     """
@@ -84,7 +84,7 @@ def first_frequency(segment: Segment, rotation_stiffness: float) -> float:
 
 
 def decrement(system: GapSystem, position: Array, period: float) -> float:
-    """Mean logarithm of the ratio of successive maxima of the tip, which swings about zero."""
+    """Return the mean logarithmic decrement of successive maxima of the tip about zero."""
     tip = AdaptiveStep()(Motion(system, 8.5 * period, period / 500.0, position)).data["tip"].values
     before, at, after = tip[:-2], tip[1:-1], tip[2:]
     peaks = (at > before) & (at >= after)
@@ -96,7 +96,7 @@ def decrement(system: GapSystem, position: Array, period: float) -> float:
 
 @titled("supports", "Hinges, cylinders, springs and dashpots")
 def study(tell: Tell) -> Iterator[Proof]:
-    """Statics, frequencies and decrements of single booms; forces and tips of beams and shells."""
+    """Compare statics, frequencies and decrements of booms; forces and tips of beams and shells."""
     yield from _luffed(tell)
     yield from _turning(tell)
     yield from _swinging(tell)
@@ -147,9 +147,9 @@ def _turning(tell: Tell) -> Iterator[Proof]:
 
 
 def _swinging(tell: Tell) -> Iterator[Proof]:
-    """Rigid booms: r √(k / I) about the hinge, ζ = c r / 2√(k I), δ = 2πζ/√(1 − ζ²).
+    """Compare rigid booms: r √(k / I) about the hinge, ζ = c r / 2√(k I), δ = 2πζ/√(1 − ζ²).
 
-    On both stations of a joint a segment goes up and down: √(2k / m), ζ = c / √(2k m).
+    On both stations of a joint a segment moves up and down: √(2k / m), ζ = c / √(2k m).
     """
     boom, stiffness = _segment(), CYLINDER.stiffness
     mass = boom.mass_per_length * LENGTH
@@ -174,7 +174,7 @@ def _swinging(tell: Tell) -> Iterator[Proof]:
         if not system.laws:
             name = f"rigid boom on a hinge and a {what}: frequency"
             yield Proof(name, system.frequencies[0], omega / (2.0 * np.pi), "Hz", *LEVERS)
-        # A turn about the hinge, or a way up without one.
+        # Rotation about the hinge, or vertical motion without one.
         rows = system.rows if system.laws else np.ones((1, 1))
         raised = np.linalg.lstsq(rows, np.full(len(rows), 1.0e-3), rcond=None)[0]
         found = decrement(system, raised, 2.0 * np.pi / omega)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Contact over the whole overlap beside contact at the stations, on the paper's boom.
+"""Contact over the whole overlap against contact at the stations, on the paper's boom.
 
 Without friction the motion is chaotic after its first presses, so the first peak is compared; with
 friction the tip over the whole run.
@@ -31,7 +31,7 @@ from studies.motions import (
 from studies.pads import flexibility_table, pad_proofs, rigid_motion, with_pads
 from studies.study import Piece, Plot, Proof, Tell, titled
 
-# Beyond the play, in m: how deep the approaches of the proofs go.
+# Depth of the approaches of the proofs beyond the play, in m.
 DEPTH = 1.0e-3
 DEFAULT_POINTS = (8, 4)
 
@@ -45,7 +45,7 @@ NOTES = (
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured."""
+    """Parameters of the study."""
 
     mesh: float = 0.1  #: edge length in m
     duration: float = 10.0  #: of the motions with friction that are compared, in s
@@ -58,7 +58,7 @@ class Sizes:
 
 
 class Contact(NamedTuple):
-    """A way to touch: its name, what touches so, and its shell, with friction."""
+    """Contact: its name, the contacting parts, and its shell, with friction."""
 
     name: str
     case: Case
@@ -67,7 +67,7 @@ class Contact(NamedTuple):
 
 @titled("surface-contact", "Contact over the whole overlap")
 def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Surface against stations, its penalty, its quadrature, and pads of several sizes."""
+    """Compare surface and stations, penalties, quadratures, and pads of several sizes."""
     sizes = sizes or Sizes()
     case = friction_case()
     shell = shell_of(case).model_copy(update={"mesh_size": sizes.mesh, "contact_tolerance": "any"})
@@ -137,12 +137,12 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
 
 
 def _upper_stiffness(system: GapSystem) -> float:
-    """Of all rows together where the inner segment presses up, in N/mⁿ."""
+    """Return the stiffness of all rows together that press up on the inner segment, in N/mⁿ."""
     return sum(term.stiffness for law in system.laws for term in law.terms if term.side > 0.0)
 
 
 def _density(case: Case, system: GapSystem) -> float:
-    """The default penalty per area in N/mⁿ⁺²."""
+    """Return the default penalty per area in N/mⁿ⁺²."""
     boom = build_boom(case)
     (joint,) = boom.joints
     section = boom.segments[joint.inner].section
@@ -152,7 +152,7 @@ def _density(case: Case, system: GapSystem) -> float:
 
 
 def _peaks(contacts: Sequence[Contact], notes: Sequence[str], sizes: Sizes) -> Table:
-    """The tip's first peak without and with friction, and how far it is off the first contact's."""
+    """Return the tip's first peak without and with friction, and changes from the first contact."""
     both = np.array(
         [
             [move(one, sizes.peak).first_peak()[1] for one in (without_friction(of), of)]
@@ -173,7 +173,7 @@ def _peaks(contacts: Sequence[Contact], notes: Sequence[str], sizes: Sizes) -> T
 
 
 def _proofs(case: Case, system: GapSystem) -> Iterator[Proof]:
-    """Forces of approaches whose pressure can be integrated by hand."""
+    """Check the forces of approaches with a pressure that has a closed-form integral."""
     boom = build_boom(case)
     (joint,) = boom.joints
     start, end = boom.overlap(joint)
@@ -183,7 +183,7 @@ def _proofs(case: Case, system: GapSystem) -> Iterator[Proof]:
     n, k = upper.exponent, upper.stiffness * len(joint.stations)
 
     def forces(tail: float, slope: float) -> Array:
-        """Of the inner segment this high at its tail, beyond the play, and rising so."""
+        """Return the forces on the inner segment at this height of its tail and this slope."""
         high = clearance + tail
         gaps = system.rows @ rigid_motion(system, high, high + slope * (boom.tip - start))
         return np.array([float(w.force(y)) for w, y in zip(system.laws, gaps, strict=True)])

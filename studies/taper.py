@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Cantilevers that taper to half of all their sizes, against what is known of truncated cones.
+"""Cantilevers that taper to half of all their sizes, against solutions of truncated cones.
 
 All sizes of their section shrink alike, so that A ∝ ξ² and J ∝ ξ⁴ with ξ from 1 at the clamp to α.
 """
@@ -37,26 +37,31 @@ WHOLE = LENGTH / (1.0 - ALPHA)
 
 ELEMENTS = "shear-flexible elements"
 
-# Of beams, and of the shell, whose walls shear and swell.
+# Permitted errors of beams, and of the shell with shear and transverse strain of its walls.
 CLOSE, OF_SHELL = 1.0e-4, 5.0e-3
 
 
 def arm(force: float = 0.0) -> Boom:
-    """The cantilever with 1 N across its tip, and a force in N along it."""
+    """Create the cantilever with 1 N across its tip, and a force in N along it."""
     alone = Segment.of_section("arm", 0.0, LENGTH, STEEL, BOX, head_section=HEAD, supports=(CLAMP,))
     pressed = with_compression([alone], [], [Thrust(0, LENGTH, force)])
     return Boom(pressed, (), (Load(0, "z", 1.0, LENGTH, Step()),))
 
 
 def tip(in_shear: bool) -> float:
-    """In m/N: ∫ (L − x)²/(E J) dx = L³/(3 E J_0 α), and with shear L/(G A_0 α) more."""
+    """Return the tip compliance ∫ (L − x)²/(E J) dx = L³/(3 E J_0 α) in m/N.
+
+    Shear adds L/(G A_0 α).
+    """
     shear = LENGTH / (SHEAR_STIFFNESS * ALPHA) if in_shear else 0.0
     return LENGTH**3 / (3.0 * STIFFNESS * ALPHA) + shear
 
 
 def frequency() -> float:
-    """The first in Hz: w = Z_2(2 λ √ξ)/ξ with Z of J, Y, I and K (Kirchhoff 1879), whose k-th
-    derivative is ± λᵏ Z_{2+k}/ξ^(1+k/2); w = w′ = 0 at ξ = 1, w″ = (ξ⁴ w″)′ = 0 at ξ = α.
+    """Return the first frequency in Hz (Kirchhoff 1879).
+
+    The mode is w = Z_2(2 λ √ξ)/ξ with Z of J, Y, I and K, whose k-th derivative is
+    ± λᵏ Z_{2+k}/ξ^(1+k/2); w = w′ = 0 at ξ = 1, w″ = (ξ⁴ w″)′ = 0 at ξ = α.
     """
 
     def determinant(eigenvalue: float) -> float:
@@ -81,8 +86,10 @@ def frequency() -> float:
 
 
 def critical() -> float:
-    """The force in N along the tip under which it buckles: M = P times the deflection from the
-    tip's, which is ξ sin(u/α − u/ξ); its slope at ξ = 1 is 0 (Dinnik 1929).
+    """Return the critical force in N along the tip (Dinnik 1929).
+
+    The moment is M = P times the deflection from the tip's, which is ξ sin(u/α − u/ξ); its slope
+    at ξ = 1 is 0.
     """
     turned = 1.0 / ALPHA - 1.0
     u = brentq(lambda u: np.sin(u * turned) + u * np.cos(u * turned), 0.5 * np.pi, np.pi)
@@ -91,7 +98,7 @@ def critical() -> float:
 
 @titled("taper", "Segments that taper")
 def study(tell: Tell) -> Iterator[Proof]:
-    """Every model."""
+    """Study every model."""
     for name, model in MODELS.items():
         tell(name)
         source = "∫ (L − x)²/(E J) dx" + (" + ∫ dx/(G A_s)" if model.in_shear else "")
@@ -105,7 +112,7 @@ def study(tell: Tell) -> Iterator[Proof]:
 
 
 def _swing_and_force(name: str, model: Model) -> Iterator[Proof]:
-    """Against closed forms; of those that shear bends against one another."""
+    """Compare with closed forms; compare shear-flexible models with one another."""
     exact, sources = (frequency(), critical()), ("Kirchhoff 1879", "Dinnik 1929")
     kind: Kind = "analytic"
     if model.in_shear:
@@ -119,7 +126,7 @@ def _swing_and_force(name: str, model: Model) -> Iterator[Proof]:
 
 
 def _measured(model: Model) -> tuple[float, float]:
-    """First frequency in Hz, critical force in N."""
+    """Return the first frequency in Hz and the critical force in N."""
     load = 0.1 * critical()
     system, _ = model.of(arm())
     return float(system.frequencies[0]), model.factor(arm(load)) * load

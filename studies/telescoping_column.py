@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A cantilever that is pressed ever farther as a segment telescopes in it.
+"""Cantilever under a compression that advances with a telescoping segment.
 
-What a force presses up to a, beyond which the column is straight, buckles as a column of the length
-a; under a load across the head it bends by what is known of a beam-column, and goes on straight but
-for the load.
+A column that is compressed up to a and free of axial force beyond buckles as a column of the length
+a. Under a load across the head it bends as a beam-column up to a, and by the load alone beyond.
 """
 
 from __future__ import annotations
@@ -52,7 +51,7 @@ MODELS: Mapping[str, Callable[[Boom], list[SegmentModel]]] = {
 
 
 def column(force: float) -> Boom:
-    """The cantilever, and the segment that telescopes in it, whose tail hands a force in N on."""
+    """Return the cantilever, and the telescoping segment whose tail transfers a force in N."""
     outer = Segment.of_section("column", 0.0, LENGTH, STEEL, BOX, supports=(CLAMP,))
     inner = Segment.of_section("drawn", START, START + LENGTH, STEEL, INNER)
     drive = Drive(SCurve(END - START, 1.0), ("inner", "outer"))
@@ -65,7 +64,7 @@ def column(force: float) -> Boom:
     "telescoping_column", "A column that is pressed ever farther as a segment is drawn out in it"
 )
 def study(tell: Tell) -> Iterator[Proof]:
-    """Every model of beams."""
+    """Study every model of beams."""
     for name, build in MODELS.items():
         tell(name)
         yield from _proofs(name, build)
@@ -99,7 +98,7 @@ def _proofs(name: str, build: Callable[[Boom], list[SegmentModel]]) -> Iterator[
 
 
 def _bent(a: float, force: float) -> float:
-    """m/N of the head under a load across it, with a force in N on the part up to a in m.
+    """Return m/N of the head under a load across it, with a force in N on the part up to a in m.
 
     E J w″ = Q (L − x) + P (w(a) − w) up to a, with w(0) = w′(0) = 0; E J w″ = Q (L − x) beyond.
     """

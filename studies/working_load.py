@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Whether the default mesh is fine enough where segments press each other hard.
+"""Mesh error of the default mesh under high contact forces.
 
 The paper's boom with friction, with its sections held, over plays from none to the paper's and
 loads up to ten times the paper's, which is what gravity does: each point on the default mesh, and
@@ -28,10 +28,10 @@ from studies.pads import with_pads
 from studies.refined import Refined, refined_table
 from studies.study import Piece, Proof, Tell, titled
 
-# What is allowed of the first peak, and of the tip as a part of its range.
+# Permitted errors of the first peak, and of the tip as a part of its range.
 PEAK, TIP = 0.002, 0.02
 TIP_OF_RANGE = "tip, part of its range"
-# Outputs over which a pad's force is averaged: single blows are a matter of microseconds.
+# Outputs over which a pad's force is averaged: single impacts take microseconds.
 HELD = 20
 
 
@@ -46,13 +46,13 @@ class Point(NamedTuple):
 
     @classmethod
     def each(cls, plays: Sequence[float], loads: Sequence[float]) -> list[Point]:
-        """Every play with every load."""
+        """Return every play with every load."""
         return [cls(*one) for one in product(plays, loads)]
 
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured."""
+    """Parameters of the study."""
 
     #: Edge lengths over the default ones, each half the one before.
     meshes: Sequence[float] = (2.0, 1.0, 0.5)
@@ -69,7 +69,7 @@ class Sizes:
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """A point's motion."""
+    """Motion of a point."""
 
     tip: Array  #: (num_times,) in m
     peaks: Array  #: (num_peaks,) heights of its first ones in m; NaN without it
@@ -78,7 +78,7 @@ class Moved:
 
     @classmethod
     def of(cls, system: GapSystem, duration: float, num_peaks: int = 1) -> Moved:
-        """From rest, in s."""
+        """Create the motion from rest, in s."""
         begin = perf_counter()
         motion = move(system, duration)
         seconds = perf_counter() - begin
@@ -91,23 +91,25 @@ class Moved:
         return cls(tip, peaks, np.abs(means).max(axis=0), seconds)
 
     def tip_off(self, reference: Moved) -> float:
-        """Its largest distance as a part of the reference's range."""
+        """Return the largest distance of the tip as a part of the reference's range."""
         return float(np.abs(self.tip - reference.tip).max() / np.ptp(reference.tip))
 
     def peaks_off(self, reference: Moved) -> Array:
-        """(num_peaks,) relative errors."""
+        """Return the relative errors (num_peaks,) of the peaks."""
         return np.asarray(np.abs(self.peaks / reference.peaks - 1.0))
 
     def changes(self, finer: Moved) -> Array:
-        """(num_peaks + 2,) relative changes of the peaks, then of the stations' forces as parts of
-        the largest, and of the tip as a part of its range, from here to a finer mesh.
+        """Return the relative changes (num_peaks + 2,) of this motion to that of a finer mesh.
+
+        They are those of the peaks, then of the stations' forces as parts of the largest, and of
+        the tip as a part of its range.
         """
         forces = np.abs(self.forces - finer.forces).max() / finer.forces.max()
         return np.append(self.peaks_off(finer), [forces, self.tip_off(finer)])
 
 
 class Touch(NamedTuple):
-    """A way to touch."""
+    """Type of contact."""
 
     name: str  #: of its table
     where: str  #: segments touch, in words
@@ -118,7 +120,7 @@ class Touch(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A way to touch on every mesh."""
+    """Type of contact on every mesh."""
 
     touch: Touch  #: the way
     #: Point → its motions, from the coarsest mesh to the finest.
@@ -126,11 +128,11 @@ class Contact:
 
     @property
     def changes(self) -> Array:
-        """(num_points, num_peaks + 2) from the default mesh to the finest; NaN without a peak."""
+        """Changes (num_points, num_peaks + 2) from the default mesh to the finest, or NaN."""
         return np.array([meshes[-2].changes(meshes[-1]) for meshes in self.moved.values()])
 
     def worst(self, which: int) -> tuple[float, Point]:
-        """The largest of a kind of changes over all points, and where; NaN where there is none."""
+        """Return the largest of a kind of changes over all points, and its point, or NaN."""
         changes = self.changes[:, which]
         points = list(self.moved)
         if np.isnan(changes).all():
@@ -140,7 +142,7 @@ class Contact:
 
     @property
     def proofs(self) -> list[Proof]:
-        """First peaks, if there are any, and tips of the default mesh against half of all edges."""
+        """Proofs of first peaks, if any, and tips of the default mesh against half of all edges."""
         found = []
         for what, which, allowed in (("first tip peak", 0, PEAK), (TIP_OF_RANGE, -1, TIP)):
             compared = int(np.isfinite(self.changes[:, which]).sum())
@@ -153,7 +155,7 @@ class Contact:
         return found
 
     def hardest(self, sizes: Sizes) -> list[Refined]:
-        """Peaks and pad forces at the largest play and load."""
+        """Return peaks and pad forces at the largest play and load."""
         meshes = self.moved[max(self.moved, key=lambda p: (p.load, p.play))]
         return [
             Refined(f"{self.touch.where}: {what} {i}", unit, sizes.meshes, values.tolist())
@@ -167,13 +169,13 @@ class Contact:
 
 
 def at_point(system: GapSystem, point: Point) -> GapSystem:
-    """The system with another play and load, its coordinates as they were."""
+    """Return the system with another play and load in the same coordinates."""
     laws = [law.scaled(0.0).behind(0.5 * point.play) for law in system.laws]
     return replace(system, laws=laws, load=point.load * system.load)
 
 
 def in_space(case: Case) -> Case:
-    """The case with play and half its load sideways, too."""
+    """Return the case with play and half its load sideways, too."""
     joints = tuple(joint.model_copy(update={"lateral_play": joint.play}) for joint in case.joints)
     segments = tuple(
         segment.model_copy(update={"lateral_load": 0.5 * segment.load}) for segment in case.segments
@@ -182,7 +184,7 @@ def in_space(case: Case) -> Case:
 
 
 def measure(touch: Touch, sizes: Sizes) -> Contact:
-    """All points of a way to touch, on all meshes."""
+    """Run all points of a type of contact, on all meshes."""
     boom, shell = build_boom(touch.case), shell_of(touch.case)
     systems = [gap_system(touch.case, boom, finer(shell, part)) for part in sizes.meshes]
     tasks = [at_point(system, point) for point in touch.points for system in systems]
@@ -194,7 +196,7 @@ def measure(touch: Touch, sizes: Sizes) -> Contact:
 
 
 def touches(case: Case, sizes: Sizes) -> list[Touch]:
-    """Near webs, by pads, and in space."""
+    """Return contact near webs, by pads, and in space."""
     every = Point.each(sizes.plays, sizes.loads)
     return [
         Touch("points-webs", "near webs", case, every, sizes.duration),
@@ -209,7 +211,7 @@ def touches(case: Case, sizes: Sizes) -> list[Touch]:
 
 
 def summary_table(contacts: Sequence[Contact], sizes: Sizes) -> Table:
-    """The largest changes of each way to touch."""
+    """Return a table of the largest changes of each type of contact."""
     peaks = [f"peak {which}\n(%)" for which in range(1, sizes.peaks + 1)]
     changes = [*peaks, "pad forces\n(%)", "tip, part of\nits range (%)"]
     rows: list[Sequence[Cell]] = []
@@ -233,7 +235,7 @@ def summary_table(contacts: Sequence[Contact], sizes: Sizes) -> Table:
 
 
 def point_table(contact: Contact) -> Table:
-    """First peaks and the changes at every point of one way to touch, a row each."""
+    """Return a table of first peaks and changes at every point of one type of contact."""
     columns = {
         "point": "", "first peak (mm)": ".1f", "its change (%)": ".3f", "tip (% of range)": ".2f",
         "largest pad force (kN)": ".4g",
@@ -254,7 +256,7 @@ def point_table(contact: Contact) -> Table:
 
 @titled("working-load", "Meshes under working loads")
 def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """The paper's boom with friction under working loads, on three meshes."""
+    """Study the paper's boom with friction under working loads, on three meshes."""
     sizes = sizes or Sizes()
     contacts = []
     for touch in touches(friction_case(), sizes):

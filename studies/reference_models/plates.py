@@ -170,8 +170,9 @@ class Patch:
 
 @dataclass(frozen=True, slots=True)
 class SupportedPlate:
-    """A rectangular plate of steel on hard simple supports, a by b by t in m: edges keep their
-    places and, along themselves, their direction.
+    """Rectangular plate of steel on hard simple supports, a by b by t in m.
+
+    Deflections of the edges and rotations along them are zero.
     """
 
     length: float
@@ -303,8 +304,10 @@ class PressedPlate:
         return float(load @ np.linalg.solve(stiffness, load))
 
     def navier(self, terms: int = 400) -> float:
-        """The same on simple supports, as a double series of sines (Navier 1823; with the shear of
-        Reissner and Mindlin, whose plate bends alike between such supports).
+        """Return the same on simple supports, as a double series of sines (Navier 1823).
+
+        It includes the shear of Reissner and Mindlin, whose plate bends alike between such
+        supports.
         """
         plate, shear = rigidities(self.thickness)
         waves = np.pi * np.arange(1, terms + 1)
@@ -343,8 +346,9 @@ def flange(edges: Edges) -> PressedPlate:
 
 
 def _polynomials(places: Array, side: float, free: bool) -> tuple[Array, Array]:
-    """(num_polynomials, num_places) values and slopes of Legendre's, or of differences of these
-    that vanish at both ends.
+    """Return values and slopes (num_polynomials, num_places) of Legendre's polynomials.
+
+    If the ends are fixed, they are differences of these that vanish at both ends.
     """
     ones = np.eye(DEGREES + 2)
     coefficients = ones[:-2] if free else ones[2:] - ones[:-2]

@@ -44,8 +44,9 @@ class Member:
 
     @property
     def thin_walled_constant(self) -> float:
-        """Torsion constant J in m⁴: Σ b t³/3 (Saint-Venant 1855), and 4 A² t/Σ b where the
-        section is closed (Bredt 1896).
+        """Torsion constant J in m⁴: Σ b t³/3 (Saint-Venant 1855).
+
+        A closed section adds 4 A² t/Σ b (Bredt 1896).
         """
         around = float(self.widths.sum())
         constant = around * self.thickness**3 / 3.0

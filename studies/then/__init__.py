@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The examples of the paper by numerics of its time, for :mod:`studies.as_computed_then`."""
+"""Examples of the paper by numerics of its time, for :mod:`studies.as_computed_then`."""

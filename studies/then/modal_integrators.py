@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Step-by-step integration of modal equations as codes of the 1990s had it; for studies alone.
+"""Step-by-step integration of modal equations by schemes of the 1990s, for studies alone.
 
 Newmark's average acceleration (1959), Wilson's θ (1973) and central differences are one family:
 the equation of motion holds θ steps ahead, and the acceleration of a step's end is on the line to
-there (Hilber and Hughes 1978). Forces of gaps and friction are loads of the modes: with what the
-last step has left, or sought anew in each step until they agree with its end. Nothing here watches
-the energy.
+there (Hilber and Hughes 1978). Forces of gaps and friction are loads of the modes: with the
+values of the last step, or iterated in each step until they agree with its end. The energy is not
+checked.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ from studies.study import Proof
 
 # Rounds of gaps and friction within a step, and of gaps alone.
 ROUNDS, NEWTON = 8, 30
-# In m: penetrations nearer than that agree.
+# Tolerance of penetrations in m.
 AGREED = 1.0e-13
-# In √kg·m: farther away nothing is a boom any more.
+# Divergence limit in √kg·m.
 LOST = 1.0e5
 
 
 @dataclass(frozen=True, slots=True)
 class Scheme:
-    """One of the family."""
+    """Scheme of the family."""
 
     name: str  #: its usual one
     beta: float  #: of the displacement within a step, after Newmark (1959); γ is ½
@@ -51,7 +51,7 @@ CENTRAL = Scheme("central differences", 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Stepped:
-    """What such a code leaves."""
+    """Results of such a code."""
 
     trajectory: Trajectory  #: an output for each step, NaN after the last finite one
     lasted: int  #: steps until the motion is not finite
@@ -60,7 +60,7 @@ class Stepped:
 
 
 def lowest(system: GapSystem, modes: int) -> GapSystem:
-    """The system cut to its lowest modes, which is what the modal technique keeps of it."""
+    """Return the system truncated to its lowest modes, as in the modal technique."""
     kept = np.argsort(system.omega2, kind="stable")[:modes]
     return replace(
         system,
@@ -75,11 +75,11 @@ def lowest(system: GapSystem, modes: int) -> GapSystem:
 
 
 def integrate(motion: Motion, scheme: Scheme, settled: bool) -> Stepped:
-    """Move a system by a scheme, in one step for each output.
+    """Integrate a system by a scheme, in one step for each output.
 
     Args:
-        motion: of a system under constant loads without damping.
-        scheme: which.
+        motion: that of a system under constant loads without damping.
+        scheme: one of the family.
         settled: whether gaps and friction agree with the end of a step, or lag by one.
     """
     system = motion.system
@@ -119,7 +119,7 @@ def integrate(motion: Motion, scheme: Scheme, settled: bool) -> Stepped:
 
 @njit(**LOOP)
 def _press(gaps: Array, terms: Terms, forces: Array, energy: Array) -> None:
-    """Fill in what contacts press with and hold, at gaps (num_times, num_rows)."""
+    """Fill in contact forces and friction at gaps (num_times, num_rows)."""
     for k in range(len(gaps)):
         contact_forces(gaps[k], terms, forces[k])
         energy[k] = contact_energy(gaps[k], terms)
@@ -127,7 +127,7 @@ def _press(gaps: Array, terms: Terms, forces: Array, energy: Array) -> None:
 
 @njit(**LOOP)
 def _settle(free: Array, cross: Array, terms: Terms, y: Array, force: Array) -> bool:
-    """Gaps y (num_rows,) with y + ``cross`` F(y) = ``free``, by Newton's method; their forces."""
+    """Solve y + ``cross`` F(y) = ``free`` for gaps (num_rows,) by Newton's method."""
     for _ in range(NEWTON):
         contact_forces(y, terms, force)
         excess = y + cross @ force - free
@@ -154,7 +154,7 @@ def _march(
     losses: Array,
     unsettled: Array,
 ) -> int:
-    """Fill in states, speeds and the loss of friction from the first ones on; how far it comes."""
+    """Fill in states, speeds and friction losses; return the number of finite steps."""
     omega2, load, rows, terms, slides, drag = system
     tau = theta * h
     reach = beta * tau**2
@@ -193,20 +193,20 @@ def _march(
 
 
 PER_PERIOD = 10
-# Steps from which a root is read.
+# Steps for the measurement of a root.
 STEPS = 100
 
 SOURCE = "roots of the amplification matrix, Bathe 1996"
 
 
 def textbook_root(scheme: Scheme, phase: float) -> complex:
-    """The root λ with which a scheme takes an oscillator from step to step, without damping.
+    """Return the root λ of a scheme's step for an oscillator without damping.
 
     Newmark's and the central differences' in closed form, Wilson's from his amplification matrix
     (Bathe 1996, section 9.4).
 
     Args:
-        scheme: of the three.
+        scheme: one of the three.
         phase: ω h.
     """
     if scheme == NEWMARK:
@@ -224,7 +224,7 @@ def textbook_root(scheme: Scheme, phase: float) -> complex:
 
 
 def own_root(scheme: Scheme, phase: float) -> complex:
-    """The same, read from the motion of an oscillator."""
+    """Return the same, measured from the motion of an oscillator."""
     motion = Motion(oscillator(), STEPS * phase, phase, position=np.ones(1))
     way = integrate(motion, scheme, settled=False).trajectory.states[:, 0]
     behind = np.stack([way[2:-1], way[1:-2], way[:-3]], axis=1)
@@ -232,7 +232,7 @@ def own_root(scheme: Scheme, phase: float) -> complex:
 
 
 def oscillator() -> GapSystem:
-    """1 kg on a spring of 1 N/m."""
+    """Return 1 kg on a spring of 1 N/m."""
     return GapSystem(
         omega2=np.ones(1),
         load=np.zeros(1),
@@ -245,17 +245,17 @@ def oscillator() -> GapSystem:
 
 
 def longer_period(root: complex, phase: float) -> float:
-    """By which part a root makes the period longer."""
+    """Return the relative increase of the period by a root."""
     return float(phase / np.angle(root)) - 1.0
 
 
 def lost_amplitude(root: complex) -> float:
-    """Which part of the amplitude is lost in a period."""
+    """Return the relative loss of amplitude in a period."""
     return 1.0 - float(abs(root) ** (2.0 * np.pi / np.angle(root)))
 
 
 def proofs() -> Iterator[Proof]:
-    """Period and amplitude of each scheme in ten steps a period."""
+    """Return the proofs of period and amplitude of each scheme in ten steps a period."""
     phase = 2.0 * np.pi / PER_PERIOD
     for scheme in (NEWMARK, WILSON, CENTRAL):
         roots = own_root(scheme, phase), textbook_root(scheme, phase)
@@ -275,5 +275,5 @@ def proofs() -> Iterator[Proof]:
 
 
 def _turning(roots: object) -> complex:
-    """Of several roots the one that turns forward."""
+    """Return the root of several with positive rotation."""
     return complex(max(np.asarray(roots), key=lambda root: root.imag))

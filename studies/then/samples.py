@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The paper's two examples, moved as codes of 1997 moved them, and as this program does.
+"""Examples of the paper, moved by numerics of 1997, and by this program.
 
-Its elements went by the modal technique in 4375 steps for 7 s, gaps and friction as forces on a few
-modes. Which scheme, how many modes, and whether gaps were iterated, it does not say: all are tried.
+The paper moves elements by the modal technique in 4375 steps for 7 s, with gaps and friction as
+forces on a few modes. It states neither the scheme, nor the number of modes, nor whether gaps were
+iterated: this study tries all.
 """
 
 from __future__ import annotations
@@ -38,13 +39,13 @@ STEPS = (3.2e-3, 1.6e-3, 0.8e-3)
 THEN = STEPS[1]
 # A few modes of both segments, which the modal technique keeps.
 MODES = (6, 8, 10, 12, 14)
-# Loads a little changed: each run is a sample.
+# Slightly changed loads: each run is a sample.
 MEMBERS, RELATIVE, SEED = 4, 1.0e-9, 1
 
 
 @dataclass(frozen=True, slots=True)
 class Numerics:
-    """How a code of then moves modes."""
+    """Numerics of 1997 for motions of modes."""
 
     scheme: Scheme  #: of its steps
     settled: bool  #: whether gaps and friction agree with the end of a step, or lag by one
@@ -56,14 +57,14 @@ class Numerics:
 
 
 def all_numerics() -> list[Numerics]:
-    """Every scheme, gaps iterated and lagged, every step."""
+    """Return every combination of scheme, iterated or lagged gaps, and step."""
     parts = product((NEWMARK, WILSON, CENTRAL), (True, False), STEPS)
     return [Numerics(*one) for one in parts]
 
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """One run of one model."""
+    """Run of one model."""
 
     time: Array  #: (num_times,) in s
     #: (num_times,) in m.
@@ -75,7 +76,7 @@ class Moved:
 
     @classmethod
     def of(cls, run: Trajectory, put_in: float = 0.0, unsettled: float = 0.0) -> Moved:
-        """A trajectory; without ``put_in`` its own."""
+        """Create a run from a trajectory; without ``put_in`` by its own energy."""
         kinetic, strain, contact, work, *losses = (run.data[name].values for name in ENERGIES)
         present = kinetic + strain + contact + sum(losses)
         tip, head = (run.data[place].values for place in ("tip", "head"))
@@ -84,11 +85,11 @@ class Moved:
 
     @property
     def balance(self) -> Array:
-        """(num_times,) energy from nowhere as a part of that put in, NaN after a finite motion."""
+        """Unaccounted energy (num_times,) as a part of that put in, NaN after a finite motion."""
         return self.gained / self.put_in
 
     def at(self, time: Array) -> Moved:
-        """The same at other times in s."""
+        """Return the same at other times in s."""
         curves = self.tip, self.head, self.gained
         tip, head, gained = (np.interp(time, self.time, curve) for curve in curves)
         return Moved(time, tip, head, gained, self.put_in, self.unsettled)
@@ -100,27 +101,27 @@ class Moved:
 
     @property
     def breaks(self) -> float:
-        """When it has gained more energy than was ever put in, in s; infinite if never."""
+        """Time in s at which the energy gain exceeds all energy put in; infinite if never."""
         gained = ~(self.balance < 1.0)
         return float(self.time[np.argmax(gained)]) if gained.any() else np.inf
 
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """The paper's models with play, moved by the same numerics, and the play-free one."""
+    """Models with play by the same numerics, and the model without play."""
 
     models: Sequence[Moved]  #: of ``SERIES`` and ``ELEMENTS``
     tied: Moved  #: the elements without play, which any numerics moves well
 
     @property
     def elements(self) -> Moved:
-        """The finite elements with play."""
+        """Finite elements with play."""
         return self.models[-1]
 
     def peaks(self, cutoff: float) -> tuple[float, float]:
-        """How far slow peaks are from one another up to six seconds and later (S3).
+        """Return the distances of slow peaks up to six seconds and later (S3).
 
-        Infinite and NaN where the energy of a model has broken out.
+        They are infinite and NaN if the energy of a model diverges.
         """
         if min(one.breaks for one in self.models) < np.inf:
             return np.inf, np.nan
@@ -130,18 +131,18 @@ class Sample:
         return float(apart[early].max(initial=0.0)), float(apart[~early].max(initial=0.0))
 
     def conforms_then_parts(self, cutoff: float) -> bool:
-        """Whether it shows S3."""
+        """Return whether the sample shows S3."""
         early, late = self.peaks(cutoff)
         return early <= DIVERGENCE < late
 
     def apart(self) -> tuple[float, float]:
-        """Largest distance of two tips up to six seconds and after, of the largest range (S7)."""
+        """Return the largest distance of two tips up to six seconds and after, by range (S7)."""
         distance = _apart([one.tip for one in self.models])
         early = self.elements.time <= CONFORMITY
         return float(distance[early].max()), float(distance[~early].max())
 
     def stratifies(self) -> bool:
-        """Whether it shows S7, as the rule on trajectories asks it."""
+        """Return whether the sample shows S7, by the rule on trajectories."""
         early, late = self.apart()
         head = float(_apart([one.head for one in self.models]).max())
         without = min(float(_apart([one.tip, self.tied.tip]).max()) for one in self.models)
@@ -150,7 +151,7 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """One of the paper's two examples."""
+    """Example of the paper."""
 
     case: Case  #: its file's
     systems: Mapping[str, GapSystem]  #: of its models by their names
@@ -159,7 +160,7 @@ class Example:
 
     @classmethod
     def of(cls, case: Case, members: int) -> Example:
-        """With so many members solved well."""
+        """Create an example with so many accurately solved members."""
         boom = build_boom(case)
         names = (*SERIES, ELEMENTS, TIED)
         systems = {name: gap_system(case, boom, model_of(case, name)) for name in names}
@@ -177,7 +178,7 @@ class Example:
         return cls(case, systems, cutoff, well)
 
     def samples(self, how: Numerics, modes: Sequence[int] = MODES) -> list[Sample]:
-        """A sample for each number of the elements' modes and each member."""
+        """Return a sample for each number of the elements' modes and each member."""
         well = self.well[0].models
         series = [(self.systems[name], run.put_in) for name, run in zip(SERIES, well, strict=False)]
         whole, put_in = self.systems[ELEMENTS], well[-1].put_in
@@ -193,7 +194,7 @@ class Example:
         ]
 
     def mixed(self, samples: Sequence[Sample]) -> list[Sample]:
-        """The samples with the series solved well, as a general solver does without a limit."""
+        """Return the samples with accurate series, as by a general solver without a limit."""
         members = [self.well[i % MEMBERS % len(self.well)] for i in range(len(samples))]
         return [
             replace(one, models=[*(run.at(one.elements.time) for run in series), one.elements])
@@ -202,21 +203,21 @@ class Example:
         ]
 
     def as_printed(self, how: Numerics) -> list[Moved]:
-        """The elements, whose contacts are linear, with their stiffness as the print has it."""
+        """Return the elements with linear contacts of the stiffness as printed."""
         system, put_in = self.systems[ELEMENTS], self.well[0].elements.put_in
         laws = [PowerContact(LITERAL, 1.0).behind(0.5 * law.play) for law in system.laws]
         tasks = [(lowest(replace(system, laws=laws), few), put_in, 1.0) for few in MODES]
         return side_by_side(lambda one: _then(how, self.case.time.duration, *one), tasks)
 
     def off(self, run: Moved) -> float:
-        """Largest distance of the elements' tip from the one solved well, of its range."""
+        """Return the largest distance of the elements' tip from the accurate one, by its range."""
         well = self.well[0].elements
         distance = np.abs(run.tip - np.interp(run.time, well.time, well.tip))
         return float(distance[run.time <= CONFORMITY].max() / np.ptp(well.tip))
 
 
 def factors(members: int) -> Array:
-    """(members,) of the loads."""
+    """Return the load factors (members,)."""
     return 1.0 + perturbations(members, RELATIVE, SEED)
 
 
@@ -227,5 +228,5 @@ def _then(how: Numerics, duration: float, system: GapSystem, put_in: float, fact
 
 
 def _apart(curves: Sequence[Array]) -> Array:
-    """(num_times,) largest difference of any two, as a part of the largest range."""
+    """Return the largest difference (num_times,) of any two, as a part of the largest range."""
     return np.asarray(np.ptp(np.array(curves), axis=0) / max(np.ptp(one) for one in curves))

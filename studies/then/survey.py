@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Which numerics of 1997 show what the paper says, asked of S3, S7, S8 and S10.
+"""Numerics of 1997 that reproduce the paper's statements S3, S7, S8 and S10.
 
 The measures are those of :mod:`runs.paper.rules`; runs of the elements are by the modal technique,
 those of the series by a general solver held to 2000 steps as well.
@@ -39,7 +39,7 @@ AWAY = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Solved:
-    """What a solver has reached."""
+    """Motion up to the last step of a solver."""
 
     time: Array  #: (num_steps + 1,) in s
     #: (num_steps + 1, num_modes).
@@ -51,9 +51,9 @@ def solve(system: GapSystem, duration: float, method: str, tolerance: float, mos
     """Move a system from rest until ``duration`` in s, or for as many steps as are allowed.
 
     Args:
-        system: under constant loads, without damping.
+        system: one under constant loads, without damping.
         duration: in s.
-        method: of ``METHODS``.
+        method: one of ``METHODS``.
         tolerance: relative, and absolute in the units of a and ȧ.
         most: steps.
     """
@@ -74,7 +74,7 @@ def solve(system: GapSystem, duration: float, method: str, tolerance: float, mos
 
 WITHOUT, WITH = CASES / "paper.toml", CASES / "paper-friction.toml"
 
-# Of the general solver, from rough to fine.
+# Tolerances of the general solver, from rough to fine.
 TOLERANCES = (1.0e-2, 1.0e-3, 1.0e-4, 1.0e-6, 1.0e-8)
 # In s about the 7 s after which the paper's elements with friction were lost.
 ABOUT = 1.0
@@ -86,7 +86,7 @@ Way = tuple[str, float, str, bool]
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What numerics of then say of a statement."""
+    """Outcome of a statement with numerics of 1997."""
 
     shown: bool  #: whether with some of them most runs show it
     why: str  #: which, and in how many runs
@@ -109,7 +109,7 @@ class Survey:
 
     @classmethod
     def of(cls, tell: Callable[[str], None]) -> Survey:
-        """Run everything."""
+        """Run all numerics."""
         tell("both examples solved well")
         free, rubbed = (case_file.load(str(path)) for path in (WITHOUT, WITH))
         without, with_friction = Example.of(free, MEMBERS), Example.of(rubbed, 1)
@@ -126,7 +126,7 @@ class Survey:
 
     @cached_property
     def outcomes(self) -> dict[str, Outcome]:
-        """By the statement."""
+        """Outcomes by statement."""
         free, rubbed = named(self.without, self.free), named(self.with_friction, self.rubbed)
         return {
             "S3": _most(free, lambda one: one.conforms_then_parts(self.without.cutoff)),
@@ -169,19 +169,19 @@ class Survey:
 def named(
     example: Example, samples: Mapping[Numerics, Sequence[Sample]]
 ) -> dict[str, Sequence[Sample]]:
-    """All models by the same numerics, and the elements alone, by what they are called."""
+    """Return all models by the same numerics, and the elements alone, by their names."""
     return {str(how): found for how, found in samples.items()} | {
         f"{how}, the series solved well": example.mixed(found) for how, found in samples.items()
     }
 
 
 def lost_then(sample: Sample) -> bool:
-    """Whether the elements are lost about when the paper's were (S8)."""
+    """Return whether the elements diverge at about the time of the paper's (S8)."""
     return abs(sample.elements.breaks - INTERVAL) <= ABOUT
 
 
 def reach(example: Example, friction: bool) -> dict[Way, float]:
-    """How far each general solver comes at each tolerance, both series."""
+    """Return the end times of each general solver at each tolerance, for both series."""
     return {
         (method, tolerance, model, friction): float(
             solve(example.systems[model], INTERVAL, method, tolerance, SERIES_STEPS).time[-1]
@@ -191,12 +191,12 @@ def reach(example: Example, friction: bool) -> dict[Way, float]:
 
 
 def share(shows: Iterable[bool]) -> float:
-    """Of all, those that show something."""
+    """Return the share of results that show a statement."""
     return float(np.mean(list(shows)))
 
 
 def _most(samples: Mapping[str, Sequence[Sample]], shows: Callable[[Sample], bool]) -> Outcome:
-    """By which numerics a statement is shown most often."""
+    """Return the numerics that show a statement most often."""
     shares = {how: share(map(shows, found)) for how, found in samples.items()}
     best = max(shares, key=lambda how: shares[how])
     often = f"in {100.0 * shares[best]:.0f} % of runs"
