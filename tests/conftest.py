@@ -32,7 +32,7 @@ settings.load_profile("protractile")
 
 @pytest.fixture(autouse=True, scope="session")
 def _cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Tests neither use nor fill the user's cache."""
+    """Keep tests from using or filling the user's cache."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(VARIABLE, str(tmp_path_factory.mktemp("cache")))
         yield
@@ -40,7 +40,7 @@ def _cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 @pytest.fixture(autouse=True, scope="session")
 def _loops(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """The first of several workers compiles what most tests of motions would wait for."""
+    """Compile in the first of several workers the loops that most tests of motions need."""
     if os.environ.get("PYTEST_XDIST_WORKER") == "gw0":
         from tests.loops import compile_loops
         from tests.rubbing import compiled_in
@@ -62,7 +62,7 @@ def _moves(item: pytest.Function) -> bool:
 
 @pytest.fixture(autouse=True)
 def _no_hurry(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What a command says depends not on how slow the machine is."""
+    """Make the output of commands independent of the machine's speed."""
     monkeypatch.setattr(progress, "EVERY", inf)
 
 
@@ -104,7 +104,7 @@ def paper_boom(steel: Material) -> Boom:
 
 @pytest.fixture(scope="session")
 def spatial_boom(paper_boom: Boom) -> Boom:
-    """The same boom in space, with a play of 10 mm sideways and no load that way."""
+    """Return the same boom in space, with a lateral play of 10 mm and no lateral load."""
 
     (joint,) = paper_boom.joints
     return Boom(
@@ -121,7 +121,7 @@ def paper_law() -> PowerContact:
 
 @pytest.fixture
 def few_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Runs draw one figure, where a test is about none: drawing takes longer than beams move."""
+    """Draw one figure per run in tests of other things: figures take longer than beam motions."""
     from runs.report import figures
 
     monkeypatch.setattr(figures, "FIGURES", figures.FIGURES[-1:])
@@ -137,12 +137,12 @@ def unprinted(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def on_ranks(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Runs a Python program with its arguments on a number of ranks in an empty folder."""
+    """Return a runner of Python programs on a number of ranks in an empty folder."""
     return ranks_in(tmp_path)
 
 
 def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """What runs a Python program with its arguments on a number of ranks in a folder."""
+    """Return a runner of Python programs on a number of ranks in a folder."""
     if shutil.which("mpirun") is None:
         pytest.skip("several ranks take mpirun, which is not installed")
     # A test worker that has entered MPI by itself must not pass its own rank on.
@@ -176,7 +176,7 @@ def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
 
 @contextmanager
 def _on_one_core() -> Iterator[None]:
-    """Keeps this thread, and the processes that it starts, on one core: its test worker's."""
+    """Keep this thread, and the processes that it starts, on one core: its test worker's."""
     worker = os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")
     cores = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {sorted(cores)[int(worker) % len(cores)]})
@@ -190,5 +190,5 @@ def _on_one_core() -> Iterator[None]:
 def two_ranks(
     on_ranks: Callable[..., subprocess.CompletedProcess[str]],
 ) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Runs a Python program with its arguments on two ranks in an empty folder."""
+    """Return a runner of Python programs on two ranks in an empty folder."""
     return partial(on_ranks, 2)

@@ -18,12 +18,12 @@ INSTALLED = pytest.mark.skipif(
 
 
 def run_elsewhere(*arguments: str, given: str = "", folder: Path | None = None) -> str:
-    """What the other codes' Python prints, which knows nothing of this program.
+    """Return the output of the other codes' Python, which cannot import this program.
 
     Args:
         arguments: of the interpreter.
-        given: what it reads.
-        folder: where it runs.
+        given: its input.
+        folder: its working directory.
 
     Raises:
         CalledProcessError: it fails.

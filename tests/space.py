@@ -9,7 +9,7 @@ from geometry.boom import Lateral, Segment
 
 
 def in_space(segment: Segment) -> Segment:
-    """A segment that bends along y and twists as its walls do, without load along y."""
+    """Return a segment that bends along y and twists as its plates do, without load along y."""
     box, density = segment.section, segment.material.density
     assert box is not None
     lateral = Lateral(

@@ -16,7 +16,7 @@ Laws = ContactLaw | Sequence[ContactLaw]
 
 
 def touching(boom: Boom, laws: Laws, lateral_laws: Laws = ()) -> Boom:
-    """The boom with a law in all joints, or one in each; that of a gap brings its play along."""
+    """Return the boom with a law in all joints, or one in each; that of a gap sets its play."""
     changes: list[dict[str, Any]] = [{} for _ in boom.joints]
     for prefix, given in (("", laws), ("lateral_", lateral_laws if boom.spatial else ())):
         each = [given] * len(boom.joints) if isinstance(given, ContactLaw) else given
@@ -29,5 +29,5 @@ def touching(boom: Boom, laws: Laws, lateral_laws: Laws = ()) -> Boom:
 
 
 def contact_laws(case: Case, model: Model, direction: Direction = "z") -> list[Gap]:
-    """The law of each joint of a case as a model sees it."""
+    """Return the law of each joint of a case in a model."""
     return [joint.law(direction) for joint in model.joined(build_boom(case)).boom.joints]

@@ -112,10 +112,10 @@ class Span:
 
 
 def tied_determinant(boom: Boom, omega: float) -> float:
-    """Determinant, up to a positive factor, of the play-free boom's exact equations at ω.
+    """Return a determinant, up to a positive factor, of the bonded boom's exact equations at ω.
 
     Outer spans between supports, stations and end, inner ones between stations and tip;
-    deflections are tied at the stations, each segment's slope and moment pass through.
+    deflections are equal at the stations, each segment's slope and moment pass through.
     """
     outer, inner = boom.segments
     x0, x1 = (support.x for support in outer.supports)

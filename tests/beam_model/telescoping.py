@@ -32,7 +32,7 @@ def shifted(segment: Segment, way: float) -> Segment:
 
 
 def telescope(boom: Boom, way: float, drive: Drive | None = None, **changes: Any) -> Boom:
-    """The paper's boom with an overlap of 5 m, drawn out by a way in m already."""
+    """Return the paper's boom with an overlap of 5 m, reduced by an initial extension in m."""
     outer, inner = boom.segments
     inner = shifted(inner, way - 4.0)
     joint = replace(boom.joints[0], stations=(inner.start, outer.end), drive=drive, **changes)
@@ -40,7 +40,7 @@ def telescope(boom: Boom, way: float, drive: Drive | None = None, **changes: Any
 
 
 def tips(system: GapSystem) -> list[float]:
-    """What observers of the ends read at rest."""
+    """Return the readings of observers of the ends at rest."""
     rest = equilibrium(system, system.load)
     return [float(system.observers[name].row @ rest) for name in ("tip", "head", "tail")]
 
@@ -98,7 +98,7 @@ class Beam:
         return np.asarray(own.T @ (POWERS * xi**DEGREE / (DEGREE * h)) @ own)
 
     def _place(self, x: float) -> tuple[int, float, float]:
-        """An element, the part of it up to an x in m, and its length in m."""
+        """Return an element, the part of it up to an x in m, and its length in m."""
         e = min(bisect(self.nodes, x) - 1, len(self.cubics) - 1)
         h = self.nodes[e + 1] - self.nodes[e]
         return e, (x - self.nodes[e]) / h, h

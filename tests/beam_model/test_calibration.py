@@ -24,7 +24,7 @@ def box(*supports: Support) -> Segment:
 
 
 def probed(segment: Segment) -> FarField:
-    """A beam's own answers, by finer elements."""
+    """Return a beam's own responses, with finer elements."""
     found: dict[Bent, np.ndarray[tuple[int, int], np.dtype[np.float64]]] = {}
     model = finite_element_segment(segment, 0.2, PLACES, "timoshenko", True)
     for motion, component in model.components.items():

@@ -26,7 +26,7 @@ LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0).behind(7.0e-3)
 
 @pytest.fixture(scope="module")
 def heavy(paper_boom: Boom, series: Callable[..., list[SegmentModel]]) -> GapSystem:
-    """A series of 6 + 6 functions under its weight, which presses the joint."""
+    """Return a series of 6 + 6 functions under its weight, which closes the joint."""
     system = gap_system(touching(paper_boom, LINEAR), series((6, 6), "complete"))
     return replace(system, load=9.81 * system.load)
 

@@ -29,7 +29,7 @@ THEORIES: tuple[Theory, ...] = ("euler-bernoulli", "timoshenko")
 def bending(
     segment: Segment, length: float, breaks: Sequence[float], theory: Theory, rotary_inertia: bool
 ) -> Component:
-    """The deflection along z alone."""
+    """Return the deflection along z alone."""
     return finite_element_segment(segment, length, breaks, theory, rotary_inertia).components["z"]
 
 

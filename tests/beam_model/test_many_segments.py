@@ -17,7 +17,7 @@ from tests.touching import touching
 
 
 def chain(boom: Boom, count: int) -> Boom:
-    """The paper's boom, and so many segments more like its inner one, each a metre in the last."""
+    """Return the paper's boom with a number of segments added, each a metre inside the last."""
     outer, inner = boom.segments
     (joint,) = boom.joints
     segments = [

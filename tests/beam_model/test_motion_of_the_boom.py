@@ -106,7 +106,7 @@ def test_with_friction_the_complete_series_follows_the_elements(
 
 
 def in_millimetres_and_tonnes(segment: Segment) -> Segment:
-    """The same segment in mm, t, s, N, MPa; densities in t/mm³."""
+    """Return the same segment in mm, t, s, N, MPa; densities in t/mm³."""
     material = replace(segment.material, youngs_modulus=2.1e5, density=7.85e-9)
     return replace(
         segment,

@@ -28,7 +28,7 @@ def rigid(boom: Boom, laws: list[PowerContact]) -> GapSystem:
 
 @pytest.fixture
 def inside(paper_boom: Boom) -> Boom:
-    """The inner segment within a clamped outer one, its middle between the stations."""
+    """Return an inner segment within a clamped outer one, its middle between the stations."""
     outer, inner = paper_boom.segments
     return Boom(
         (

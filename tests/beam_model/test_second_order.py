@@ -50,7 +50,7 @@ def alone(segment: Segment, thrust: float, gravity: float = 0.0) -> Boom:
 
 
 def telescope(thrust: float, tied: bool = False, **changes: object) -> Boom:
-    """An arm, clamped, and a fly of which 2 m slide in it, with a force at its tip."""
+    """Return a clamped arm and a fly with an overlap of 2 m, with a force at its tip."""
     arm = Segment.of_section("arm", 0.0, 8.0, STEEL, OUTER, supports=CLAMP)
     fly = Segment.of_section("fly", 6.0, 14.0, STEEL, INNER, load=-500.0)
     joint = Joint(outer=0, inner=1, stations=(6.0, 8.0), play=0.01, tied=tied, **changes)

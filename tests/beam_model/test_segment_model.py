@@ -162,9 +162,9 @@ def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
 
 
 def in_leaves(boom: Boom) -> Boom:
-    """The boom with its inner segment split along its whole length into two equal halves.
+    """Return the boom with its inner segment split along its whole length into two equal halves.
 
-    They are tied to each other where the outer segment touches the first of them.
+    They are bonded to each other where the outer segment touches the first of them.
     """
     outer, inner = boom.segments
     (joint,) = boom.joints

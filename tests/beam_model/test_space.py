@@ -39,7 +39,7 @@ def beams(
 
 
 def pushed(boom: Boom, *loads: float) -> Boom:
-    """The boom with uniform loads along y in N/m."""
+    """Return the boom with uniform loads along y in N/m."""
     segments = []
     for segment, load in zip(boom.segments, loads, strict=True):
         assert segment.lateral is not None
@@ -48,7 +48,7 @@ def pushed(boom: Boom, *loads: float) -> Boom:
 
 
 def rolled(boom: Boom) -> Boom:
-    """What the boom has along y it has along z, and the other way round."""
+    """Return the boom with y and z exchanged."""
     joints = []
     for joint in boom.joints:
         assert joint.lateral_play is not None

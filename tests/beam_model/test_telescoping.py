@@ -239,7 +239,7 @@ THRUST = 1.5e4
 def pressed(
     boom: Boom, way: float, drive: Drive | None = None, locked: float | None = None
 ) -> Boom:
-    """The paper's boom drawn out by a way in m, with a payload, its weight along it and a rope."""
+    """Return the paper's boom, extended by a way in m, with a payload, axial weight and a rope."""
     free = telescope(boom, way, drive, locked_at=locked)
     outer, inner = free.segments
     inner = replace(inner, masses=(PointMass(inner.end, 300.0),))

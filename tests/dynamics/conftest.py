@@ -19,7 +19,7 @@ def one_mass(
     force: float = 0.0,
     dashpot: float = 0.0,
 ) -> GapSystem:
-    """A mass in kg on a spring in N/m and a dashpot in N·s/m, before a stop.
+    """Return a mass in kg on a spring in N/m and a dashpot in N·s/m, before a stop.
 
     Its only modal coordinate is √m times the place, which ``tip`` observes.
     """

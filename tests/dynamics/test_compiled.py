@@ -50,7 +50,7 @@ def test_a_read_only_home_and_installation(tmp_path: Path) -> None:
 
 
 def _rubbing(environment: dict[str, str]) -> str:
-    """What a process of its own tells of a motion that rubs."""
+    """Return the output of a separate process about a motion with friction."""
     program = [sys.executable, "-m", "tests.rubbing"]
     return subprocess.run(
         program, cwd=ROOT, env=os.environ | environment, capture_output=True, check=True, text=True

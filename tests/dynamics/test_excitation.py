@@ -24,7 +24,7 @@ OneMass = Callable[..., GapSystem]
 
 
 def driven(system: GapSystem, force: float, history: History) -> GapSystem:
-    """The system under a force in N at its tip that follows a history."""
+    """Return the system under a force in N at its tip that follows a history."""
     load = force * system.observers["tip"].row
     return replace(system, excitations=[*system.excitations, Excitation(load, history)])
 
@@ -94,7 +94,7 @@ def test_the_line_that_stands_for_a_history() -> None:
 
 
 def forced(time: Array, spring: float, dashpot: float, frequency: float, phase: float) -> Array:
-    """Closed form for 1 kg from rest under 1 N sin(2π f t + φ)."""
+    """Return the closed form for 1 kg from rest under 1 N sin(2π f t + φ)."""
     omega = 2.0 * np.pi * frequency
     swing = np.exp(1j * phase) / (spring - omega**2 + 1j * dashpot * omega)
     decay = 0.5 * dashpot

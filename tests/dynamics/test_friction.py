@@ -24,7 +24,7 @@ OneMass = Callable[..., GapSystem]
 
 
 def rubbing(system: GapSystem, *frictions: DryFriction, rows: Array | None = None) -> GapSystem:
-    """The system with friction on rows, its tip unless given, at one station."""
+    """Return the system with friction on rows, by default its tip, at one station."""
     rows = system.observers["tip"].row.reshape(1, -1) if rows is None else rows
     return replace(
         system, friction_rows=rows, frictions=frictions, stations=[0.0],

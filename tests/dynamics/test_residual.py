@@ -17,7 +17,7 @@ MODES = 60
 
 
 def system(num_modes: int = MODES) -> GapSystem:
-    """A free chain's motions: one rigid, the others ever faster, read in two places."""
+    """Return a free chain's motions: one rigid, the others of rising frequency, in two places."""
     random = np.random.default_rng(3)
     rows = random.normal(size=(4, MODES))[:, :num_modes]
     omega = np.concatenate([[0.0], 20.0 * np.arange(1, MODES) ** 1.5])[:num_modes]

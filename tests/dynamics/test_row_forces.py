@@ -57,7 +57,7 @@ def random_system(random: np.random.Generator) -> GapSystem:
 
 
 def contact_force(law: ContactLaw, before: float, after: float, time: float) -> float:
-    """The mean force of a step: the energy over the way, and damping at its rate."""
+    """Return a step's mean force: the energy per distance, and damping at its rate."""
     total = 0.0
     for one in (law.one_sided(1), law.one_sided(-1)):
         if one is not None and after != before:
@@ -134,7 +134,7 @@ def test_the_discrete_gradient(exponent: float, before: float, after: float) -> 
 
 
 def wedge(friction: float) -> GapSystem:
-    """A block whose friction row also closes its contact: the more it rubs, the more it presses."""
+    """Return a block whose friction increases its own contact force."""
     rows = np.array([[1.0, 0.0], [0.0, 1.0]])
     tilted = np.array([[-0.9, 1.0], [0.9, 1.0]])
     return GapSystem(

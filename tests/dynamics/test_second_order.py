@@ -24,7 +24,7 @@ STOPS = PowerContact(STIFFNESS, 1.0).behind(CLEARANCE)
 
 @pytest.fixture(name="tipping")
 def _tipping(one_mass: Callable[..., GapSystem]) -> GapSystem:
-    """A mass on a negative spring between two stops."""
+    """Return a mass on a negative spring between two stops."""
     return one_mass(MASS, STOPS, spring=NEGATIVE)
 
 

@@ -52,7 +52,7 @@ def rider(
     start: float = 0.0,
     **changes: Any,
 ) -> GapSystem:
-    """A mass in kg that presses on the beam with its weight in N and goes along it from a start.
+    """Return a mass in kg that moves along the beam from a start, under its weight in N.
 
     Row, friction row and dashpot all read the mass less the beam below it.
     """
@@ -85,7 +85,7 @@ def rider(
 
 
 def lossy(history: History, **changes: Any) -> GapSystem:
-    """A rider with friction, damping of every kind, a load that ramps, and play on both sides."""
+    """Return a rider with friction, damping of every kind, a ramped load, and two-sided play."""
     law = PowerContact(1.0e6, 1.5, damping=0.5).behind(1.0e-4)
     rubbing = DryFriction(0.3, 0, normal_force=400.0)
     system = rider(history, law, mass=20.0, weight=2.0e3, start=2.0, frictions=[rubbing], drag=50.0)

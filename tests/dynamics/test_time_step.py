@@ -119,7 +119,7 @@ def test_energy_balances_at_every_step(what: str, step: float, duration: float) 
 
 
 def pressed(exponent: float, **changes: Any) -> Motion:
-    """A boom pressed to its stops, thrown so gently that it stays there."""
+    """Return the motion of a boom that its small initial velocity does not lift off the stops."""
     law = PowerContact({1.0: 1.0e4, 2.0: 5.0e6}[exponent], exponent).behind(1.0e-3)
     system = boom(law, load=np.array([-80.0, 30.0, 2.0, 1.0]), **changes)
     held = replace(system, omega2=np.maximum(system.omega2, [0.0, 1.0, 1.0, 1.0]))
@@ -127,7 +127,7 @@ def pressed(exponent: float, **changes: Any) -> Motion:
 
 
 def sliding() -> Motion:
-    """A boom pressed to its stops, that slides along them too fast to come to rest."""
+    """Return the motion of a boom that slides along its stops too fast to come to rest."""
     along = {"friction_rows": np.array([[0.1, -0.2, 0.3, 1.0]]), "frictions": [PRESSED[0]]}
     omega2 = np.array([0.0, 40.0, 900.0, 0.0])
     still = pressed(1.0, omega2=omega2, rows=ROWS * [1, 1, 1, 0], **along)
@@ -228,7 +228,7 @@ def test_mass_on_a_spring_against_a_spring_stop(one_mass: OneMass) -> None:
 
 
 def crossings(time: Array, y: Array, level: float) -> Array:
-    """Times at which y passes the level, by linear interpolation."""
+    """Return times at which y passes the level, by linear interpolation."""
     (before,) = np.nonzero((y[:-1] > level) != (y[1:] > level))
     part = (level - y[before]) / (y[before + 1] - y[before])
     return np.asarray(time[before] + part * (time[before + 1] - time[before]))

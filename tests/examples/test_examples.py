@@ -22,7 +22,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 @pytest.fixture
 def example(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """The module that a test is about, as if run where it stands."""
+    """Return the module of a test, as if run in its own folder."""
     monkeypatch.syspath_prepend(str(EXAMPLES))
     yield import_module(request.param)
     for path in EXAMPLES.glob("*.py"):

@@ -22,7 +22,7 @@ KINDS = {"case, checked": 0.6, "case, run": 0.1, "history": 0.12, "command line"
 
 
 def kind_of(seed: int) -> str:
-    """What a seed's slip is in."""
+    """Return the kind of a seed's error."""
     return Random(f"kind {seed}").choices(list(KINDS), list(KINDS.values()))[0]
 
 

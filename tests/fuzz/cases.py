@@ -54,14 +54,14 @@ _TABLES = (
 
 
 def slip(text: str, random: Random) -> str:
-    """A case file with one slip or a few."""
+    """Return a case file with one error or a few."""
     for _ in range(random.choice((1, 1, 1, 2, 3))):
         text = random.choices(_SLIPS, _WEIGHTS)[0](text, random)
     return text
 
 
 def scaled(text: str, random: Random) -> str:
-    """A case file with one or two numbers of another size, which most often can be run."""
+    """Return a case file with one or two scaled numbers, which usually remains valid."""
     for _ in range(random.choice((1, 1, 2))):
         line = random.choice(list(_LINE.finditer(text)))
         number = random.choice(list(_NUMBER.finditer(line["value"])) or [None])
@@ -111,7 +111,7 @@ def _one_more_table(text: str, random: Random) -> str:
 
 
 def _tables_again(text: str, random: Random) -> str:
-    """A part of the file once more, or many times."""
+    """Return the file with a part of it repeated once or many times."""
     parts = re.split(r"(?m)^(?=\[)", text)
     i = random.randrange(len(parts))
     return "".join([*parts[:i], parts[i] * random.choice((2, 3, 30, 3000)), *parts[i + 1 :]])
@@ -124,7 +124,7 @@ def _tables_exchanged(text: str, random: Random) -> str:
 
 
 def _other_letters(text: str, random: Random) -> str:
-    """A few letters of the file: brackets, quotes, controls, halves of characters."""
+    """Replace a few characters by brackets, quotes, controls or halves of characters."""
     letters = list(text)
     for _ in range(random.choice((1, 2, 5, 100))):
         letters[random.randrange(len(letters))] = random.choice(

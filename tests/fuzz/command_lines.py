@@ -27,7 +27,7 @@ _RANGES = (
 
 
 def slip(random: Random) -> list[str]:
-    """The arguments of a command that ends soon, or cannot be."""
+    """Return the arguments of a command that ends soon, or is invalid."""
     kind = random.random()
     if kind < 0.25:
         return random.choices(_WORDS, k=random.randrange(5))

@@ -56,7 +56,7 @@ class Ending:
     memory: float
 
     def breach(self) -> str:
-        """What of the contract was broken; nothing if it was kept."""
+        """Return the violated part of the contract; nothing if it was kept."""
         if self.status not in (0, 1, 2, 3):
             return f"exit status {self.status}: {self.err[-300:]!r}"
         if self.memory > MOST_MEMORY:
@@ -73,7 +73,7 @@ class Ending:
 
 
 def start(arguments: Sequence[str], folder: Path) -> int:
-    """A process of its own that runs a command in a folder; its id."""
+    """Start a command in a folder in a process of its own; return its id."""
     pid = os.fork()
     if pid == 0:
         os._exit(_run(arguments, folder))

@@ -19,7 +19,7 @@ OTHERS = (
 
 
 def any_value(random: Random, given: str) -> str:
-    """A value in place of a given one: another size, another sign, another type, no end."""
+    """Return a value in place of a given one: another size, sign or type, or infinite."""
     kind = random.random()
     if kind < 0.45:
         try:

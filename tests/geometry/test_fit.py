@@ -18,7 +18,7 @@ WIDTHS: Mapping[PadSide, float] = {"above": 0.05, "below": 0.05, "left": 0.15, "
 
 
 def padded(steel: Material, widths: Mapping[PadSide, float]) -> Boom:
-    """A boom in space with a pad on each side of its fly."""
+    """Return a boom in space with a pad on each side of its fly."""
     held = (Support(0.0, "clamped"),)
     base = Segment.of_section("base", 0.0, 6.0, steel, BASE, supports=held)
     fly = Segment.of_section("fly", 5.0, 11.0, steel, FLY)

@@ -27,7 +27,7 @@ BOTH = replace(BELOW, contact=PowerContact(1.0e7, 1.0))
 
 
 def held(boom: Boom, *supports: Support, stations: tuple[float, ...] = (), **others: Any) -> Boom:
-    """The boom with other supports, and maybe other stations."""
+    """Return the boom with other supports, and optionally other stations."""
     outer, inner = boom.segments
     (joint,) = boom.joints
     joint = replace(joint, stations=stations or joint.stations)

@@ -46,7 +46,7 @@ def mesh() -> SegmentMesh:
 
 @pytest.fixture(scope="module")
 def closed_mesh() -> SegmentMesh:
-    """The same with a plate at 9 m and one at the head."""
+    """Return the same mesh with a plate at 9 m and one at the head."""
     return mesh_segment(BOX, BREAKS, 0.1, closed=CLOSED)
 
 
@@ -326,7 +326,7 @@ def test_refuses_a_segment_without_length(breaks: dict[str, float]) -> None:
 
 
 def _signals(name: str) -> int:
-    """A mask of this process's signals, as Linux shows it."""
+    """Return a mask of this process's signals, from Linux."""
     status = Path("/proc/self/status").read_text(encoding="utf-8")
     (line,) = (line for line in status.splitlines() if line.startswith(f"{name}:"))
     return int(line.split()[1], 16)

@@ -38,7 +38,7 @@ def drawn(
     fly: dict[str, Any] | None = None,
     **joint: Any,
 ) -> Boom:
-    """A base of 6.5 m, and a fly from start to end in m that touches at the ends of the overlap."""
+    """Return a base of 6.5 m, and a fly from start to end in m, touching at the overlap's ends."""
     held = (Support(0.0, "clamped"),)
     segments = (
         Segment.of_section("base", 0.0, 6.5, steel, BASE, supports=held, **(base or {})),

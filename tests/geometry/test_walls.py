@@ -35,7 +35,7 @@ def test_room_of_boxes() -> None:
 
 
 def _smaller(section: Section, clear: float) -> PolygonSection:
-    """The section whose every plate lies so far within that a gap is left of ``clear`` m."""
+    """Return the section whose plates lie inside the given ones by a gap of ``clear`` m."""
     tangents = np.array([plate.tangent for plate in section.plates])
     normals = np.column_stack([tangents[:, 1], -tangents[:, 0]])
     walls = np.array([plate.thickness for plate in section.plates])

@@ -60,7 +60,7 @@ def boom() -> pt.Boom:
 
 
 def declared(model: ModelTable, **tables: Any) -> pt.Case:
-    """The case file that says the same."""
+    """Return the case from an equivalent case file."""
     table = model.model_dump(mode="json", exclude_none=True)
     return pt.Case.model_validate(DECLARED | tables | {"model": [table]})
 

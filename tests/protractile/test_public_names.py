@@ -55,7 +55,7 @@ def examples_of(thing: object) -> list[doctest.DocTest]:
 
 @pytest.fixture(scope="module")
 def at_hand() -> dict[str, Any]:
-    """What every example may use: the packages, the ball of ``GapSystem``, the boom of ``Boom``."""
+    """Return the names for all examples: the packages, a ball as ``GapSystem``, a ``Boom``."""
     names: dict[str, Any] = {"np": np, "pt": pt, "replace": replace, "simulate": simulate}
     for described in (GapSystem, pt.Boom):
         example = examples_of(described)[0]

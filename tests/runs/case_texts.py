@@ -23,7 +23,7 @@ _SIZES = "height", "width", "flange", "web"
 
 
 def box(name: str, span: tuple[float, float], section: tuple[float, ...], more: str = "") -> str:
-    """A segment by height, width, flange and web in m, and what else is said of it."""
+    """Return a segment by height, width, flange and web in m, with further keys."""
     sizes = (f"{key} = {m}" for key, m in zip(_SIZES, section, strict=True))
     return f"""
 [[segment]]
@@ -50,7 +50,7 @@ exponent = 1.0
 
 
 def read_case(folder: Path, text: str) -> Case:
-    """The case of a text, from a file in a folder."""
+    """Return the case of a text, from a file in a folder."""
     path = folder / "case.toml"
     path.write_text(text, encoding="utf-8")
     return reading.load(str(path))

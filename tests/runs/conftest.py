@@ -28,7 +28,7 @@ def planned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Planned:
 
 @pytest.fixture
 def sheets(monkeypatch: pytest.MonkeyPatch) -> list[Sheet]:
-    """The matplotlib figures behind the files that are saved."""
+    """Return the matplotlib figures of the saved files."""
     saved: list[Sheet] = []
     save = Sheet.savefig
 

@@ -27,7 +27,7 @@ def shape(points: Array, deflection: Array, slope: Array) -> Array:
 
 
 def moving_fields() -> xr.Dataset:
-    """What the fields of a run would hold."""
+    """Return the content of a run's fields."""
     outer = mesh_segment(OUTER, {"start": 0.0, "support": 2.0, "tail": 9.0, "end": 10.0}, 0.3)
     inner = mesh_segment(INNER, {"start": 9.0, "head": 10.0, "end": 19.0}, 0.3)
     x, xi = outer.points[:, 0], inner.points[:, 0]

@@ -31,13 +31,13 @@ PEAKS = {
 
 
 def paper() -> Case:
-    """The paper's case with these models, judged by all statements."""
+    """Return the paper's case with these models, judged by all statements."""
     found = case_file.select(case_file.load(str(PAPER)), str(PAPER), list(PEAKS))
     return found.model_copy(update={"statements": tuple(STATEMENTS)})
 
 
 def swing(height: float, duration: float = 10.0) -> np.ndarray:
-    """A deflection that rises from rest and comes back, at steps of 1 ms."""
+    """Return a deflection that rises from rest and returns, at steps of 1 ms."""
     time = np.arange(round(duration * 1000) + 1) / 1000
     return height * 0.5 * (1.0 - np.cos(2.0 * np.pi * time / PERIOD))
 

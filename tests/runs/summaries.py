@@ -40,7 +40,7 @@ _MODEL = {
 
 
 def model_summary(**changes: Any) -> ModelSummary:
-    """A series', but for what is given as JSON has it."""
+    """Return the summary of a series, with given fields as in JSON."""
     return ModelSummary.model_validate(_MODEL | changes)
 
 
@@ -64,7 +64,7 @@ def changed(results: Results, model: str, **changes: Any) -> Results:
 
 
 def printed(show: Callable[..., object], *given: Any, width: int = 160) -> str:
-    """What a function prints to a console of some width, its last argument."""
+    """Return the text that a function prints to a console, its last argument, of a width."""
     console = Console(file=StringIO(), width=width)
     show(*given, console)
     assert isinstance(console.file, StringIO)
@@ -72,7 +72,7 @@ def printed(show: Callable[..., object], *given: Any, width: int = 160) -> str:
 
 
 def answers_of(case: Case, comm: Intracomm | None = None) -> Answers:
-    """What a run of a case answers, as a folder gives it back."""
+    """Return the results of a run of a case, as read from a folder."""
     run = run_case(case, "", Means(comm))
     assert run is not None
     run.answer()
@@ -80,6 +80,6 @@ def answers_of(case: Case, comm: Intracomm | None = None) -> Answers:
 
 
 def motion_of(case: Case, number: int = 0) -> Trajectory:
-    """The motion of one of a case's models, in the case's order."""
+    """Return the motion of one of a case's models, in the case's order."""
     model = case.models[number]
     return MotionPlan.of(build(case, build_boom(case), model).system, case, model).trajectory()

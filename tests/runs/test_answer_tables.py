@@ -115,7 +115,7 @@ def test_every_table_of_a_rest_says_under_which_loads(results: Results) -> None:
 
 
 def with_stress(results: Results, stress: float) -> Results:
-    """The outer segment's largest stress in Pa, of a steel of 355 MPa, its wall a tenth more."""
+    """Return results with an outer stress in Pa, of a steel of 355 MPa, in plates a tenth more."""
     moved = results.summary.answers.models[PLAYED].moved
     assert moved is not None
     fibre = replace(moved.fibres[0], stress=-stress, x=2.0, utilisation=stress / 355e6)

@@ -56,7 +56,7 @@ SIZES = Sizes(
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the smallest benchmark, whose runs leave one figure."""
+    """Return a folder with the smallest benchmark, whose runs draw one figure."""
     out = tmp_path_factory.mktemp("bench") / "out"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(figures, "FIGURES", figures.FIGURES[-1:])

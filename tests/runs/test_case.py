@@ -25,13 +25,13 @@ from tests.touching import contact_laws
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty working folder, so that messages can be told beforehand."""
+    """Return an empty working folder, so that messages are predictable."""
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
 def complaint(folder: Path, content: str | bytes) -> str:
-    """The line with which a case is refused."""
+    """Return the message with which a case is refused."""
     data = content if isinstance(content, bytes) else content.encode()
     (folder / "case.toml").write_bytes(data)
     with pytest.raises(BadInput) as refused:

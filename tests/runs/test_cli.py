@@ -39,7 +39,7 @@ Protractile = Callable[..., Answer]
 def protractile(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> Protractile:
-    """Runs a command in an empty folder that holds case.toml, the coarse case."""
+    """Return a runner of commands in an empty folder with case.toml, the coarse case."""
     monkeypatch.chdir(tmp_path)
     Path("case.toml").write_text(COARSE, encoding="utf-8")
 

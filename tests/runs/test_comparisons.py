@@ -20,7 +20,7 @@ CUTOFF = 2.0
 
 
 def case_of(*names: str, friction: float = 0.0, pressed: tuple[float, ...] = PRESSED) -> Case:
-    """The coarse case with some of its models, and friction in its joint."""
+    """Return the coarse case with some of its models, and friction in its joint."""
     case = case_file.select(case_file.load(str(COARSE)), "", names, None)
     rubbing = {"friction": friction, "normal_forces": pressed}
     joints = tuple(joint.model_copy(update=rubbing) for joint in case.joints)

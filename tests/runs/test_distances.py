@@ -41,7 +41,7 @@ RUBBING = "friction = 0.2\nnormal_forces = [4500.0, 5000.0]\n"
 
 
 def features(height: float, period: float) -> Features:
-    """A swing of so many m, from rest, in so many s."""
+    """Return a vibration of an amplitude in m, from rest, of a period in s."""
     tip = 0.5 * height * (1.0 - np.cos(2.0 * np.pi * TIME / period))
     return Features(tip, height, slow_period(TIME, tip), 2e3 * height, 1e8 * height)
 
@@ -76,7 +76,7 @@ def test_a_pad_force_is_held() -> None:
 
 @pytest.fixture
 def against(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Plan:
-    """A sweep of the coarse case with friction, until after its first peak."""
+    """Return a sweep of the coarse case with friction, until after its first peak."""
     monkeypatch.chdir(tmp_path)
     text = COARSE.read_text(encoding="utf-8")
     rubbing = text.replace("exponent = 2.0\n", f"exponent = 2.0\n{RUBBING}", 1)
@@ -86,7 +86,7 @@ def against(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Plan:
 
 
 def shown(data: xr.Dataset) -> str:
-    """What a terminal of 80 columns shows of a sweep."""
+    """Return the output about a sweep on a terminal of 80 columns."""
     console = Console(width=80, legacy_windows=False)
     with console.capture() as captured:
         output.show(data, "kantorovich-5", console)
@@ -156,7 +156,7 @@ def test_only_tips_are_compared_no_longer_than_that(against: Plan) -> None:
 
 
 def invented(factor: float, until: float = 0.9) -> Outcome:
-    """A model whose tip is so far off, and one of a tenth of that; their first peaks are alike."""
+    """Return two models with tips off by a distance and by a tenth of it, and equal first peaks."""
     parts: Measured = {one.name: None for one in DISTANCES} | {"first_peak_off": 0.002}
     tips = {"kantorovich-4": factor, "beam-fe-tied": 0.1 * factor}
     return Outcome({}, {}, {name: {**parts, "tip_off": tip} for name, tip in tips.items()}, until)

@@ -265,7 +265,7 @@ def test_a_drive_lifts_what_presses_along(tmp_path: Path) -> None:
 
 
 def _check_table(results: Results, data: xr.Dataset) -> None:
-    """Reference: analytic, means and sums of what trajectories hold."""
+    """Check the table of drives. Reference: analytic, means and sums of trajectories."""
     table = drive_table(results)
     assert table is not None
     cells = {column.heading: [*column.cells] for column in table.columns}
@@ -279,8 +279,11 @@ def _check_table(results: Results, data: xr.Dataset) -> None:
 
 
 def _check_rests(results: Results) -> None:
-    """Reference: by hand. With 1 m of overlap play of 14 mm turns by 14 mrad, what lifts the tip,
-    10 m on, by 133 mm; the lever rule's forces press contacts of 1e9 N/m in by 2.2 and 2.8 µm."""
+    """Check the states of rest.
+
+    Reference: by hand. With 1 m of overlap play of 14 mm turns by 14 mrad, which lifts the tip,
+    10 m on, by 133 mm; the lever rule's forces press contacts of 1e9 N/m in by 2.2 and 2.8 µm.
+    """
     answers, table = results.summary.answers, first_table(results)
     own = answers.models["kantorovich-5"]
     (begun,), (ended,) = own.rests, own.drawn
@@ -308,7 +311,7 @@ def _check_rests(results: Results) -> None:
 
 
 def _check_swings(results: Results) -> None:
-    """Reference: what the summary holds."""
+    """Check the residual vibrations. Reference: content of the summary."""
     answers, (table,) = results.summary.answers, record_tables(results)
     swing = answers.models["kantorovich-5"].swing
     assert swing is not None
@@ -318,7 +321,7 @@ def _check_swings(results: Results) -> None:
 
 
 def _check_figures(figures: Sequence[Figure]) -> None:
-    """Reference: what a run with a drive draws beside the others."""
+    """Check the figures of drives. Reference: figures of a run with a drive."""
     drawn = {figure.path.stem: figure for figure in figures}
     # By hand, the play's lever, and elements: 7 mm of bending.
     assert drawn["at-rest"].title == "At rest under the largest loads: the tip at 140.4 mm"

@@ -52,7 +52,7 @@ contact = { stiffness = 1e9, exponent = 1.0 }
 
 
 def run(script: Path, *arguments: str) -> float:
-    """The number that it prints in OpenSees."""
+    """Return the number that the script prints in OpenSees."""
     told = run_elsewhere(str(script), *arguments, folder=script.parent)
     found = re.search(r": ([-\d.e]+) m", told)
     assert found is not None, told

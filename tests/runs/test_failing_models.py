@@ -34,7 +34,7 @@ WHY = "a step of 1e-12 s makes 3e+11 steps; make it longer"
 
 @pytest.fixture(autouse=True)
 def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """An empty folder, with a cache beside it."""
+    """Work in an empty folder, with a cache beside it."""
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
     monkeypatch.setenv(VARIABLE, str(tmp_path / "cache"))
@@ -48,7 +48,7 @@ def write_case(step: str) -> None:
 
 @pytest.fixture
 def moved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """The modes of each system with play that has moved."""
+    """Return the modes of each system with play that has moved."""
     modes: list[int] = []
     move = MotionPlan.trajectory
 

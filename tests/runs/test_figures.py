@@ -49,7 +49,7 @@ class Drawn:
         self.folder, self.sheets = folder, dict[str, Sheet]()
 
     def __call__(self, of: Callable[[Pen], list[Figure]], results: Results) -> list[Figure]:
-        """Some of the figures of a run, anew."""
+        """Draw some of the figures of a run anew."""
         for earlier in self.folder.glob("*.png"):
             earlier.unlink()
         with matplotlib.rc_context(theme.RC):
@@ -87,7 +87,7 @@ def labels(axes: Axes) -> list[str]:
 
 
 def with_friction(results: Results) -> Results:
-    """The same run, as if its segments had rubbed: 1 kN up at 9 m, nothing at 10 m."""
+    """Return the same run with invented friction: 1 kN up at 9 m, nothing at 10 m."""
     rubbing = {"friction": 0.2, "normal_forces": (4500.0, 5000.0)}
     joints = tuple(j.model_copy(update=rubbing) for j in results.case.joints)
     data = results.trajectories.copy(deep=True)

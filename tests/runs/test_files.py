@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def contents(folder: Path) -> dict[str, str]:
-    """The text of all files but the manifest, by their paths in a folder."""
+    """Return the text of all files but the manifest, by their paths in a folder."""
     return {
         str(path.relative_to(folder)): path.read_text(encoding="utf-8")
         for path in folder.rglob("*")
@@ -34,7 +34,7 @@ def write(folder: Path, *names: str) -> None:
 
 
 def in_the_making(path: Path) -> subprocess.Popen[str]:
-    """A process that has begun to write a folder, says where, and goes on at a line of input."""
+    """Start a process that creates a folder, prints its path, and continues at a line of input."""
     program = f"""
 from pathlib import Path
 from runs.folder.files import scratch_folder

@@ -71,7 +71,7 @@ def trees() -> dict[str, ast.Module]:
 
 @pytest.fixture(scope="module")
 def graph(trees: dict[str, ast.Module]) -> dict[str, set[str]]:
-    """What each module imports of ours, but for types."""
+    """Return the imports of each module within the project, without those for types."""
     return {name: {*imported(tree, False)} & trees.keys() for name, tree in trees.items()}
 
 
@@ -94,7 +94,7 @@ def test_the_paper_is_a_client(graph: dict[str, set[str]]) -> None:
 
 
 def answer(*arguments: str) -> tuple[str, set[str]]:
-    """What a command that succeeds prints, and the modules that it has imported."""
+    """Return the output of a successful command, and the modules that it has imported."""
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM, *arguments],
         cwd=ROOT,

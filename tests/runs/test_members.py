@@ -250,7 +250,7 @@ def test_the_paper_s_case_asks_for_ensembles() -> None:
 
 @pytest.fixture(scope="module")
 def five_terms() -> tuple[GapSystem, float]:
-    """The five-term series, and the cut-off of its slow motion in Hz."""
+    """Return the five-term series, and the cut-off of its slow motion in Hz."""
     case = case_file.load(str(CASES / "paper.toml"))
     boom = build_boom(case)
     model = next(model for model in case.models if model.name == "kantorovich-5")

@@ -26,7 +26,7 @@ BOX = BoxSection(height=0.30, width=0.20, flange=0.006, web=0.006)
 
 @pytest.fixture(scope="module")
 def arm(spatial_boom: Boom, steel: Material) -> Boom:
-    """A cantilever of 10 m in space: its second segment is tied within its first half."""
+    """Return a cantilever of 10 m in space: its second segment is bonded within its first half."""
     root = Segment.of_section("root", 0.0, 10.0, steel, BOX, supports=(Support(0.0, "clamped"),))
     # As light as none, and rigid beside it.
     sleeve = BoxSection(height=0.25, width=0.15, flange=0.001, web=0.001)

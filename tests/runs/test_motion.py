@@ -18,7 +18,7 @@ from runs.pipeline.run import Run, run_case
 
 
 def short(name: str, model: str, **values: object) -> Run:
-    """The run of one model, without answers."""
+    """Return the run of one model, without design results."""
     case = change(load(str(CASES / name)), **values)
     models = tuple(one for one in case.models if one.name == model)
     run = run_case(case.model_copy(update={"models": models}), "", Means())

@@ -20,7 +20,7 @@ from tests.runs.coarse_case import COARSE
 
 
 def observe(name: str, x: float, quantity: str = "", segment: str = "inner") -> str:
-    """A table of a case; a deflection unless another quantity is given."""
+    """Return a table of a case; a deflection unless another quantity is given."""
     text = f'\n[[observe]]\nname = "{name}"\nsegment = "{segment}"\nx = {x}\n'
     return f'{text}quantity = "{quantity}"\n' if quantity else text
 

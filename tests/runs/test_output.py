@@ -33,7 +33,7 @@ COARSE = CASES / "coarse.toml"
 
 @pytest.fixture(scope="module")
 def run() -> Run:
-    """A twentieth of a second of a series."""
+    """Return the run of a series over a twentieth of a second."""
     case = case_file.select(case_file.load(str(COARSE)), "", ["kantorovich-4"], None)
     case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.05})})
     finished = run_case(case, "", Means())
@@ -51,7 +51,7 @@ def folder(run: Run, tmp_path: Path, few_figures: None) -> Path:
 
 
 def leave_survey(folder: Path, case_hash: str) -> None:
-    """Readings as ``python -m runs.paper.readings`` leaves them: one of 7 mm, reproduced."""
+    """Write a survey as ``python -m runs.paper.readings``: one reading of 7 mm, reproduced."""
     findings = {key: ReadingFinding("reproduced", (0.1,)) for key in JUDGED}
     peaks = dict.fromkeys(MODELS, 0.17)
     judged = Judged(Reading(0.007, "restored", "as printed", 2.0), findings, peaks, 1e-5)

@@ -30,7 +30,7 @@ PAD = "pad = { length = 0.2, width = 0.05, thickness = 0.02, allowable_pressure 
 
 
 def case_with(folder: Path, joint: str, play: float = 0.014) -> Case:
-    """The coarse case with Timoshenko's beam alone, on the joint's own contacts."""
+    """Return the coarse case with Timoshenko's beam alone, on the joint's own contacts."""
     path = folder / "case.toml"
     beam = '[[model]]\nname = "beam"\nkind = "finite-element"\nelement_length = 0.5\n'
     text = COARSE[: COARSE.index("[[model]]")] + beam

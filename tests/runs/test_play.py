@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def run_of(names: list[str], comm: MPI.Intracomm | None = None) -> Answers:
-    """What some models of the paper's boom answer."""
+    """Return results of some models of the paper's boom."""
     case = case_file.load(str(CASES / "coarse.toml"))
     models = tuple(model for model in case.models if model.name in names)
     return answers_of(case.model_copy(update={"models": models}), comm)
@@ -31,7 +31,7 @@ def answers() -> Answers:
 
 
 def numbers(found: Answers, model: str) -> dict[tuple[str, str], Added]:
-    """What play adds in a model."""
+    """Return the effect of play in a model."""
     (play,) = (one for one in found.play if one.model == model)
     return {(one.what, one.where): one for one in play.numbers}
 

@@ -24,7 +24,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def in_a_shell(line: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    """A command as a shell runs it; ``check`` alone is that of the coarse case."""
+    """Run a command as a shell does; ``check`` alone is that of the coarse case."""
     line = line.replace("check", f"check {CASES / 'coarse.toml'}")
     return subprocess.run(
         ["bash", "-o", "pipefail", "-c", f"{sys.executable} -m protractile {line}"],

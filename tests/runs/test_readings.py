@@ -40,7 +40,7 @@ def paper() -> Case:
 
 
 def judged(reading: Reading, peak: float = 0.17, **verdicts: Judgement) -> Judged:
-    """A reading with forced verdicts, reproduced unless given, and one height of all peaks in m."""
+    """Return a reading with given verdicts, by default reproduced, and one peak height in m."""
     findings: Mapping[str, ReadingFinding] = {
         key: ReadingFinding(verdicts.get(key, "reproduced"), ()) for key in JUDGED
     }
@@ -146,7 +146,7 @@ def test_a_survey_of_two_readings(tmp_path: Path) -> None:
 
 
 def check_refusals(folder: Path, paper: Case) -> None:
-    """A survey that is of another case, or damaged, is one line."""
+    """Check that a survey of another case, or a damaged one, gives a message of one line."""
     other = paper.model_copy(update={"title": "another"})
     remedy = "remove it, or survey the readings again"
     with pytest.raises(BadInput) as refused:

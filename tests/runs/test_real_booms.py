@@ -104,7 +104,7 @@ def tip_by_hand(boom: Boom, stiffness: list[float]) -> float:
 
 
 def level(name: str) -> Case:
-    """The case under its weights alone, level: without forces along the boom, but for cylinders."""
+    """Return the horizontal case under its weights alone, without axial forces but of cylinders."""
     case = case_file.load(str(CASES / f"{name}.toml"))
     assert case.gravity is not None
     gravity = case.gravity.model_copy(update={"angle": 0.0})

@@ -22,7 +22,7 @@ Kind = TypeVar("Kind")
 
 
 def again(thing: Any, kind: type[Kind]) -> Kind:
-    """What is written, read."""
+    """Return a record after writing and reading."""
     file = BytesIO()
     write(thing, file)
     file.seek(0)

@@ -94,7 +94,7 @@ def tables(results: Results, width: int = 100) -> str:
 
 
 def skipping(results: Results, why: str) -> Summary:
-    """The summary of a run without snapshots."""
+    """Return the summary of a run without snapshots."""
     return results.summary.model_copy(update={"snapshots": Snapshots(written=[], skipped=why)})
 
 

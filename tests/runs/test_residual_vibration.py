@@ -53,7 +53,7 @@ def swing_of(case: Case) -> Swing | None:
 
 
 def lifted(travel: float, time: float) -> GapSystem:
-    """A mass on a spring of 1 N/m, and one of 3 N/m that a drive moves to where it reads half."""
+    """Return a mass on a spring of 1 N/m, and a spring of 3 N/m that a drive moves."""
     one = np.ones(1)
     table = RowTable.of(lambda s: np.array([[1.0 - 0.5 * s]]), [0.0, 1.0])
     spring = PowerContact(3.0, exponent=1.0)
@@ -81,7 +81,7 @@ def test_a_slow_drive_swings_about_the_rest_of_each_place() -> None:
 
 
 def of_follower(load: History) -> float:
-    """The swing in m of the tip that is drawn out under 2 N more by a load, and always rests."""
+    """Return the vibration in m of the tip that a load of 2 N extends, always in equilibrium."""
     loads = [Excitation(np.full(1, 2.0), load)]
     system = replace(lifted(1.0, 10.0), excitations=loads)
     time = np.linspace(0.0, 10.0, 10001)

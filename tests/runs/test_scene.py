@@ -206,7 +206,7 @@ def test_smoothed_stresses_keep_to_their_walls(shell: Scene) -> None:
 
 
 def still(boom: Boom, output: BeamOutput) -> tuple[Scene, np.ndarray]:
-    """A beam's scene, of which no trajectories are asked."""
+    """Return a beam's scene without trajectories."""
     return Scene.of_beam(boom, output, xr.Dataset(coords={"time": output.time}))
 
 

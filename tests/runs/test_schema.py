@@ -21,7 +21,7 @@ VALIDATOR = jsonschema.Draft202012Validator(case_schema())
 
 
 def data(text: str) -> dict[str, Any]:
-    """What an editor sees of a case file."""
+    """Return the content of a case file as an editor reads it."""
     read: dict[str, Any] = json.loads(json.dumps(tomllib.loads(text)))
     return read
 

@@ -332,7 +332,7 @@ def test_other_systems_are_refused() -> None:
 
 
 def _tables(model: type[BaseModel] = Case) -> Iterator[type[BaseModel]]:
-    """The classes of all tables that a case may have."""
+    """Yield the classes of all tables of a case."""
     yield model
     for field in model.model_fields.values():
         for part in _parts(field.annotation):

@@ -39,7 +39,7 @@ def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def written(sections: Sequence[str]) -> str:
-    """A case file of the coarse case with these sections."""
+    """Return a case file of the coarse case with these sections."""
     text = COARSE
     for given, section in zip(GIVEN, sections, strict=True):
         assert given in text

@@ -67,9 +67,7 @@ def test_a_second_run_skips_mesh_and_reduction(case: Case, tmp_path: Path) -> No
 
 
 def varied(case: Case, play: float, times: float, ramp: float) -> Case:
-    """The case with another play, so many times its loads, and a gust that rises within ``ramp``
-    in s.
-    """
+    """Return the case with another play, multiplied loads, and a gust that rises in ``ramp`` s."""
     gust = LoadTable(segment="inner", x="head", magnitude=-50.0 * times, ramp=ramp)
     joints = tuple(joint.model_copy(update={"play": play}) for joint in case.joints)
     sections = [segment.section for segment in build_boom(case).segments]

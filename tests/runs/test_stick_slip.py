@@ -45,7 +45,7 @@ def changed_text(changes: dict[str, str]) -> str:
 
 
 def drawn_by(folder: Path, rope: str, **others: str) -> Case:
-    """The pressed case, drawn by a rope."""
+    """Return the loaded case, extended by a rope."""
     changes = {**PRESSED, **RESTS, "least_overlap = 1.0 }": rope, **others}
     return read_case(folder, changed_text(changes))
 
@@ -239,7 +239,7 @@ def _checked_slips(data: xr.Dataset) -> int:
 
 
 def _check_shown(results: Results, folder: Path) -> None:
-    """Reference: what the summary holds, written and read again."""
+    """Check the summary. Reference: its content, written and read again."""
     own = results.summary.models["kantorovich-5"].stick_slip["drive_force"]
     read = Summary.model_validate_json(str(results.summary))
     assert read.models["kantorovich-5"].stick_slip["drive_force"] == own

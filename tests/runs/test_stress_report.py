@@ -51,7 +51,7 @@ STRESS: dict[str, Any] = {
 
 
 def results(stress: dict[str, Any] | None) -> Results:
-    """A run of the coarse case's shell, with or without stresses."""
+    """Return a run of the coarse case's shell, with or without stresses."""
     case = case_file.select(case_file.load(str(COARSE)), "", ["shell"], None)
     data = xr.Dataset(
         {"tip": (("model", "time"), np.zeros((1, 601)))},

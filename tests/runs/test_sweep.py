@@ -27,7 +27,7 @@ from tests.runs.sweeping import FAST, Planned, run
 
 @pytest.fixture
 def ran(monkeypatch: pytest.MonkeyPatch) -> list[Case]:
-    """The cases that points have been run of."""
+    """Return the cases of the points that have been run."""
     cases: list[Case] = []
     run_point = sweep.run_point
 

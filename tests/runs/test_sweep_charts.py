@@ -51,7 +51,7 @@ def written(
 
 
 def charts(sweeping: Plan, *quantities: Sequence[str]) -> None:
-    """The same, and there is ink on each."""
+    """Check that the charts are the same, and that none is empty."""
     for name in written(sweeping, *quantities):
         with Image.open(Path("out") / "figures" / name) as image:
             assert image.size[0] == round(theme.WIDTH * theme.DPI)

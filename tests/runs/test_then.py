@@ -32,7 +32,7 @@ def verdicts() -> list[Verdict]:
 
 
 def leave(folder: Path, case_hash: str) -> Path:
-    """The file as the study leaves it."""
+    """Write the file as the study does."""
     outcomes = {"S3": {"shown": False, "why": "in no run of 18 numerics"}}
     path = folder / THEN_FILE
     path.write_text(json.dumps({"case_hashes": [case_hash], "outcomes": outcomes}))

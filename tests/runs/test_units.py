@@ -51,7 +51,7 @@ def law_in_mm(law: Gap) -> Gap:
 
 
 def boom_in_mm(boom: Boom) -> Boom:
-    """The boom in mm, t, s, N and MPa."""
+    """Return the boom in mm, t, s, N and MPa."""
     return Boom(
         tuple(_segment(segment) for segment in boom.segments),
         tuple(_joint(joint) for joint in boom.joints),
@@ -131,7 +131,7 @@ def _shell(line: str) -> Callable[[Boom, PowerContact], GapSystem]:
 
 
 def agree(si: Trajectory, mm: Trajectory) -> None:
-    """The motions are the same: the tip within 1e-9 of its range, gaps and energies within 1e-8."""
+    """Check that motions agree: tip within 1e-9 of its range, gaps and energies within 1e-8."""
     assert mm.first_contact == pytest.approx(si.first_contact, rel=1.0e-6)
     assert mm.first_contact < 0.5
     assert mm.energy_residual == pytest.approx(si.energy_residual, rel=0.01, abs=1.0e-9)

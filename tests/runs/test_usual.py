@@ -50,7 +50,7 @@ LOAD = '{ segment = "fly", x = "head", magnitude = -1595.0, ramp = 0.1 }'
 
 
 def written(folder: Path, old: str, new: str) -> str:
-    """The lift with something else in place of what it says."""
+    """Return the text of the lift with a replacement."""
     assert LIFT.count(old) == 1 or old == ""
     (folder / "case.toml").write_text(LIFT.replace(old, new) if old else LIFT, encoding="utf-8")
     return "case.toml"

@@ -24,7 +24,7 @@ def box_segment(
     supports: tuple[Support, ...] = (),
     lateral_load: float = 0.0,
 ) -> Segment:
-    """A segment of steel whose beam's numbers, in both planes, are those of its box."""
+    """Return a steel segment whose beam data, in both planes, are those of its box."""
     density, sideways = STEEL.density, section.lateral_second_moment_of_area
     return Segment(
         name=name,
@@ -56,7 +56,7 @@ def two_segments(outer: Section, inner: Section) -> tuple[Segment, Segment]:
 
 
 def flat_boom(friction: float = 0.0) -> Boom:
-    """The paper's two segments in their plane, with its normal forces where there is friction."""
+    """Return the paper's two segments in their plane, with normal forces where friction acts."""
     outer = infer_outer_section(83.16 / STEEL.density, 3.7986e-4, 1.5)
     return Boom(
         two_segments(
@@ -76,10 +76,10 @@ def flat_boom(friction: float = 0.0) -> Boom:
 
 
 def boom_in_space(friction: float = 0.0, sideways: float = 0.0) -> Boom:
-    """The same with lateral play.
+    """Return the same boom with lateral play.
 
     Args:
-        friction: μ; the contact forces press.
+        friction: μ, under the contact forces.
         sideways: lateral load over that along z.
     """
     flat = flat_boom()
@@ -93,7 +93,7 @@ def boom_in_space(friction: float = 0.0, sideways: float = 0.0) -> Boom:
 
 
 def three_segments(tied: bool = False) -> Boom:
-    """A third box in the second, with the overlap of the first joint."""
+    """Return the boom with a third box in the second, with the overlap of the first joint."""
     two = flat_boom()
     inner = two.segments[1].section
     assert inner is not None

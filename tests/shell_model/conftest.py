@@ -34,7 +34,7 @@ def box_shell(
     masses: tuple[PointMass, ...] = (),
     section: Section = BOX,
 ) -> SegmentShell:
-    """A box on [0, length], of the outer segment's plates unless others are given."""
+    """Return a box on [0, length], of the outer segment's plates unless others are given."""
     segment = replace(box_segment("box", 0.0, length, section, supports=supports), masses=masses)
     breaks = {"start": 0.0, "end": length}
     breaks |= {f"place-{one.x:g}": one.x for one in (*supports, *masses)}
@@ -48,9 +48,9 @@ def _box_shell() -> Callable[..., SegmentShell]:
 
 
 def compliance(shell: SegmentShell, row: Row) -> float:
-    """What a unit force moves its own reading by, in m/N.
+    """Return the displacement of a unit force along itself, in m/N.
 
-    At 0.01 Hz in place of zero, since nothing holds a segment along x: 2e-6 of the compliance
+    It is at 0.01 Hz in place of zero, since segments are free along x: 2e-6 of the compliance
     of a boom whose lowest frequency is 7 Hz.
     """
     force = shell.row(row)

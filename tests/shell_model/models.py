@@ -40,7 +40,7 @@ def reduced(
     moments: int = 1,
     **options: Any,
 ) -> ReducedShell:
-    """A boom as shells with edges of a size in m, all of whose joints have the same laws."""
+    """Return a boom as shells with edges of a size in m, with the same laws in all joints."""
     return reduce_boom(
         touching(boom, law, lateral),
         ShellOptions(size, line, krylov=KrylovOptions(moments=moments), **options),

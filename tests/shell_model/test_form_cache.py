@@ -33,7 +33,7 @@ print(fem.assemble_scalar(fem.form(one * ufl.dx(domain=domain))))
 
 
 def compile_form(folder: Path, killed: bool) -> subprocess.CompletedProcess[str]:
-    """Reference: analytic, the integral of 3 over a unit."""
+    """Compile and evaluate a form. Reference: analytic, the integral of 3 over a unit."""
     outside = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI"))}
     return subprocess.run(
         [sys.executable, "-c", COMPILE.format(killed=killed)],

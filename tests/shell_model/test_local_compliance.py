@@ -124,7 +124,7 @@ PADS = {"corners": None, "pads": PadSize(0.1, 0.06)}
 
 
 def _short_boom(pad: PadSize | None) -> Boom:
-    """The paper's boom with segments of 2 m."""
+    """Return the paper's boom with segments of 2 m."""
     boom = flat_boom()
     outer, inner = boom.segments
     return Boom(

@@ -26,7 +26,7 @@ Shells = Callable[..., SegmentShell]
 
 
 def _laden(section: Section) -> SegmentShell:
-    """A box with everything that a segment may have."""
+    """Return a box with all features of a segment."""
     segment = replace(
         box_segment("box", 0.0, 10.0, section),
         supports=(Support(0.0, stiffness=1.0e6), Support(2.0)),
@@ -41,7 +41,7 @@ def _laden(section: Section) -> SegmentShell:
 
 
 def _everything(shell: SegmentShell) -> tuple[Folding, list[Job]]:
-    """The families that a force on every row excites."""
+    """Return the symmetry classes that a force on every row excites."""
     folding = Folding(shell)
     force = np.random.default_rng(1).standard_normal((shell.num_dofs, 1)) * shell.free[:, None]
     return folding, folding.jobs(force, force)

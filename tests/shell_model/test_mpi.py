@@ -40,7 +40,7 @@ if MPI.COMM_WORLD.rank == 0:
 
 
 def everything(comm: MPI.Comm) -> dict[str, Any]:
-    """What two ranks find, in one start of theirs."""
+    """Return the results of two ranks, computed in one start."""
     return {
         "frequencies": frequencies(comm),
         "spatial": spatial(comm),
@@ -59,7 +59,7 @@ def frequencies(comm: MPI.Comm) -> list[float]:
 
 
 def spatial(comm: MPI.Comm) -> dict[str, Any]:
-    """The reduced boom in space."""
+    """Return the reduced boom in space."""
     boom = boom_in_space(friction=0.2, sideways=0.3)
     system = reduce_boom(touching(boom, LAW, LATERAL_LAW), ShellOptions(0.5), comm).system
     parts = {"omega2": system.omega2, "rows": system.rows, "load": system.load}
@@ -94,7 +94,7 @@ def stresses(comm: MPI.Comm) -> list[Any]:
 
 
 def moved(comm: MPI.Comm) -> dict[str, Any]:
-    """The unreduced shell with friction."""
+    """Return the motion of the unreduced shell with friction."""
     law = replace(LAW.law, stiffness=1.0e9, exponent=1.0).behind(LAW.above)
     full = assemble_boom(touching(flat_boom(friction=0.2), law), ShellOptions(1.0), comm)
     motion = integrate_directly(full, 0.04, 5.0e-4)
@@ -102,7 +102,7 @@ def moved(comm: MPI.Comm) -> dict[str, Any]:
 
 
 def failure(comm: MPI.Comm) -> list[str] | None:
-    """What each rank is told where the second one fails."""
+    """Return the message of each rank where the second one fails."""
 
     def work() -> None:
         if comm.rank == 1:
@@ -124,7 +124,7 @@ def _told(done: subprocess.CompletedProcess[str]) -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def serial_motion() -> dict[str, Any]:
-    """What one rank finds, which compiles what the others then have."""
+    """Return the results of one rank, which compiles for the others."""
     return moved(MPI.COMM_SELF)
 
 
@@ -132,7 +132,7 @@ def serial_motion() -> dict[str, Any]:
 def two_ranks(
     tmp_path_factory: pytest.TempPathFactory, serial_motion: dict[str, Any]
 ) -> dict[str, Any]:
-    """What two ranks find."""
+    """Return the results of two ranks."""
     return _told(ranks_in(tmp_path_factory.mktemp("two"))(2, _PROGRAM, "everything"))
 
 

@@ -119,7 +119,7 @@ TOLERANCES = (1.0e-3, 1.0e-6, 1.0e-9)
 
 
 def _measured(shell: SegmentShell, reduced: ReducedSegment, inputs: Array, rows: Array) -> float:
-    """The larger relative error of compliance and readings, against full solves."""
+    """Return the larger relative error of compliance and readings, against full solves."""
     gains, read = reduced.shapes.T @ inputs, reduced.shapes.T @ rows
     worst = 0.0
     for frequency in FREQUENCIES:

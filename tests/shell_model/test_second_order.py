@@ -77,7 +77,7 @@ def test_walls_give_way_to_a_turn_by_the_whole_axial_force() -> None:
 
 
 def column(part: float) -> Boom:
-    """A slender cantilever under a part of Euler's force."""
+    """Return a slender cantilever under a part of Euler's force."""
     box = BoxSection(height=0.2, width=0.15, flange=0.006, web=0.006)
     clamp = (Support(0.0, "clamped"),)
     arm = Segment.of_section("arm", 0.0, 8.0, STEEL, box, supports=clamp, load=-100.0)

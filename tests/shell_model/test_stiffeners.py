@@ -38,7 +38,7 @@ COLLARS = (Collar(9.0, 10.0, 0.01), Collar(4.5, 5.5, 0.004))
 
 
 def meshed(segment: Segment, size: float) -> PlatedMesh:
-    """The mesh of a segment with all the lines that it needs."""
+    """Return the mesh of a segment with all its required lines."""
     assert segment.section is not None
     plates = diaphragm_breaks(segment)
     breaks = {"start": segment.start, "end": segment.end} | plates | collar_breaks(segment)
@@ -56,7 +56,7 @@ def shell_of(
     section: BoxSection = BOX,
     size: float = 0.25,
 ) -> SegmentShell:
-    """A stiffened box on [0, 10]."""
+    """Return a stiffened box on [0, 10]."""
     plain = box_segment("box", 0.0, 10.0, section, supports=supports)
     segment = replace(plain, collars=collars, diaphragms=diaphragms)
     return assemble_segment(MPI.COMM_WORLD, segment, meshed(segment, size))

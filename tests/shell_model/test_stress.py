@@ -35,7 +35,7 @@ Field = Callable[[Array], Array]
 
 
 def plates() -> tuple[SegmentShell, PlatedMesh]:
-    """A short box that a plate closes at its middle."""
+    """Return a short box with a diaphragm at its middle."""
     segment = CLOSED
     breaks = {"start": 0.0, "end": 1.0} | diaphragm_breaks(segment)
     closed = tuple(diaphragm_breaks(segment))
@@ -138,7 +138,7 @@ def test_the_faces_differ_by_twice_the_bending() -> None:
 def at_rest(
     boom: Boom, size: float, tolerance: float | None = None
 ) -> tuple[xr.Dataset, ShellStress]:
-    """The boom under its constant load; nothing touches."""
+    """Return the boom under its constant load, without contact."""
     options = ShellOptions(size, contact_tolerance=tolerance)
     shell = reduce_boom(touching(boom, LAW), options, MPI.COMM_SELF)
     omega2 = shell.system.omega2
@@ -313,7 +313,7 @@ TIME = np.linspace(0.0, 1.0, 1001)
 
 @pytest.fixture
 def shell() -> ShellStress:
-    """A box of 4 m: a bending of all of it in one coordinate, a spot near 3 m in the other.
+    """Return a box of 4 m with global bending in one coordinate, a spot near 3 m in the other.
 
     The spot is one triangle of the top, whose faces bend; it shows at 0.701 s for an instant,
     between those at which every triangle is looked at.

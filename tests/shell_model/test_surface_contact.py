@@ -50,7 +50,7 @@ def _with_pads(boom: Boom, pad: PadSize = PAD) -> Boom:
 
 
 def _rigid(system: GapSystem, readings: dict[str, float]) -> Array:
-    """The rigid motion of the free inner segment with these readings."""
+    """Return the rigid motion of the free inner segment with these readings."""
     free = np.flatnonzero(system.omega2 == 0.0)
     rows = np.array([system.observers[name].row[free] for name in readings])
     state = np.zeros(system.num_modes)
@@ -201,7 +201,7 @@ def test_contact_over_a_surface_keeps_energy() -> None:
 
 
 def compliances(comm: MPI.Comm) -> list[float]:
-    """What each contact row gives way under its own force, in m/N at 10 Hz."""
+    """Return the compliance of each contact row under its own force, in m/N at 10 Hz."""
     found = []
     cases: list[tuple[ContactLine, Boom]]
     cases = [("surface", flat_boom()), ("near webs", _with_pads(flat_boom()))]

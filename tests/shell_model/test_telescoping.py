@@ -38,9 +38,9 @@ SIZE = 0.25
 def telescope(
     way: float, drive: Drive | None = None, pad: float = SIZE, dashpot: float = 0.0
 ) -> Boom:
-    """The paper's boom with an overlap of 4 m less a way in m, and pads of a length in m.
+    """Return the paper's boom with an overlap of 4 m less an extension in m, and pads (m).
 
-    Without dashpots presses are chaotic, and runs part.
+    Without dashpots contacts are chaotic, and runs diverge.
     """
     boom = flat_boom()
     outer, inner = boom.segments
@@ -66,7 +66,7 @@ def local(system: GapSystem) -> Array:
 
 
 def standing(system: GapSystem, way: float) -> GapSystem:
-    """The shell that stands where its drive has moved it by a way in m."""
+    """Return the shell at its position after an extension by its drive in m."""
     (travel,) = system.travels
     times = np.linspace(0.0, 1.0, 20001)
     return system.standing(float(np.interp(way, travel.history(times), times)))

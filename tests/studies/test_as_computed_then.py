@@ -25,7 +25,7 @@ CUTOFF = 1.7
 
 
 def moved(tip: Array, head: float = 0.1, gained: float = 0.0, since: float = 0.0) -> Moved:
-    """A tip, a head of so large a part of it, and an energy in J of 1 J put in."""
+    """Return a tip, a head that is a part of it, and an energy in J of 1 J initially."""
     return Moved(TIME, tip, head * tip, np.where(since <= TIME, gained, 0.0), 1.0)
 
 

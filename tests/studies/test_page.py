@@ -92,7 +92,7 @@ PROVING = [name for name in STUDIES if name not in ("refinement", "model_ladder"
 
 
 def row(cells: Sequence[str]) -> tuple[str, str, str]:
-    """What is held, but where; what is allowed; the kind of reference."""
+    """Return the compared quantity without place, the tolerance, and the kind of reference."""
     return POINT.sub("", cells[0]), cells[4], cells[7]
 
 

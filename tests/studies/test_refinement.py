@@ -17,7 +17,7 @@ from studies.refinement import orders, refine, with_step
 
 @pytest.fixture
 def case() -> Case:
-    """The first press of the paper's example with friction."""
+    """Return the first contact of the paper's example with friction."""
     return lasting(friction_case(), 0.6)
 
 

@@ -28,7 +28,7 @@ def moved(tip: float, peak: float) -> Moved:
 
 
 def told(*peaks: float) -> list[tuple[str, float]]:
-    """What and value of the proofs of a point for each peak, on two meshes, the finer one 1 m."""
+    """Return text and value of a point's proofs for each peak, on two meshes, the finer one 1 m."""
     points = [Point(1.0e-3 * i, 1.0) for i in range(len(peaks))]
     touch = Touch("points", "webs", friction_case(), points, 1.0)
     meshes = {

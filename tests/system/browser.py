@@ -42,7 +42,7 @@ os.execv(sys.argv[3], sys.argv[3:])
 
 
 def find_browser() -> str | None:
-    """The path of a Chromium, None where there is none."""
+    """Return the path of a Chromium, None where there is none."""
     names = ("chromium", "chromium-browser", "google-chrome")
     return next(filter(None, map(shutil.which, names)), None)
 
@@ -78,7 +78,7 @@ class Page:
             self._receive()
 
     def evaluate(self, expression: str) -> Any:
-        """The value of a JavaScript expression in the page."""
+        """Return the value of a JavaScript expression in the page."""
         answer = self._ask("Runtime.evaluate", expression=expression, returnByValue=True)
         assert "exceptionDetails" not in answer, answer
         return answer["result"].get("value")
@@ -141,7 +141,7 @@ class Page:
 
 @contextmanager
 def blank_page(browser: str, folder: Path) -> Iterator[Page]:
-    """A browser with one page; it ends with the context.
+    """Yield a browser with one page, which ends with the context.
 
     Args:
         browser: its path.

@@ -25,7 +25,7 @@ SERIES = ["kantorovich-4", "kantorovich-5"]
 
 
 def protractile(*arguments: str | Path) -> int | str | None:
-    """The exit status of a command."""
+    """Return the exit status of a command."""
     with pytest.raises(SystemExit) as ended:
         cli.main([str(argument) for argument in arguments])
     return ended.value.code
@@ -37,12 +37,12 @@ def files(folder: Path) -> set[str]:
 
 
 def summary_of(folder: Path) -> Any:
-    """What summary.json says."""
+    """Return the content of summary.json."""
     return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
 
 
 def trajectories(folder: Path) -> xr.Dataset:
-    """The trajectories of a run."""
+    """Return the trajectories of a run."""
     return xr.load_dataset(folder / "trajectories.nc", engine="scipy")
 
 
@@ -69,7 +69,7 @@ class _Page(HTMLParser):
 
 
 def check_common_files(folder: Path, models: list[str]) -> None:
-    """What every run leaves, whatever its models."""
+    """Check the files that every run writes, whatever its models."""
     case = Case.model_validate(tomllib.loads((folder / "case.toml").read_text(encoding="utf-8")))
     assert [model.name for model in case.models] == models
     data = trajectories(folder)

@@ -39,14 +39,14 @@ BEAMS = [*SERIES, "beam-fe", "timoshenko", "beam-fe-tied"]
 
 @pytest.fixture
 def _short_film(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The film itself is what the tests of rendering look at; one run draws in its own process."""
+    """Shorten the film, which other tests check, though one run draws it in its own process."""
     monkeypatch.setattr("runs.report.snapshots.RENDERED", RENDERED)
     monkeypatch.setattr("runs.report.snapshots.workers", at_once.workers)
 
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of a run of all models."""
+    """Return the folder of a run of all models."""
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     folder = tmp_path_factory.mktemp("whole") / "out"
     with pytest.MonkeyPatch.context() as patch:
@@ -57,7 +57,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def again(whole: Path, tmp_path: Path) -> Path:
-    """A copy of it."""
+    """Return a copy of this folder."""
     return shutil.copytree(whole, tmp_path / "out")
 
 

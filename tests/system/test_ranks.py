@@ -55,7 +55,7 @@ with _all_ranks_end_together(comm):
 
 
 def complaints(answer: subprocess.CompletedProcess[str]) -> list[str]:
-    """What the command says, without what the launcher adds."""
+    """Return the messages of the command, without those of the launcher."""
     return [line for line in answer.stderr.splitlines() if line.startswith("protractile: ")]
 
 

@@ -46,7 +46,7 @@ WIDE = (
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run with ensembles and measured horizons."""
+    """Return the folder of a run with ensembles and measured horizons."""
     case = case_file.select(case_file.load(COARSE), "", MODELS, None)
     ensemble = EnsembleTable(members=3, relative=1e-6, seed=1, vary="load")
     time = case.time.model_copy(update={"duration": 2.0})

@@ -21,7 +21,7 @@ DECIDED = {"S1": "reproduced", "S2": "reproduced", "S3": "contradicted", "S5": "
 
 
 def chaotic() -> Case:
-    """The paper's case for its whole length, with models that are quick to run."""
+    """Return the paper's case for its whole length, with fast models."""
     names = ["kantorovich-4", "kantorovich-5", "kantorovich-5-linear", "beam-fe-tied"]
     case = case_file.select(case_file.load(str(PAPER)), str(PAPER), names, members=16)
     four, five, linear, without = case.models

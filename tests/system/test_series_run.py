@@ -36,7 +36,7 @@ Refusal = Callable[[str, Path], str]
 
 @pytest.fixture(scope="module")
 def series(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of a run of the series alone."""
+    """Return the folder of a run of the series alone."""
     folder = tmp_path_factory.mktemp("series") / "out"
     assert protractile("run", COARSE, "--models", ",".join(SERIES), "--out", folder) == 0
     return folder
@@ -44,13 +44,13 @@ def series(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def again(series: Path, tmp_path: Path) -> Path:
-    """A copy of it."""
+    """Return a copy of this folder."""
     return shutil.copytree(series, tmp_path / "out")
 
 
 @pytest.fixture
 def refusal(capsys: pytest.CaptureFixture[str]) -> Refusal:
-    """What a command says behind the name of a folder that it refuses."""
+    """Return a function for the message of a refusal, after the name of the folder."""
 
     def refuse(command: str, folder: Path) -> str:
         assert protractile(command, folder) == 2

@@ -30,7 +30,7 @@ PLAYS = "--vary", "joint.play=0.006:0.014:3"
 
 
 def write_case(folder: Path) -> Path:
-    """The coarse case until shortly after its first contact, as case.toml."""
+    """Write the coarse case until shortly after its first contact, as case.toml."""
     path = folder / "case.toml"
     text = Path(COARSE).read_text(encoding="utf-8")
     path.write_text(text.replace("duration = 0.6", "duration = 0.2"), encoding="utf-8")
@@ -52,7 +52,7 @@ def _in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="module")
 def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of a sweep on all cores, and beside it what it said."""
+    """Return the folder of a sweep on all cores, with its output beside it."""
     folder = tmp_path_factory.mktemp("swept")
     out, said = folder / "out", io.StringIO()
     with redirect_stdout(said):
@@ -62,7 +62,7 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def stamps(folder: str | Path) -> dict[str, int]:
-    """The file of each point, which is another one when it is written again."""
+    """Return the inode of each point's file, which changes when the file is written again."""
     points = Path(folder, "points").glob("[!.]*")
     return {path.name: path.stat().st_ino for path in points}
 

@@ -31,7 +31,7 @@ _SEED = 20
 
 
 def rows(folder: Path, tries: int = 100) -> Iterator[Row]:
-    """What came of flips, one after the other; a breach is one that was believed or not told.
+    """Yield the results of flips, one by one; a breach is one that was accepted or not reported.
 
     Args:
         folder: an empty one to work in.
@@ -64,7 +64,7 @@ def _flip(entries: Path, tries: int, compute: Callable[[], bytes]) -> tuple[int,
 
 
 def _shell(cache: Cache) -> bytes:
-    """A shell and its motion until shortly after its first contact, both of which are kept."""
+    """Return a shell and its motion until shortly after its first contact, both stored."""
     case = case_file.select(case_file.load(_COARSE), "", ["shell"], 1.0)
     short = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.15})})
     run = run_case(short, "", Means(MPI.COMM_SELF, cache=cache, kept=cache))

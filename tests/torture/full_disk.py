@@ -112,7 +112,7 @@ class _File:
 
 
 def rows(folder: Path, tries: int = 10**6) -> Iterator[Row]:
-    """What is left of a run, a report and a sweep; a breach is what is neither old nor new.
+    """Yield the remains of a run, a report and a sweep; a breach is neither old nor new.
 
     Args:
         folder: an empty one to work in.
@@ -133,7 +133,7 @@ def rows(folder: Path, tries: int = 10**6) -> Iterator[Row]:
 
 
 def _case(folder: Path, duration: float) -> str:
-    """The coarse case for as long."""
+    """Return the coarse case for a duration."""
     path = folder / f"{duration:g}.toml"
     text = (CASES / "coarse.toml").read_text(encoding="utf-8")
     path.write_text(text.replace("duration = 0.6", f"duration = {duration:g}"), encoding="utf-8")
@@ -143,7 +143,7 @@ def _case(folder: Path, duration: float) -> str:
 def _torture(
     name: str, place: Path, before: Sequence[str], command: Sequence[str], tries: int
 ) -> Iterator[Row]:
-    """A command beside what another one has left."""
+    """Run a command beside the files of another one."""
     place.mkdir(exist_ok=True)
     assert _run(before)[0] == 0
     old = _left(place)

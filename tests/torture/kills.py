@@ -62,7 +62,7 @@ def rows(folder: Path, tries: int = 20) -> Iterator[Row]:
 def killed(
     folder: Path, tries: int, commands: Sequence[tuple[str, Sequence[str]]] = COMMANDS
 ) -> Iterator[Row]:
-    """What killed commands leave; a breach is a loss, a rest or a difference.
+    """Yield the remains of killed commands; a breach is a loss, a residue or a difference.
 
     Args:
         folder: an empty one to work in.
@@ -132,7 +132,7 @@ def terminated(place: Path, tries: int) -> Row:
 
 
 def _cold_shell(place: Path) -> subprocess.Popen[bytes]:
-    """A run of a shell that nothing is known of, from when it listens to SIGTERM on."""
+    """Start a run of an uncached shell; return it when it listens to SIGTERM."""
     for name in ("out", "cache"):
         shutil.rmtree(place / name, ignore_errors=True)
     process = _start(place, _COLD_SHELL, subprocess.PIPE)
@@ -151,7 +151,7 @@ def listens(process: subprocess.Popen[Any]) -> bool:
 
 
 def _write_case(place: Path, duration: float) -> None:
-    """The coarse case for as long."""
+    """Write the coarse case for a duration."""
     text = _COARSE.read_text(encoding="utf-8")
     text = text.replace("duration = 0.6", f"duration = {duration:g}")
     (place / "case.toml").write_text(text, encoding="utf-8")
@@ -160,7 +160,7 @@ def _write_case(place: Path, duration: float) -> None:
 def _start(
     place: Path, command: Sequence[str], err: int = subprocess.DEVNULL
 ) -> subprocess.Popen[bytes]:
-    """A command in a session of its own."""
+    """Start a command in a session of its own."""
     (place / "tmp").mkdir(exist_ok=True)
     own = {"PYTHONPATH": str(_ROOT), "PROTRACTILE_CACHE": "cache", "TMPDIR": str(place / "tmp")}
     # A process that has entered MPI by itself must not pass its own rank on.

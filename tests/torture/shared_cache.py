@@ -26,7 +26,7 @@ COMMAND = f"{ONE_BLANK_FIGURE}\nfrom runs import cli\ncli.main()\n"
 
 
 def rows(folder: Path, tries: int = 3) -> Iterator[Row]:
-    """What runs at a time leave; a breach is what differs from a run alone, or says a word.
+    """Yield the results of simultaneous runs; a breach differs from a run alone, or prints.
 
     Args:
         folder: an empty one to work in.
