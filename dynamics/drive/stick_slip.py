@@ -176,7 +176,7 @@ def follow(pulled: ElasticDrive, way: History, time: Array, friction: Array) -> 
     times = step * np.arange(count * substeps + 1)
     recorded, sums, largest = np.zeros((count + 1, 3)), np.zeros((count + 1, 5)), np.zeros(6)
     kernel.march_pulled(
-        kernel.Body(pulled.mass, pulled.stiffness, pulled.dashpot, pulled.sticking),
+        kernel.SlidingMass(pulled.mass, pulled.stiffness, pulled.dashpot, pulled.sticking),
         step, substeps, way(times), pulled.pushed(times, step), friction, recorded, sums, largest,
     )  # fmt: skip
     lag, speed, acceleration = recorded.T

@@ -17,7 +17,7 @@ from dynamics.arrays import Array
 from dynamics.kernels.compiled import LOOP
 
 
-class Body(NamedTuple):
+class SlidingMass(NamedTuple):
     """m in kg, k in N/m, c in N·s/m, and static friction over that of sliding."""
 
     mass: float
@@ -58,7 +58,9 @@ _WEIGHTS = np.array([9.0, 49.0, 64.0, 49.0, 9.0]) / 180.0
 
 
 @njit(**LOOP)
-def motion_after(body: Body, state: Array, leg: Leg, time: float) -> tuple[float, float, float]:
+def motion_after(
+    body: SlidingMass, state: Array, leg: Leg, time: float
+) -> tuple[float, float, float]:
     """Return z in m, ṡ in m/s and all forces but friction in N after a time in s of this phase."""
     if state[SIGN] == 0.0:
         lag, rate = state[LAG] + leg.rate * time, leg.rate
@@ -78,7 +80,9 @@ def motion_after(body: Body, state: Array, leg: Leg, time: float) -> tuple[float
 
 
 @njit(**LOOP)
-def advance(body: Body, state: Array, leg: Leg, time: float, sums: Array, largest: Array) -> None:
+def advance(
+    body: SlidingMass, state: Array, leg: Leg, time: float, sums: Array, largest: Array
+) -> None:
     """Move on in the same phase through a time in s."""
     sign, lag, speed = state[SIGN], state[LAG], state[SPEED]
     for number in range(_PLACES.size):
@@ -102,7 +106,7 @@ def advance(body: Body, state: Array, leg: Leg, time: float, sums: Array, larges
 
 
 @njit(**LOOP)
-def stays(body: Body, state: Array, leg: Leg, time: float) -> bool:
+def stays(body: SlidingMass, state: Array, leg: Leg, time: float) -> bool:
     """Return whether it is in the same phase after a time in s."""
     _, speed, force = motion_after(body, state, leg, time)
     if state[SIGN] == 0.0:
@@ -111,13 +115,13 @@ def stays(body: Body, state: Array, leg: Leg, time: float) -> bool:
 
 
 @njit(**LOOP)
-def slows(body: Body, state: Array, leg: Leg, time: float) -> bool:
+def slows(body: SlidingMass, state: Array, leg: Leg, time: float) -> bool:
     """Return whether its slip becomes slower after a time in s."""
     return bool(state[SIGN] * motion_after(body, state, leg, time)[2] < leg.friction)
 
 
 @njit(**LOOP)
-def time_in_phase(body: Body, state: Array, leg: Leg, left: float) -> float:
+def time_in_phase(body: SlidingMass, state: Array, leg: Leg, left: float) -> float:
     """Return for how many of the s left it stays in its phase, which a moment may end."""
     if not stays(body, state, leg, 0.0):
         return 0.0
@@ -143,7 +147,9 @@ def time_in_phase(body: Body, state: Array, leg: Leg, left: float) -> float:
 
 
 @njit(**LOOP)
-def cover(body: Body, state: Array, leg: Leg, time: float, sums: Array, largest: Array) -> None:
+def cover(
+    body: SlidingMass, state: Array, leg: Leg, time: float, sums: Array, largest: Array
+) -> None:
     """Advance through a time in s whose data are straight, from phase to phase."""
     left, turns = time, 0
     while left > 0.0 and turns < _MOST_TURNS:
@@ -165,7 +171,7 @@ def cover(body: Body, state: Array, leg: Leg, time: float, sums: Array, largest:
 
 @njit(**LOOP)
 def march_pulled(
-    body: Body, step: float, substeps: int, ways: Array, pushes: Array, frictions: Array,
+    body: SlidingMass, step: float, substeps: int, ways: Array, pushes: Array, frictions: Array,
     recorded: Array, sums: Array, largest: Array,
 ) -> None:  # fmt: skip
     """Advance from output to output.
