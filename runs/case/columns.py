@@ -109,7 +109,7 @@ def read_pairs(
 class _Unfit(Exception):
     """The fault of a file, without quoting its content.
 
-    The file may be another one than the user meant, whose content is nobody's business.
+    The path may be wrong, and messages must not disclose another file's content.
 
     Args:
         what: the fault.

@@ -254,7 +254,7 @@ class StartTable(Table):
 
     @property
     def at_rest(self) -> bool:
-        """Whether the boom starts at rest under the loads of t = 0."""
+        """True if the boom starts at rest under the loads of t = 0."""
         return self.state == "equilibrium"
 
 
@@ -375,7 +375,7 @@ class Case(CaseKeys, CaseHeading):
 
     @property
     def regular(self) -> bool:
-        """Whether dry friction keeps motions comparable at all times.
+        """True if dry friction keeps motions comparable at all times.
 
         It does under given normal forces, at each station of a boom without stops; under
         contact forces it does not.

@@ -51,12 +51,12 @@ class Usual(NamedTuple):
 
     @property
     def unusual(self) -> bool:
-        """Whether the number deserves a caution."""
+        """True if the number deserves a caution."""
         return not self.least <= self.value <= self.most
 
     @property
     def impossible(self) -> bool:
-        """Whether the number is impossible for a boom."""
+        """True if the number is impossible for a boom."""
         return not self.least / self.margin <= self.value <= self.most * self.margin
 
     def said(self, system: System) -> str:

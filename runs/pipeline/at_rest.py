@@ -27,7 +27,7 @@ from geometry.telescoping import drawn, places
 from runs.pipeline.pads import SIGNS, most_on_pad, one_sided_force
 from runs.pipeline.section_forces import rounded, section_forces
 
-# Part of the largest travel below which a travel counts as zero.
+# Distance from the farthest extension, as a part of it, that counts as zero.
 _SAME_WAY = 1.0e-12
 
 
@@ -156,7 +156,7 @@ def extended_instants(system: GapSystem, duration: float) -> list[float]:
 def _over_time(
     changes: Sequence[Excitation | Travel], system: GapSystem, duration: float
 ) -> tuple[Array, Array]:
-    """Return times in s that resolve all changes, and values (num_changes, num_times) of some."""
+    """Return times in s that resolve all histories, and values (num_changes, num_times) of some."""
     loads, ways = ([change.history for change in of] for of in (system.excitations, system.travels))
     times = followed([*loads, *ways], duration)
     values = np.array([change.history(times) for change in changes])

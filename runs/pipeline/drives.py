@@ -92,7 +92,7 @@ def slippings(case: Case, boom: Boom) -> Iterator[Slipping]:
 
 
 def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
-    """Return the largest friction R in N at rest along the travel, under the loads of t = 0."""
+    """Return the largest friction R in N over the static states of the run."""
     from dynamics.time_step import axial_friction
 
     duration, most = case.time.duration, 0.0

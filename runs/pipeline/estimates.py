@@ -38,7 +38,7 @@ _OF_MEMBER, _OF_STEP = 22.0, 24.0
 
 # Time in s for a step, for a coordinate in it, and for a row that reads a coordinate.
 _STEP, _OF_MODE, _OF_ROW = 0.4e-6, 1.0e-8, 1.0e-9
-# Steps per output interval, and the part of repeated windows, of a motion with error control.
+# Steps per output interval, and repeated windows per window, of a motion with error control.
 _SUBSTEPS, _AGAIN = 32.0, 2.0
 # Number of motions that measure the horizons.
 _HORIZONS = 24

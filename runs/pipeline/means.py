@@ -39,10 +39,10 @@ class Means:
 
     @property
     def first_rank(self) -> bool:
-        """Whether this is the first rank, which writes files and integrates reduced models."""
+        """True if this is the first rank, which writes files and integrates reduced models."""
         return self.comm is None or self.comm.rank == 0
 
     @property
     def alone(self) -> bool:
-        """Whether no other rank waits for this one."""
+        """True if no other rank waits for this one."""
         return self.comm is None or self.comm.size == 1

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 # Elements of the retracted boom, which give its lowest frequency to four digits.
 ELEMENT_LENGTH = 0.5
-# Deflections that are kept of every member.
+# Deflections that the run stores for every member.
 PLACES = ("tip", "head")
 # Relative changes whose growth gives the horizon and the rate.
 CHANGES = (1.0e-12, 1.0e-10, 1.0e-8, 1.0e-6)

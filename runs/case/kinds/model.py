@@ -102,7 +102,7 @@ class Built:
     system: GapSystem  #: of all segments
     num_dofs: int  #: before any reduction
     seconds: dict[str, float] = field(default_factory=dict)  #: wall time of each stage
-    #: Of the axial forces with the joints pressed, see
+    #: Buckling factor of the axial forces with closed contacts, see
     #: :func:`dynamics.second_order.buckling_factor`; infinite without any.
     critical_factor: float | None = float("inf")
     shell: ReducedShell | None = None  #: data of a reduced shell besides its system
@@ -164,12 +164,12 @@ class ModelTable(Table):
 
     @property
     def needs_shell(self) -> bool:
-        """Whether the model needs FEniCSx and a workshop."""
+        """True if the model needs FEniCSx and a workshop."""
         return self.meshed
 
     @property
     def needs_plates(self) -> bool:
-        """Whether the model needs the sections of the segments."""
+        """True if the model needs the sections of the segments."""
         return self.meshed
 
     def with_shells(self, update: Mapping[str, object]) -> Self:
@@ -194,7 +194,7 @@ class ModelTable(Table):
 
     @property
     def play_free(self) -> bool:
-        """Whether the segments are joined without play."""
+        """True if the segments are joined without play."""
         return False
 
     @property

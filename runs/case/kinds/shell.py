@@ -222,7 +222,7 @@ class Shell(ModelTable):
                 )
 
     def _check_surface(self, where: str, joined: Joined) -> None:
-        """Refuse too many points, one stiffness for several laws, or a law that is no power law."""
+        """Refuse too many points, and a stiffness that does not suit the contact laws."""
         if self.surface_points is not None:
             along, across = self.surface_points
             if along * across > MOST_POINTS:
