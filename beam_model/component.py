@@ -112,7 +112,7 @@ class BeamMember:
     """A segment under loads, see :class:`geometry.load.Member`, in any coordinates.
 
     Args:
-        read: (num_coordinates,) what a rule takes of the component of a motion.
+        read: (num_coordinates,) the row of a component of a motion by a rule.
     """
 
     read: Callable[[Motion, Rule], Array]

@@ -42,7 +42,7 @@ class StaticState(NamedTuple):
     """Static state of a boom under the loads of t = 0.
 
     Args:
-        boom: what rests.
+        boom: the boom.
         system: of its beams.
         position: (num_modes,) of the system in √kg·m.
         holds: by segment, from its start to its end.

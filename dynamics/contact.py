@@ -131,7 +131,7 @@ class Gap(ContactLaw):
     array([1000.,    0.])
 
     Args:
-        law: what presses beyond the clearances.
+        law: contact law beyond the clearances.
         above, below: the clearances Δ in m where y is positive and where it is negative; negative
             where what touches is pressed in by so much, and then the law is linear.
 

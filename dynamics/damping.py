@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Modal damping of a boom with its joints in contact.
 
-A boom with play is described by the modes of its separate segments, and much of its vibration is in
-their rigid motions, which no damping of those modes reaches. Its own modes are those with the
+The modes of its separate segments describe a boom with play. Much of its vibration is in their
+rigid motions, which modal damping of the segments does not affect. Its own modes are those with the
 joints pressed: Φ (num_modes, r), Φᵀ Φ = 1, of frequencies ω. With ρ and ε the rigid and elastic
 coordinates of Φ, Ω the frequencies of the segments, and ε⁺ the pseudo-inverse,
 
     C = 2ζ [½ ω₁ on rigid coordinates + s Ω on elastic ones + ε⁺ᵀ (ω − ½ ω₁ ρᵀρ − s εᵀ Ω ε) ε⁺]
 
-gives Φᵀ C Φ = 2ζ ω, and lets a segment that flies lose its speed at the rate ζ ω₁. C is positive
-semidefinite for s ≤ ½ at least, since εᵀ Ω ε ≤ (εᵀ Ω² ε)^½ ≤ ω (Hansen 1980); s is the largest up
-to 1.
+gives Φᵀ C Φ = 2ζ ω, and reduces the speed of a segment without contact at the rate ζ ω₁. C is
+positive semidefinite for s ≤ ½ at least, since εᵀ Ω ε ≤ (εᵀ Ω² ε)^½ ≤ ω (Hansen 1980); s is the
+largest up to 1.
 """
 
 from __future__ import annotations

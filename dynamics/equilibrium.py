@@ -2,8 +2,8 @@
 """Static equilibrium of a gap system under a constant load.
 
 Strain and contact energies are convex, so that the rest position is the minimum of the potential
-energy; under axial forces, which let a segment tip within its play, it is a near one. Dry friction
-would leave a whole range of rest positions; this is the one without it.
+energy. Under axial forces, which tip a segment within its play, it is a near minimum. Dry friction
+would allow a range of rest positions; this is the one without it.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     -9.81 µm
 
     Args:
-        system: its contacts hold what its supports leave free.
+        system: held by its contacts where its supports leave it free.
         load: (num_modes,) constant modal load in N/√kg.
 
     Raises:

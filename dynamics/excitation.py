@@ -199,7 +199,7 @@ class Excitation:
 
     Args:
         load: (num_modes,) in N/√kg.
-        history: what multiplies it.
+        history: its factor over time.
 
     Raises:
         ValueError: the history lacks something, or its data have no meaning.

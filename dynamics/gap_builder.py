@@ -39,14 +39,14 @@ class Friction(NamedTuple, Generic[R]):
 
 
 class Dashpot(NamedTuple, Generic[R]):
-    """Dashpot across a station: its coefficient in N·s/m, and weights of what it reads."""
+    """Dashpot across a station: its coefficient in N·s/m, and weights and readings."""
 
     coefficient: float
     parts: list[tuple[float, R]]
 
 
 class Observed(NamedTuple, Generic[R]):
-    """Output, as :class:`dynamics.gap_system.Observer`, of what it reads."""
+    """Output, as :class:`dynamics.gap_system.Observer`, of a reading."""
 
     reading: R
     unit: str = "m"
@@ -78,8 +78,8 @@ class GapBuilder(Generic[R]):
         """Add contact through points: on each the side, its part of the law, and the approach.
 
         Side 1 touches where the approach is positive, −1 where it is negative, 0 both ways by the
-        whole law. On a side where the law never touches there is no row. What is raised, by so many
-        m, touches so much earlier.
+        whole law. On a side where the law never touches there is no row. Points that are
+        ``raised`` by a length in m touch earlier by this length.
 
         Returns:
             The positions of the rows.
@@ -175,13 +175,13 @@ class GapBuilder(Generic[R]):
         """Return the gap system in modal coordinates.
 
         Args:
-            read: (num_modes,) the row of what is read.
+            read: gives the row (num_modes,) of a reading.
             omega2, load: (num_modes,) of the modes.
             places: x in m and direction of each station.
-            observed: what a trajectory records, by its name.
-            loads: (num_modes,) what pushes beside ``load``, and when.
-            lines: to the ground: what a trajectory calls the force of the spring, pressed where it
-                is positive, or nothing; what reads the length (num_modes,); the stiffness in N/m,
+            observed: outputs of a trajectory, by name.
+            loads: (num_modes,) load vectors beside ``load``, and their histories.
+            lines: to the ground: name of the spring force in a trajectory, positive in compression,
+                or nothing; row (num_modes,) that reads the length; the stiffness in N/m,
                 which the modes include already; the dashpot in N·s/m.
             damping: (num_modes,) in 1/s; none unless given.
         """

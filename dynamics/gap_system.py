@@ -4,11 +4,11 @@
     ä_i + Σ_k C_ik ȧ_k + ω_i² a_i = Q_i + Σ_e Q_ei g_e(t) − Σ_j B_ji F_j(y_j) + Σ_l D_li R_l(ṡ_l)
     y_j = Σ_i B_ji a_i,    s_l = Σ_i D_li a_i,    C = diag(c) + Gᵀ G
 
-in mass-normalised modal coordinates a. Segments that only contact couples stand side by
-side in a; a contact row B_j reads the relative displacement u − w of one place, a friction row
+in mass-normalised modal coordinates a. The coordinates of segments that only contact couples are
+stacked in a. A contact row B_j reads the relative displacement u − w of one place, a friction row
 D_l a relative displacement along which two places slide, a dashpot G_d a speed that it resists.
-Where a boom telescopes, its travels say how rows change from what they are at t = 0. One that
-stands on its way may have K = diag(ω²) − S in place of ω², until it is taken ``in_own_modes``.
+If a boom telescopes, its travels give the change of rows from those at t = 0. At a fixed extension
+it may have K = diag(ω²) − S in place of ω², until it is transformed by ``in_own_modes``.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Observer(NamedTuple):
 
     Args:
         row: over the modal coordinates,
-        unit: of what it reads of them, or
+        unit: of the quantity that it reads, or
         derivative: of their velocities where it is 1, and of their mean accelerations over the
             output interval that ends then where it is 2.
     """
@@ -71,7 +71,7 @@ class GapSystem:
         laws: (num_rows) the contact law of each row.
         station_of_row: (num_rows,) position in ``stations`` of each row.
         stations: x of the stations in m.
-        observers: name → what a trajectory records.
+        observers: name → output of a trajectory.
         damping: (num_modes,) c = 2ζω in 1/s; zero unless given.
         dashpots: (num_dashpots, num_modes) rows G in 1/√s; none unless given.
         friction_rows: (num_frictions, num_modes) sliding rows D in 1/√kg; none unless given.
@@ -86,9 +86,9 @@ class GapSystem:
         grounded: positions in ``stations`` of those where the ground is touched, and no segment.
         travels: the extensions of segments over time, and the rows that they change; none unless
             given.
-        softening: (num_modes, num_modes) what axial forces take from the stiffness besides, of a
-            boom at a given extension; none unless given. Before such a system moves,
-            :meth:`in_own_modes`.
+        softening: (num_modes, num_modes) further reduction of the stiffness by axial forces, of a
+            boom at a given extension; none unless given. Such a system needs
+            :meth:`in_own_modes` before it moves.
 
     Raises:
         ValueError: shapes do not agree, or a number is not finite or out of range.

@@ -25,7 +25,7 @@ class Motion:
     (1000, False)
 
     Args:
-        system: what moves.
+        system: the system that moves.
         duration: in s; a whole number of output steps is made, at least one.
         output_step: in s.
         position: (num_modes,) initial a in √kg·m, zero unless given.

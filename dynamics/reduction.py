@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Gap systems derived from others: in fewer coordinates, with residual springs, without play.
 
-**Condensed.** Some modes stay as they are: a few as the slowest, the others as those whose inertia
-answers most to what pushes. Under a load b a mode deflects by b²/ω², its inertia by b²/ω⁴. Of the
-rest the motions that forces excite are kept, matched with ``MOMENTS`` derivatives at rest, so that
-statics is exact and the inertia of what gives way is right to the first orders (MacNeal 1971; Rubin
+**Condensed.** Some modes stay unchanged: a few as the slowest, the others as those whose inertia
+responds most to loads. Under a load b a mode deflects by b²/ω², its inertia by b²/ω⁴. Of the rest,
+the motions that forces excite are kept. They match ``MOMENTS`` derivatives at rest, so that statics
+is exact and the inertia of local deformation is accurate to the first orders (MacNeal 1971; Rubin
 1975, whose residual modes are the first block).
 
 **With springs.** With B the rows of contacts, friction and dashpots and C = B Ω⁻² Bᵀ over the
 elastic modes, the residual compliance of a coarse model beside a fine one is D = C_fine − C_coarse
 (MacNeal 1971). Both have the same rigid motions, so forces that no support carries are carried by
-inertia alike, and D is the local compliance alone. Its positive part D = Σ g gᵀ is as many
-springs without mass, each a coordinate with the rows ω_s g and a frequency ω_s well above the
+inertia alike, and D is the local compliance alone. Its positive part D = Σ g gᵀ is a set
+of massless springs. Each is a coordinate with the rows ω_s g and a frequency ω_s well above the
 motion.
 
 **Bonded.** Contacts that press at rest are held where they touch without play; at stations where

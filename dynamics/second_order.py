@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Modes whose stiffness constant axial forces soften, and the forces under which they buckle.
+"""Second-order theory: modes softened by constant axial forces, and buckling loads.
 
 In the modes of the unloaded boom the stiffness is diag(ω²) − G, with G = Φᵀ K_G Φ of the geometric
-stiffness (physics of the second order, Timoshenko and Gere 1961). A segment that contacts alone
+stiffness (second-order theory, Timoshenko and Gere 1961). A segment that contacts alone
 hold tips over: its rotation has a negative ω².
 """
 

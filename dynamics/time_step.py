@@ -114,7 +114,7 @@ class Integration:
     def advance(
         self, first: int, last: int, substeps: int, state: State, output: Output | None = None
     ) -> Output:
-        """Advance a state through output intervals, and return what it leaves at their ends.
+        """Advance a state through output intervals, and return its records at their ends.
 
         Args:
             first, last: outputs at the start and at the end.

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Trajectories: deflections, contact forces and energies over time.
 
-A trajectory is labelled (xarray) and carries its energy residual: kinetic, strain and contact
-energy, less the work of the loads, plus what damping, friction and contact took, should add up to
-what there was.
+A trajectory is labelled (xarray) and has its energy residual. Kinetic, strain and contact energy,
+less the work of the loads, plus the losses of damping, friction and contact, should equal the
+initial energy.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from dynamics.arrays import Array
 from dynamics.energy import DRIVEN_ENERGIES, ENERGIES, energy_residual
 from dynamics.gap_system import GapSystem, Observer
 
-# Imported where data are made or read: what only plans a motion spares a second of imports.
+# Imported where data are made or read: planning a motion alone then takes a second less.
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -298,7 +298,7 @@ class Trajectory:
 
         Args:
             other: at the same times.
-            name: of what is compared.
+            name: of the compared output.
             until: in s; the horizon up to which both are predictable, say.
 
         Raises:

@@ -85,8 +85,8 @@ class Boom:
     Raises:
         BoomError: a name that is no segment, supports, stations, loads or stops outside the
             segments, an inner box that does not fit its outer one, a section that does not mirror
-            itself, a segment that nothing holds, friction without what presses, a boom in space
-            that lacks lateral numbers, an observation of what is not there.
+            itself, a segment without restraint, friction without a normal force, a boom in space
+            without lateral properties, an observation that the boom does not have.
     """
 
     segments: Sequence[Segment]
@@ -297,7 +297,7 @@ class Boom:
     def _check_diaphragms(self) -> None:
         """Check that no diaphragm closes a box where another segment is inside.
 
-        Segments end one beyond the other, so what is deeper inside is inside the next one, too.
+        Segments end one beyond the other, so a segment deeper inside is inside the next one, too.
         """
         for joint in self.joints:
             outer, inner = self.segments[joint.outer], self.segments[joint.inner]

@@ -135,14 +135,14 @@ class Cylinder:
 
 
 class GroundLine(NamedTuple):
-    """A line from a segment to the ground, beside what is held in the segment itself.
+    """A spring and dashpot from a segment to the ground, beside the segment's own supports.
 
     Args:
         segment: position in ``Boom.segments``.
-        push: (num_dofs,) what 1 N along it does to the segment: what its length reads.
+        push: (num_dofs,) load vector of 1 N along it, which is the row that reads its length.
         stiffness: N/m.
         dashpot: N·s/m.
-        force: what results call the spring's force, positive where it is pressed; none without.
+        force: the results' name of the spring force, positive in compression; none without.
     """
 
     segment: int

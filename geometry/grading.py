@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Graded meshes: fine where something presses, and coarser away from it.
 
-Rectangles first: near a spot they are nearly square, far from all they are almost seven times as
-long along the boom as across. What far edges make too stiff is the bending of walls across, by a
-part that goes with the square of the edges across and hardly with those along: halving both lowers
-the frequencies of walls by 0.2 to 0.4 %. Then newest-vertex bisection (Mitchell 1989): each
-triangle is cut from its newest corner to the middle of the edge opposite, the first time across the
-diagonal of its rectangle. Its grandchildren have its shape, and neighbours are cut with it, so that
-no node hangs. Places are compared as they are on the positive side of the section's mirrors,
-rounded, so that a mirror image is cut where its original is.
+The first step makes rectangles: near a spot they are nearly square, far from all spots almost seven
+times as long along the boom as across. Large edges make the bending of walls across too stiff. This
+error is proportional to the square of the edges across and depends little on those along: halving
+both lowers the frequencies of walls by 0.2 to 0.4 %. The second step is newest-vertex bisection
+(Mitchell 1989). It cuts each triangle from its newest corner to the middle of the edge opposite,
+the first time across the diagonal of its rectangle. Its grandchildren have its shape. Neighbours
+are cut with it, so that no node hangs. Places are compared on the positive side of the section's
+mirrors, rounded, so that a mirror image is cut where its original is.
 """
 
 from __future__ import annotations

@@ -67,7 +67,7 @@ def check_pressed(boom: Boom) -> None:
         boom: that is held, under its own loads.
 
     Raises:
-        BoomError: they lift a segment off what holds it.
+        BoomError: they lift a segment off its stops.
     """
     bodies = _bodies(boom)
     left = _left(_always(boom, bodies), bodies)

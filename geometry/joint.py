@@ -86,11 +86,11 @@ class Joint:
         lateral_contact: law along y; as ``contact`` unless given.
         play_above, lateral_play_right: the part of a play in m that is there; half of it unless
             given.
-        interference, lateral_interference: by how much shims press from both sides together in m,
-            where there is no play.
+        interference, lateral_interference: total preload by shims on both sides in m, where
+            there is no play.
         friction: μ of (28), and of (10) and (11) in space.
-        normal_forces: N of (28) in N, one for each station; empty in space, where what presses
-            is the contact force of the other plane.
+        normal_forces: N of (28) in N, one for each station; empty in space, where the
+            contact force of the other plane is the normal force.
         tied: bonded: the segments deflect (and in space twist) alike at the stations.
         pad: of the slide pads in the corners; shells touch in the corners themselves without it.
         pads: in place of it, where there are several at each station.

@@ -55,8 +55,8 @@ class Load:
         direction: along which it acts.
         magnitude: in N/m along the whole segment, or in N at one place.
         x: the place in m; None for the whole segment.
-        history: what multiplies the magnitude, a history of the dynamics, or what it has in place
-            of one for loads that are over at t = 0.
+        history: factor of the magnitude over time, a history of the dynamics, or its substitute
+            for loads that are over at t = 0.
         inertial: whether it is an acceleration of the mass per length along the whole segment,
             which collars and diaphragms feel beyond that.
     """

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Structured triangle meshes of a segment, made by gmsh.
 
-Every plate of the section is a wall, cut in its middle and into transfinite patches, so that mesh
-lines lie exactly where supports, stations and contact points are, whatever the lengths and the mesh
-size, and so that the mesh does not depend on gmsh's version. The triangles mirror each other where
-the section does: a load in the plane of bending then moves the section in that plane, to round-off.
+Every plate of the section is a wall, cut in its middle and into transfinite patches. So mesh lines
+lie exactly at supports, stations and contact points, for all lengths and mesh sizes, and the mesh
+does not depend on gmsh's version. The triangles mirror each other where the section does. A load in
+the plane of bending then moves the section in that plane, to round-off.
 The mesh of a box on its side lies on its side. A diaphragm has a patch in each corner of the
 section, which share the nodes of its outline with the walls: there an edge has three triangles.
 """

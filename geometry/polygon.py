@@ -38,9 +38,9 @@ _LEAST_TURN, _MOST_TURN = -1.0e-9, np.radians(170.0)
 class PolygonSection(Section):
     """Plates once around a cell, described by the corners of their mid-lines.
 
-    Area, centroid and second moments are those of the plates with their thickness, whose surfaces
-    meet in the corners, as those of :class:`geometry.section.BoxSection` do; shear areas those of
-    the shear flow along the mid-lines (:mod:`geometry.shear_flow`).
+    Area, centroid and second moments are those of the plates with their thickness. The surfaces
+    meet in the corners, as those of :class:`geometry.section.BoxSection` do. Shear areas follow
+    from the shear flow along the mid-lines (:mod:`geometry.shear_flow`).
 
     >>> corners = ((-0.15, -0.3), (0.15, -0.3), (0.2, 0.3), (-0.2, 0.3))
     >>> trapezoid = pt.PolygonSection(corners, thicknesses=(0.01, 0.006, 0.008, 0.006))

@@ -47,7 +47,7 @@ def octagon(
 
     Args:
         height, width: of the rectangle.
-        chamfer: what is cut of each of its sides at either end.
+        chamfer: length cut from each of its sides at either end.
         top, bottom, web: thicknesses of the top, the bottom, and all other plates.
 
     Raises:

@@ -6,9 +6,9 @@ the plane of bending. Other modules do not depend on the number of plates: meshe
 the plates, contacts the faces, beams the properties.
 
 A beam model gives a section's area and second moment of area; a shell model needs its
-plates. With a uniform wall a box has three numbers (height, width, wall), so one more is
-needed: the height-to-width ratio for the outermost segment, the room inside the next
-larger section for every other one.
+plates. A box with a uniform wall has three parameters (height, width, wall), so one more
+condition is necessary. It is the height-to-width ratio for the outermost segment, and the
+room inside the next larger section for every other one.
 """
 
 from __future__ import annotations

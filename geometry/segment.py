@@ -74,7 +74,7 @@ class Collar:
 
     Args:
         start, end: x of its ends in m.
-        thickness: what it adds to each wall in m.
+        thickness: its thickness on each wall in m.
     """
 
     start: float
@@ -141,12 +141,12 @@ class Segment:
             centroids of all are on the axis, m̄ is the mean, and the other numbers above and of
             ``lateral`` are those half-way.
         load: uniform load along z in N/m, applied at t = 0 and kept.
-        supports: what holds it.
+        supports: its supports on the ground.
         viscous_damping: μ̄ of (25) in N·s/m², of the deflections along y as along z.
-        masses: what it carries.
-        lateral: what a boom in space needs.
-        collars, diaphragms: what stiffens the plates; of them beams know the mass alone, and the
-            numbers above are those of the plain box.
+        masses: its point masses.
+        lateral: additional properties for a boom in space.
+        collars, diaphragms: stiffeners of the plates; beams include their mass alone, and the
+            properties above are those of the plain box.
         compression: the axial force that it carries, see :func:`geometry.axial.with_compression`.
         shear_stiffnesses: G A_s in N along z and along y, where they are not the section's.
     """

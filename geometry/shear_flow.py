@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Shear flow q along the mid-line of a closed thin wall.
 
-dq/ds = −t a·r (Jourawski 1856), with r from the centroid of the mid-lines and a such that the
-flow's resultant, ∮ r rᵀ t ds a, is the force; the constant that a closed cell leaves open follows
-from ∮ q/t ds = 0, without which the section would twist (Bredt 1896). Exact for flat plates: q is
-quadratic along each.
+The flow follows dq/ds = −t a·r (Jourawski 1856), with r from the centroid of the mid-lines. The
+vector a makes the flow's resultant, ∮ r rᵀ t ds a, equal to the force. The remaining constant of a
+closed cell follows from the condition of no twist, ∮ q/t ds = 0 (Bredt 1896). The solution is exact
+for flat plates: q is quadratic along each.
 """
 
 from __future__ import annotations

@@ -74,7 +74,7 @@ def _travel(slope: Array, clear: Array) -> tuple[float, float]:
     """Return the lowest and the highest shift in m that leave room to every plate.
 
     Args:
-        slope: (num_plates,) what a unit of shift takes of the room.
+        slope: (num_plates,) reduction of the room per unit of shift.
         clear: (num_plates,) room in m at a shift of 0.
     """
     ahead, behind = slope > _ASIDE, slope < -_ASIDE

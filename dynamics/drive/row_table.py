@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rows and axial forces that change with the extension of a segment, as cubics between places.
 
-Where elements have cubic shape functions, and knots lie where nodes pass, the cubics are the rows
-themselves; else pieces are halved until they are within a tolerance of them.
+If elements have cubic shape functions, and knots lie where nodes pass, the cubics are exact.
+Otherwise pieces are halved until the cubics are within a tolerance of the rows.
 
-Between where it was and where it is the segment is pressed by an axial force that moves along it,
-and what that takes from the stiffness is K_G(s) = N ∫₀ˢ w′ᵀ w′ dσ of the slopes w′ at the place
-(physics of the second order, Timoshenko and Gere 1961). Of rows that are cubics in s it is exact.
+An axial force that moves along a segment compresses it between its initial and present place. It
+reduces the stiffness by K_G(s) = N ∫₀ˢ w′ᵀ w′ dσ of the slopes w′ at the place (second-order
+theory, Timoshenko and Gere 1961). For rows that are cubic in s this is exact.
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ class MovingThrust:
     array([[9.]])
 
     Args:
-        force: N in N, positive where it presses what is passed as s rises.
+        force: N in N, positive where it compresses the passed length as s rises.
         table: (num_planes, num_modes) rows of the deflections where it acts, at each s in m.
     """
 

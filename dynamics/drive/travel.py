@@ -2,9 +2,9 @@
 """The extension of a segment over time, and the rows that it changes.
 
 In material coordinates nothing else changes: a segment that moves along its own axis has the
-inertia m̄ ü at each of its points, provided that slopes are small. Modes, loads and observers of one
-segment stay the same; a row that reads two segments at one place reads one of them at another place
-as the segment extends.
+inertia m̄ ü at each of its points if slopes are small. Modes, loads and observers of one segment
+stay the same. A row that reads two segments at one place reads one of them at another place as the
+segment extends.
 """
 
 from __future__ import annotations

@@ -344,7 +344,7 @@ def march(
                 moved = now[j] * (y_end[j] - y[j])
                 if j < contacts:
                     mean[j] += share * now[j]
-                    # A contact that lets go without a force loses what it has stored.
+                    # A contact that opens without a force loses its stored energy.
                     if laws.limits[j]["damping"] > 0.0:
                         _, _, elastic = contact_response(laws, j, y[j], y_end[j], time)
                         tally[CONTACT] += moved - elastic * (y_end[j] - y[j])

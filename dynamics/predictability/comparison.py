@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Two models of one thing, compared at three levels; each level says what it can decide."""
+"""Comparison of two models of one boom at three levels, each with the question that it decides."""
 
 from __future__ import annotations
 
