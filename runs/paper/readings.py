@@ -3,8 +3,8 @@
 
 The print leaves open whether the play of 14 mm is 2Δ or Δ, whether the contact stiffness has lost
 its exponent, which functions the series has at its ends, and which contact law a figure belongs
-to. Every combination is run with the beam models and judged; what a statement contradicts, the
-authors cannot have computed.
+to. Every combination is run with the beam models and judged; the authors cannot have computed a
+combination that a statement contradicts.
 """
 
 from __future__ import annotations

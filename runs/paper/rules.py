@@ -391,7 +391,7 @@ def _find(rule: Callable[[RunQuery], Finding], run: RunQuery) -> Finding:
 
 
 def _above(value: float, threshold: float, doubt: float) -> Judgement:
-    """Return whether a value is above a threshold, each known to within ``doubt``."""
+    """Return the judgement of a value above a threshold, both known to within ``doubt``."""
     if abs(value - threshold) <= doubt:
         return "undecided"
     return "reproduced" if value > threshold else "contradicted"
@@ -415,14 +415,14 @@ def _apart(run: RunQuery, models: Sequence[Model], place: str) -> Array:
 
 
 def _half_part(middle: float) -> str:
-    """Return when the models of the middle member diverge, infinite if they do not."""
+    """Return a sentence on the median time of divergence, infinite without divergence."""
     if not np.isfinite(middle):
         return "In most members no peaks are further apart."
     return f"In half of them the first such peak is at {middle:.1f} s or before."
 
 
 def _horizons(run: RunQuery, models: list[Model]) -> str:
-    """Return the times from which a single run of each model is a sample."""
+    """Return a sentence on the times from which a single run of each model is a sample."""
     horizons = [run.horizon(model, DIVERGENCE) for model in models]
     times = [time for time in horizons if time is not None]
     if not times:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Verdicts on the paper's statements: in the report, in the terminal and in ``verdicts.json``.
 
-What numerics of the paper's own time show of a statement stands beside its verdict:
-``python -m studies.as_computed_then`` finds it, and a run's folder may hold a copy.
+Results of numerics of the paper's own time accompany each verdict: ``python -m
+studies.as_computed_then`` computes them, and a run's folder may contain a copy.
 """
 
 from __future__ import annotations

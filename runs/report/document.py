@@ -55,7 +55,7 @@ def render(
         snapshots: on disk.
         viewer: file of the interactive viewer beside the report.
 
-    Where plotly is not installed the pictures of curves stand alone.
+    Without plotly the report shows static pictures of curves only.
     """
     first = first_table(results)
     tables: dict[str, list[Table]] = {

@@ -148,7 +148,7 @@ def strength_sentence(results: Results) -> str:
 
 
 def _not_given(results: Results, model: str) -> str:
-    """Return which strengths are missing: of the steel, and of pads that a model presses."""
+    """Return which strengths are missing: of the steel, and of pads that a model loads."""
     steels = [one.name for one in results.boom.segments if one.material.yield_strength is None]
     pressed = (pad for pad in results.summary.pads if pad.model == model and pad.force > 0.0)
     pads = {pad.inner: None for pad in pressed if pad.utilisation is None}

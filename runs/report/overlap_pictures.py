@@ -182,7 +182,7 @@ class OverlapView:
         return np.asarray(self.scene.triangles[self.behind & mine])
 
     def draw(self, sheet: Sheet, time: float, places: Array, halves: Sequence[Half]) -> None:
-        """Put both segments and the forces between them on a sheet.
+        """Draw both segments and the forces between them on a sheet.
 
         Args:
             sheet: of the picture.

@@ -245,9 +245,8 @@ class Scene:
     def beside(self, t: float, segment: int, between: tuple[float, float]) -> Array:
         """Return displacements (num_points, 3) in m relative to a part of a segment.
 
-        The motion and the turn of that part, ``between`` two x in m, as a whole in the picture's
-        plane is taken from all points: magnified it would tilt a sloping boom, and tells nothing
-        of contacts.
+        The rigid motion of that part, ``between`` two x in m, in the picture's plane is subtracted
+        from all points: magnified it would tilt a sloping boom, and it does not affect contacts.
         """
         moved = self.displacement(t)
         x, _, z = self.points.T
@@ -301,8 +300,8 @@ class Scene:
     def drawn(self, moved: Array, scale: float, section: float = SECTION_DRAWN) -> Array:
         """Return the displayed places (num_points, 3) of the points in m.
 
-        A magnified section also rotates with its magnified height. What moves along the
-        line of sight stays, or it would come out of the picture.
+        A magnified section also rotates with its magnified height. Displacements along the line of
+        sight are not magnified.
 
         Args:
             moved: (num_points, 3) displacement in m.

@@ -97,7 +97,7 @@ class Camera:
 
 @contextmanager
 def stage(pixels: tuple[int, int], part: float = 1.0) -> Iterator[Any]:
-    """Return a pyvista plotter off-screen on white, for a part of a whole sheet's size each way."""
+    """Yield a pyvista plotter off-screen on white, for a part of a whole sheet's size each way."""
     # VTK's libraries may be missing on a machine that draws no pictures.
     import pyvista
     from vtkmodules.vtkCommonCore import vtkLogger
@@ -133,13 +133,13 @@ def sharp_edges(mesh: Any) -> Any:
 class Sheet:
     """Sheet of heading, picture, x along the picture's lower edge, and room below it.
 
-    The coordinates of ``picture`` are the pixels of :meth:`Camera.project`. What passes belongs to
-    one image; all else is drawn once, for the first one.
+    The coordinates of ``picture`` are the pixels of :meth:`Camera.project`. Temporary artists
+    belong to one image; all others are drawn once, for the first image.
 
     Args:
         pixels: width and height of the picture.
         floor: height of the picture's lower edge in pixels.
-        part: of the size that these pixels are of; the page is so much smaller, each way.
+        part: of this size that the sheet has, in each direction.
     """
 
     def __init__(self, pixels: tuple[int, int], floor: int, part: float = 1.0) -> None:
@@ -174,7 +174,7 @@ class Sheet:
         self._seen.append((pixels, round(self._part * left), round(self._part * up)))
 
     def pass_by(self, *artists: Artist) -> None:
-        """Show an artist in the next image alone."""
+        """Show a temporary artist, in the next image alone."""
         for artist in artists:
             artist.set_animated(True)
         self._passing += artists

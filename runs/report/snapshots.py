@@ -179,8 +179,8 @@ def telling_instants(motion: xr.Dataset) -> dict[str, float]:
 
     ``first-peak`` of the tip, or ``largest-deflection`` where there is no peak; the
     ``largest-force`` of the run, at any station, unless that is at nearly the same time; the
-    ``first-contact``, unless something is pressed from the start. Without contact there is the
-    first alone.
+    ``first-contact``, unless a contact is closed from the start. Without contact only the first
+    exists.
     """
     time = np.asarray(motion["time"].values)
     peak, _ = Trajectory(motion, np.empty((time.size, 0))).first_peak()
@@ -242,10 +242,10 @@ def drawing(
         shells: files of fields, ``[SHELL-]fields.nc``.
         trajectories: file of all models.
         folder: of the run; pictures of other instants stay in it.
-        times: in s; the telling ones unless given.
+        times: in s; the characteristic ones unless given.
 
-    What it gives waits for the pictures, notes them in the summary, and gives their names. It
-    raises RenderingUnavailable where no picture can be made.
+    The yielded function waits for the pictures, adds them to the summary, and returns their names.
+    It raises RenderingUnavailable where no picture can be made.
     """
     if not shells:
         yield list
@@ -365,7 +365,7 @@ def describe_one(results: Results, path: Path) -> Figure:
 
 
 def _instant(name: str, motion: xr.Dataset) -> tuple[str, str]:
-    """Return an event and the tip deflection at its time; the name alone for other runs."""
+    """Return texts of an event and of the tip then; the event alone without such a time."""
     event = TITLES.get(name, name.replace("-", " "))
     instants = telling_instants(motion)
     if name in instants:

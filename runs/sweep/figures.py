@@ -50,7 +50,7 @@ LEAST_FOR_CONTOURS = 4
 
 # Levels of distances: below the first, between two, beyond the last.
 _SHADES = ("#2e7d32", "#a5c882", "#f2c14e", "#b23a2e")
-# In percent: limits beyond which differences do not matter.
+# Limits of distances in percent, beyond which their values are not distinguished.
 _MOST, _LEAST = 100.0, 0.01
 # Alignment of text at the first and the last place along an axis.
 _SIDES: Final = ("left", "right")

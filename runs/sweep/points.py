@@ -54,7 +54,7 @@ class Plan:
     units: Sequence[str]  #: of each variation, '' for none
     play_free: Sequence[str]  #: names of the models without play
     points: Sequence[Point]  #: all combinations, the last variation changing fastest
-    reference: str | None = None  #: the model that the others are held against, if any
+    reference: str | None = None  #: the model with which the others are compared, if any
 
     @property
     def coordinates(self) -> dict[str, Any]:

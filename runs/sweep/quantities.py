@@ -88,13 +88,14 @@ LEVELS = (1.0, 5.0, 20.0)
 def measure(results: Results, model: str) -> Measured:
     """Return the quantities of one model of a run.
 
-    The tip at rest is that under the largest loads, wherever it is drawn to, the deflection's
-    static part; the tip's amplitude, its dynamic part, is half the way between its highest and its
-    lowest place. The dynamic factor is the largest deflection over the largest at rest. The contact
-    force is the largest mean of an output interval at any station, the peak of a blow what no pad
-    feels as long; the stress that of an outer fibre, of section forces, the wall stress a shell's
-    own over a patch, the damage that of a life at the worst place. Residual vibration is that of
-    :class:`runs.pipeline.residual_vibration.Swing`; force and slip of elastic drives are those of
+    The tip at rest is the static deflection under the largest loads, at any extension. The tip's
+    amplitude, its dynamic part, is half the distance between its highest and its lowest place. The
+    dynamic factor is the largest deflection over the largest at rest. The contact force is the
+    largest mean of an output interval at any station, since the peak of an impact is too short to
+    load a pad. The stress is that of an outer fibre, from section forces. The wall stress is a
+    shell's own over a patch. The damage is that of a fatigue life at the governing place. Residual
+    vibration is that of :class:`runs.pipeline.residual_vibration.Swing`; force and slip of elastic
+    drives are those of
     :class:`dynamics.drive.stick_slip.StickSlip`.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)

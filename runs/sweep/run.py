@@ -147,12 +147,12 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
         try:
             finished = run_case(alone, "", Means(comm, cache=cache))
         except NumericsError as error:
-            # The file, the point and the model's name stand before it where it is shown.
+            # The output prefixes it with the file, the point and the model's name.
             failures[model.name] = str(error).removeprefix(": model[1]: ")
             continue
         assert finished is not None
         finished.answer()
-        # Of what has moved and cannot be answered for.
+        # Failures of design results after a successful motion.
         failures.update(finished.results.summary.failures)
         models[model.name] = measure(finished.results, model.name)
         if reference is not None:
