@@ -59,7 +59,7 @@ class _SampledRows:
         course: the drives; None of rows that stay.
         moving: kind and position of each of the rows in the gap system.
         extensions: (num_extensions,) in m, rising.
-        touching: what is read at each.
+        touching: contacts, friction and dashpots at each.
     """
 
     course: Course | None

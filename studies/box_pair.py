@@ -45,7 +45,7 @@ TAIL, TIP = 1.5, 3.5
 PAD_WIDTH = 0.06
 PADDED = {TAIL: 1.0 / 6.0, TAIL + 0.05: 4.0 / 6.0, TAIL + 0.1: 1.0 / 6.0}
 
-# The blow: the inner box moves up as a whole and meets the head's webs across the play.
+# The impact: the inner box moves up as a whole and meets the head's webs across the play.
 SPEED = 1.0  # m/s
 CLEARANCE = 2.0e-3  # m
 # Of the contact, over the thickness of the walls, in N/m²: as stiff as the boxes are themselves.
@@ -54,7 +54,7 @@ AFTER = 1.0e-2  # s
 OUTPUT_STEP = 1.0e-5  # s
 
 FREQUENCY = "frequency"
-# Up to the frequencies of a blow of some milliseconds.
+# Up to the frequencies of an impact of some milliseconds.
 KRYLOV = KrylovOptions(shifts=(20.0, 800.0), moments=5)
 
 
@@ -140,7 +140,7 @@ class Blow:
     time: Array  #: (num_times,) in s
     force: Array  #: (num_times,) at the contact in N
     tip: Array  #: (num_times,) rise of the inner box's tip in m
-    #: Of what the force moves at the contact and at the tip, the worst of both boxes.
+    #: Worst error of both boxes, of the responses at the contact and at the tip.
     reduction_error: float
 
     @property

@@ -29,8 +29,8 @@ from studies.working_load import Moved, Point, at_point
 
 # Permitted errors of the tip, as parts of its range, of first peaks, and of frequencies.
 SPRINGS, FIELDED, PEAK, FREQUENCY = 0.025, 0.01, 0.003, 0.001
-# Frequencies of the pressed boom that springs and fields are to keep; those beyond have the inertia
-# of the section in them.
+# Frequencies of the boom with closed contacts that springs and fields preserve; those beyond have
+# the inertia of the section in them.
 OF_SPRINGS, OF_FIELDS = 2, 6
 SHELL, EULER, PLAIN = "shell", "Euler–Bernoulli", "Timoshenko"
 SPRUNG, WITH_FIELDS = "with springs", "with section fields"

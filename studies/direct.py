@@ -31,7 +31,7 @@ ALLOWED = 0.005
 
 METHOD = "all degrees of freedom, generalised-α (Chung and Hulbert 1993)"
 
-# Length and width in m of the pads under so many times the paper's load.
+# Length and width in m of the pads, and ratio of their load to the paper's.
 PAD, LOAD = (0.1, 0.06), 10.0
 
 NOTE = (
@@ -59,7 +59,7 @@ class Sizes:
 class Run:
     """Motion with one model and step."""
 
-    how: str  #: it was moved
+    how: str  #: model and integrator
     unknowns: int  #: degrees of freedom, or modal coordinates
     step: float  #: in s
     tip: Array  #: (num_times,) in m

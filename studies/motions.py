@@ -34,7 +34,7 @@ from runs.pipeline.models import MotionPlan, build
 CASE = CASES / "friction-walk.toml"
 
 OUTPUT_STEP = 1.0e-3
-# In s: a shell's tip is within 0.02 % of its range over 5 s of what half of it gives.
+# In s: a shell's tip differs by at most 0.02 % of its range over 5 s from that with half of it.
 STEP = 2.0e-5
 
 _Task = TypeVar("_Task")

@@ -30,11 +30,11 @@ class Reference(NamedTuple):
 class Refined:
     """Quantity on successively finer meshes."""
 
-    what: str  #: it is
+    what: str  #: quantity
     unit: str  #: of the values; empty for a pure number, or where the source names none
     sizes: Sequence[float]  #: of the meshes, falling by one ratio each
     values: Sequence[float]  #: one for each
-    reference: Reference | None = None  #: what the finest should be, where it is known
+    reference: Reference | None = None  #: reference of the finest, if known
 
     @property
     def order(self) -> float:

@@ -114,13 +114,14 @@ def boom_case(given: Proportions) -> Case:
     return found if given.pad is None else with_pads(found, *given.pad)
 
 
-# What a wall gives near its web, in 1/(E t): c₀ + c₁ ln of the box's width over the pressed length.
+# Compliance of a wall near its web, in 1/(E t): c₀ + c₁ ln of the box's width over the pressed
+# length.
 NEAR_WEBS = 0.20, 0.70
 # Under a pad, in d²/(E t³), d from the middle of the pad to the web.
 PADS = 1.8
-# How much too high springs leave free bending, over the square of its frequency over the flange's.
+# Excess of the bending frequency with springs, over its squared ratio to the flange's.
 FLANGES = 0.065
-# What shear gives beyond that of Timoshenko's beam, since it is not even over the webs, as a part.
+# Excess of shear over that of Timoshenko's beam, as a part: it is not uniform over the webs.
 UNEVEN = 0.09
 # A mode of the shell corresponds to the beam's if its frequency is as near, as a part.
 _NEAR = 0.15
@@ -140,7 +141,7 @@ class Sizes:
     plays: Sequence[float] = (0.0, 4.0e-3, 14.0e-3)  #: 2Δ in m
     #: Over the weight at 1 m/s²; under less of them friction stops the boom early.
     loads: Sequence[float] = (10.0,)
-    periods: float = 8.0  #: of the boom without play that the motions last
+    periods: float = 8.0  #: duration of the motions in periods of the boom without play
 
 
 @dataclass(frozen=True, slots=True)

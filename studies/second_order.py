@@ -158,7 +158,7 @@ def _swing(name: str, model: Model) -> Proof:
 
 
 def _berry(name: str, model: Model) -> Proof:
-    """Return the static tip deflection (Berry) under a load Q across the tip.
+    """Check the static tip deflection under a load Q across the tip.
 
     With k² = P/(c E J), c = 1 − P/(G A_s), the tip is at (Q/P) (tan(k L)/(c k) − L); without
     shear this is Berry's function times Q L³/(3 E J).

@@ -68,7 +68,7 @@ ARM, ARM_MESH = 4.0, 0.2
 # Around each station, of this thickness in m.
 COLLAR = 0.010
 MESH_SIZE, TOLERANCE = 0.1, 0.01
-# In s. The presses before the peak move it by 0.03 % from 1e-5 s to here.
+# In s. The contacts before the peak change it by 0.03 % from 1e-5 s to here.
 STEP = 5.0e-7
 # Of first peaks from beams', with collars.
 ALLOWED = {"hexagon": 0.015, "octagon": 0.015, "U": 0.02}

@@ -59,13 +59,13 @@ class Sizes:
 class Measured(NamedTuple):
     """Quantity of the pair."""
 
-    what: str  #: it is
+    what: str  #: quantity
     label: str  #: in figures
     unit: str  #: of the values
     segment: Literal[0, 1]  #: 0 for the outer box, 1 for the inner one
     family: Family  #: of the motions
     probe: str = FREQUENCY  #: whose compliance it is, or ``FREQUENCY``, the lowest natural one
-    allowed: float = ALLOWED  #: what counts as proven of the thinnest walls
+    allowed: float = ALLOWED  #: permitted error of the thinnest walls
 
     def of(self, answers: Sequence[Mapping[Family, Mapping[str, float]]]) -> float:
         """Return its value in one of the models."""
@@ -236,7 +236,7 @@ def _solid(family: Family) -> SolidFamily:
     return assemble_solid(BAR, mesh, family)
 
 
-# Errors of which the table says how thick a wall they take.
+# Errors for which the table gives the wall thickness.
 LIMITS = (0.01, 0.02, 0.05)
 # Permitted error of an impact, which is on finite meshes.
 ALLOWED_OF_A_BLOW = 0.02

@@ -70,7 +70,7 @@ def _followed(pulled: ElasticDrive, speed: float, time: Array) -> DriveMotion:
 
 
 def _cycle() -> Iterator[Proof]:
-    """Return ten cycles at a constant speed without damping."""
+    """Check ten cycles at a constant speed without damping."""
     omega, slack = np.sqrt(STIFFNESS / MASS), (STICKING - 1.0) * FRICTION / STIFFNESS
     radius, first = np.hypot(slack, SPEED / omega), STICKING * FRICTION / STIFFNESS / SPEED
     slipping = 2.0 / omega * (np.pi - np.arctan(slack * omega / SPEED))
@@ -93,7 +93,7 @@ def _cycle() -> Iterator[Proof]:
 
 
 def _critical(ratio: float) -> Proof:
-    """Return the speed below which sticking recurs, by bisection."""
+    """Check the speed below which sticking recurs, by bisection."""
     pulled = replace(ROPE, dashpot=2.0 * ratio * np.sqrt(STIFFNESS * MASS))
     expected = pulled.critical_speed(FRICTION)
     low, high = 0.5 * expected, 2.0 * expected
@@ -107,7 +107,7 @@ def _critical(ratio: float) -> Proof:
 
 
 def _stiff() -> Proof:
-    """Return the force of a drive of 1e9 N/m in the middle of an S-curve's first half."""
+    """Check the force of a drive of 1e9 N/m in the middle of an S-curve's first half."""
     way, time = SCurve(travel=2.0, duration=4.0), np.linspace(0.0, 1.0, 1001)
     pulled = ElasticDrive(MASS, 1.0e9, dashpot=0.2 * np.sqrt(1.0e9 * MASS))
     found = follow(pulled, way, time, np.full(time.size, FRICTION))

@@ -25,7 +25,7 @@ from studies.motions import friction_case
 from studies.reference_models.lone_segment import compliances, natural_frequencies, shell_alone
 from studies.study import Held, Piece, Proof, Tell, titled
 
-# The error of the mesh; what the walls beside a plate, and the force on a short thick ring, add.
+# Permitted errors: of the mesh, of walls beside a plate, and of a force on a short thick ring.
 ALLOWED = 0.01
 
 
@@ -38,7 +38,7 @@ class Sizes:
     #: Thicknesses of both in m, rising.
     collars: Sequence[float] = (0.005, 0.010, 0.020)
     diaphragms: Sequence[float] = (0.004, 0.008, 0.016)
-    #: x in m at which the inner segment is held for its static flexibility.
+    #: x in m of the inner segment's supports for its static flexibility.
     pins: tuple[float, float] = (14.0, 19.0)
     frequencies: int = 3  #: how many of the lowest ones
     #: Edge lengths in m where an analytic value is the reference.
@@ -50,12 +50,12 @@ class Sizes:
 class Variant:
     """Segment with its stiffeners."""
 
-    what: str  #: it is, and has
+    what: str  #: segment and its stiffeners
     mass: float  #: of all its plates in kg
     #: (num_stations,) in nm/N beyond Timoshenko's beam, half the force on each flange, above and
     #: below its webs.
     together: Array
-    one_more: Array  #: (num_stations,) what one flange with all of the force gives way beyond that
+    one_more: Array  #: (num_stations,) further compliance if one flange has all of the force
     frequencies: Array  #: the lowest ones in Hz, rigid motions left out
 
     @property

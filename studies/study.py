@@ -16,7 +16,7 @@ Tell = Callable[[str], None]
 # Kind of reference: a formula, a published value, another code or another theory of
 # this project, or its own earlier value.
 Kind = Literal["analytic", "external", "other code", "non-regression"]
-# The last of a proof's numbers, which several may share: kind, source, and what is allowed.
+# Last fields of a proof, which several may share: kind, source, and permitted error.
 Held = tuple[Kind, str, float]
 
 
@@ -24,13 +24,13 @@ Held = tuple[Kind, str, float]
 class Proof:
     """Value beside its reference."""
 
-    what: str  #: is measured, and on what
+    what: str  #: measured quantity, and the model
     value: float  #: measured
-    reference: float  #: what it should be, in the same unit
+    reference: float  #: exact or expected value, in the same unit
     unit: str  #: of both; empty for a pure number
     kind: Kind  #: of the reference
     source: str  #: formula, author and year, or the other model
-    allowed: float  #: the largest relative error with which it counts as proven
+    allowed: float  #: largest permitted relative error
     order: float | None = None  #: observed order of convergence, where something was refined
 
     @property
@@ -49,7 +49,7 @@ class Plot:
     """Curves of one figure."""
 
     name: str  #: of its file
-    title: str  #: a line that says what is to be seen
+    title: str  #: line above the figure
     #: Labels with units.
     x: str
     y: str

@@ -74,7 +74,7 @@ class Moved:
     tip: Array  #: (num_times,) in m
     peaks: Array  #: (num_peaks,) heights of its first ones in m; NaN without it
     forces: Array  #: (num_stations,) largest of each, in N, over ``HELD`` outputs
-    seconds: float = 0.0  #: that it has taken on one core
+    seconds: float = 0.0  #: computing time on one core
 
     @classmethod
     def of(cls, system: GapSystem, duration: float, num_peaks: int = 1) -> Moved:

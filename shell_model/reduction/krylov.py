@@ -70,7 +70,7 @@ class FamilyCoordinates(NamedTuple):
         shapes: (num_rows, num_modes) in 1/√kg.
         compliance_error, reading_error, lost_compliance: see ``ReducedSegment``.
         right: (num_modes,) whether some natural frequency is within 0.1 %.
-        geometric: (num_modes, num_modes) K_G, what axial forces take from diag(ω²).
+        geometric: (num_modes, num_modes) K_G, reduction of diag(ω²) by axial forces.
     """
 
     omega2: Array

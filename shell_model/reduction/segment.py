@@ -42,7 +42,7 @@ class ReducedSegment:
             full model at these frequencies, in m/N; no pair loses more than the geometric mean
             of both, since the space is a part of the full one (Galerkin).
         frequency_limit: Hz up to which every natural frequency is right within 0.1 %.
-        geometric: (num_modes, num_modes) what axial forces take from diag(ω²).
+        geometric: (num_modes, num_modes) reduction of diag(ω²) by axial forces.
     """
 
     omega2: Array

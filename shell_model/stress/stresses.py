@@ -106,7 +106,7 @@ class ShellStress:
             of each of its own coordinates.
         states: for each segment (num_times, num_own) these coordinates.
         time: (num_times,) in s.
-        axial: (num_triangles,) in Pa, what axial forces add along x at all times.
+        axial: (num_triangles,) in Pa, constant stress of axial forces along x.
     """
 
     centroids: Array

@@ -68,7 +68,7 @@ LEVELS = (
     (1.0e-6, ("LSODA", "DOP853", "odeint")),
 )
 
-# What the tables call the time step, and the right-hand sides: as one writes it, and compiled with
+# Names of the time step in tables, and of the right-hand sides: in NumPy, and compiled with
 # its data as constants.
 OURS = "time step"
 NUMPY = "NumPy"
@@ -103,7 +103,7 @@ class Sizes:
     updates: int = 5_000_000  #: of one mode by one step, that are timed for an entry of it
     members: int = 256  #: of the ensemble of series
     shell_members: int = 32  #: of the ensemble of shells, 0 for none
-    #: Models of a run whose leaving is timed.
+    #: Models of a run with timed output.
     left: Sequence[str] = ("series", "timoshenko", "shell")
     telescoping: Sequence[str] = MODELS  #: models that telescope
 

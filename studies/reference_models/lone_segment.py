@@ -20,7 +20,7 @@ from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from shell_model.segment.shell import Shell
 from shell_model.segment.solver import ShiftedSolver, gram
 
-# In Hz, in place of zero, where nothing holds a segment along x: far below all elastic modes.
+# In Hz, in place of zero, for a segment without support along x: far below all elastic modes.
 STATIC = 0.01
 
 

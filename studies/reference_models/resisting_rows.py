@@ -25,11 +25,11 @@ from geometry.arrays import Array
 
 _ROUNDS = 1000
 _MOST_NEWTON = 100
-# C in m/N (num_rows, num_rows), contact rows first, what rows read without forces in m (num_rows,);
+# C in m/N (num_rows, num_rows), contact rows first; readings without forces in m (num_rows,);
 # terms of the contacts' laws, one on each side of a row at most; of friction rows (num_frictions,)
-# μN in N and the readings in m at which they stay if they are held.
+# μN in N and the readings in m at which they stick.
 Problem = tuple[Array, Array, Terms, Array, Array]
-# Parts of what a row reads, with the numbers that add up to it, that are round-off.
+# Round-off of a reading, as parts of the terms of its sum.
 _ROUND_OFF = 32.0 * float(np.finfo(np.float64).eps)
 
 
@@ -102,7 +102,7 @@ def resist(problem: Problem, force: Array) -> bool:
             answer, slope[j] = _answer(problem, force, j)
             left[j] = answer - force[j]
             settled = settled and _excess(compliance, free, force, left[j], j) <= 1.0
-            # The sweep goes on with what it has found.
+            # The sweep continues from this result.
             force[j] = answer
         if settled:
             return True

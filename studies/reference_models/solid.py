@@ -29,7 +29,7 @@ from shell_model.segment.attachments import Attached
 from shell_model.segment.cross_section import Outline, Row
 from shell_model.segment.shell import ON_LINE, Matrices, Shell
 
-# Of an edge over the one before it: what ends at a place fades slower than what ends in a corner.
+# Ratio of an edge to the one before it; effects decay more slowly at places than at corners.
 _GROWTH_ALONG = 3.0
 _GROWTH_AROUND = 4.0
 

@@ -134,7 +134,7 @@ class StaticShell:
         order = along.argsort()
         lengths = np.diff(along[order][::2])
         weights = np.zeros(nodes.size)
-        # Simpson's rule, exact for what is quadratic along an edge.
+        # Simpson's rule, exact for quadratic functions along an edge.
         weights[:-1:2] += lengths / 6.0
         weights[1::2] += 4.0 * lengths / 6.0
         weights[2::2] += lengths / 6.0

@@ -132,7 +132,7 @@ class SegmentStepper:
         self._start()
 
     def free_response(self) -> None:
-        """Return d* without forces on rows: the only solution of a large system in a step."""
+        """Solve for d* without forces on rows: the only solution of a large system in a step."""
         alpha, h = self._alpha, self._alpha.step
         part = (1.0 - alpha.force_shift) * h
         self._d.copy(self._x)

@@ -55,7 +55,7 @@ class Stepped:
 
     trajectory: Trajectory  #: an output for each step, NaN after the last finite one
     lasted: int  #: steps until the motion is not finite
-    #: (num_steps,) where friction and gaps did not come to agree with the step's end.
+    #: (num_steps,) steps without convergence of friction and gaps.
     unsettled: Array
 
 

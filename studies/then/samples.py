@@ -70,9 +70,9 @@ class Moved:
     #: (num_times,) in m.
     tip: Array
     head: Array
-    gained: Array  #: (num_times,) energy from nowhere in J, lost if negative
-    put_in: float  #: by the loads at most, where the motion is solved well, in J
-    unsettled: float = 0.0  #: part of the steps in which friction and gaps came to no agreement
+    gained: Array  #: (num_times,) unaccounted energy in J, a loss if negative
+    put_in: float  #: largest energy input of the loads in an accurate motion, in J
+    unsettled: float = 0.0  #: part of the steps without convergence of friction and gaps
 
     @classmethod
     def of(cls, run: Trajectory, put_in: float = 0.0, unsettled: float = 0.0) -> Moved:
@@ -111,7 +111,7 @@ class Sample:
     """Models with play by the same numerics, and the model without play."""
 
     models: Sequence[Moved]  #: of ``SERIES`` and ``ELEMENTS``
-    tied: Moved  #: the elements without play, which any numerics moves well
+    tied: Moved  #: the elements without play, accurate with any numerics
 
     @property
     def elements(self) -> Moved:
@@ -156,7 +156,7 @@ class Example:
     case: Case  #: its file's
     systems: Mapping[str, GapSystem]  #: of its models by their names
     cutoff: float  #: of the slow motion in Hz
-    well: Sequence[Sample]  #: as this program solves it; one where friction makes it regular
+    well: Sequence[Sample]  #: by this program; a single one if friction makes the motion regular
 
     @classmethod
     def of(cls, case: Case, members: int) -> Example:

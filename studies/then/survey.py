@@ -33,7 +33,7 @@ from studies.then.samples import (
 )
 
 METHODS = {"LSODA": LSODA, "RK45": RK45}
-# In m: a deflection of half the boom's length ends it.
+# In m: a deflection of half the boom's length ends the integration.
 AWAY = 10.0
 
 
@@ -80,7 +80,7 @@ TOLERANCES = (1.0e-2, 1.0e-3, 1.0e-4, 1.0e-6, 1.0e-8)
 ABOUT = 1.0
 
 
-# Method and tolerance of a general solver, a model of ``SERIES``, and whether it rubs.
+# Method and tolerance of a general solver, a model of ``SERIES``, and whether it has friction.
 Way = tuple[str, float, str, bool]
 
 
@@ -88,7 +88,7 @@ Way = tuple[str, float, str, bool]
 class Outcome:
     """Outcome of a statement with numerics of 1997."""
 
-    shown: bool  #: whether with some of them most runs show it
+    shown: bool  #: whether most runs with some numerics show it
     why: str  #: which, and in how many runs
 
 
