@@ -51,7 +51,7 @@ class ReducedShell:
             there is none.
         seconds: wall time of each stage: mesh, assembly, rows (of contacts and readings, their
             values for each coordinate), reduction, fields (of displacement and stress), mesh error,
-            far field.
+            unit responses.
         meshes: one for each segment, on rank 0.
         critical_factor: that of the axial forces with closed joints, see
             :func:`dynamics.second_order.buckling_factor`; infinite without any.

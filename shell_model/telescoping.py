@@ -38,8 +38,8 @@ from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.stress.stresses import lines_around
 
-# Modes up to so many Hz are kept: the slow ones, and those that somewhere give way by more than a
-# part of what springs take.
+# Modes up to this frequency in Hz are kept: the slow ones, and those that somewhere give way by
+# more than a part of what springs take.
 _CUTOFF, _SLOWEST, _PART = 1500.0, 100.0, 0.003
 
 # Moments of what stays in its place, and of the reduction that finds the modes from forces at every
@@ -300,7 +300,7 @@ def _moving_thrusts(
 ) -> list[MovingThrust]:
     """Return the axial force, if any, that moves along with a telescoping joint. Collective.
 
-    Behind the coordinates come so many that sections do not move.
+    The remaining coordinates, after these, do not move sections.
     """
     found = entry(boom.segments, boom.joints, course.joints[0])
     if found is None or len(course.joints) > 1:

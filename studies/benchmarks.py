@@ -58,7 +58,7 @@ class Sizes:
 def refined(
     what: str, unit: str, edges: Sequence[int], values: Sequence[float], reference: Reference
 ) -> Refined:
-    """Run a benchmark on meshes of so many edges; sizes are relative to the finest."""
+    """Run a benchmark on meshes of given numbers of edges; sizes are relative to the finest."""
     sizes = [edges[-1] / n for n in edges]
     return Refined(f"{what}, {edges[-1]} edges", unit, sizes, values, reference)
 

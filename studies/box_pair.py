@@ -62,7 +62,7 @@ class Probe(NamedTuple):
     """Reading of a segment, and force on it."""
 
     what: str  #: its name
-    family: Family  #: of the motions that it belongs to
+    family: Family  #: symmetry class of the motions
     places: Mapping[float, float]  #: x in m → weight of what is read there
     read: Callable[[Outline], Row]  #: of the section
 

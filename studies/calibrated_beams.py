@@ -51,7 +51,7 @@ class Sizes:
 def move_all(
     systems: Mapping[str, GapSystem], points: Sequence[Point], duration: float
 ) -> dict[str, list[Moved]]:
-    """Return each system's motions of so many s at all points."""
+    """Return each system's motions of a duration in s at all points."""
     return {
         name: side_by_side(
             partial(Moved.of, duration=duration), (at_point(system, point) for point in points)

@@ -119,7 +119,7 @@ def without_friction(system: GapSystem) -> GapSystem:
 
 
 def move(system: GapSystem, duration: float, step: float = STEP) -> Trajectory:
-    """Return so many seconds from rest, in steps of one length in s."""
+    """Return the motion from rest with a duration and a step in s."""
     return FixedStep(step)(Motion(system, duration, OUTPUT_STEP))
 
 

@@ -3,7 +3,7 @@
 
 The beam lacks a part δ of the tip's static deflection: that of shear, and that of the local
 compliance of walls at contacts. A mass that falls through the play and is caught by the boom as by
-a spring tells what becomes of it in motion: with γ the free way of the tip over its static
+a spring shows its effect in motion: with γ the free way of the tip over its static
 deflection and s = √(2γ), the first peak is off by δ/√(1 + s²), and after n slow periods the tip by
 
     δ (1/√(1 + s²) + n μ ψ)
@@ -198,7 +198,7 @@ class Rule:
         return self.lacking(name) / float(np.hypot(1.0, self.swing(point)))
 
     def tip_off(self, name: str, point: Point, duration: float) -> float:
-        """Return the error of the tip within so many s, as a part of its range."""
+        """Return the error of the tip within a duration in s, as a part of its range."""
         s = self.swing(point)
         root, chi = float(np.hypot(1.0, s)), np.pi - float(np.arctan(s))
         periods = duration * np.pi * self.frequency / (s + chi)

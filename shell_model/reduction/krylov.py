@@ -33,7 +33,7 @@ class KrylovOptions:
         moments: number of derivatives with respect to ω² that are matched at each.
         tolerance: largest relative error of the contact compliance and of the transfer to the
             readings; moments are then matched, one at each shift in turn, until it is met.
-        most: largest number of coordinates of a segment; each of its families keeps its rigid
+        most: largest number of coordinates of a segment; each of its classes keeps its rigid
             motions and one coordinate at least.
     """
 

@@ -3,9 +3,10 @@
 
 Mirrored motions stay mirrored: bending along z, bending along y, twisting, and breathing with
 stretching do not couple within a segment that has both mirrors; with that of y alone, bending
-along z couples with breathing and stretching, and bending along y with twist. A family's motion
-follows from the part of the section on the positive side of its mirrors, a quarter or a half: it is
-that of the part with what the family does not do held on its cut edges, and its mirrors.
+along z couples with breathing and stretching, and bending along y with twist. The motion
+of a symmetry class follows from the part of the section on the positive side of its mirrors, a
+quarter or a half: it is that of this part with symmetry conditions on its cut edges, and its mirror
+images.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Springs that move with pads, for the compliance of walls beyond the modes of their segments.
 
-What forces at a place x move beyond the modes ω_k with the rows b_k(x),
+The response to forces at a place x beyond the modes ω_k with the rows b_k(x),
 
     R(x, σ) = B(x) (K + σ M)⁻¹ B(x)ᵀ − Σ_k b_k(x) b_k(x)ᵀ / (ω_k² + σ),
 
-walls give way as if they had hardly any inertia, up to some 1000 Hz. It becomes coordinates with
+is a compliance of walls with hardly any inertia, up to some 1000 Hz. It becomes coordinates with
 the frequencies W^½ and the rows L(x) = R^½ Q (W + σ)^½. At the shift σ of springs L (W + σ)⁻¹ Lᵀ
 is R everywhere (residual flexibility; MacNeal 1971). W and the orthogonal Q take its inertia
 R′ = −dR/dσ (Rubin 1975), in the mean of R^−½ R′ R^−½ = Q (W + σ)⁻¹ Qᵀ over all extensions. The

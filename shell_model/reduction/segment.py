@@ -7,7 +7,7 @@ included; natural modes alone would need thousands of vectors for the latter (Ru
 Craig and Hurty's static modes are the case σ = 0, one moment). Rigid motions are kept apart,
 which leaves their frequency exactly zero.
 
-Each family of mirrored motions has a basis of its own, on a quarter of the shell and on one rank,
+Each symmetry class has a basis of its own, on a quarter of the shell and on one rank,
 which makes the coordinates the same to the last bit on any number of ranks
 (:mod:`shell_model.reduction.symmetry`). Errors are measured against full solves at frequencies
 between the shifts.
@@ -80,7 +80,7 @@ def reduce_segment(
     if not families:
         raise NumericsError("nothing acts on a segment, and it has no motion: give it a load")
     tell = progress or (lambda part: None)
-    # A family may have as many coordinates to each of its forces as the others.
+    # Each symmetry class may have the same number of coordinates for each of its forces.
     counts = comm.bcast([np.count_nonzero(job.forces.any(axis=0)) for job in jobs])
 
     def reduce_one(number: int, job: Job) -> FamilyCoordinates:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Symmetry classes of a segment's motions, each as a quarter or half of its shell on one rank.
 
-A family's matrices are those of a part of the segment, so they are small, a motion cannot drift
-into another family, and the numbers are the same to the last bit whichever rank computes them:
+The matrices of a class are those of a part of the segment, so they are small, a motion cannot
+drift into another class, and the numbers are the same to the last bit whichever rank computes them:
 what ranks exchange are forces and shapes, taken apart and put together by sums of fixed order.
 Round-off that depended on the number of ranks would not do, since contact amplifies the last bit.
 """
@@ -76,7 +76,7 @@ class _Compact(Matrices):
 class FoldedPart:
     """Part of a segment, a quarter or half, whose mirror images are the rest.
 
-    Each rank assembles it once for all families that it computes; what is assembled stays there.
+    Each rank assembles it once for all classes that it computes; its matrices stay there.
 
     Args:
         segment: the whole segment.

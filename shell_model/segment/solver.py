@@ -49,7 +49,7 @@ def gram(comm: MPI.Comm, left: Array, right: Array) -> Array:
 
 # MUMPS's ICNTL(7): approximate minimum fill. A boom is long and thin: this ordering leaves as
 # little fill as those that cut it into parts, and is found in half the time. PETSc heeds it as an
-# option alone: what is set on a factor matrix before it is analysed is lost. It tells of options
+# option alone: what is set on a factor matrix before it is analysed is lost. It reports options
 # that are left when a process ends, so this one is gone before.
 _PREFIX, _ORDERING = "shifted_", "mat_mumps_icntl_7"
 

@@ -18,8 +18,8 @@ import xarray as xr
 from geometry.arrays import Array
 from shell_model.stress.stresses import COMPONENTS, FACES, ShellStress, Stress
 
-# A series has so many frames at most, and fewer of a fine mesh: all triangles of all frames, of
-# about 50 bytes each, make 50 MB at most. The paper's boom takes 14 MB.
+# A series has at most this number of frames, and fewer of a fine mesh: all triangles of all frames,
+# of about 50 bytes each, make 50 MB at most. The paper's boom takes 14 MB.
 FRAMES, TRIANGLES = 51, 1_000_000
 
 Values = npt.NDArray[np.generic]

@@ -44,7 +44,7 @@ _PAD = 0.1
 
 
 class Cost(NamedTuple):
-    """Processor time in s of a system with so many modes, and of its motion."""
+    """Processor time in s of a system, its number of modes, and the time of its motion."""
 
     modes: int
     built: float

@@ -160,7 +160,7 @@ class Example:
 
     @classmethod
     def of(cls, case: Case, members: int) -> Example:
-        """Create an example with so many accurately solved members."""
+        """Create an example with a number of accurately solved members."""
         boom = build_boom(case)
         names = (*SERIES, ELEMENTS, TIED)
         systems = {name: gap_system(case, boom, model_of(case, name)) for name in names}
