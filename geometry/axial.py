@@ -129,8 +129,8 @@ def pin_moments(
 ) -> Iterator[tuple[int, Array]]:
     """Yield moments of axial forces about pins below the axis: segment, (num_dofs,) load vector.
 
-    The pin stays where it is. So the segment moves along x by −d w′(x_pin) as it turns, against
-    the axial forces N, which do N d w′ of work: a constant moment N d at the pin.
+    The pin is fixed. So the segment moves along x by −d w′(x_pin) as it turns, against the axial
+    forces N. These do the work N d w′, as a constant moment N d at the pin does.
 
     Args:
         segments: with their axial forces.

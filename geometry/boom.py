@@ -225,8 +225,8 @@ class Boom:
     def observed(self) -> dict[str, tuple[int, float]]:
         """Places whose deflection every model reports: name → (segment, x).
 
-        ``tip`` is the end of the last segment; ``head`` the end of an outer and ``tail`` the
-        start of an inner segment, with the joint's number behind it from the second joint on.
+        ``tip`` is the end of the last segment, ``head`` the end of an outer and ``tail`` the start
+        of an inner segment. From the second joint on the joint's number follows the name.
         """
         places = {"tip": (len(self.segments) - 1, self.tip)}
         for number, joint in enumerate(self.joints, start=1):

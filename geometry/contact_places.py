@@ -196,8 +196,8 @@ class Pad:
 def pads(boom: Boom) -> list[Pad]:
     """Return every pad of every joint that is not bonded, by rising station.
 
-    The weights of one side of a station sum to one: when the segments approach each other
-    without roll, the pads together press as one contact on the axis would.
+    The weights of one side of a station sum to one. When the segments approach each other
+    without roll, the pads together have the force of one contact on the axis.
     """
     found: list[Pad] = []
     station = 0

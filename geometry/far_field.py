@@ -22,7 +22,7 @@ FAR_SHIFT = 2.0
 
 @dataclass(frozen=True, slots=True)
 class FarField:
-    """Response of a segment to probes of one another.
+    """Compliance of a segment between the places where it is probed.
 
     Args:
         places: x in m of forces and torques, rising; the first and the last also of moments.

@@ -72,7 +72,7 @@ def check_room_on_the_way(
 
 
 def room(joint: Joint, outer: Segment, inner: Segment, way: float = 0.0) -> tuple[float, float]:
-    """Return the least distances in m by which the inner segment can move along z, and along y.
+    """Return the least room of the inner segment for motion along z, and along y, in m.
 
     At the ends of the overlap, extended by ``way`` in m, of segments whose sections are known;
     a taper is linear between them.

@@ -92,8 +92,8 @@ class Joint:
         normal_forces: N of (28) in N, one for each station; empty in space, where the
             contact force of the other plane is the normal force.
         tied: bonded: the segments deflect (and in space twist) alike at the stations.
-        pad: of the slide pads in the corners; shells touch in the corners themselves without it.
-        pads: in place of it, where there are several at each station.
+        pad: size of the slide pads in the corners; without it shells touch in the corners.
+        pads: several pads at each station, in place of ``pad``.
         contact_length: of these in m; a tenth of the overlap unless given.
         dashpot: of each station along each direction in N·s/m, across the play.
         locked_at: x in m where the inner segment's axial force enters the outer one, at a pin;
@@ -226,7 +226,7 @@ class Drive:
 
     Args:
         history: in m since the start, 0 at t = 0; a history of the dynamics.
-        carriers: the segment on which each station of the joint sits.
+        carriers: the segment to which each station of the joint is fixed.
         least_overlap: minimum overlap in m.
         locked: the segment to which the place is fixed where the inner one's axial force passes.
     """

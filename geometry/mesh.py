@@ -238,9 +238,9 @@ def _build_patches(
 def _close(x: float, ring: _Ring, section: Section, size: float) -> list[int]:
     """Build the transfinite patches of a diaphragm; return their surfaces.
 
-    One in each corner where the outline allows it, as a box's does: a patch's spokes have as many
-    edges as the halves of plates that they face. Else one on each half of a plate, a fan from the
-    middle.
+    There is one in each corner if the outline allows it, as for a box. Then a patch's spokes have
+    as many edges as the opposite halves of plates. Otherwise there is one on each half of a plate,
+    as a fan from the middle.
     """
     low, high = section.bounds
     middle = gmsh.model.geo.addPoint(x, *(0.5 * (a + b) for a, b in zip(low, high, strict=True)))
@@ -257,7 +257,7 @@ def _spanned(ring: _Ring, middle: int, spokes: Mapping[int, int]) -> list[int]:
     """Build the patches from spoke to spoke.
 
     Args:
-        ring: around.
+        ring: the ring around the patches.
         middle: gmsh's point.
         spokes: number of a ring's point → edges from there to the middle.
     """

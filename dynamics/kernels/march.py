@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The time loop: steps of exact modal flow under row forces that are constant within each step.
 
-A constant force does the work force times displacement on a linear flow, so that the energy of
-modes and contacts changes by exactly the work of loads and drives less the losses of damping,
-friction and dashpots, at any step size. Rows that move read B₀ a₀ at the start and B₁ a₁ at the
+On a linear flow, the work of a constant force is force times displacement. So the energy of modes
+and contacts changes by exactly the work of loads and drives less the losses of damping, friction
+and dashpots, at any step size. Rows that move read B₀ a₀ at the start and B₁ a₁ at the
 end, and push with their mean B̄ (see :mod:`dynamics.kernels.moving_rows`).
 """
 

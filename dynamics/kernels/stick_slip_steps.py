@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A mass that a spring pulls against dry friction, from sticking to slipping and back.
 
-Each stretch through which the data are straight is exact. z = s_c − s is the lag of the mass behind
-the far end of the spring. While it slips, m z̈ + c ż + k z = σ R − p; while it sticks, z grows with
-that end, until |k z + c ż + p| exceeds the static friction; a slip ends where ṡ changes its sign.
+Each stretch with linear data is exact. z = s_c − s is the lag of the mass behind the far end of the
+spring. While it slips, m z̈ + c ż + k z = σ R − p. While it sticks, z grows with that end, until
+|k z + c ż + p| exceeds the static friction. A slip ends where ṡ changes its sign.
 """
 
 from __future__ import annotations
