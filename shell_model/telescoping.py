@@ -170,7 +170,7 @@ class TelescopingShell:
             read = self._read(number)
             self._answers.append(answers(full.foldings[number], read.columns, test))
             self.reduced.append(self._kept(number, own, read))
-        # Springs are what forces move beyond modes of the unloaded boom.
+        # Springs represent the response beyond the modes of the unloaded boom.
         free = [replace(one, geometric=0.0 * one.geometric) for one in self.reduced]
         self._apart = BoomCoordinates(full.comm, full.shells, free, ())
         self._rows = [sampled.rows(self._apart) for sampled in self._sampled]

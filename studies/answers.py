@@ -43,7 +43,7 @@ CYCLES = {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
 # EN 1993-1-9, 7.1: cycles of the category 71 at ranges in MPa, by its formulas.
 CURVE = {71.0: 2.0e6, 71.0 * 0.4 ** (1.0 / 3.0): 5.0e6, 71.0 * 0.4 ** (1.0 / 3.0) * 0.05**0.2: 1e8}
 
-# Pieces of half a metre know moments up to q h²/12, here 1.7 N m.
+# Elements of half a metre have moments with errors up to q h²/12, here 1.7 N m.
 CLOSE, OF_PIECES, EXACT = 1.0e-3, 5.0e-3, 1.0e-6
 LEVERS: Held = ("analytic", "lever rule", EXACT)
 

@@ -34,10 +34,10 @@ from studies.reference_models.lone_segment import shell_alone
 from studies.reference_models.plates import STEEL
 from studies.reference_models.solid import assemble_solid, mesh_quarter
 
-# Distances in m of the mid-lines, which stay where they are as walls become thicker.
+# Distances in m of the mid-lines, which are the same for all wall thicknesses.
 OUTER = (0.40, 0.30)
 INNER = (0.31, 0.21)
-# Where the outer box ends, which the inner one hits, in m.
+# Position in m of the outer box's end, where the impact occurs.
 HEAD = 2.0
 TAIL, TIP = 1.5, 3.5
 

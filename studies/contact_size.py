@@ -42,11 +42,11 @@ class Sizes:
     #: Edge lengths over the default ones, each half the one before.
     meshes: Sequence[float] = (1.0, 0.5, 0.25)
     default: float = 1.0  #: of them, whose motion is taken
-    lengths: Sequence[float] = (0.05, 0.1, 0.2)  #: of corners that are pressed, in m
+    lengths: Sequence[float] = (0.05, 0.1, 0.2)  #: of contacts at corners, in m
     #: Lengths and widths in m.
     pads: Sequence[tuple[float, float]] = ((0.1, 0.03), (0.1, 0.06), (0.2, 0.06))
     plate: Sequence[float] = (0.0125, 0.00625)  #: edge lengths in m of the plate's mesh
-    peak: float = 0.9  #: time in s within which the tip's first peak comes
+    peak: float = 0.9  #: time in s that includes the tip's first peak
     loads: Sequence[float] = (1.0, 10.0)  #: over the paper's
 
 

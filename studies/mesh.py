@@ -33,7 +33,7 @@ class Sizes:
 
     #: Edge lengths over the default ones, each half the one before, three at least.
     meshes: Sequence[float] = (4.0, 2.0, 1.0, 0.5)
-    default: float = 1.0  #: of them, which is judged
+    default: float = 1.0  #: the one whose error is checked
     duration: float = 3.0  #: of the motion in s
     #: How many of the lowest natural frequencies, of the first tip peaks.
     frequencies: int = 3

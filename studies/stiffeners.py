@@ -123,7 +123,7 @@ def _timoshenko(segment: Segment, x: float) -> float:
 def racking(outline: Outline) -> Row:
     """Return the racking of the section: rotation of the webs less that of the flanges.
 
-    Twice the twist, with its flanges the other way round.
+    It is twice the twist, with the sign of the flanges reversed.
     """
     along_y = set(outline.dofs[:, 1].tolist())
     return Row({dof: (-2.0 if dof in along_y else 2.0) * w for dof, w in outline.twist().items()})
@@ -174,8 +174,8 @@ def frame_flexibility(section: BoxSection, young: float, collar: float) -> float
     """Return the same of a frame of Timoshenko beams of the thickness t without Poisson's ratio.
 
     A flange is a shear-flexible beam of span b that carries P in its middle. The corner moment
-    P b² / 8 (b + h) at its ends gives flange and web the same slope there. The webs shorten under P
-    / 2 each.
+    P b² / 8 (b + h) at its ends gives flange and web the same slope there. The webs shorten under
+    P / 2 each.
     """
     b, h, t = section.width, section.height, section.flange + collar
     bending = 24.0 * (b**3 / 48.0 - b**4 / (64.0 * (b + h))) / t**3

@@ -29,7 +29,7 @@ from studies.study import Held, Piece, Plot, Proof, Tell, titled
 
 INNER = 1
 
-# Relative errors with which a stress counts as proven: away from contacts, over a patch, and of
+# Permitted relative errors of a stress: away from contacts, over a patch, and of
 # the reduction.
 BEAM, PATCH, REDUCED = 0.01, 0.05, 0.001
 

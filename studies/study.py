@@ -66,7 +66,7 @@ class Study:
 
     name: str  #: of its part of the files
     title: str  #: heading
-    tables: Sequence[Table] = ()  #: of what was measured
+    tables: Sequence[Table] = ()  #: measured values
     proofs: Sequence[Proof] = ()  #: rows of docs/verification.md
     plots: Sequence[Plot] = ()  #: figures
 

@@ -49,7 +49,7 @@ class Sizes:
 
     mesh: float = 0.1  #: edge length in m
     duration: float = 10.0  #: of the motions with friction that are compared, in s
-    peak: float = 0.9  #: time in s within which the first peak of the tip comes
+    peak: float = 0.9  #: time in s that includes the tip's first peak
     penalties: Sequence[float] = (0.1, 1.0, 10.0, 100.0)  #: parts of the default penalty per area
     #: Points along the overlap and across half a wall.
     points: Sequence[tuple[int, int]] = ((4, 4), (8, 2), DEFAULT_POINTS, (8, 6), (12, 4))

@@ -162,7 +162,7 @@ class Shell:
             motions[:, 3 + i] = self.turn(axis, middle)
         held = np.concatenate(self.comm.allgather(motions[~self.free]))
         held = np.concatenate([held, self.comm.allreduce(self.springs.rows.T @ motions)])
-        # One rank decides on the basis of what is left, for all. Where nothing slides along x the
+        # One rank chooses the basis of the remaining motions for all. Where nothing slides along x the
         # slide comes first and by itself, since nothing pushes it.
         unheld = np.eye(6)
         if held.size:

@@ -24,7 +24,7 @@ FRAMES, TRIANGLES = 51, 1_000_000
 
 Values = npt.NDArray[np.generic]
 
-# Bytes that are packed together, and how hard: stresses, which are most of a file, pack to nine
+# Bytes per compressed block, and level of compression: stresses, which are most of a file, pack to nine
 # tenths at any level.
 BLOCK, LEVEL = 1 << 16, 1
 

@@ -144,7 +144,7 @@ def gather_fields(
     begins = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
     triangles = [mesh.triangles + begin for mesh, begin in zip(meshes, begins[:-1], strict=True)]
     numbers = np.repeat(np.arange(len(meshes)), [len(mesh.triangles) for mesh in meshes])
-    # Springs that go along with pads, behind the coordinates, move nothing else.
+    # Springs that move with pads follow the coordinates, and have no displacement field.
     count = coordinates.omega2.size
     modes = np.zeros((system.num_modes, begins[-1], 3), dtype=np.float32)
     modes[:count] = coordinates.of_rows(block_diag(*shapes)).T.reshape(count, -1, 3)

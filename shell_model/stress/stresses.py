@@ -55,7 +55,7 @@ class WallForces:
         axial: force along x in N, positive in tension.
         shear: force in the wall's plane in N, along y in a flange and along z in a web or in any
             wall steeper than 45°, of the part beyond the section on the part before it.
-        moment: of its axial stresses about the section's y-axis in N m, positive where they pull
+        moment: of its axial stresses about the section's y-axis in N m, positive in tension
             at the top.
     """
 
@@ -80,12 +80,12 @@ class Stress(NamedTuple):
         return np.asarray(self.membrane + FACES[face] * self.bending)
 
     def von_mises(self, face: Face) -> npt.NDArray[np.float32]:
-        """Return the stress (...) of a face in Pa by Huber (1904) and von Mises (1913)."""
+        """Return the von Mises stress (...) of a face, in Pa (Huber 1904, von Mises 1913)."""
         x, s, xs = np.moveaxis(self.at(face), -1, 0)
         return np.asarray(np.sqrt(x * x - x * s + s * s + 3.0 * xs * xs))
 
     def largest(self) -> npt.NDArray[np.float32]:
-        """Return the larger von Mises stress (...) of both faces in Pa; the middle is below it."""
+        """Return the larger von Mises stress (...) of the faces in Pa; the middle never exceeds it."""
         return np.maximum(self.von_mises("outer"), self.von_mises("inner"))
 
 
@@ -182,7 +182,7 @@ class ShellStress:
 
         Args:
             triangles: numbers, all of one segment.
-            steps: which times; the slices that are given count from the first of them.
+            steps: output times; the yielded slices count from the first of them.
             means: (num_means, num_triangles) weights of the triangles in means, which take the
                 triangles' place.
         """

@@ -94,7 +94,7 @@ class Sizes:
     early: float = 0.4  #: of the series without friction in s, before its motion is chaotic
     #: Steps in s, and the solvers that each is compared with.
     levels: Sequence[tuple[float, Sequence[str]]] = LEVELS
-    most: int = 3  #: repetitions of what is quick
+    most: int = 3  #: repetitions of short runs
     #: Wall seconds of all repetitions of one run, beyond which there are no more.
     budget: float = 6.0
     #: The table of the cost of a step.

@@ -2,7 +2,7 @@
 """Numerics of 1997 that reproduce the paper's statements S3, S7, S8 and S10.
 
 The measures are those of :mod:`runs.paper.rules`; runs of the elements are by the modal technique,
-those of the series by a general solver held to 2000 steps as well.
+those of the series also by a general solver with at most 2000 steps.
 """
 
 from __future__ import annotations
