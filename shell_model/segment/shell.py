@@ -162,8 +162,8 @@ class Shell:
             motions[:, 3 + i] = self.turn(axis, middle)
         held = np.concatenate(self.comm.allgather(motions[~self.free]))
         held = np.concatenate([held, self.comm.allreduce(self.springs.rows.T @ motions)])
-        # One rank chooses the basis of the remaining motions for all. Where nothing slides along x the
-        # slide comes first and by itself, since nothing pushes it.
+        # One rank chooses the basis of the remaining motions for all. Where nothing slides along x
+        # the slide comes first and by itself, since nothing pushes it.
         unheld = np.eye(6)
         if held.size:
             slides = 0 if held[:, 0].any() else 1

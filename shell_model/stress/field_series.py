@@ -24,8 +24,8 @@ FRAMES, TRIANGLES = 51, 1_000_000
 
 Values = npt.NDArray[np.generic]
 
-# Bytes per compressed block, and level of compression: stresses, which are most of a file, pack to nine
-# tenths at any level.
+# Bytes per compressed block, and level of compression: stresses, which are most of a file, pack to
+# nine tenths at any level.
 BLOCK, LEVEL = 1 << 16, 1
 
 _TYPES = {"f4": "Float32", "f8": "Float64", "i4": "Int32", "u1": "UInt8"}

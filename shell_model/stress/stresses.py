@@ -85,7 +85,7 @@ class Stress(NamedTuple):
         return np.asarray(np.sqrt(x * x - x * s + s * s + 3.0 * xs * xs))
 
     def largest(self) -> npt.NDArray[np.float32]:
-        """Return the larger von Mises stress (...) of the faces in Pa; the middle never exceeds it."""
+        """Return the larger von Mises stress (...) of both faces in Pa; the middle has no more."""
         return np.maximum(self.von_mises("outer"), self.von_mises("inner"))
 
 
