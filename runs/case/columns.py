@@ -32,7 +32,7 @@ class Column:
     """Expected content of one of the two columns."""
 
     name: str  #: in messages
-    unit: str  #: of its numbers unless the heading says another of the same dimension
+    unit: str  #: of its numbers unless the heading gives another of the same dimension
     factor: bool = False  #: whether its numbers are factors unless the heading gives such a unit
 
     def __str__(self) -> str:

@@ -81,7 +81,7 @@ def _check_law(table: JointTable | ContactTable, of_power: Sequence[str]) -> Non
         of_power: keys of power laws only.
 
     Raises:
-        ValidationError: a key is missing or useless.
+        ValidationError: a key is missing or superfluous.
     """
     tables = [key for key in ("force_table", "force_file") if getattr(table, key)]
     pad = table.thick_pads if isinstance(table, JointTable) else None

@@ -16,7 +16,7 @@ from runs.case.schema import Case, Model
 class Declared:
     """A case, and its boom and joined models, built on first use."""
 
-    case: Case  #: whose boom can be
+    case: Case  #: a case with a valid boom
     _joined: dict[str, Joined] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property

@@ -103,7 +103,7 @@ Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Length = Annotated[Positive, In("m")]
-# Hertz has 3/2; power laws from measurements have such exponents, and larger ones.
+# A Hertz contact has 3/2; the upper limit excludes input errors.
 Exponent = Annotated[float, Field(strict=True, ge=1.0, le=10.0, allow_inf_nan=False), In("1")]
 Count = Annotated[int, Field(strict=True, ge=1, le=1000)]
 Part = Annotated[float, Field(strict=True, gt=0.0, lt=1.0), In("1")]

@@ -22,7 +22,7 @@ _ARRAYS = ("segment", "joint", "stop", "cylinder", "load", "axial", "base", "obs
 # Number of valid names that a message lists.
 MOST_CHOICES = 12
 
-# Start of a message, followed by the given value; braces hold the limits of the schema.
+# Valid input, before the given value in a message; braces hold the limits of the schema.
 _MUST = {
     "float_type": "a number",
     "int_type": "a whole number",

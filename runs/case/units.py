@@ -104,7 +104,7 @@ class System:
         return self.unit(si).replace("^", "").translate(_RAISED)
 
     def text(self, value: float, si: str, digits: int = 4) -> str:
-        """Return a value in a unit of the SI as text in its own one: ``12.5 mm``."""
+        """Return a value in an SI unit as text in the system's unit: ``12.5 mm``."""
         return f"{self.of(value, si):.{digits}g} {self.label(si)}"
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from runs.case.messages import BadInput
 from runs.folder.files import real
 
-# Bytes of a text: a case of as many tabulated times as are allowed has less.
+# Limit of a text in bytes: a case with the most tabulated times is smaller.
 LARGEST = 16_000_000
 
 

@@ -140,7 +140,7 @@ def _beside_tied(
         motion = MotionPlan.of(tied.system, case, model).trajectory()
         moved, lives = tied.moved(motion, found, rests, case, model)
     except NUMERICS:
-        # The static states are available all the same.
+        # The static states remain available.
         return answers
     return replace(answers, tied_moved=moved, tied_life=lives)
 
@@ -159,7 +159,7 @@ def answer_run(
         boom: that of the case.
         case: the case of the run.
         summary: that of the run, without design results.
-        models: those without failure.
+        models: models of the run without failure.
     """
     found = statics(case, boom)
     ran = [model for model in case.models if model.name in models]

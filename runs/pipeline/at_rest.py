@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Static states of a model of the boom, under the loads of the instants at which these are largest.
+"""Static states of a model of the boom, at the instants of the largest loads.
 
 Section forces are those of the part behind the section on the part before it. A positive normal
 force is tension; a positive moment causes tension at the top (a lateral one at larger y).
@@ -114,7 +114,7 @@ class AtRest:
 def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:
     """Return a name for each station: its x in m, followed by ``y`` for a lateral station.
 
-    ``#2`` and so forth follows the name where several stations share a place.
+    The suffixes ``#2``, ``#3`` ... distinguish stations at the same place.
     """
     names = [f"{x:g}" + ("y" if direction == "y" else "") for x, direction in stations]
     before = [names[:i].count(name) for i, name in enumerate(names)]

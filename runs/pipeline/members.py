@@ -105,7 +105,7 @@ def gather_ensembles(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
     """Gather tip and head of all ensembles in one dataset, in single precision; None without any.
 
     Args:
-        ensembles: by the model's name, of the same members and times.
+        ensembles: ensembles by the model's name, with the same members and times.
     """
     if not ensembles:
         return None
@@ -127,7 +127,7 @@ def measure_predictability(
     executor: Executor | None,
     progress: Callable[[float], None],
 ) -> Predictability:
-    """Return when changes of several sizes have grown, at what rate, and whether by the step.
+    """Return the horizons of changes of several sizes, their growth rate, and the step's horizon.
 
     Args:
         motion: that of the model.

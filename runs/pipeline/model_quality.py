@@ -55,7 +55,7 @@ def reference_of(models: Iterable[Model]) -> str | None:
 def leading(case: Case, models: Sequence[str]) -> set[str]:
     """Return the main models: the last shell, the last beam with play, the first without.
 
-    Up to three models are all main ones.
+    With up to three models, all are main ones.
     """
     if len(models) <= 3:
         return set(models)

@@ -77,7 +77,7 @@ def failure_reason(error: Exception) -> str:
 def run_model(
     boom: Boom, model: Model, case: Case, cutoff: float | None, means: Means
 ) -> ModelRun | None:
-    """Build, move and sum up a model, on rank 0; None elsewhere. Collective.
+    """Build, integrate and summarise a model; return None except on rank 0. Collective.
 
     A motion that an earlier run completed comes from the store of motions. A new one goes there as
     soon as it ends, so that the next run continues from there.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Beams that are calibrated by the shell of the same boom."""
+"""Beams with calibration by the shell of the same boom."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _named_or_table(given: Any) -> str:
     return "name" if isinstance(given, str) else "shell"
 
 
-# The tag of the table is its kind, by which messages know its keys.
+# The tag of the table is its kind, which identifies its keys in messages.
 _Shell = Annotated[
     Annotated[Name, Tag("name")] | Annotated[Shell, Tag("shell")],
     Discriminator(_named_or_table),

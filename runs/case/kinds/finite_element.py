@@ -27,7 +27,7 @@ MOST_ELEMENTS = 5_000
 # Largest number of coordinates of each segment with the fields of its section.
 FIELDS = 40
 
-# Of a dense eigenproblem of n coordinates: s for each n³, numbers for each n². Measured.
+# Cost of a dense eigenproblem of n coordinates: s for each n³, numbers for each n² (measured).
 _EIGEN_TIME, _EIGEN_ROOM = 5.0e-9, 6.0
 # A beam of more coordinates is estimated and checked by a coarser one.
 _BUILT = 400

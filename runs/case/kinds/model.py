@@ -79,7 +79,7 @@ class Workshop:
     Args:
         comm: the ranks that share the work.
         tell: called with the stage and the completed part of it.
-        cache: of reduced shells; without one, every shell is computed.
+        cache: cache of reduced shells; without one, every shell is computed.
     """
 
     comm: MPI.Comm

@@ -29,8 +29,8 @@ MOST_POINTS = 256
 
 # Default coordinates for each segment, in the plane and in space.
 _FLAT, _SPATIAL = 60, 210
-# Dofs for each square of the mesh size, of a uniform mesh and of a graded one far from its spots,
-# and of the smaller sizes near them; bytes for a dof, for a coordinate of it; s. Measured.
+# Dofs for each square of the mesh size, of a uniform mesh and of a graded one outside refinement
+# zones, and of the smaller sizes inside; bytes for a dof, for a coordinate of it; s. Measured.
 _DOFS, _GRADED_DOFS, _DOFS_AT_SPOTS = 21.0, 42.0, 35.0
 _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 2000.0, 5.0, 1.0e-4
 # Elements of the longest segment of the beam that stands for a shell.
