@@ -66,7 +66,7 @@ Vary = Annotated[
 ]
 SweepFolder = Annotated[
     str | None,
-    typer.Option(metavar="DIR", help="Where to write.  [default: runs/out/CASE-sweep]"),
+    typer.Option(metavar="DIR", help="Where to write.  \\[default: runs/out/CASE-sweep]"),
 ]
 Picture = Annotated[
     str | None, typer.Option(metavar="FILE.png", help="Draw the boom into this file.")
@@ -96,7 +96,7 @@ def protractile(
 def run(
     case: CaseFile,
     out: Annotated[
-        str | None, typer.Option(metavar="DIR", help="Where to write.  [default: runs/out/CASE]")
+        str | None, typer.Option(metavar="DIR", help="Where to write.  \\[default: runs/out/CASE]")
     ] = None,
     models: ModelNames = None,
     mesh_size: MeshSize = None,
@@ -295,10 +295,10 @@ def export(
     to: Annotated[str, typer.Option(metavar="opensees", help="The other program.")],
     model: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="Of beam elements.  [default: the last such model]"),
+        typer.Option(metavar="NAME", help="Of beam elements.  \\[default: the last such model]"),
     ] = None,
     out: Annotated[
-        str | None, typer.Option(metavar="FILE.py", help="Where to write.  [default: CASE.py]")
+        str | None, typer.Option(metavar="FILE.py", help="Where to write.  \\[default: CASE.py]")
     ] = None,
 ) -> int:
     """Write a model of beam elements, calibrated or not, as a script for another program."""
