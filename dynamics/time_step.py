@@ -16,6 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from dynamics.arrays import Array
+from dynamics.contact import contact_limits
 from dynamics.drive.stick_slip import OF_ELASTIC_DRIVES, follow
 from dynamics.drive.travel import Travel
 from dynamics.energy import DRIVEN_ENERGIES, ENERGIES, check_energy
@@ -74,7 +75,9 @@ class Integration:
         thrust_energies(ways, thrusts, a, stored)
         forces = [float(law.force(gap)) for law, gap in zip(laws, y, strict=False)]
         tally = np.zeros(TALLY)
-        tally[FIRST_CONTACT] = 0.0 if any(forces) else np.nan
+        limits, gaps = contact_limits(laws), y[:m]
+        touching = (gaps > limits["high"]) | (gaps < limits["low"])
+        tally[FIRST_CONTACT] = 0.0 if touching.any() else np.nan
         driven = y.size + stored.size if ways.size else 0
         state = State(
             a, v, rows, y, np.zeros(y.size), thrust, tally, np.zeros(driven), np.zeros(m),

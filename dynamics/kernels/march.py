@@ -123,13 +123,15 @@ def _note_contacts(state: State, laws: Laws, end: Array, free: Array, time: floa
     closing = np.inf
     for j in range(laws.limits.size):
         low, high = laws.limits[j]["low"], laws.limits[j]["high"]
-        before = (state.y[j] > high) * 1.0 - (state.y[j] < low) * 1.0
-        after = (end[j] > high) * 1.0 - (end[j] < low) * 1.0
+        # One bit a side: shims press both.
+        before = int(state.y[j] > high) + 2 * int(state.y[j] < low)
+        after = int(end[j] > high) + 2 * int(end[j] < low)
         if before == after:
             continue
         state.tally[CHANGES] += 1.0
-        if after != 0.0:
-            bound = high if after > 0.0 else low
+        closed = after & ~before
+        if closed != 0:
+            bound = high if closed == 1 else low
             # Up to the contact the row moves as it would without it.
             passed = (bound - state.y[j]) / (free[j] - state.y[j])
             closing = min(closing, time * min(max(passed, 0.0), 1.0))
@@ -179,9 +181,10 @@ def _note_peaks(
         largest = 0.0
         for t in range(laws.first_term[j], laws.first_term[j + 1]):
             largest += term_force(laws.terms[t], end[j])
-        before, slope = state.y[j], _stored(laws, j, end[j])[1]
+        before = state.y[j]
+        slope = max(_stored(laws, j, before)[1], _stored(laws, j, end[j])[1])
         phase = np.sqrt(2.0 * max(slope, 0.0) * compliance[j, j])
-        if phase > RESOLVED:
+        if phase > RESOLVED or abs(force[j]) > abs(largest):
             largest = force[j]
         if abs(largest) > abs(peaks[j]):
             peaks[j] = largest
@@ -288,9 +291,9 @@ def march(
     mean, peak, friction = np.zeros(contacts), np.zeros(contacts), np.zeros(frictions)
     matrix = compliances[0]
     for step in range(output.states.shape[0] * stretches):
-        done, depth = 0.0, joined
+        done, depth, joins = 0.0, joined, True
         while done < 1.0:
-            if 0 < joined == depth and done * 2.0 ** (joined - 1) % 1.0 == 0.0:
+            if joins and 0 < joined == depth and done * 2.0 ** (joined - 1) % 1.0 == 0.0:
                 free_for = free_time(system, flow, state, flow.time[0])
                 while (
                     depth > 0
@@ -331,8 +334,9 @@ def march(
                     converged = _agree(pull, thrust)
                 if converged:
                     break
+            joins = converged
             if not converged:
-                depth += 1
+                depth = max(depth, joined) + (depth >= joined)
                 if depth == flow.time.size:
                     return False
                 continue

@@ -96,11 +96,11 @@ class PlayAdds:
 
 @dataclass(frozen=True, slots=True)
 class QualityNote:
-    """A statement of one line about the accuracy of the results.
+    """A note of one line on the accuracy of the results.
 
     Args:
         what: ``agreement``, ``horizon``, ``reduction``, ``mesh``, ``energy`` or ``step``.
-        line: the statement.
+        line: the note.
     """
 
     what: str
@@ -118,7 +118,7 @@ class Answers:
         tied_reactions: the same without play.
         modes: modes of all models side by side; None if fewer than two models have any.
         play: increases by play of each model with play.
-        trust: statements about the accuracy.
+        trust: notes on the accuracy.
     """
 
     models: dict[str, ModelAnswers]

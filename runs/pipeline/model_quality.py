@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Accuracy of the results of a run: comparison of models, statements of accuracy, cautions.
+"""Accuracy of the results of a run: comparison of models, notes on accuracy, cautions.
 
 Every model is compared with one reference. Ensembles allow comparisons at three levels, each with
 its own scope. With friction, the comparison covers the whole run: friction dissipates differences
@@ -115,7 +115,7 @@ def _others(data: xr.Dataset, reference: str) -> list[str]:
 
 
 def quality_notes(summary: Summary, answers: Answers, duration: float) -> Iterator[QualityNote]:
-    """Yield statements about the accuracy of a run.
+    """Yield notes on the accuracy of a run.
 
     Args:
         summary: that of the run.

@@ -407,3 +407,32 @@ def test_what_nothing_moves_stays(one_mass: OneMass) -> None:
     run = AdaptiveStep()(Motion(one_mass(1.0, PowerContact(1.0e6, 2.0).behind(0.1)), 0.1))
     assert not run.states.any()
     assert np.isnan(run.first_contact)
+
+
+@pytest.mark.parametrize("what", ["linear", "Hertz", "unlike sides", "Hunt-Crossley"])
+@pytest.mark.parametrize("step", [5e-3, 5e-4, 5e-5])
+def test_a_peak_is_no_less_than_the_mean(what: str, step: float) -> None:
+    """Reference: analytic. A step in which a contact opens presses, too; whether it resolves the
+    press or not, no interval has a mean above its largest force."""
+    run = FixedStep(step)(Motion(MOVED[what][0], 0.5, 1.0e-2, velocity=THROWN))
+    means, peaks = (
+        np.abs(run.data[name].values) for name in ("contact_force", "contact_force_peak")
+    )
+    assert (means > 0.0).sum() > 5
+    assert (peaks >= means * (1.0 - 1e-12)).all()
+
+
+def test_shims_touch_from_the_start() -> None:
+    """Reference: analytic, two one-sided rows: what shims press from both sides is closed at t = 0,
+    and opens and closes on a side as that side does alone."""
+    shims = PowerContact(1.0e4, 1.0).behind(-1.0e-3)
+    both = boom(shims)
+    apart = boom(
+        laws=[PowerContact(1.0e4, 1.0, stiffness_below=0.0).behind(-1.0e-3)] * 2
+        + [PowerContact(0.0, 1.0, stiffness_below=1.0e4).behind(-1.0e-3)] * 2,
+        rows=np.concatenate([ROWS, ROWS]), station_of_row=np.array([0, 1, 0, 1]),
+    )  # fmt: skip
+    runs = [FixedStep(1e-4)(Motion(each, 0.3, 1e-2, velocity=THROWN)) for each in (both, apart)]
+    assert [run.first_contact for run in runs] == [0.0, 0.0]
+    changes = [run.data.attrs["contact_changes"] for run in runs]
+    assert changes[0] == changes[1] > 4
