@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from hashlib import file_digest, sha256
 from io import BufferedIOBase
 from pathlib import Path
+from struct import Struct
 from time import perf_counter
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -39,6 +40,9 @@ ROOM = 4 * 1024**3
 
 # Environment variable for another folder than the user's own.
 VARIABLE = "PROTRACTILE_CACHE"
+
+# Linux's struct flock: type, whence, start, length, process.
+_LOCK = Struct("hhqqi4x")
 
 _SUFFIX = ".record"
 # Bytes of the line with an entry's checksum.
@@ -114,7 +118,7 @@ class Cache:
 
     @contextmanager
     def making(self, key: str) -> Iterator[None]:
-        """Block other processes that want the same entry.
+        """Block other processes and threads that want the same entry.
 
         They do not wait if the cache is not writable.
         """
@@ -122,8 +126,10 @@ class Cache:
             with suppress(OSError):
                 self.folder.mkdir(parents=True, exist_ok=True)
                 lock = stack.enter_context((self.folder / ".lock").open("a", encoding="utf-8"))
-                # Each entry locks a byte of its own, so that no lock files remain.
-                fcntl.lockf(lock, fcntl.LOCK_EX, 1, int(key[:15], 16))
+                # Each entry locks a byte of its own, so that no lock files remain. The lock belongs
+                # to the open file: one of the process would let in its other threads.
+                byte = _LOCK.pack(fcntl.F_WRLCK, os.SEEK_SET, int(key[:15], 16), 1, 0)
+                fcntl.fcntl(lock, fcntl.F_OFD_SETLKW, byte)
             yield
 
     def keep(self, key: str, thing: Any) -> None:

@@ -7,8 +7,10 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import replace
 from pathlib import Path
+from threading import Event
 
 import numpy as np
 import pytest
@@ -174,3 +176,25 @@ def test_who_has_no_home_has_no_cache(
         "there is no home folder, and what is computed is not kept for later runs; give a folder "
         "in PROTRACTILE_CACHE, or --no-cache"
     ]
+
+
+def test_threads_wait_for_the_entry_that_another_one_makes(tmp_path: Path) -> None:
+    """Reference: by hand. Another entry, made meanwhile, neither waits nor lets them in."""
+    cache, order = Cache(tmp_path), list[str]()
+    held = Event()
+
+    def second() -> None:
+        held.wait()
+        with cache.making(key("one")):
+            order.append("second")
+
+    with ThreadPoolExecutor(1) as pool:
+        waiting = pool.submit(second)
+        with cache.making(key("one")):
+            held.set()
+            with cache.making(key("other")):
+                pass
+            assert wait([waiting], timeout=0.3).not_done
+            order.append("first")
+        waiting.result()
+    assert order == ["first", "second"]
