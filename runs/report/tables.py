@@ -215,7 +215,9 @@ class Table:
         """Print the table."""
         grid = Grid(title=Text(self.title), title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
         for i, heading in enumerate(self.headings):
-            grid.add_column(heading, justify="right" if i else "left", no_wrap=i == 0)
+            # Small numbers stay on one line: 1 × 10⁻¹².
+            whole = i == 0 or ("\n" in heading and any(" × 10" in row[i] for row in self.rows))
+            grid.add_column(heading, justify="right" if i else "left", no_wrap=whole)
         for row in self.rows:
             grid.add_row(*map(Text, row))
         console.print(grid)
