@@ -86,7 +86,7 @@ class Cylinder:
         """Check that the cylinder is possible.
 
         Args:
-            where: its key, ``cylinder[1]`` say.
+            where: its place in the boom, ``cylinders[0]`` say.
             spatial: of the boom.
 
         Raises:

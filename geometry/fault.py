@@ -5,7 +5,7 @@ from __future__ import annotations
 
 
 class BoomError(ValueError):
-    """An impossible boom. ``where`` is the key of the error, such as ``segment[2].span``."""
+    """An impossible boom: ``where`` is the object and its attribute, ``segments[1].start`` say."""
 
     def __init__(self, where: str, what: str) -> None:
         super().__init__(f"{where}: {what}")

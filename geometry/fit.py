@@ -28,7 +28,7 @@ def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
     """Check that the inner segment of a joint has its play within the outer one, if both are known.
 
     Raises:
-        BoomError: it has not; at a key of the joint ``where``.
+        BoomError: it has not; at an attribute of the joint ``where``.
     """
     if outer.section is None or inner.section is None:
         return
@@ -56,7 +56,7 @@ def check_room_on_the_way(
     """Check that the inner segment of a flat joint still has its play at the extension ``way``.
 
     Raises:
-        BoomError: it has not; at a key of the drive ``where``.
+        BoomError: it has not; at the drive ``where``.
     """
     if outer.section is None or inner.section is None:
         return
@@ -95,7 +95,7 @@ def check_flats(
     """Check that a segment has plates that can touch, as far as its section is known.
 
     Args:
-        where: its key.
+        where: its place in the boom.
         segment: which touches, on both sides.
         directions: along which.
         places: x in m at which it touches.
@@ -134,11 +134,12 @@ def check_pads(where: str, joint: Joint, boom: Boom) -> None:
     """Check that all pads of a joint are possible.
 
     Raises:
-        BoomError: one has no room, two lie on one another, a side has none; at a key of ``where``.
+        BoomError: one has no room, two lie on one another, a side has none; at an attribute of
+            ``where``.
     """
     if joint.pad is not None:
         _check_pad(f"{where}.pad", joint, joint.pad, boom)
-    for number, pad in enumerate(joint.pads, start=1):
+    for number, pad in enumerate(joint.pads):
         if SIDES[pad.side][0] not in boom.directions:
             raise BoomError(
                 f"{where}.pads[{number}].side",
@@ -158,11 +159,11 @@ def check_pads_on_the_way(where: str, joint: Joint, boom: Boom) -> None:
     """Check that all pads of a joint with a drive stay on both of its segments.
 
     Raises:
-        BoomError: one is longer than the least overlap, or leaves it; at a key of ``where``.
+        BoomError: one is longer than the least overlap, or leaves it; at an attribute of ``where``.
     """
     sizes = {f"{where}.contact_length": joint.contact_length}
     pads = {} if joint.pad is None else {f"{where}.pad": joint.pad}
-    pads |= {f"{where}.pads[{number}]": pad for number, pad in enumerate(joint.pads, start=1)}
+    pads |= {f"{where}.pads[{number}]": pad for number, pad in enumerate(joint.pads)}
     sizes |= {f"{key}.length": pad.length for key, pad in pads.items()}
     assert joint.drive is not None
     start, end = boom.overlap(joint)

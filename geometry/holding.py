@@ -103,8 +103,8 @@ class _RigidBody(Member):
 
     @property
     def key(self) -> str:
-        """Its key in a case file."""
-        return f"segment[{self.number + 1}]"
+        """Its place in the boom."""
+        return f"segments[{self.number}]"
 
     @property
     def motions(self) -> slice:
@@ -170,10 +170,10 @@ def _check_depths(boom: Boom) -> None:
     luffed = {cylinder.segment for cylinder in boom.cylinders}
     for number, segment in enumerate(boom.segments):
         pushed = number in luffed or on_foot(boom.segments, boom.joints, number) != 0.0
-        for k, support in enumerate(segment.supports, start=1):
+        for k, support in enumerate(segment.supports):
             if support.depth != 0.0 and not (pushed and support is segment.foot):
                 raise BoomError(
-                    f"segment[{number + 1}].supports[{k}].depth",
+                    f"segments[{number}].supports[{k}].depth",
                     "of no use: only the first support of a segment has a depth, under a cylinder "
                     "or axial forces; leave it out",
                 )

@@ -365,7 +365,7 @@ class Segment:
         """Check that the segment is possible.
 
         Args:
-            where: its key, ``segment[2]`` say.
+            where: its place in the boom, ``segments[1]`` say.
 
         Raises:
             BoomError: an empty span; a support, a mass, a collar or a diaphragm off the segment
@@ -373,12 +373,12 @@ class Segment:
         """
         if not self.start < self.end:
             raise BoomError(
-                f"{where}.span",
+                f"{where}.start",
                 f"must run from a smaller to a larger x, got [{self.start:g}, {self.end:g}] m",
             )
         self._check_taper(f"{where}.head_section")
         for support in self.supports:
-            self._check_place(f"{where}.supports", support.x)
+            self.check_place(f"{where}.supports", support.x)
             check_support(f"{where}.supports", support)
         places, near = sorted(support.x for support in self.supports), APART * self.length
         if any(right - left <= near for left, right in pairwise(places)):
@@ -387,7 +387,7 @@ class Segment:
                 f"two are within {near:g} m of one another; give one, or move them farther apart",
             )
         for mass in self.masses:
-            self._check_place(f"{where}.masses", mass.x)
+            self.check_place(f"{where}.masses", mass.x)
             if not 0.0 < mass.mass < float("inf"):
                 raise BoomError(
                     f"{where}.masses", f"must be positive numbers of kg, got {mass.mass:g}"
@@ -406,17 +406,17 @@ class Segment:
             raise BoomError(where, str(error)) from None
 
     def _check_collars(self, where: str) -> None:
-        for number, collar in enumerate(self.collars, start=1):
+        for number, collar in enumerate(self.collars):
             key = f"{where}.collars[{number}]"
             self._check_thickness(key, collar.thickness)
             if not collar.end - collar.start > SAME_PLACE * self.length:
                 raise BoomError(
-                    f"{key}.span",
+                    f"{key}.start",
                     "must run from a smaller to a larger x, got "
                     f"[{collar.start:g}, {collar.end:g}] m",
                 )
             for x in (collar.start, collar.end):
-                self._check_place(f"{key}.span", x)
+                self.check_place(f"{key}.start", x)
         rising = sorted(self.collars, key=lambda collar: collar.start)
         for left, right in pairwise(rising):
             if left.end - right.start > SAME_PLACE * self.length:
@@ -427,10 +427,10 @@ class Segment:
                 )
 
     def _check_diaphragms(self, where: str) -> None:
-        for number, diaphragm in enumerate(self.diaphragms, start=1):
+        for number, diaphragm in enumerate(self.diaphragms):
             key = f"{where}.diaphragms[{number}]"
             self._check_thickness(key, diaphragm.thickness)
-            self._check_place(f"{key}.x", diaphragm.x)
+            self.check_place(f"{key}.x", diaphragm.x)
         places = sorted(diaphragm.x for diaphragm in self.diaphragms)
         if any(right - left <= SAME_PLACE * self.length for left, right in pairwise(places)):
             raise BoomError(f"{where}.diaphragms", "a place is given twice; give each once")
@@ -450,10 +450,19 @@ class Segment:
                 f"must be at most {half:.6g} m, half of what the box is across, got {thickness:g}",
             )
 
-    def _check_place(self, where: str, x: float) -> None:
+    def check_place(self, where: str, x: float) -> None:
+        """Check that a place is on the segment.
+
+        Args:
+            where: what is to be there.
+            x: m.
+
+        Raises:
+            BoomError: it is not.
+        """
         if not self.holds(x):
             raise BoomError(
                 where,
-                f"{x:g} m lies outside the segment; it must be between {self.start:g} and "
+                f"{x:g} m lies outside {self.name!r}; it must be between {self.start:g} and "
                 f"{self.end:g} m",
             )

@@ -59,7 +59,7 @@ class Support:
 
 
 def check_support(where: str, support: Support) -> None:
-    """Check that a support is possible; ``where`` is its key.
+    """Check that a support is possible; ``where`` is its place in the boom.
 
     Raises:
         BoomError: it is both rigid and elastic, or a number is impossible.

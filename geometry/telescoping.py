@@ -138,15 +138,15 @@ def check_drives(boom: Boom) -> None:
     Raises:
         BoomError: it is not.
     """
-    driven = [(n, joint) for n, joint in enumerate(boom.joints, 1) if joint.drive is not None]
+    driven = [(n, joint) for n, joint in enumerate(boom.joints) if joint.drive is not None]
     if not driven:
         return
     for number, joint in driven:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
-        _check_way(f"joint[{number}].drive", joint, outer, inner)
-        check_pads_on_the_way(f"joint[{number}]", joint, boom)
-        _check_taper(f"joint[{number}].drive", boom, outer, inner)
-        _check_lock(f"joint[{number}].locked_at", joint, outer, inner)
+        _check_way(f"joints[{number}].drive", joint, outer, inner)
+        check_pads_on_the_way(f"joints[{number}]", joint, boom)
+        _check_taper(f"joints[{number}].drive", boom, outer, inner)
+        _check_lock(f"joints[{number}].locked_at", joint, outer, inner)
     _check_order(boom)
     for segment in range(len(boom.segments)):
         if drives_below(boom.joints, segment):
@@ -244,7 +244,7 @@ def _check_order(boom: Boom) -> None:
         if drives_below(boom.joints, joint.inner) != drives_below(boom.joints, joint.outer) + own:
             inner = boom.segments[joint.inner].name
             raise BoomError(
-                f"joint[{number + 1}].drive",
+                f"joints[{number}].drive",
                 f"{inner!r} slides in two joints, which would draw it differently; let no drive be "
                 "between them",
             )
@@ -253,20 +253,20 @@ def _check_order(boom: Boom) -> None:
 def _check_free(boom: Boom, number: int) -> None:
     """Check that the ground does not hold a segment that telescopes; stops may touch it."""
     segment = boom.segments[number]
-    held = [f"segment[{number + 1}].supports"] if segment.supports else []
-    held += [f"cylinder[{k}]" for k, c in enumerate(boom.cylinders, 1) if c.segment == number]
+    held = [f"segments[{number}].supports"] if segment.supports else []
+    held += [f"cylinders[{k}]" for k, c in enumerate(boom.cylinders) if c.segment == number]
     if held:
         raise BoomError(
             held[0],
             f"the ground holds {segment.name!r}, which a drive moves along; let it hold a segment "
             "that stays, or leave drive out",
         )
-    for k, stop in enumerate(boom.stops, start=1):
+    for k, stop in enumerate(boom.stops):
         low, high = reach(drives_of(boom.joints, number))
         if stop.segment == number and not (
             segment.holds(stop.x - low) and segment.holds(stop.x - high)
         ):
             raise BoomError(
-                f"stop[{k}].x",
+                f"stops[{k}].x",
                 f"{segment.name!r} is drawn past {stop.x:g} m; it must be there all the way",
             )

@@ -197,7 +197,7 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
     segment = boom.segments[number]
     if segment.section is None:
         raise BoomError(
-            f"segment[{number + 1}]",
+            f"segments[{number}].section",
             f"{segment.name!r} has no box section, which a shell needs; give height_to_width or "
             "section",
         )

@@ -11,7 +11,7 @@ from scipy.special import cosdg, sindg
 from dynamics.contact import PowerContact
 from dynamics.excitation import History, Ramp, Released, Sine, Step, Table, Thrown
 from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, BoomError, Cylinder, Direction, Segment, Stop, check_place
+from geometry.boom import Boom, BoomError, Cylinder, Direction, Segment, Stop
 from geometry.load import Load, Moment, PartialLoad, Turn
 from runs.case.messages import choices
 from runs.case.places import at
@@ -162,7 +162,7 @@ def _thrust(where: str, table: AxialTable, case: Case, segments: Sequence[Segmen
         index = called(f"{where}.segment", table.segment, segments)
     ends = segments[index].start, segments[index].end
     place = segments[index].end if table.x is None else at(table.x, *ends)
-    check_place(f"{where}.x", place, segments[index])
+    segments[index].check_place(f"{where}.x", place)
     return Thrust(index, place, _pull(where, table, case))
 
 

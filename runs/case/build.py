@@ -21,8 +21,8 @@ from geometry.boom import (
     PointMass,
     Segment,
     Support,
-    check_order,
 )
+from geometry.boom_checks import check_order
 from geometry.holding import check_pressed
 from geometry.observation import Observation
 from geometry.section import Section, SectionError, infer_inner_section, infer_outer_section

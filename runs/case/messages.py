@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, get_args
@@ -10,6 +11,7 @@ from typing import Any, get_args
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
+from geometry.fault import BoomError
 from runs.case import schema
 from runs.case.kinds import KINDS
 from runs.case.limits import NAME, described
@@ -18,6 +20,10 @@ from runs.process.terminal import shown
 
 # Keys of the case that are arrays of tables.
 _ARRAYS = ("segment", "joint", "stop", "cylinder", "load", "axial", "base", "observe", "model")
+
+# Parts of a boom, and their keys.
+_PARTS = {f"{key}s": key for key in ("segment", "joint", "load", "stop", "cylinder")}
+_PARTS["observations"] = "observe"
 
 # Number of valid names that a message lists.
 MOST_CHOICES = 12
@@ -67,6 +73,16 @@ class BadInput(Exception):
         faults = error.errors(include_url=False)
         first = next((f for f in faults if f["type"] == "extra_forbidden"), faults[0])
         return cls(file, *_explain(first["type"], first["loc"], first["input"], first.get("ctx")))
+
+    @classmethod
+    def from_boom(cls, file: str, error: BoomError) -> BadInput:
+        """Return an error of a boom at its key: ``segment[2].span`` for ``segments[1].start``."""
+        part = re.split(r"\W", error.where)[0]
+        if part not in _PARTS:
+            return cls(file, error.where, error.what)
+        key = _PARTS[part] + error.where.removeprefix(part)
+        key = re.sub(r"\[(\d+)\]", lambda found: f"[{int(found[1]) + 1}]", key)
+        return cls(file, re.sub(r"\.start$", ".span", key), error.what)
 
 
 def first_fault(error: ValidationError) -> str:

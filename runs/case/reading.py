@@ -73,7 +73,7 @@ def check(case: Case, path: str) -> Declared:
         _check_time(case.time)
         _check_boom(found)
     except BoomError as error:
-        raise BadInput(path, error.where, error.what) from None
+        raise BadInput.from_boom(path, error) from None
     except ArithmeticError as error:
         raise BadInput(
             path, "segment", f"numbers out of proportion ({error.args[-1]}); give them in SI units"
@@ -120,7 +120,7 @@ def select(
         try:
             check_mesh_size("--mesh-size", mesh_size, build_boom(case))
         except BoomError as error:
-            raise BadInput(path, error.where, error.what) from None
+            raise BadInput.from_boom(path, error) from None
         chosen = _with_shells(
             chosen, path, "--mesh-size", {"mesh_size": mesh_size, "contact_tolerance": "any"}
         )
@@ -145,7 +145,7 @@ def select(
         try:
             check_varied(selected, build_boom(selected))
         except BoomError as error:
-            raise BadInput(path, error.where, error.what) from None
+            raise BadInput.from_boom(path, error) from None
     return selected
 
 

@@ -309,5 +309,5 @@ def write(
     try:
         text = script(case, model.joined(boom), model, calibration)
     except BoomError as error:
-        raise BadInput(file, error.where, error.what) from None
+        raise BadInput.from_boom(file, error) from None
     write_whole(path, text)

@@ -158,5 +158,5 @@ def test_a_dashpot_takes_no_part_in_a_tied_boom(paper_boom: Boom, elements: Mode
         ({"tied": True, "dashpot": 1.0}, "the joint is tied, and nothing moves; leave it out"),
         ({"dashpot": -1.0}, "must be a number of N s/m from 0 on, got -1"),
     ):
-        with pytest.raises(BoomError, match=rf"^joint\[1\]\.dashpot: {re.escape(what)}$"):
+        with pytest.raises(BoomError, match=rf"^joints\[0\]\.dashpot: {re.escape(what)}$"):
             replace(paper_boom, joints=(replace(joint, **changes),))

@@ -116,8 +116,8 @@ def test_a_lock_is_on_the_outer_segment_and_not_beyond_the_inner_one() -> None:
     with pytest.raises(BoomError) as caught:
         Boom(segments(), (replace(JOINT, locked_at=9.0),))
     assert str(caught.value) == (
-        "joint[1].locked_at: 9 m is no place at which 'fly' is locked in 'arm'; it must be between "
-        "0 and 8 m"
+        "joints[0].locked_at: 9 m is no place at which 'fly' is locked in 'arm'; it must be "
+        "between 0 and 8 m"
     )
 
 

@@ -109,30 +109,30 @@ def test_places_where_something_acts(paper_boom: Boom, spatial_boom: Boom) -> No
 
 FAULTS: dict[str, tuple[str, str, Fault]] = {
     "no segment": (
-        "segment",
+        "segments",
         "a boom needs at least one segment",
         lambda outer, inner, joint: ((), ()),
     ),
     "span reversed": (
-        "segment[2].span",
+        "segments[1].start",
         "must run from a smaller to a larger x, got [19, 9] m",
         lambda outer, inner, joint: ((outer, replace(inner, start=19.0, end=9.0)), (joint,)),
     ),
     "span not a number": (
-        "segment[1].span",
+        "segments[0].start",
         "must run from a smaller to a larger x, got [0, nan] m",
         lambda outer, inner, joint: ((replace(outer, end=float("nan")), inner), (joint,)),
     ),
     "support outside": (
-        "segment[1].supports",
-        "10.5 m lies outside the segment; it must be between 0 and 10 m",
+        "segments[0].supports",
+        "10.5 m lies outside 'outer'; it must be between 0 and 10 m",
         lambda outer, inner, joint: (
             (replace(outer, supports=(Support(0.0), Support(10.5))), inner),
             (joint,),
         ),
     ),
     "support twice": (
-        "segment[1].supports",
+        "segments[0].supports",
         "two are within 0.001 m of one another; give one, or move them farther apart",
         lambda outer, inner, joint: (
             (replace(outer, supports=(Support(2.0), Support(2.0))), inner),
@@ -140,7 +140,7 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
         ),
     ),
     "support twice but for round-off": (
-        "segment[1].supports",
+        "segments[0].supports",
         "two are within 0.001 m of one another; give one, or move them farther apart",
         lambda outer, inner, joint: (
             (replace(outer, supports=(Support(0.3), Support(0.1 + 0.2))), inner),
@@ -148,7 +148,7 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
         ),
     ),
     "supports too near to hold the rotation": (
-        "segment[1].supports",
+        "segments[0].supports",
         "two are within 0.001 m of one another; give one, or move them farther apart",
         lambda outer, inner, joint: (
             (replace(outer, supports=(Support(2.0), Support(2.0 + 1e-5))), inner),
@@ -156,7 +156,7 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
         ),
     ),
     "a clamped support that gives way": (
-        "segment[1].supports",
+        "segments[0].supports",
         "a clamped support is rigid, and the one at 2 m has a stiffness; leave it out, or make "
         "the support pinned",
         lambda outer, inner, joint: (
@@ -165,7 +165,7 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
         ),
     ),
     "a support that pulls": (
-        "segment[1].supports",
+        "segments[0].supports",
         "the stiffness at 2 m must be a positive number of N/m, got -5",
         lambda outer, inner, joint: (
             (replace(outer, supports=(Support(0.0), Support(2.0, stiffness=-5.0))), inner),
@@ -173,15 +173,15 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
         ),
     ),
     "mass outside": (
-        "segment[2].masses",
-        "20 m lies outside the segment; it must be between 9 and 19 m",
+        "segments[1].masses",
+        "20 m lies outside 'inner'; it must be between 9 and 19 m",
         lambda outer, inner, joint: (
             (outer, replace(inner, masses=(PointMass(20.0, 5.0),))),
             (joint,),
         ),
     ),
     "mass of nothing": (
-        "segment[2].masses",
+        "segments[1].masses",
         "must be positive numbers of kg, got 0",
         lambda outer, inner, joint: (
             (outer, replace(inner, masses=(PointMass(19.0, 0.0),))),
@@ -189,27 +189,27 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
         ),
     ),
     "no overlap": (
-        "joint[1]",
+        "joints[0]",
         "'outer' ends at 8.5 m before 'inner' starts at 9 m; the segments of a joint must overlap",
         lambda outer, inner, joint: ((replace(outer, end=8.5), inner), (joint,)),
     ),
     "station outside the overlap": (
-        "joint[1].stations",
+        "joints[0].stations",
         "8 m lies outside the overlap of 'outer' and 'inner'; it must be between 9 and 10 m",
         lambda outer, inner, joint: ((outer, inner), (replace(joint, stations=(8.0, 10.0)),)),
     ),
     "stations falling": (
-        "joint[1].stations",
+        "joints[0].stations",
         "must rise from the base to the tip, each given once",
         lambda outer, inner, joint: ((outer, inner), (replace(joint, stations=(10.0, 9.0)),)),
     ),
     "segments from the tip": (
-        "segment[2].span",
+        "segments[1].start",
         "must start and end beyond 'inner'; give the segments from the base to the tip",
         lambda outer, inner, joint: ((inner, outer), (replace(joint, outer=1, inner=0),)),
     ),
     "outer and inner exchanged": (
-        "joint[1]",
+        "joints[0]",
         "'outer' is nearer to the base than 'inner'; exchange inner and outer",
         lambda outer, inner, joint: (
             (replace(outer, section=None), replace(inner, section=None)),
@@ -217,12 +217,12 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
         ),
     ),
     "station twice": (
-        "joint[1].stations",
+        "joints[0].stations",
         "must rise from the base to the tip, each given once",
         lambda outer, inner, joint: ((outer, inner), (replace(joint, stations=(9.0, 9.0)),)),
     ),
     "station twice but for round-off": (
-        "joint[1].stations",
+        "joints[0].stations",
         "must rise from the base to the tip, each given once",
         lambda outer, inner, joint: (
             (outer, inner),
@@ -230,19 +230,19 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
         ),
     ),
     "inner box too high": (
-        "joint[1].play",
+        "joints[0].play",
         "'inner' does not fit in 'outer': 0.014 m of height and 0.0399939 m of width are free, "
         "and a play of 0.028 m is asked for; make the inner section or the play smaller",
         lambda outer, inner, joint: ((outer, inner), (replace(joint, play=0.028),)),
     ),
     "friction without what presses": (
-        "joint[1].normal_forces",
+        "joints[0].normal_forces",
         "missing, and the joint has friction; give normal_forces, one in N for each station, "
         "since in a flat boom no other plane presses",
         lambda outer, inner, joint: ((outer, inner), (replace(joint, friction=0.2),)),
     ),
     "normal forces and stations": (
-        "joint[1].normal_forces",
+        "joints[0].normal_forces",
         "must have one number for each of the 2 stations, got 3",
         lambda outer, inner, joint: (
             (outer, inner),
@@ -250,18 +250,18 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
         ),
     ),
     "in space without lateral numbers": (
-        "segment[1].lateral",
+        "segments[0].lateral",
         "missing; with lateral play the segments bend along y and twist",
         lambda outer, inner, joint: ((outer, inner), (replace(joint, lateral_play=0.002),)),
     ),
     "outer not held": (
-        "segment[1]",
+        "segments[0]",
         "nothing holds 'outer': give it two supports, a hinge and a cylinder whose line passes "
         "beside it, or a joint with two stations to a segment that is held",
         lambda outer, inner, joint: ((replace(outer, supports=(Support(0.0),)), inner), (joint,)),
     ),
     "inner not held": (
-        "segment[2]",
+        "segments[1]",
         "nothing holds 'inner': give it two supports, a hinge and a cylinder whose line passes "
         "beside it, or a joint with two stations to a segment that is held",
         lambda outer, inner, joint: ((outer, inner), (replace(joint, stations=(9.5,)),)),
@@ -290,25 +290,25 @@ def _another_joint(boom: Boom) -> Boom:
 
 FAULTS_OF_A_BOOM: dict[str, tuple[str, str, Change]] = {
     "in space without plates": (
-        "segment[2].section",
+        "segments[1].section",
         "missing; with lateral play the segments touch in corners",
         lambda boom: replace(
             boom, segments=(boom.segments[0], replace(boom.segments[1], section=None))
         ),
     ),
     "in space and flat": (
-        "joint[2].lateral_play",
+        "joints[1].lateral_play",
         "missing, and another joint has it; a boom is flat or in space as a whole",
         _another_joint,
     ),
     "inner box too wide": (
-        "joint[1].lateral_play",
+        "joints[0].lateral_play",
         "'inner' does not fit in 'outer': 0.0399939 m of width are free, and a lateral play of "
         "0.042 m is asked for; make the inner section or the lateral play smaller",
         lambda boom: replace(boom, joints=(replace(boom.joints[0], lateral_play=0.042),)),
     ),
     "load outside": (
-        "load[2].x",
+        "loads[1].x",
         "12 m lies outside 'outer'; it must be between 0 and 10 m",
         lambda boom: replace(
             boom,
@@ -319,7 +319,7 @@ FAULTS_OF_A_BOOM: dict[str, tuple[str, str, Change]] = {
         ),
     ),
     "load out of the plane": (
-        "load[1].direction",
+        "loads[0].direction",
         "the boom is flat, and nothing moves along 'y'; give 'z', or the joints lateral_play",
         lambda boom: replace(
             boom,
@@ -328,12 +328,12 @@ FAULTS_OF_A_BOOM: dict[str, tuple[str, str, Change]] = {
         ),
     ),
     "stop outside": (
-        "stop[1].x",
+        "stops[0].x",
         "20 m lies outside 'inner'; it must be between 9 and 19 m",
         lambda boom: replace(boom, stops=(replace(STOP, x=20.0),)),
     ),
     "stop where nothing moves": (
-        "stop[1].x",
+        "stops[0].x",
         "a support holds 'outer' at 2 m already; move one of them",
         lambda boom: replace(boom, stops=(replace(STOP, segment=0, x=2.0),)),
     ),

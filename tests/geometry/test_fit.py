@@ -31,5 +31,5 @@ def test_a_pad_has_the_room_of_its_own_wall(steel: Material) -> None:
     assert padded(steel, WIDTHS).joints[0].padded
     with pytest.raises(BoomError) as caught:
         padded(steel, {**WIDTHS, "below": 0.15})
-    assert caught.value.where == "joint[1].pads[2].width"
+    assert caught.value.where == "joints[0].pads[1].width"
     assert caught.value.what.startswith("must be above 0 and not above half a wall of the inner")

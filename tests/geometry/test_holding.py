@@ -81,7 +81,7 @@ def test_a_stop_that_no_load_presses_holds_nothing(
     lifted = held(paper_boom, HINGE, stops=(BELOW,), loads=loads)
     with pytest.raises(BoomError) as caught:
         check_pressed(lifted)
-    assert (caught.value.where, caught.value.what) == ("segment[1]", LIFTED)
+    assert (caught.value.where, caught.value.what) == ("segments[0]", LIFTED)
 
 
 def test_a_collar_presses_a_stop_by_its_weight(steel: Material) -> None:
@@ -100,12 +100,12 @@ def test_a_collar_presses_a_stop_by_its_weight(steel: Material) -> None:
 
 UNHELD: Mapping[str, tuple[str, str, Mapping[str, Any]]] = {
     "by a stop at its hinge": (
-        "segment[1]",
+        "segments[0]",
         LOOSE.format("outer"),
         {"supports": [replace(HINGE, stiffness=1e6)], "stops": (replace(BOTH, x=0.0),)},
     ),
     "by a cylinder through its hinge": (
-        "segment[1]",
+        "segments[0]",
         LOOSE.format("outer"),
         {
             "supports": [replace(HINGE, depth=-0.1)],
@@ -113,7 +113,7 @@ UNHELD: Mapping[str, tuple[str, str, Mapping[str, Any]]] = {
         },
     ),
     "by one station": (
-        "segment[2]",
+        "segments[1]",
         LOOSE.format("inner"),
         {"supports": [HINGE, Support(2.0)], "stations": (9.5,)},
     ),
@@ -138,7 +138,7 @@ def test_in_space_a_boom_is_held_sideways_too(spatial_boom: Boom) -> None:
     with pytest.raises(BoomError) as caught:
         held(spatial_boom, HINGE, cylinders=(ARM,))
     assert (caught.value.where, caught.value.what) == (
-        "segment[1]",
+        "segments[0]",
         "nothing holds 'outer' sideways: give it two supports, one that is hinged or clamped, or a "
         "joint with two stations to a segment that is held",
     )
@@ -146,85 +146,85 @@ def test_in_space_a_boom_is_held_sideways_too(spatial_boom: Boom) -> None:
 
 FAULTS: Mapping[str, tuple[str, str, list[Support], Mapping[str, Any]]] = {
     "lug beside the segment": (
-        "cylinder[1].x",
+        "cylinders[0].x",
         "12 m lies outside 'outer'; it must be between 0 and 10 m",
         [HINGE],
         {"cylinders": (replace(ARM, x=12.0),)},
     ),
     "no length": (
-        "cylinder[1].ground",
+        "cylinders[0].ground",
         "must be another point than the lug; give x and z in m",
         [HINGE],
         {"cylinders": (replace(ARM, ground=(4.0, -0.3)),)},
     ),
     "a cylinder that drives": (
-        "cylinder[1].dashpot",
+        "cylinders[0].dashpot",
         "must be a number of N s/m from 0 on, got -1",
         [HINGE],
         {"cylinders": (replace(ARM, dashpot=-1.0),)},
     ),
     "a cylinder without stiffness": (
-        "cylinder[1].stiffness",
+        "cylinders[0].stiffness",
         "must be a number of N/m above 0, got 0",
         [HINGE],
         {"cylinders": (replace(ARM, stiffness=0.0),)},
     ),
     "an output of a cylinder's name": (
-        "observe[1].name",
+        "observations[0].name",
         "'cylinder_force' is the name of another output already; give it its own",
         [HINGE],
         {"cylinders": (ARM,), "observations": (Observation("cylinder_force", 0, 5.0),)},
     ),
     "two side by side in a flat boom": (
-        "cylinder[1].spread",
+        "cylinders[0].spread",
         "the boom is flat, and nothing turns about its axis; leave it out, or give the joints "
         "lateral_play",
         [HINGE],
         {"cylinders": (replace(ARM, spread=1.0),)},
     ),
     "a depth that nothing reads": (
-        "segment[1].supports[2].depth",
+        "segments[0].supports[1].depth",
         "of no use: only the first support of a segment has a depth, under a cylinder or axial "
         "forces; leave it out",
         [HINGE, Support(2.0, depth=0.1)],
         {"cylinders": (ARM,)},
     ),
     "a depth under nothing": (
-        "segment[1].supports[1].depth",
+        "segments[0].supports[0].depth",
         "of no use: only the first support of a segment has a depth, under a cylinder or axial "
         "forces; leave it out",
         [replace(HINGE, depth=0.1), Support(2.0)],
         {},
     ),
     "a soft clamp against rotation": (
-        "segment[1].supports",
+        "segments[0].supports",
         "a clamped support holds the slope, and the one at 0 m has a rotation_stiffness; leave it "
         "out, or make the support pinned",
         [Support(0.0, "clamped", rotation_stiffness=1e6)],
         {},
     ),
     "a soft hinge": (
-        "segment[1].supports",
+        "segments[0].supports",
         "a hinge is rigid, and the one at 0 m has a stiffness; leave it out, or make the support "
         "pinned",
         [replace(ACROSS, stiffness=1e6), Support(2.0)],
         {},
     ),
     "a dashpot that never moves": (
-        "segment[1].supports",
+        "segments[0].supports",
         "the support at 2 m is rigid, and its dashpot would never move; leave it out, or give the "
         "support a stiffness",
         [HINGE, Support(2.0, dashpot=1e3)],
         {},
     ),
     "a negative dashpot": (
-        "segment[1].supports",
+        "segments[0].supports",
         "the dashpot at 2 m must be a number of N s/m from 0 on, got -1",
         [HINGE, Support(2.0, stiffness=1e6, dashpot=-1.0)],
         {},
     ),
     "a negative spring against rotation": (
-        "segment[1].supports",
+        "segments[0].supports",
         "the stiffness against rotation at 0 m must be a positive number of N m/rad, got -1",
         [replace(HINGE, rotation_stiffness=-1.0), Support(2.0)],
         {},

@@ -68,7 +68,7 @@ def test_no_segment_is_drawn_in_through_a_diaphragm(steel: Material) -> None:
     with pytest.raises(BoomError) as caught:
         drawn(steel, 2.5, 9.0, -1.0, base=plated)
     assert (caught.value.where, caught.value.what) == (
-        "joint[1].drive",
+        "joints[0].drive",
         "draws 'fly' in by 1 m, and the diaphragm of 'base' at 2 m is in its way; it must be less "
         "than 0.5 m",
     )
@@ -98,7 +98,7 @@ def test_tapered_segments_fit_all_of_the_way(steel: Material) -> None:
     with pytest.raises(BoomError) as caught:
         Boom((base, fly), (replace(joint, drive=drive),))
     assert (caught.value.where, caught.value.what) == (
-        "joint[1].drive",
+        "joints[0].drive",
         "draws 'fly' by 4 m to where it does not fit in 'base': 0.01 m of height and 0.048 m of "
         "width are free there, and a play of 0.014 m is asked for; make the travel or the taper "
         "smaller",
@@ -115,7 +115,7 @@ PADS = SlidePad(0.08, 0.05, side="above"), SlidePad(0.11, 0.05, side="below")
     [
         ({"pad": PAD}, "pad.length", LEFT + "0.12 m"),
         ({"contact_length": 0.15}, "contact_length", LEFT + "0.15 m"),
-        ({"pads": PADS}, "pads[2].length", LEFT + "0.11 m"),
+        ({"pads": PADS}, "pads[1].length", LEFT + "0.11 m"),
         (
             {"pad": replace(PAD, length=0.08), "stations": (5.38, 6.5)},
             "pad.length",
@@ -132,4 +132,4 @@ def test_pads_stay_on_both_segments(
     assert drawn(steel, place, 11.3, 1.0, **joint).driven
     with pytest.raises(BoomError) as caught:
         drawn(steel, place, 11.3, 1.1, **joint)
-    assert (caught.value.where, caught.value.what) == (f"joint[1].{key}", message)
+    assert (caught.value.where, caught.value.what) == (f"joints[0].{key}", message)

@@ -99,12 +99,12 @@ def test_a_force_through_the_centroid_goes_to_the_flanges_by_the_lever() -> None
 def test_a_boom_refuses_sections_that_bend_sideways(paper_boom: Boom, spatial_boom: Boom) -> None:
     crooked = BoxSection(0.45, 0.25, 0.006, 0.006, left_web=0.005)
     message = (
-        "segment[2].section: does not mirror itself in y, and would bend sideways under its weight"
+        "segments[1].section: does not mirror itself in y, and would bend sideways under its weight"
     )
     with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
         _with_inner(paper_boom, crooked)
     message = (
-        "segment[2].section: does not mirror itself in z, and would twist as it bends sideways, "
+        "segments[1].section: does not mirror itself in z, and would twist as it bends sideways, "
         "which no model in space knows; leave lateral_play out, or make the flanges alike"
     )
     unequal = BoxSection(0.45, 0.25, 0.008, 0.005, bottom_flange=0.005)

@@ -87,8 +87,8 @@ def test_sections_that_touch_have_flats(paper_boom: Boom, spatial_boom: Boom) ->
     within = hexagon(0.40, 0.40, 0.24, 0.005, 0.005, 0.005)
     assert _in(paper_boom, beside, within).segments[0].section is beside
     message = (
-        "segment[1].section: has no single plate at right angles to y at its right, where the boom "
-        "touches it; folds and inclined plates cannot be touched, give it a flat there"
+        "segments[0].section: has no single plate at right angles to y at its right, where the "
+        "boom touches it; folds and inclined plates cannot be touched, give it a flat there"
     )
     with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
         _in(spatial_boom, beside, within)
@@ -96,7 +96,7 @@ def test_sections_that_touch_have_flats(paper_boom: Boom, spatial_boom: Boom) ->
         ((0, -0.22), (0.11, -0.18), (0.11, 0.2), (-0.11, 0.2), (-0.11, -0.18)), (0.005,) * 5
     )
     message = (
-        "segment[2].section: has no single plate at right angles to z at its bottom, where the "
+        "segments[1].section: has no single plate at right angles to z at its bottom, where the "
         "boom touches it; folds and inclined plates cannot be touched, give it a flat there"
     )
     with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
@@ -111,8 +111,8 @@ def test_a_flat_lies_on_one_as_wide(paper_boom: Boom) -> None:
     outer = u_section(0.50, 0.32, 0.15, 3, 0.006, 0.006, 0.006)
     inner = u_section(0.30, 0.20, 0.02, 1, 0.005, 0.005, 0.005)
     message = (
-        "segment[2].section: its bottom is 0.176569 m wide, and that of 'outer', which it touches, "
-        "0.0796737 m; make it narrower"
+        "segments[1].section: its bottom is 0.176569 m wide, and that of 'outer', which it "
+        "touches, 0.0796737 m; make it narrower"
     )
     with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
         _in(paper_boom, outer, inner)
@@ -121,7 +121,7 @@ def test_a_flat_lies_on_one_as_wide(paper_boom: Boom) -> None:
 def test_a_section_without_room_is_refused(paper_boom: Boom) -> None:
     outer, inner = HEXAGON, _smaller(HEXAGON, 0.005)
     message = (
-        "joint[1].play: 'inner' does not fit in 'outer': 0.01 m of height and 0.00517033 m of "
+        "joints[0].play: 'inner' does not fit in 'outer': 0.01 m of height and 0.00517033 m of "
         "width are free, and a play of 0.014 m is asked for; make the inner section or the play "
         "smaller"
     )

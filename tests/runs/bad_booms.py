@@ -156,7 +156,7 @@ NUMBERS = {
     "support outside": (
         "supports = [0.0, 2.0]",
         "supports = [0.0, 12.0]",
-        "segment[1].supports: 12 m lies outside the segment; it must be between 0 and 10 m",
+        "segment[1].supports: 12 m lies outside 'outer'; it must be between 0 and 10 m",
     ),
     "nothing holds": (
         "supports = [0.0, 2.0]",

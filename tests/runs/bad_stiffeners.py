@@ -7,8 +7,7 @@ STIFFENERS = {
     "collar beyond the head": (
         "supports = [0.0, 2.0]",
         "supports = [0.0, 2.0]\ncollars = [{ span = [9.7, 10.3], thickness = 0.01 }]",
-        "segment[1].collars[1].span: 10.3 m lies outside the segment; it must be between 0 and 10 "
-        "m",
+        "segment[1].collars[1].span: 10.3 m lies outside 'outer'; it must be between 0 and 10 m",
     ),
     "backward collar": (
         "supports = [0.0, 2.0]",
@@ -31,8 +30,7 @@ STIFFENERS = {
         "span = [9.0, 19.0]",
         "span = [9.0, 19.0]\ndiaphragms = [{ x = 9.0, thickness = 0.008 }, "
         "{ x = 19.5, thickness = 0.008 }]",
-        "segment[2].diaphragms[2].x: 19.5 m lies outside the segment; it must be between 9 and 19 "
-        "m",
+        "segment[2].diaphragms[2].x: 19.5 m lies outside 'inner'; it must be between 9 and 19 m",
     ),
     "diaphragm of negative thickness": (
         "span = [9.0, 19.0]",

@@ -80,8 +80,8 @@ def test_a_shell_needs_a_section() -> None:
     boom = flat_boom()
     bare = replace(boom, segments=(replace(boom.segments[0], section=None), boom.segments[1]))
     message = (
-        r"segment\[1\]: 'outer' has no box section, which a shell needs; give height_to_width or "
-        "section"
+        r"segments\[0\].section: 'outer' has no box section, which a shell needs; give "
+        "height_to_width or section"
     )
     with pytest.raises(BoomError, match=message):
         reduced(bare, 0.5)
