@@ -61,7 +61,7 @@ def test_no_plate_closes_a_box_that_another_is_inside(outer: int, x: float, inne
     segments = list(boom.segments)
     segments[outer] = replace(segments[outer], diaphragms=(Diaphragm(x, 0.008),))
     message = (
-        f"segment[{outer + 1}].diaphragms[1].x: {inner!r} slides inside "
+        f"segments[{outer}].diaphragms[0].x: {inner!r} slides inside "
         f"{segments[outer].name!r} at {x:g} m, and no plate can close the box there; it must be "
         f"below {segments[outer + 1].start:g} m"
     )
