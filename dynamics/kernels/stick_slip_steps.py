@@ -121,29 +121,28 @@ def slows(body: SlidingMass, state: Array, leg: Leg, time: float) -> bool:
 
 
 @njit(**LOOP)
-def time_in_phase(body: SlidingMass, state: Array, leg: Leg, left: float) -> float:
-    """Return for how many of the s left it stays in its phase, which a moment may end."""
-    if not stays(body, state, leg, 0.0):
-        return 0.0
-    low, slowest = 0.0, left
-    turns = state[SIGN] != 0.0 and slows(body, state, leg, 0.0)
-    if turns and stays(body, state, leg, left) and not slows(body, state, leg, left):
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (low + slowest)
-            if slows(body, state, leg, middle):
-                low = middle
-            else:
-                slowest = middle
-    if stays(body, state, leg, slowest):
-        return left
-    low, high = 0.0, slowest
+def end_of(slowing: bool, body: SlidingMass, state: Array, leg: Leg, high: float) -> float:
+    """Return the time in s, at most ``high``, at which the phase or its slowing ends."""
+    low = 0.0
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        if stays(body, state, leg, middle):
+        if slows(body, state, leg, middle) if slowing else stays(body, state, leg, middle):
             low = middle
         else:
             high = middle
     return high
+
+
+@njit(**LOOP)
+def time_in_phase(body: SlidingMass, state: Array, leg: Leg, left: float) -> float:
+    """Return for how many of the s left it stays in its phase, which a moment may end."""
+    if not stays(body, state, leg, 0.0):
+        return 0.0
+    slowest = left
+    turns = state[SIGN] != 0.0 and slows(body, state, leg, 0.0)
+    if turns and stays(body, state, leg, left) and not slows(body, state, leg, left):
+        slowest = end_of(True, body, state, leg, left)
+    return left if stays(body, state, leg, slowest) else end_of(False, body, state, leg, slowest)
 
 
 @njit(**LOOP)

@@ -68,7 +68,9 @@ def pressed_pads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PressedPa
                     pushed = ends[next(station)]
                     if table.pad is not None:
                         largest = max(pushed, key=abs)
-                        force = _of_a_side(abs(float(largest)), law)
+                        force = abs(float(largest))
+                        if not model.needs_shell:
+                            force = _of_a_side(force, law)
                         side = _ON[direction, 1 if largest > 0.0 else -1]
                         yield _pressed(model, table, table.pad, x, side, force)
                     forces = _of_each(joint, direction, law, pushed)
@@ -96,17 +98,19 @@ def _pressed(
 
 
 def _of_each(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array) -> list[float]:
-    """Return the largest force in N of each pair of pads for given total forces.
+    """Return the largest force in N of each pair of pads.
 
     Args:
         joint: the joint of the pads.
         direction: direction of the forces.
         law: contact law of a station.
-        pushed: net forces (num_pushes,) in N, those on the side 1 less those on the side −1.
+        pushed: (num_pushes,) in N the force of the side that is pressed harder, negative on the
+            side −1. The approach of that side gives the forces of the other.
     """
-    laws = []
+    laws, sides = [], []
     for pad in (pad for pad in joint.pads if SIDES[pad.side][0] == direction):
         side = SIDES[pad.side][1]
+        sides.append(side)
         whole = sum(other.stiffness for other in joint.pads if other.side == pad.side)
         there = law.one_sided(side)
         assert there is not None
@@ -120,15 +124,23 @@ def _of_each(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array)
     def force(approach: float) -> Array:
         return np.array([float(one.force(np.array(approach))) for one in laws])
 
-    reach = 1.0e-3
-    while not force(-reach).sum() <= pushed.min() <= pushed.max() <= force(reach).sum():
-        reach *= 2.0
-    approaches = [brentq(lambda y, p=p: force(y).sum() - p, -reach, reach) for p in pushed]
-    return [float(most) for most in np.abs([force(y) for y in approaches]).max(axis=0)]
+    def excess(approach: float, push: float) -> float:
+        return float(force(approach) @ np.equal(sides, np.sign(push))) - push
+
+    found = np.zeros(len(laws))
+    for push in pushed[pushed != 0.0]:
+        reach = 1.0e-3
+        while excess(np.sign(push) * reach, push) * push < 0.0:
+            reach *= 2.0
+        found = np.maximum(found, np.abs(force(brentq(excess, -reach, reach, args=(push,)))))
+    return [float(most) for most in found]
 
 
 def _of_a_side(both: float, law: ContactLaw) -> float:
-    """Return the force in N of one side from the net force of both: shims preload each side."""
+    """Return the force in N of one side of a beam's station, whose law has the net force of both.
+
+    Shims preload each side.
+    """
     sides = (law.one_sided(side) for side in (1, -1))
     at_rest = max(float(abs(law.force(np.zeros(())))) for law in sides if law is not None)
     return max(both, at_rest + 0.5 * both)

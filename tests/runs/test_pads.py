@@ -237,6 +237,24 @@ def test_each_pad_tells_its_pressure(tmp_path: Path) -> None:
     assert told["utilisation\n%"][2] is None
 
 
+def test_shimmed_pads_tell_the_force_of_their_side(tmp_path: Path) -> None:
+    """Reference: by hand. Pads of k that shims press from both sides by s carry k (s ± y)."""
+    sides = [pad_on(side, 0.05, 0.02, shim=0.1) for side in ("above", "below")]
+    found = results(tmp_path, several(*sides))
+    peaks = found.trajectories["contact_force_peak"].values[0]
+    rest = 2.0 * found.boom.joints[0].pads[0].stiffness * (0.1 - 0.007)
+    table = pad_table(found)
+    assert table is not None
+    forces = {column.heading: column.cells for column in table.columns}["peak force\nkN"]
+    for station, own in enumerate(peaks.T):
+        # The harder side presses with the peak, the other with 2 k s less the peak.
+        above = np.where(own > 0.0, own, 2.0 * rest + own).max()
+        below = np.where(own < 0.0, -own, 2.0 * rest - own).max()
+        told = 2.0 * np.array(forces[2 * station : 2 * station + 2])
+        assert told == pytest.approx([above, below], rel=1e-9)
+        assert rest < max(above, below) < 2.0 * rest
+
+
 @pytest.mark.parametrize(("state", "lifted"), [("equilibrium", 0.001), ("rest", 0.0)])
 def test_shims_lift_a_boom_that_no_load_presses_yet(
     tmp_path: Path, state: str, lifted: float

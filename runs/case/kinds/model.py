@@ -148,7 +148,8 @@ class ModelTable(Table):
         super().__init__(**{"name": kind, "kind": kind, **keys})
         self._boom = boom
 
-    # Case files do not use it: they must give name and kind.
+    # Pydantic's mark of an __init__ that validation passes by, which its types do not declare: a
+    # table of a case file must give name and kind.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
     # Whether it has a mesh of the plates: it leaves fields.
