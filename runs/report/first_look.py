@@ -37,34 +37,40 @@ def first_table(results: Results) -> Table | None:
     hertz = [one.modes[0].frequency if one.modes else None for one in own]
     # By modal damping, of a vibration without other dissipation.
     decay = 2.0 * pi * results.case.damping.modal / log(1.0 / TENTH)
-    fading = [1.0 / (decay * f) if f and decay else None for f in hertz]
+    decay_times = [1.0 / (decay * f) if f and decay else None for f in hertz]
     walls, fibres = [_walls(one) for one in own], [_fibres(one) for one in own]
     hardest = _hardest_pads(results)
     pads = {name: _pad(pad) for name, pad in hardest.items()}
     stations = [None if hardest else _largest(one, "contact force", at="\nat {} m") for one in own]
     damages = [_life_damage(one) for one in own]
-    drawn = [_at_rest(one.drawn) for one in own]
-    asked = (
-        Column("Tip at rest, t = 0", [_at_rest(one.rests[:1]) for one in own], ".1f", "mm"),
-        Column("Tip at rest, largest loads", [_at_rest(one.rests[1:]) for one in own], ".1f", "mm"),
-        Column("Tip at rest where it is drawn to", drawn, ".1f", "mm"),
-        Column("Tip in motion, farthest", [*map(_farthest, own, tips)], unit="mm"),
-        # A motion that starts undeformed needs no initial state.
-        Column("Tip travels", [farthest(x - x[0]) if x[0] else None for x in tips], ".1f", "mm"),
-        Column("Tip swings while it is drawn", [_swings(one) for one in own], unit="mm"),
-        Column("Tip to the sides, farthest", _each(own, "lateral deflection"), unit="mm"),
-        Column("First frequency", hertz, ".3g", "Hz"),
-        Column("One swing takes", [f and 1.0 / f for f in hertz], ".3g", "s"),
-        Column("Swings fade to a tenth in", fading, ".2g", "s"),
-        Column("Pad that presses most", [pads.get(name) for name in names]),
-        Column("Station pressed most", stations, unit="kN"),
-        Column("Cylinder, at most", _each(own, "cylinder force"), unit="kN"),
-        Column("Pin of the foot, at most", _each(own, "reaction, across and along"), unit="kN"),
-        Column("Outer fibre", [one and _stress(one) for one in fibres], unit="MPa"),
-        Column("Walls over a patch", [one and _stress(one) for one in walls], unit="MPa"),
-        Column("Damage of its life", damages, ".3g"),
+    at_start, at_most, extended = (
+        [_at_rest(rests) for rests in several]
+        for several in zip(*((one.rests[:1], one.rests[1:], one.drawn) for one in own), strict=True)
     )
-    rows = {column.heading.replace("\n", ", "): column.text for column in asked}
+    dynamic = [*map(_farthest, own, tips)]
+    travel = [farthest(x - x[0]) if x[0] else None for x in tips]
+    bending, plates = ([one and _stress(one) for one in several] for several in (fibres, walls))
+    rows_of_models = (
+        Column("Static tip deflection (t = 0)", at_start, ".1f", "mm"),
+        Column("Static tip deflection (maximum load)", at_most, ".1f", "mm"),
+        Column("Static tip deflection (end of telescoping)", extended, ".1f", "mm"),
+        Column("Maximum dynamic tip deflection (factor φ)", dynamic, unit="mm"),
+        # A motion that starts undeformed needs no initial state.
+        Column("Tip travel from t = 0", travel, ".1f", "mm"),
+        Column("Residual vibration of the tip", [_swings(one) for one in own], unit="mm"),
+        Column("Lateral tip deflection, maximum", _each(own, "lateral deflection"), unit="mm"),
+        Column("First natural frequency", hertz, ".3g", "Hz"),
+        Column("Natural period", [f and 1.0 / f for f in hertz], ".3g", "s"),
+        Column("Decay time to 10 %", decay_times, ".2g", "s"),
+        Column("Governing pad: force, pressure, utilisation", [pads.get(name) for name in names]),
+        Column("Contact force, maximum", stations, unit="kN"),
+        Column("Cylinder force, maximum", _each(own, "cylinder force"), unit="kN"),
+        Column("Foot pin reaction, maximum", _each(own, "reaction, across and along"), unit="kN"),
+        Column("Bending stress, maximum (utilisation)", bending, unit="MPa"),
+        Column("Plate stress at pads (patch mean, utilisation)", plates, unit="MPa"),
+        Column("Fatigue damage (Miner)", damages, ".3g"),
+    )
+    rows = {column.heading.replace("\n", ", "): column.text for column in rows_of_models}
     rows = {title: cells for title, cells in rows.items() if any(cell != NONE for cell in cells)}
     columns = [Column("", list(rows))]
     columns += [Column(name, [cells[i] for cells in rows.values()]) for i, name in enumerate(names)]
@@ -81,18 +87,18 @@ def trust_line(results: Results) -> str:
         return ""
     loose = [model.name for model in results.ran if not model.play_free and model.name != reference]
     offs = {name: off_at_rest(answers[reference], answers[name]) for name in loose}
-    told = [
+    deviations = [
         f"{name} {signed(f'{TO_PERCENT * off:+.2g}')} %"
         for name, off in offs.items()
         if off is not None
     ]
-    if not told:
+    if not deviations:
         return ""
     behind = [name for name in results.summary.models if name not in results.read_first]
-    more = f" Of {listed(behind)} tables and figures below tell." if behind else ""
+    more = f" For {listed(behind)} see the tables and figures below." if behind else ""
     return (
-        f"Held against {reference}, the tip at rest under the largest loads is off: "
-        f"{', '.join(told)}.{more}"
+        f"Deviation of the static tip deflection (maximum load) from {reference}: "
+        f"{', '.join(deviations)}.{more}"
     )
 
 
@@ -126,7 +132,7 @@ def strength_sentence(results: Results) -> str:
     own = results.summary.answers.models.get(first, ModelAnswers())
     pad = _hardest_pads(results).get(first)
     used: list[tuple[float, str]] = []
-    for what, most in (("walls beside what presses", _walls(own)), ("outer fibres", _fibres(own))):
+    for what, most in (("plates at pads", _walls(own)), ("outer fibres", _fibres(own))):
         if most is not None and most.part is not None:
             bears = f"{percent(most.part)} of their yield strength ({_place(most)})"
             used.append((most.part, f"{what} bear {bears}"))
@@ -157,9 +163,9 @@ def _not_given(results: Results, model: str) -> str:
 
 
 _SAID = {
-    "deflection at rest": "the tip at rest under the largest loads",
-    "deflection": "its farthest in motion",
-    "stress": "the largest stress of an outer fibre",
+    "deflection at rest": "the static tip deflection (maximum load)",
+    "deflection": "the maximum dynamic tip deflection",
+    "stress": "the maximum bending stress",
 }
 
 
@@ -234,17 +240,20 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     )
     yield f"{'; '.join(map(_model, models))}."
     yield "Tip: across the boom, from the straight line of the unloaded one."
-    if "Tip travels, mm" in rows:
-        yield "It travels: the farthest from where it is at t = 0."
+    if "Tip travel from t = 0, mm" in rows:
+        yield "Travel: the largest distance from its place at t = 0."
     if any("×" in cell for cells in rows.values() for cell in cells):
-        drawn = ", wherever it is drawn to" if results.case.driven else ""
-        yield f"×: so many times what is at rest under the largest loads{drawn}."
-    if "Tip swings while it is drawn, mm" in rows:
-        yield "It swings: about where it would rest; standing, where drives begin and end."
-    if "Swings fade to a tenth in, s" in rows:
+        extended = ", at any extension" if results.case.driven else ""
+        yield f"φ (×): maximum in motion over the static value under the maximum load{extended}."
+    if "Residual vibration of the tip, mm" in rows:
+        yield (
+            "Residual vibration: amplitude about the static deflection; standing: where drives "
+            "begin and end."
+        )
+    if "Decay time to 10 %, s" in rows:
         ratio = percent(results.case.damping.modal)
-        yield f"Swings fade: their amplitude, by the case's damping ratio of {ratio} alone."
-    if "Pad that presses most" in rows:
+        yield f"Decay time: of the amplitude, by the case's damping ratio of {ratio} alone."
+    if "Governing pad: force, pressure, utilisation" in rows:
         pads = [pad for joint in results.case.joints for pad in (joint.pad, *joint.pads) if pad]
         bears = _span(pad.allowable_pressure for pad in pads)
         yield f"Pad: one of a pair, at its peak{bears and f'; %: of the allowable {bears}'}."

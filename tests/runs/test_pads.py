@@ -133,14 +133,14 @@ def test_the_first_look_has_the_pad_that_presses_most(tmp_path: Path) -> None:
     columns = {column.heading: column for column in pads.columns}
     most = int(np.argmax([float(p) for p in columns["pressure\nMPa"].cells]))
     force, pressure = (columns[name].text[most] for name in ("peak force\nkN", "pressure\nMPa"))
-    lines = told["Pad that presses most"].split("\n")
+    lines = told["Governing pad: force, pressure, utilisation"].split("\n")
     assert lines[0] == f"{force} kN"
     assert lines[1].startswith(f"{pressure} MPa, ")
     where = columns["at\nm"].cells[most]
     face = {"above": "top", "below": "bottom"}[str(columns["side"].cells[most])]
     assert lines[2:] == ["beyond allowable", f"inner {face}, {where} m"]
-    assert told["Pad that presses most"] in table.strong
-    assert not any(asked.startswith("Station") for asked in told)
+    assert told["Governing pad: force, pressure, utilisation"] in table.strong
+    assert not any(asked.startswith("Contact force") for asked in told)
 
 
 @pytest.mark.parametrize("shim", [0.0, 2e-5, 1.0e-3])
