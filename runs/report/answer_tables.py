@@ -46,7 +46,7 @@ def play_table(results: Results) -> Table | None:
     if found is None:
         return None
     rows = found.numbers
-    added = ["next to nothing" if hardly(one) else amount(one.added, one.unit) for one in rows]
+    added = ["negligible" if hardly(one) else amount(one.added, one.unit) for one in rows]
     columns = (
         Column("", [_named(one.what, one.where) for one in rows]),
         Column("with play", [amount(one.played, one.unit) for one in rows]),
@@ -82,7 +82,7 @@ def _tilt_table(rests: dict[str, AtRest], as_extended: str) -> Table | None:
         Column("moves the tip", [tilt.tip for _, tilt in tilts], ".1f", "mm"),
     )
     note = "By play and by what is pressed in: of a shell, also by its walls beside them."
-    title = "At rest under the largest loads: what joints give way"
+    title = "Static under the maximum load: rotation of joints by play and local compliance"
     return Table(title, columns, (note + as_extended,), "tilts")
 
 
@@ -96,7 +96,7 @@ def _pressed_table(rests: dict[str, AtRest], as_extended: str) -> Table | None:
         if forces:
             columns.append(Column(name, [forces.get(place) for place in places], ".4g", "kN"))
     note = "Forces of stations, positive where the inner segment presses up, or to larger y."
-    title = "At rest under the largest loads: what presses"
+    title = "Static under the maximum load: contact forces"
     return Table(title, columns, (note + as_extended,), "pressed")
 
 
@@ -118,7 +118,7 @@ def _reaction_table(results: Results) -> Table | None:
         "Of beam elements, under the loads of t = 0; positive upwards, along the boom towards its "
         "tip.",
     )
-    return Table("At rest at t = 0: what holds the boom", columns, notes, "reactions")
+    return Table("Static at t = 0: support reactions", columns, notes, "reactions")
 
 
 def _unless_none(title: str, carried: list[float], form: str, unit: str) -> Iterator[Column]:
@@ -266,7 +266,7 @@ def stick_slip_table(results: Results) -> Table | None:
         "Friction is that of the mean force of each output step: where pads chatter faster than "
         "that, it sticks at other times, and a smaller output_step tells.",
     )
-    return Table("Drives that give way", columns, notes, "stick-slip")
+    return Table("Elastic drives: stick-slip", columns, notes, "stick-slip")
 
 
 def record_tables(results: Results) -> Iterator[Table]:

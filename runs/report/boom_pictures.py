@@ -147,10 +147,10 @@ def draw_boom(
         cax=sheet.axes(1110, 150, 420, 40),
         orientation="horizontal",
     )
-    bar.set_label(f"amount of deflection{side} (mm)")
+    bar.set_label(f"magnitude of deflection{side} (mm)")
     curve = sheet.axes(150, 85, 820, 150)
     curve.plot(time, tip, color=theme.FAINT, linewidth=2)
-    curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
+    curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip deflection (mm)")
     with stage(camera.pixels, part) as plotter:
         # Slightly behind the boom, where it would otherwise show through parts that hardly move.
         behind = view.edges_at(view.rest.points + np.array([0.0, 0.02, 0.0]))
@@ -177,7 +177,7 @@ def draw_boom(
             sheet.write(
                 instant.heading(scene),
                 f"{'seen from above; ' if side else ''}drawn: displacements and play × "
-                f"{view.scale:g}, sections × {SECTION_DRAWN:g}\ngrey: at rest"
+                f"{view.scale:g}, sections × {SECTION_DRAWN:g}\ngrey: undeformed"
                 f"{', as at t = 0' if scene.boom.driven else ''}"
                 f"{f'; signs: {signs}' if signs else ''}{pace}",
             )

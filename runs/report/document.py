@@ -149,8 +149,8 @@ def _found_of_models(results: Results) -> Iterator[str]:
             )
         if (error := model.mesh_error) is not None:
             yield (
-                f"{name}: where the segments touch, the walls give way by {percent(error, 2)} more "
-                "or less than on an infinitely fine mesh"
+                f"{name}: where the segments touch, the local compliance is within "
+                f"{percent(error, 2)} of that of an infinitely fine mesh"
             )
     for name, own in results.summary.answers.models.items():
         if (swing := own.swing) is None:
@@ -158,9 +158,9 @@ def _found_of_models(results: Results) -> Iterator[str]:
         levels = swing.where_begun, swing.where_ended
         ends = (number(None if level is None else TO_MILLI * level) for level in levels)
         yield (
-            f"{name}: drawn out at {number(swing.speed)} m/s in the mean the tip swings by "
-            f"{number(TO_MILLI * swing.tip)} mm, at rest by {' and '.join(ends)} mm where that "
-            "begins and ends"
+            f"{name}: residual vibration of the tip, telescoping at a mean "
+            f"{number(swing.speed)} m/s: {number(TO_MILLI * swing.tip)} mm; standing "
+            f"{' and '.join(ends)} mm where that begins and ends"
         )
 
 

@@ -163,9 +163,9 @@ class Pen:
         for axes in column if together else ():
             beside = axes.twinx()
             for (along, names), dashes in zip(together.items(), cycle(EXTENSIONS), strict=False):
-                label = f"{', '.join(names)} drawn out"
+                label = f"extension of {', '.join(names)}"
                 beside.plot(self.time, along, linestyle=dashes, label=label, **look)
-            beside.set_ylabel("drawn out (m)")
+            beside.set_ylabel("extension (m)")
             beside.grid(visible=False)
             beside.spines["right"].set_visible(True)
         return sheet, column
@@ -255,4 +255,4 @@ def of_start(case: Case) -> str:
 def of_rests(case: Case, rests: Iterable[AtRest]) -> str:
     """Return a sentence on the extension of the boom at rest; empty without telescoping."""
     times = [f"{time:g}" for time in sorted({rest.time for rest in rests})]
-    return f" Drawn out as it is at {listed(times)} s." if case.driven and times else ""
+    return f" Extension as at {listed(times)} s." if case.driven and times else ""

@@ -163,7 +163,8 @@ def draw_sections(scene: Scene, instant: Instant, overlap: Overlap) -> Image.Ima
         instant.heading(scene),
         f"sections at the stations; drawn: changes of shape × {scale:g}, "
         "without what moves and turns each section as a whole\n"
-        f"straight from node to node; dashed: at rest; largest change {TO_MILLI * largest:.2g} mm",
+        f"straight from node to node; dashed: undeformed; "
+        f"largest change {TO_MILLI * largest:.2g} mm",
     )
     return sheet.image()
 

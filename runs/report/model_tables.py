@@ -160,8 +160,8 @@ def law_table(results: Results) -> Table | None:
     if not all(joint.pad or joint.pads for _, joint, _ in found):
         notes.append(
             "Without slide pads the segments press in the corners of their boxes. Pads beside "
-            "them, on walls that give way, can move the first peak by a quarter and more: give the "
-            "pads their place (joint.pad)."
+            "them, where walls are locally compliant, can move the first peak by a quarter "
+            "and more: give the pads their place (joint.pad)."
         )
     return Table("Contact laws", columns, notes, "laws")
 
@@ -303,9 +303,7 @@ def _segments(card: CalibrationCard, names: str, count: int) -> Table:
     ]
     if any(beam.torsion is not None for beam in beams):
         columns.append(Column("G J", [beam.torsion for beam in beams], ".4g", "MN m²"))
-    notes = (
-        "What makes a shear-flexible beam give way as the shell does, far from what presses it.",
-    )
+    notes = ("What makes a shear-flexible beam as compliant as the shell, far from pads.",)
     title = f"The segments as beams, for {names}"
     return Table(title, columns, notes, f"calibrated-segments-{count}")
 
@@ -317,8 +315,8 @@ def _springs(card: CalibrationCard, names: str, count: int) -> Table:
         Column("spring", [spring.stiffness for spring in card.springs], ".4g", "MN/m"),
     )
     notes = (
-        "In another program put each between the beams in series with its gap: it is what both "
-        "walls give way there beyond the beams above.",
+        "In another program put each between the beams in series with its gap: it is the local "
+        "compliance of both walls there, beyond the beams above.",
     )
     title = f"The springs of the stations, for {names}"
     return Table(title, columns, notes, f"calibrated-springs-{count}")

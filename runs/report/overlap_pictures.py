@@ -44,9 +44,9 @@ from runs.report.sheet import (
 )
 from shell_model.stress.stresses import ShellStress
 
-# The clearance is drawn up to this part of the outer section's height; margin in m beside the
-# stations.
-CLEARANCE_DRAWN, MARGIN = 0.08, 0.6
+# The clearance, and the displacements of walls beside the stations relative to the outer segment,
+# are drawn up to these parts of the outer section's height; margin in m beside the stations.
+CLEARANCE_DRAWN, DISPLACEMENT_DRAWN, MARGIN = 0.08, 0.25, 0.6
 
 PIXELS = (SHEET[0], 625)
 
@@ -125,9 +125,19 @@ class OverlapView:
 
     @cached_property
     def scale(self) -> float:
-        """Magnification of displacements and play."""
+        """Magnification of displacements and play, limited by the larger of both."""
         height = 2.0 * self.scene.half_height(self.overlap.outer)
-        return round_scale(CLEARANCE_DRAWN * height / max(self.overlap.clearance, SAME_PLACE))
+        half = 0.5 * np.ptp(self.stations) + MARGIN
+        near = np.abs(self.scene.points[:, 0] - self.middle) <= half
+        near &= np.isin(self.scene.owner, self.numbers)
+        largest = max(float(np.abs(self._beside(time)[near]).max()) for time in self.times)
+        return round_scale(
+            height
+            * min(
+                CLEARANCE_DRAWN / max(self.overlap.clearance, SAME_PLACE),
+                DISPLACEMENT_DRAWN / max(largest, SAME_PLACE),
+            )
+        )
 
     @cached_property
     def width(self) -> float:
@@ -157,9 +167,12 @@ class OverlapView:
 
     def places(self, time: float) -> Array:
         """Return displayed places (num_points, 3) of the points at a time (s), in m."""
+        return self.scene.drawn(self._beside(time), self.scale, 1.0)
+
+    def _beside(self, time: float) -> Array:
+        """Return displacements (num_points, 3) in m relative to the outer segment."""
         between = (float(self.stations.min()), float(self.stations.max()))
-        moved = self.scene.beside(time, self.overlap.outer, between)
-        return self.scene.drawn(moved, self.scale, 1.0)
+        return self.scene.beside(time, self.overlap.outer, between)
 
     def flange(self, places: Array, segment: int, side: int) -> Array:
         """Return places (num_points, 3) of a flange in the plane of bending, from base to tip."""

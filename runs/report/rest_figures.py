@@ -21,12 +21,12 @@ from runs.report.figure_context import Figure, Pen, new_sheet, of_rests, of_star
 # Quantity → heading of its panel, and the conversion factor to its unit.
 _PANELS: Mapping[str, tuple[str, float]] = {
     "deflection": ("deflection (mm)", TO_MILLI),
-    "lateral": ("to the sides (mm)", TO_MILLI),
-    "normal": ("N (kN)", 1e-3),
-    "shear": ("V (kN)", 1e-3),
-    "moment": ("M (kN m)", 1e-3),
-    "lateral_moment": ("M to the sides (kN m)", 1e-3),
-    "torque": ("T (kN m)", 1e-3),
+    "lateral": ("lateral deflection (mm)", TO_MILLI),
+    "normal": ("normal force N (kN)", 1e-3),
+    "shear": ("shear force V (kN)", 1e-3),
+    "moment": ("bending moment M (kN m)", 1e-3),
+    "lateral_moment": ("lateral bending moment M (kN m)", 1e-3),
+    "torque": ("torque T (kN m)", 1e-3),
 }
 # Quantities of an envelope.
 _FORCES = ("normal", "shear", "moment", "lateral_moment", "torque")
@@ -63,14 +63,16 @@ def at_rest(pen: Pen) -> list[Figure]:
     if tied and not rests.keys() & set(pen.play_free):
         lines["without play"] = _rest_lines(tied[0], "without play", theme.PLAY_FREE)
     caption = (
-        "At rest under the largest loads: the line of the boom, and what its sections carry. "
+        "Static under the maximum load: deflection and section forces. "
         "Normal forces pull where they are positive, moments where they are pull at the top; "
         "where segments overlap each has its own."
         + of_start(pen.case)
         + of_rests(pen.case, rests.values())
     )
     far = max(rests.values(), key=lambda rest: abs(rest.tip)).tip
-    title = f"At rest under the largest loads: the tip at {signed(f'{TO_MILLI * far:.1f}')} mm"
+    title = (
+        f"Static deflection under the maximum load: the tip at {signed(f'{TO_MILLI * far:.1f}')} mm"
+    )
     return _stacked(pen, lines, "at-rest", title, caption)
 
 
@@ -115,7 +117,9 @@ def mode_shapes(pen: Pen) -> list[Figure]:
         f"The first modes of {name!r} at rest under the loads of t = 0, its joints pressed as they "
         "are then. Each segment has its colour; the height is arbitrary."
     )
-    return [pen.finish(sheet, None, "modes", "Modes of the boom as it works", caption, part="rest")]
+    return [
+        pen.finish(sheet, None, "modes", "Mode shapes with joints pressed", caption, part="rest")
+    ]
 
 
 def _moving(mode: Mode) -> str:

@@ -338,7 +338,7 @@ def describe_one(results: Results, path: Path) -> Figure:
     title, caption = {
         "boom": (
             "Boom",
-            f"The boom of {state}. Colour: amount of deflection{aside}; grey: unloaded; signs: "
+            f"The boom of {state}. Colour: magnitude of deflection{aside}; grey: undeformed; signs: "
             "supports, cylinders, masses and loads. Displacements and play are magnified by the "
             "factor above the picture.",
         ),

@@ -45,6 +45,8 @@ RC: dict[Any, Any] = {
     "axes.spines.right": False,
     "axes.grid": True,
     "axes.axisbelow": True,
+    # Numbers along axes are written in full, without an offset at the end of the axis.
+    "axes.formatter.useoffset": False,
     "axes.titlelocation": "left",
     "axes.titlesize": 11.0,
     "axes.titleweight": "bold",

@@ -31,8 +31,6 @@ from runs.sweep.quantities import DISTANCES, LEVELS, QUANTITIES, TIP_OFF, UNTIL
 from runs.sweep.residual_vibration import draw_swings
 
 CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
-# Numbers along axes are written in full, without an offset at the end of the axis.
-RC = {**theme.RC, "axes.formatter.useoffset": False}
 # Readable cells of a map along each axis.
 MOST_CELLS = 10
 # Above the first or below the second number, the values of a key are shown in another unit.
@@ -73,7 +71,7 @@ def draw(data: xr.Dataset, play_free: Sequence[str], folder: Path) -> None:
     data = in_shown_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
     strokes = _strokes(data, play_free)
-    with matplotlib.rc_context(RC):
+    with matplotlib.rc_context(theme.RC):
         if len(keys) == 2:
             for quantity in _changing(data):
                 _map(data, quantity, keys, folder)
@@ -148,7 +146,7 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
         }
         for mode in data["mode"].values
     }
-    with matplotlib.rc_context(RC):
+    with matplotlib.rc_context(theme.RC):
         sheet, panels = _lines(data[key], shown)
         for axes in panels:
             axes.set_ylim(bottom=0.0)
@@ -166,7 +164,7 @@ def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
     data = in_shown_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
     known = [one for one in DISTANCES if np.isfinite(data[one.name].values).any()]
-    with matplotlib.rc_context(RC):
+    with matplotlib.rc_context(theme.RC):
         if len(keys) > 1:
             for quantity in known:
                 _distance_maps(data, quantity, keys, reference, folder)

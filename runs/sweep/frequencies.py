@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
 NAME = "frequencies"
 MODES = 3
-# Number of frequencies in a terminal of 80 columns.
-SHOWN = 2
 JOINTS = ("pressed", "tied")
 
 
@@ -114,7 +112,7 @@ def table(data: xr.Dataset) -> Table:
     for key in rows:
         columns.append(Column(str(key).replace(".", ".\n"), [f"{x:g}" for x in rows[key]]))
     for joints in JOINTS:
-        for mode in data["mode"].values[:SHOWN]:
+        for mode in data["mode"].values:
             of_mode = stacked.sel(joints=joints, mode=mode).values
             cells = [float(f) if np.isfinite(f) else None for f in of_mode]
             columns.append(Column(f"{joints}\nmode {mode}", cells, ".4g"))

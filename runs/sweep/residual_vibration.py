@@ -90,14 +90,14 @@ def describe(name: str, swings: Swings) -> Iterator[str]:
         level, fastest = levels[end], fastest_within(swings, end)
         ends = dict.fromkeys(number(TO_MILLI * of) for of in (level.min(), level.max()))
         last = "the fastest here" if speed[-1] == swings.speed[-1] else "the fastest known"
-        rest = f"at rest {_ENDS[end][0]}, {' to '.join(ends)} mm"
+        rest = f"standing {_ENDS[end][0]}, {' to '.join(ends)} mm"
         if fastest is None:
             slow, least = speed[0], number(TO_MILLI * float(swing[0]))
-            yield f"{name}: swings more than {rest}, at {slow:.3g} m/s already: {least} mm"
+            yield f"{name}: vibration above that {rest}, at {slow:.3g} m/s already: {least} mm"
         elif fastest == speed[-1]:
-            yield f"{name}: swings no more than {rest}, up to {fastest:.3g} m/s, {last}"
+            yield f"{name}: vibration within that {rest}, up to {fastest:.3g} m/s, {last}"
         else:
-            yield f"{name}: swings no more than {rest}, up to {fastest:.3g} m/s"
+            yield f"{name}: vibration within that {rest}, up to {fastest:.3g} m/s"
 
 
 def draw_swings(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Path) -> None:
@@ -113,18 +113,18 @@ def draw_swings(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Pat
         return
     sheet, (axes,) = new_sheet(1, 4.6)
     for name, one in found.items():
-        line: dict[str, Any] = {"color": strokes[name].color, "label": f"{name}, drawn out"}
+        line: dict[str, Any] = {"color": strokes[name].color, "label": f"{name}, telescoping"}
         axes.plot(one.speed, TO_MILLI * one.swing, marker="o", markersize=4.0, **line)
         for end, level in one.levels.items():
             where, dashes = _ENDS[end]
-            line["label"] = f"{name}, at rest {where}"
+            line["label"] = f"{name}, standing {where}"
             axes.plot(one.speed, TO_MILLI * level, linestyle=dashes, linewidth=1.0, **line)
-    axes.set(xlabel="mean speed of the drive (m/s)", ylabel="swing of the tip (mm)")
+    axes.set(xlabel="mean speed of the drive (m/s)", ylabel="residual vibration of the tip (mm)")
     axes.set_ylim(bottom=0.0)
     handles, labels = axes.get_legend_handles_labels()
     sheet.legend(handles, labels, loc="outside lower left", ncols=1)
     lines = [line for name, one in found.items() for line in describe(name, one)]
-    sheet.suptitle("How fast it may be drawn out", x=0.02, ha="left", fontsize=12.0,
+    sheet.suptitle("Residual vibration over telescoping speed", x=0.02, ha="left", fontsize=12.0,
                    fontweight="bold")  # fmt: skip
     axes.set_title("\n".join(lines), fontsize=8.5, fontweight="normal", wrap=True)
     sheet.savefig(path)

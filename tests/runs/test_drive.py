@@ -304,7 +304,7 @@ def _check_rests(results: Results) -> None:
         [ended.tilts[0].tip],
     ]
     assert pressed.columns[1].cells == [one.force for one in ended.stations]
-    assert tilts.notes[0].endswith("beside them. Drawn out as it is at 0.2 s.")
+    assert tilts.notes[0].endswith("beside them. Extension as at 0.2 s.")
     # Both stand for too short to swing farther than they start.
     standing = [f"standing {1e3 * begun.tip:.1f}", f"and {1e3 * ended.tip:.1f}"]
     assert str(cells["Residual vibration of the tip, mm"]).splitlines()[1:] == standing
@@ -324,8 +324,8 @@ def _check_figures(figures: Sequence[Figure]) -> None:
     """Check the figures of drives. Reference: figures of a run with a drive."""
     drawn = {figure.path.stem: figure for figure in figures}
     # By hand, the play's lever, and elements: 7 mm of bending.
-    assert drawn["at-rest"].title == "At rest under the largest loads: the tip at 140.4 mm"
-    assert "Drawn out as it is at 0.2 s." in drawn["at-rest"].caption
+    assert drawn["at-rest"].title == "Static deflection under the maximum load: the tip at 140.4 mm"
+    assert "Extension as at 0.2 s." in drawn["at-rest"].caption
     assert drawn["drive"].title.startswith("Drive of inner: up to ")
     assert "work of load and drive" in drawn["energies"].caption
     residual = drawn["energy-residual"].title

@@ -69,7 +69,7 @@ def test_every_run_tells_how_near_its_reduction_is() -> None:
     assert printed(print_models, results).splitlines()[-2:] == [
         "shell: 110 coordinates answer as the full shell does, contacts within 2 × 10⁻⁹, tip and "
         "head within 8 × 10⁻⁷",
-        "shell: where the segments touch, the walls give way by 0.83 % more or less than on an "
+        "shell: where the segments touch, the local compliance is within 0.83 % of that of an "
         "infinitely fine mesh",
     ]
 
@@ -81,6 +81,6 @@ def test_a_boom_that_is_drawn_out_tells_how_its_tip_swings() -> None:
     summary = summary_of({"beam": model_summary()})
     summary.answers = Answers({"beam": ModelAnswers(swing=swing)})
     assert printed(print_models, Results(case, xr.Dataset(), summary)).splitlines()[-1] == (
-        "beam: drawn out at 0.8 m/s in the mean the tip swings by 18.2 mm, at rest by 18.1 and – "
-        "mm where that begins and ends"
+        "beam: residual vibration of the tip, telescoping at a mean 0.8 m/s: 18.2 mm; standing "
+        "18.1 and – mm where that begins and ends"
     )

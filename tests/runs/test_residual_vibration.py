@@ -165,24 +165,24 @@ def test_a_chart_says_how_fast_it_may_be_drawn_out(
     """Reference: by hand."""
     data = swept()
     assert list(describe("beam", swings(data)["beam"])) == [
-        "beam: swings no more than at rest where it begins, 30 mm, up to 1.33 m/s",
-        "beam: swings no more than at rest where it ends, 60 mm, up to 2 m/s, the fastest here",
+        "beam: vibration within that standing where it begins, 30 mm, up to 1.33 m/s",
+        "beam: vibration within that standing where it ends, 60 mm, up to 2 m/s, the fastest here",
     ]
     tight = data.assign(swing_where_begun=0.1 * data["swing_where_begun"])
     assert next(describe("beam", swings(tight)["beam"])) == (
-        "beam: swings more than at rest where it begins, 3 mm, at 1 m/s already: 20 mm"
+        "beam: vibration above that standing where it begins, 3 mm, at 1 m/s already: 20 mm"
     )
     # Of a speed whose standing boom has no motion the level is not known, and the others count.
     gap = xr.concat([swept(), swept().isel(key=[2]).assign_coords(key=[1.2])], "key")
     gap["swing_where_ended"][-1], gap["drive_speed"][-1] = np.nan, 3.0
     assert list(describe("beam", swings(gap)["beam"]))[1] == (
-        "beam: swings no more than at rest where it ends, 60 mm, up to 2 m/s, the fastest known"
+        "beam: vibration within that standing where it ends, 60 mm, up to 2 m/s, the fastest known"
     )
     # Booms that are drawn to different places swing about as much as each does there, or less.
     elsewhere = data.assign(swing_where_begun=data["swing"] + 0.01)
     assert next(describe("beam", swings(elsewhere)["beam"])) == (
-        "beam: swings no more than at rest where it begins, 30 to 60 mm, up to 2 m/s, the fastest "
-        "here"
+        "beam: vibration within that standing where it begins, 30 to 60 mm, up to 2 m/s, the "
+        "fastest here"
     )
     saved: list[Sheet] = []
     monkeypatch.setattr(Sheet, "savefig", lambda sheet, path: saved.append(sheet))

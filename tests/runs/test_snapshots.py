@@ -53,7 +53,7 @@ def results(*shells: str) -> Results:
         (
             "boom-largest-force.png",
             "Boom: largest contact force at 0.250 s",
-            "amount of deflection",
+            "magnitude of deflection",
         ),
         ("boom-0.25s.png", "Boom: 0.250 s", "tip at +50.0 mm"),
         ("overlap-first-contact.png", "Overlap: first contact at 0.250 s", "cut open"),
@@ -66,7 +66,7 @@ def results(*shells: str) -> Results:
             "+50.0 mm to the side",
         ),
         ("overlap-above-1s.png", "Overlap, seen from above: 1.000 s", "Blue: outer"),
-        ("boom-largest-deflection.png", "Boom: largest deflection of the tip", "grey: unloaded"),
+        ("boom-largest-deflection.png", "Boom: largest deflection of the tip", "grey: undeformed"),
         ("motion.gif", "Boom in motion, first 1 s", "in 5 s"),
     ],
 )
