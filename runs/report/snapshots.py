@@ -338,9 +338,9 @@ def describe_one(results: Results, path: Path) -> Figure:
     title, caption = {
         "boom": (
             "Boom",
-            f"The boom of {state}. Colour: magnitude of deflection{aside}; grey: undeformed; signs: "
-            "supports, cylinders, masses and loads. Displacements and play are magnified by the "
-            "factor above the picture.",
+            f"The boom of {state}. Colour: magnitude of deflection{aside}; grey: undeformed; "
+            "signs: supports, cylinders, masses and loads. Displacements and play are magnified "
+            "by the factor above the picture.",
         ),
         "stress": (
             f"Stress at the overlap{which}",
