@@ -176,7 +176,7 @@ def draw_boom(
             )
             sheet.write(
                 instant.heading(scene),
-                f"{'seen from above; ' if side else ''}drawn: displacements and play × "
+                f"{'seen from above; ' if side else ''}displacements and play × "
                 f"{view.scale:g}, sections × {SECTION_DRAWN:g}\ngrey: undeformed"
                 f"{', as at t = 0' if scene.boom.driven else ''}"
                 f"{f'; signs: {signs}' if signs else ''}{pace}",

@@ -238,7 +238,7 @@ class OverlapView:
             return "no contact here"
         interval = float(np.diff(self.motion["time"].values[:2])[0])
         return (
-            f"forces: mean of the last {1.0e3 * interval:.3g} ms; peak: what a blow reaches in it, "
+            f"forces: mean of the last {1.0e3 * interval:.3g} ms; peak: of an impact in it, "
             "for microseconds"
         )
 
@@ -268,7 +268,7 @@ def draw_overlap(
         view.draw(sheet, instant.time, places, halves)
         sheet.write(
             instant.heading(scene),
-            f"{aside}cut open; drawn: play and what moves beside {outer} × {view.scale:g}, "
+            f"{aside}cut open; play and displacements relative to {outer} × {view.scale:g}, "
             f"walls not to scale\n{view.explain_forces(instant.time)}",
         )
         yield sheet.image()

@@ -111,7 +111,7 @@ def mode_shapes(pen: Pen) -> list[Figure]:
                 if what == _moving(mode):
                     axes.plot(shape.x, values, color=theme.segment_color(number), linewidth=1.8)
         axes.set_title(f"{numerals.number(mode.frequency, 4)} Hz, {mode.way}")
-        axes.set_yticks([])
+        axes.set_yticks([0.0])
     panels[-1].set_xlabel("x along the boom (m)")
     caption = (
         f"The first modes of {name!r} at rest under the loads of t = 0, its joints pressed as they "

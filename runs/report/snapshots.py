@@ -354,9 +354,9 @@ def describe_one(results: Results, path: Path) -> Figure:
         "overlap": (
             f"Overlap{which}",
             f"The overlap{which} of {state}, cut open. Blue: outer segment; orange: inner one; "
-            "arrows: forces of the inner one on the outer one. Play, and what moves beside the "
-            "outer segment, are magnified by the factor above the picture; a peak is what a blow "
-            "reaches, for microseconds.",
+            "arrows: forces of the inner one on the outer one. Play, and displacements relative "
+            "to the outer segment, are magnified by the factor above the picture; a peak is that "
+            "of an impact, for microseconds.",
         ),
     }[seen["view"]]
     if lines[model] == "surface" and seen["view"] != "boom":

@@ -9,7 +9,8 @@ speed, the residual vibration over the speed has a chart of its own.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from itertools import product
 from pathlib import Path
 from typing import Any, Final, Literal, TypeVar
@@ -56,6 +57,9 @@ _ENDS: Final = ("bottom", "top")
 # Size in inches of a map beside another one.
 _COLUMN = 3.6
 
+# Keys whose parts in order are no term of the field.
+_WORDS = {"gravity.acceleration": "gravity", "damping.modal": "modal damping"}
+
 _Word = TypeVar("_Word", bound=str)
 _SUPERSCRIPT = str.maketrans({"^": "", "2": "²", "3": "³", "4": "⁴", "n": "ⁿ"})
 
@@ -83,9 +87,9 @@ def draw(data: xr.Dataset, play_free: Sequence[str], folder: Path) -> None:
                 sheet, panels = _lines(data[keys[0]], _of_models(part, changing, strokes))
                 for axes, quantity in zip(panels, changing, strict=True):
                     axes.set_yscale("log" if quantity.logarithmic else "linear")
-                where = "".join(f", {key} {value:g}" for key, value in there.items())
+                where = "".join(f", {_quantity(key)} {value:g}" for key, value in there.items())
                 name = f"sweep-lines-{count}.png" if there else "sweep-lines.png"
-                _finish(sheet, f"Sweep over {keys[0]}{where}", folder / name)
+                _finish(sheet, f"Sweep over {_quantity(keys[0])}{where}", folder / name)
         if len(keys) == 1:
             draw_swings(data, strokes, folder / "sweep-swing.png")
 
@@ -150,7 +154,7 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
         sheet, panels = _lines(data[key], shown)
         for axes in panels:
             axes.set_ylim(bottom=0.0)
-        _finish(sheet, f"First frequencies over {key}", path)
+        _finish(sheet, f"First natural frequencies over {_quantity(key)}", path)
 
 
 def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
@@ -177,7 +181,7 @@ def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
                     axes.axhline(level, color=theme.INK, linewidth=0.8, linestyle=":")
                 axes.set_yscale("log")
                 axes.set_yticks(LEVELS, [f"{level:g}" for level in LEVELS])
-            title = f"Distance from {reference} over {keys[0]}"
+            title = f"Distance from {reference} over {_quantity(keys[0])}"
             _finish(sheet, title, folder / "sweep-distances.png")
 
 
@@ -280,7 +284,7 @@ def _distance_maps(
             if quantity.name == TIP_OFF:
                 _say_until_when(axes, part[UNTIL].transpose(y, x), float(data[UNTIL].max()))
             axes.label_outer()
-        where = ", ".join(f"{key} {part[key].item():g}" for key in before)
+        where = ", ".join(f"{_quantity(key)} {part[key].item():g}" for key in before)
         column[0].set_title("\n".join(filter(None, [where, column[0].get_title(loc="left")])))
     sheet.colorbar(shade, ax=grid, label=f"{quantity.title} (%)", aspect=40)
     if quantity.name == TIP_OFF and data[UNTIL].min() < data[UNTIL].max():
@@ -332,10 +336,21 @@ def _edges(values: Array) -> Array:
     return np.asarray(np.exp(bounds)) if _spans_decades(values) else bounds
 
 
+def _quantity(key: Hashable) -> str:
+    """Return the words of a key: ``joint[1].play`` as *play, joint 1*."""
+    if key in _WORDS:
+        return _WORDS[str(key)]
+    *path, what = re.sub(r"\[(\d+)\]", r" \1", str(key)).replace("_", " ").split(".")
+    part = " ".join(path)
+    if part in ("", "joint"):
+        return what
+    return f"{what}, {part}" if part[-1].isdigit() else f"{part} {what}"
+
+
 def _scale_axis(axes: Axes, which: Literal["x", "y"], values: xr.DataArray) -> None:
-    """Label an axis with its key and unit; logarithmic where values span decades."""
+    """Label an axis with its quantity and unit; logarithmic where values span decades."""
     unit, places = values.attrs["units"], values.values
-    label = str(values.name) + ("" if unit == "1" else f" ({unit.translate(_SUPERSCRIPT)})")
+    label = _quantity(values.name) + ("" if unit == "1" else f" ({unit.translate(_SUPERSCRIPT)})")
     axes.set(**{f"{which}label": label})
     if _spans_decades(places):
         axes.set(**{f"{which}scale": "log"})

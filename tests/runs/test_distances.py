@@ -189,8 +189,8 @@ def test_maps_over_a_third_key_stand_side_by_side(against: Plan, sheets: list[Sh
     output.write(sweeping, outcomes, Path("out"))
     sheet = sheets[-1]
     assert [axes.get_title(loc="left") for axes in sheet.axes[:4]] == [
-        "joint.friction 0.1\nkantorovich-4: 0.5 to 50 %",
-        "joint.friction 0.2\nkantorovich-4: 2 to 3 %",
+        "friction 0.1\nkantorovich-4: 0.5 to 50 %",
+        "friction 0.2\nkantorovich-4: 2 to 3 %",
         "beam-fe-tied: 0.05 to 5 %",
         "beam-fe-tied: 0.2 to 0.3 %",
     ]

@@ -86,7 +86,7 @@ def test_maps_are_labelled_where_they_were_computed(planned: Planned, sheets: li
     charts(planned("joint.play=0.006:0.014:3", "segment[2].load=20,40,45"), CHARTED[:1])
     axes = sheets[0].axes[0]
     assert axes.get_xlabel() == ""
-    assert sheets[0].axes[1].get_xlabel() == "joint.play (mm)"
+    assert sheets[0].axes[1].get_xlabel() == "play (mm)"
     np.testing.assert_allclose(axes.get_xticks(), [6.0, 10.0, 14.0])
     assert axes.get_yticks().tolist() != [20.0, 40.0, 45.0]
 
@@ -146,7 +146,7 @@ def test_lines_are_in_shown_units_with_gaps(planned: Planned, sheets: list[Sheet
         for quantity in QUANTITIES
         if quantity.name in CHARTED
     ]
-    assert sheet.axes[-1].get_xlabel() == "joint.play (mm)"
+    assert sheet.axes[-1].get_xlabel() == "play (mm)"
     for title, factor in (("tip amplitude (mm)", 1e3), ("contact force (kN)", 1e-3)):
         lines = {str(line.get_label()): line for line in panels[title].get_lines()}
         assert list(lines) == FAST
