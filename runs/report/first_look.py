@@ -9,9 +9,7 @@ from typing import NamedTuple
 
 from geometry.arrays import Array
 from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
-from runs.case.schema import Model
 from runs.pipeline.answers import Added, ModelAnswers
-from runs.pipeline.at_rest import AtRest
 from runs.pipeline.model_quality import off_at_rest
 from runs.pipeline.moved import Peak
 from runs.pipeline.pads import PressedPad
@@ -44,7 +42,7 @@ def first_table(results: Results) -> Table | None:
     stations = [None if hardest else _largest(one, "contact force", at="\nat {} m") for one in own]
     damages = [_life_damage(one) for one in own]
     at_start, at_most, extended = (
-        [_at_rest(rests) for rests in several]
+        [max((rest.tip for rest in rests), key=abs, default=None) for rests in several]
         for several in zip(*((one.rests[:1], one.rests[1:], one.drawn) for one in own), strict=True)
     )
     dynamic = [*map(_farthest, own, tips)]
@@ -238,7 +236,12 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
         (model for model in results.ran if model.name in results.read_first),
         key=lambda model: results.read_first.index(model.name),
     )
-    yield f"{'; '.join(map(_model, models))}."
+    described = (
+        f"{model.name}: {model.kind}, {model.describe()}"
+        + (", without play" if model.play_free else "")
+        for model in models
+    )
+    yield f"{'; '.join(described)}."
     yield "Tip: across the boom, from the straight line of the unloaded one."
     if "Tip travel from t = 0, mm" in rows:
         yield "Travel: the largest distance from its place at t = 0."
@@ -269,20 +272,10 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
         )
 
 
-def _model(model: Model) -> str:
-    """Return the description of a model."""
-    tied = ", without play" if model.play_free else ""
-    return f"{model.name}: {model.kind}, {model.describe()}{tied}"
-
-
 def _span(values: Iterable[float | None]) -> str:
     """Return the range from minimum to maximum in MPa; empty where no value is known."""
     known = sorted({TO_MEGA * value for value in values if value is not None})
     return f"{' to '.join(map(number, dict.fromkeys((known[0], known[-1]))))} MPa" if known else ""
-
-
-def _at_rest(rests: Sequence[AtRest]) -> float | None:
-    return max((rest.tip for rest in rests), key=abs, default=None)
 
 
 def _farthest(own: ModelAnswers, tip: Array) -> str:

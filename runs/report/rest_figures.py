@@ -12,7 +12,6 @@ from geometry.arrays import Array
 from geometry.typography import TO_MILLI, signed
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.at_rest import AtRest
-from runs.pipeline.modes import Mode
 from runs.pipeline.moved import Envelope
 from runs.report import numerals, theme
 from runs.report.charts import Chart, Curve
@@ -30,6 +29,8 @@ _PANELS: Mapping[str, tuple[str, float]] = {
 }
 # Quantities of an envelope.
 _FORCES = ("normal", "shear", "moment", "lateral_moment", "torque")
+# Kind of a mode → its largest displacement.
+_DISPLACED = {"bending in z": "deflection", "bending in y": "lateral", "twist": "twist"}
 # Number of modes in the figure.
 MODES = 4
 
@@ -107,9 +108,8 @@ def mode_shapes(pen: Pen) -> list[Figure]:
     sheet, panels = new_sheet(len(modes), 0.9 + 1.15 * len(modes))
     for axes, mode in zip(panels, modes, strict=True):
         for number, shape in enumerate(mode.shapes):
-            for what, values in shape.curves.items():
-                if what == _moving(mode):
-                    axes.plot(shape.x, values, color=theme.segment_color(number), linewidth=1.8)
+            if (values := shape.curves.get(_DISPLACED[mode.way])) is not None:
+                axes.plot(shape.x, values, color=theme.segment_color(number), linewidth=1.8)
         axes.set_title(f"{numerals.number(mode.frequency, 4)} Hz, {mode.way}")
         axes.set_yticks([0.0])
     panels[-1].set_xlabel("x along the boom (m)")
@@ -120,11 +120,6 @@ def mode_shapes(pen: Pen) -> list[Figure]:
     return [
         pen.finish(sheet, None, "modes", "Mode shapes with joints pressed", caption, part="rest")
     ]
-
-
-def _moving(mode: Mode) -> str:
-    """Return the direction of the largest displacement of a mode shape."""
-    return {"bending in z": "deflection", "bending in y": "lateral", "twist": "twist"}[mode.way]
 
 
 def _read_first(pen: Pen) -> Iterator[tuple[str, ModelAnswers]]:
