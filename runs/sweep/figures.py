@@ -153,6 +153,9 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
     with matplotlib.rc_context(theme.RC):
         sheet, panels = _lines(data[key], shown)
         for axes in panels:
+            # Margins of the range from zero on: those of an almost constant line would clip it.
+            axes.update_datalim([(0.0, 0.0)], updatex=False)
+            axes.autoscale_view(scalex=False)
             axes.set_ylim(bottom=0.0)
         _finish(sheet, f"First natural frequencies over {_quantity(key)}", path)
 
