@@ -150,7 +150,7 @@ def draw_boom(
     bar.set_label(f"magnitude of deflection{side} (mm)")
     curve = sheet.axes(150, 85, 820, 150)
     curve.plot(time, tip, color=theme.FAINT, linewidth=2)
-    curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip deflection (mm)")
+    curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
     with stage(camera.pixels, part) as plotter:
         # Slightly behind the boom, where it would otherwise show through parts that hardly move.
         behind = view.edges_at(view.rest.points + np.array([0.0, 0.02, 0.0]))
