@@ -134,15 +134,15 @@ def quality_notes(summary: Summary, answers: Answers, duration: float) -> Iterat
         if (error := model.reduction_errors.get("contact_compliance")) is not None:
             yield QualityNote(
                 "reduction",
-                f"{name}: its {model.modes} coordinates answer contacts as the full shell does, "
-                f"within {error:.1g} of what gives way there.",
+                f"{name}: its {model.modes} coordinates have the full shell's local compliance at "
+                f"contacts within {error:.1g}.",
             )
     for name, model in models.items():
         if model.mesh_error is not None:
             yield QualityNote(
                 "mesh",
-                f"{name}: where something presses, its walls give way by "
-                f"{_percent(model.mesh_error)} more or less than on an infinitely fine mesh.",
+                f"{name}: at contacts its local compliance is within "
+                f"{_percent(model.mesh_error)} of that of an infinitely fine mesh.",
             )
     name, worst = max(models.items(), key=lambda entry: entry[1].energy_residual)
     yield QualityNote(
@@ -270,6 +270,6 @@ def _numerical(summary: Summary) -> Iterator[str]:
     for name, model in summary.models.items():
         if (error := model.mesh_error or 0.0) > POOR:
             yield (
-                f"caution: the mesh of {name} errs by {TO_PERCENT * error:.2g} % of what the walls "
-                "give way where the segments touch; give a smaller mesh_size"
+                f"caution: the mesh of {name} errs by {TO_PERCENT * error:.2g} % of the local "
+                "compliance where the segments touch; give a smaller mesh_size"
             )

@@ -93,8 +93,8 @@ def _pads(case: Case, boom: Boom) -> Iterator[str]:
             stiffness = joint.contact.slope_at(force)
             if stiffness < bending:
                 yield (
-                    f"the contacts of {inner.name!r} in {model.name!r} give way by "
-                    f"{1.0 / stiffness:.3g} m/N, more than the segment itself as a cantilever, "
+                    f"the compliance of the contacts of {inner.name!r} in {model.name!r} is "
+                    f"{1.0 / stiffness:.3g} m/N, above that of the segment as a cantilever, "
                     f"{1.0 / bending:.3g} m/N; check their stiffness"
                 )
 

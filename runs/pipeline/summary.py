@@ -142,10 +142,10 @@ class BeamStiffness(SummaryTable):
 
 
 class StationSpring(SummaryTable):
-    """What a pressed place gives way beyond the beams, in series with the contact there.
+    """The local compliance of a pressed place beyond the beams, in series with the contact there.
 
     ``x`` is its station's in m, ``side`` that of the outer segment's walls which the inner one
-    presses, ``stiffness`` in N/m; none where nothing gives way.
+    presses, ``stiffness`` in N/m; none where it is rigid.
     """
 
     x: float

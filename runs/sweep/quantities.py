@@ -65,7 +65,7 @@ QUANTITIES = (
     Metric("first_frequency", "Hz", "first frequency", 1.0, "Hz"),
     Metric("mass", "kg", "mass", 1.0, "kg"),
     Metric("settling_time", "s", "settling time", 1.0, "s"),
-    Metric("drive_force", "N", "largest force of a drive that gives way", TO_KILO, "kN"),
+    Metric("drive_force", "N", "largest force of an elastic drive", TO_KILO, "kN"),
     Metric("drive_slip", "m", "longest slip on a drive", TO_MILLI, "mm"),
     *(one for kind in _DECLARING for one in metrics(kind).values() if one.name),
 )

@@ -302,7 +302,7 @@ POOR_REDUCTION = (
     "--modes auto"
 )
 POOR_MESH = (
-    "caution: the mesh of {} errs by 34 % of what the walls give way where the segments touch; "
+    "caution: the mesh of {} errs by 34 % of the local compliance where the segments touch; "
     "give a smaller mesh_size"
 )
 

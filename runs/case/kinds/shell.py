@@ -69,8 +69,8 @@ class Shell(ModelTable):
     mesh_size: Length = 0.1
     """the edge length of the triangles in m, far from all that presses"""
     contact_tolerance: ContactTolerance = 0.01
-    """the relative error of how much pressed walls give way, which makes the mesh finer there, or
-    'any' for a uniform mesh"""
+    """the relative error of the local compliance of pressed walls, which makes the mesh finer
+    there, or 'any' for a uniform mesh"""
     modes: Modes | None = None
     """the number of coordinates of each segment, at most, or 'auto' for as many as the tolerance
     asks; unless given, those of three moments at four frequencies, which answer the contacts within
