@@ -134,10 +134,10 @@ class Sine:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class PiecewiseLinear:
     """Linear interpolation between points, constant outside them.
 
-    >>> gust = pt.Table(times=[0.0, 1.0, 3.0], values=[0.0, 2.0, 0.0])
+    >>> gust = pt.PiecewiseLinear(times=[0.0, 1.0, 3.0], values=[0.0, 2.0, 0.0])
     >>> gust(np.array([0.5, 2.0, 9.0])), gust.peak
     (array([1., 1., 0.]), 2.0)
 
@@ -154,7 +154,7 @@ class Table:
     def __post_init__(self) -> None:
         if len(self.times) != len(self.values) or len(self.times) == 0:
             raise ValueError(
-                f"a table needs one value for each time, got {len(self.values)} for "
+                f"a history needs one value for each time, got {len(self.values)} for "
                 f"{len(self.times)}"
             )
         if not np.isfinite([*self.times, *self.values]).all():
@@ -169,7 +169,7 @@ class Table:
 
     @property
     def kinks(self) -> Sequence[float]:
-        """Times of the table in s."""
+        """Its times in s."""
         return self.times
 
     def __call__(self, time: Array) -> Array:
@@ -213,7 +213,7 @@ class Excitation:
         if not isinstance(history, History):
             raise ValueError(
                 "a history needs kinks, peak and fastest beside its values; give a Step, Ramp, "
-                f"Sine, Table or other History, got {type(history).__name__}"
+                f"Sine, PiecewiseLinear or other History, got {type(history).__name__}"
             )
         kinks = np.asarray(history.kinks, dtype=np.float64)
         if not np.isfinite(kinks).all() or (np.diff(kinks) <= 0.0).any():

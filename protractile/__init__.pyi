@@ -37,7 +37,7 @@ from dynamics.drive.travel import Stroke as Stroke
 from dynamics.excitation import Ramp as Ramp
 from dynamics.excitation import Sine as Sine
 from dynamics.excitation import Step as Step
-from dynamics.excitation import Table as Table
+from dynamics.excitation import PiecewiseLinear as PiecewiseLinear
 from geometry.axial import Thrust as Thrust
 from geometry.load import Load as Load
 from geometry.load import Moment as Moment

@@ -32,7 +32,7 @@ from geometry.boom import SAME_PLACE, Boom
 from geometry.telescoping import Course, courses
 from shell_model.boom_shell import BoomShell
 from shell_model.reduction.coordinates import BoomCoordinates, exact_product
-from shell_model.reduction.pad_springs import SLOW, Answers, answers, springs, squared
+from shell_model.reduction.pad_springs import SLOW, PadResponses, pad_responses, springs, squared
 from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
@@ -164,11 +164,11 @@ class TelescopingShell:
         self._boom, self._full, self._test = boom, full, test
         self._sampled = _sample_rows(boom, full, size)
         self.reduced: list[ReducedSegment] = []
-        self._answers: list[Answers] = []
+        self._answers: list[PadResponses] = []
         for number in range(len(full.shells)):
             own = reduce(number, self._columns(number, _EVERY))
             read = self._read(number)
-            self._answers.append(answers(full.foldings[number], read.columns, test))
+            self._answers.append(pad_responses(full.foldings[number], read.columns, test))
             self.reduced.append(self._kept(number, own, read))
         # Springs represent the response beyond the modes of the unloaded boom.
         free = [replace(one, geometric=0.0 * one.geometric) for one in self.reduced]

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from dynamics.excitation import Excitation, Ramp, Sine, Table
+from dynamics.excitation import Excitation, PiecewiseLinear, Ramp, Sine
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
@@ -27,16 +27,18 @@ FORCE = 10.0
 DUHAMEL: Held = ("analytic", "Duhamel's integral of each line", 1.0e-8)
 
 _MANY = np.linspace(0.011, 2.9, 1500)
-KINKED: Mapping[str, Ramp | Table] = {
+KINKED: Mapping[str, Ramp | PiecewiseLinear] = {
     "a ramp of 0.71 s": Ramp(0.71),
-    "kinks at 0.7 and 1.2 s": Table((0.0, 0.7, 1.2), (0.5, 1.0, -0.5)),
-    "kinks at 0.303, 0.311 and 0.7 s": Table((0.0, 0.303, 0.311, 0.7), (0.0, 1.0, -2.0, 0.3)),
-    "a table of 1500 points": Table(_MANY.tolist(), np.sin(40.0 * _MANY).tolist()),
-    "a rise within 1 ms": Table((0.507, 0.508), (0.0, 1.0)),
+    "kinks at 0.7 and 1.2 s": PiecewiseLinear((0.0, 0.7, 1.2), (0.5, 1.0, -0.5)),
+    "kinks at 0.303, 0.311 and 0.7 s": PiecewiseLinear(
+        (0.0, 0.303, 0.311, 0.7), (0.0, 1.0, -2.0, 0.3)
+    ),
+    "a table of 1500 points": PiecewiseLinear(_MANY.tolist(), np.sin(40.0 * _MANY).tolist()),
+    "a rise within 1 ms": PiecewiseLinear((0.507, 0.508), (0.0, 1.0)),
 }
 
 
-def response(omega: float, history: Ramp | Table, time: Array) -> Array:
+def response(omega: float, history: Ramp | PiecewiseLinear, time: Array) -> Array:
     """Return the closed form (num_time,) of 1 kg from rest under 1 N times a history.
 
     The mass is on a spring ω² in N/m. The terms are a constant load from t = 0 on, and at each kink
@@ -60,7 +62,7 @@ def response(omega: float, history: Ramp | Table, time: Array) -> Array:
     return np.asarray(way)
 
 
-def masses(history: Ramp | Sine | Table) -> GapSystem:
+def masses(history: Ramp | Sine | PiecewiseLinear) -> GapSystem:
     """Create a mass for each of ``OMEGAS`` under 1 N times a history, each observed by its ω."""
     n = len(OMEGAS)
     return GapSystem(

@@ -15,7 +15,7 @@ import numpy as np
 
 from dynamics.drive.stick_slip import DriveMotion, ElasticDrive, follow
 from dynamics.drive.travel import SCurve, Stroke
-from dynamics.excitation import Table as Ways
+from dynamics.excitation import PiecewiseLinear
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.typography import TO_MILLI, TO_PERCENT
@@ -124,7 +124,7 @@ def _one_way(stiffness: float) -> list[float]:
     plan = MotionPlan.of(build(case, boom, case.models[0]).system, case, case.models[0])
     asked = _moved(plan)
     told, data = asked.data.attrs["stick_slip"]["drive_force"], asked.data
-    gone = Ways(tuple(asked.time), tuple((data["drawn_out"] - data["drive_lag"]).values))
+    gone = PiecewiseLinear(tuple(asked.time), tuple((data["drawn_out"] - data["drive_lag"]).values))
     (travel,) = plan.motion.system.travels
     along = replace(plan.motion.system, travels=[replace(travel, history=gone, pulled=None)])
     felt = _moved(replace(plan, motion=replace(plan.motion, system=along)))

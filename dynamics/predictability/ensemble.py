@@ -29,7 +29,7 @@ KEPT = ("tip", "head", "contact_force")
 
 
 @dataclass(frozen=True, slots=True)
-class Member:
+class EnsembleMember:
     """One run of an ensemble, as sent to a worker.
 
     Args:
@@ -46,7 +46,7 @@ class Member:
     integrator: Integrator
     kept: Sequence[str] = KEPT
 
-    def within(self, part: float) -> Member:
+    def within(self, part: float) -> EnsembleMember:
         """Return the first part of the run, in whole output steps."""
         outputs = max(1, round(part * self.motion.outputs))
         return replace(
@@ -94,7 +94,7 @@ def check_varied(motion: Motion, vary: Vary) -> None:
 
 
 def run_members(
-    members: Sequence[Member],
+    members: Sequence[EnsembleMember],
     executor: Executor | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> list[xr.Dataset]:
@@ -125,7 +125,7 @@ def run_members(
     return [run.result() for run in runs]
 
 
-def _run(member: Member) -> xr.Dataset:
+def _run(member: EnsembleMember) -> xr.Dataset:
     run = member.integrator(changed(member.motion, member.vary, 1.0 + member.change))
     return _kept(run, member.kept)
 
@@ -183,7 +183,7 @@ def integrate_ensemble(
     changes = perturbations(members, relative, seed)
     unchanged = integrator(motion) if unchanged is None else unchanged
     same = integrator.like(unchanged)
-    others = [Member(motion, vary, change, same) for change in changes[1:]]
+    others = [EnsembleMember(motion, vary, change, same) for change in changes[1:]]
     runs = [_kept(unchanged, KEPT), *run_members(others, executor, progress)]
     ensemble = xr.concat(runs, "member", combine_attrs="drop_conflicts")
     ensemble.attrs = {

@@ -26,7 +26,7 @@ import xarray as xr
 from dynamics.arrays import Array
 from dynamics.integrator import AdaptiveStep, Integrator
 from dynamics.motion import Motion
-from dynamics.predictability.ensemble import Member, Vary, check_varied, run_members
+from dynamics.predictability.ensemble import EnsembleMember, Vary, check_varied, run_members
 from dynamics.trajectory import Trajectory
 
 # Parts of the range at which two curves are distinguishable, and at which they are unrelated.
@@ -185,7 +185,7 @@ def measure_horizons(
     integrator = integrator or AdaptiveStep()
     unchanged = integrator(motion) if unchanged is None else unchanged
     sizes = np.sort(np.asarray(relatives, dtype=float))
-    one = Member(motion, vary, 0.0, integrator.like(unchanged), (observer,))
+    one = EnsembleMember(motion, vary, 0.0, integrator.like(unchanged), (observer,))
     number = np.arange(partners)
     parts = (-1.0) ** number * (1.0 - 0.5 * number / partners)
     *smaller, largest = [
@@ -197,7 +197,7 @@ def measure_horizons(
     def told(before: float, part: float) -> None:
         progress(before + _STAGE * part)
 
-    def parted(groups: Sequence[Sequence[Member]], done: float) -> Array:
+    def parted(groups: Sequence[Sequence[EnsembleMember]], done: float) -> Array:
         """Return horizons (num_groups, num_shares) in s; ``done`` is the part done before."""
         found = np.full((len(groups), len(shares)), np.nan)
         for number, part in enumerate(_PARTS):

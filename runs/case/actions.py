@@ -9,7 +9,7 @@ from dataclasses import replace
 from scipy.special import cosdg, sindg
 
 from dynamics.contact import PowerContact
-from dynamics.excitation import History, Ramp, Released, Sine, Step, Table, Thrown
+from dynamics.excitation import History, PiecewiseLinear, Ramp, Released, Sine, Step, Thrown
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, BoomError, Cylinder, Direction, Segment, Stop
 from geometry.load import Load, Moment, PartialLoad, Turn
@@ -315,7 +315,7 @@ def _history(where: str, table: HistoryTable) -> History:
     if table.table is not None:
         times, factors = zip(*table.table, strict=True)
         try:
-            return Table(times, factors)
+            return PiecewiseLinear(times, factors)
         except ValueError as error:
             raise BoomError(f"{where}.table", str(error)) from None
     return Step()

@@ -14,6 +14,7 @@ from geometry.section import Side
 from runs.case.drive import DriveTable
 from runs.case.limits import (
     MOST_STATIONS,
+    CaseTable,
     Exponent,
     Few,
     Flag,
@@ -22,7 +23,6 @@ from runs.case.limits import (
     NotNegative,
     Number,
     Positive,
-    Table,
     Text,
     fault_at,
     left_out,
@@ -107,7 +107,7 @@ Forces = Annotated[
 ]
 
 
-class RestitutionTable(Table):
+class RestitutionTable(CaseTable):
     """How much of its speed a blow gives back."""
 
     coefficient: Annotated[float, Field(strict=True, gt=0.0, le=1.0), In("1")]
@@ -116,7 +116,7 @@ class RestitutionTable(Table):
     """the speed of the impact in m/s at which it holds"""
 
 
-class PadTable(Table):
+class PadTable(CaseTable):
     """A slide pad beside a corner: a patch of the inner segment's wall."""
 
     length: Length
@@ -165,7 +165,7 @@ class SlidePadTable(PadTable):
         return SlidePad(*covered, self.side, self.modulus * self.area / self.thickness, self.shim)
 
 
-class JointTable(Table):
+class JointTable(CaseTable):
     """Where an inner segment slides in an outer one, with play."""
 
     outer: str
@@ -291,7 +291,7 @@ class JointTable(Table):
         return PADS_OF_SIDE * sum(pad.stiffness for pad in pads)
 
 
-class ContactTable(Table):
+class ContactTable(CaseTable):
     """The contact law that one model uses in all joints, instead of the joints' own."""
 
     force_table: Forces | None = None

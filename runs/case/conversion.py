@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, TypeVar
 
-from runs.case.limits import Table
+from runs.case.limits import CaseTable
 from runs.case.schema import Case
 from runs.case.units import System, scaled
 
-_Table = TypeVar("_Table", bound=Table)
+_Table = TypeVar("_Table", bound=CaseTable)
 
 
 def in_si(case: Case) -> Case:
@@ -47,7 +47,7 @@ def _converted(table: _Table, system: System, exponent: float = 2.0) -> _Table:
 
 def _scaled(value: Any, sizes: Sequence[Fraction], system: System, exponent: float) -> Any:
     """Return a value of a table with all its numbers scaled; several sizes apply to each row."""
-    if isinstance(value, Table):
+    if isinstance(value, CaseTable):
         return _converted(value, system, exponent)
     if isinstance(value, dict):
         return {key: _scaled(item, sizes, system, exponent) for key, item in value.items()}

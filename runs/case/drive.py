@@ -9,11 +9,19 @@ import numpy as np
 from pydantic import Field
 
 from dynamics.drive.travel import SCurve, Stroke
-from dynamics.excitation import History, followed
-from dynamics.excitation import Table as TimeTable
+from dynamics.excitation import History, PiecewiseLinear, followed
 from geometry.boom import BoomError
 from geometry.joint import Carrier, Drive
-from runs.case.limits import MOST_TIMES, In, NotNegative, Number, Positive, Table, Text, described
+from runs.case.limits import (
+    MOST_TIMES,
+    CaseTable,
+    In,
+    NotNegative,
+    Number,
+    Positive,
+    Text,
+    described,
+)
 from runs.case.places import PlaceTable
 
 # Least duration in s and least travel in m: a shorter time is an input error.
@@ -27,7 +35,7 @@ Ways = Annotated[
 ]
 
 
-class DriveTable(Table):
+class DriveTable(CaseTable):
     """How an inner segment is drawn out, or in, while the boom moves."""
 
     travel: Annotated[Number, In("m")] | None = None
@@ -103,7 +111,7 @@ class DriveTable(Table):
                 raise BoomError(f"{where}.{key}", "table is given; leave one of them out")
         assert self.table is not None
         try:
-            history = TimeTable(*zip(*self.table, strict=True))
+            history = PiecewiseLinear(*zip(*self.table, strict=True))
         except ValueError as error:
             raise BoomError(f"{where}.table", str(error)) from None
         start = float(history(np.zeros(())))

@@ -42,7 +42,7 @@ def _on_one_line(schema: JsonSchemaValue) -> None:
         rule["description"] = " ".join(rule["description"].split())
 
 
-class Table(BaseModel):
+class CaseTable(BaseModel):
     """A table of the case file: nothing but its own keys, and not changed once read."""
 
     model_config = ConfigDict(
@@ -87,13 +87,13 @@ def _said(parts: Iterable[Any]) -> Iterator[In]:
             yield from _said(get_args(part))
 
 
-def fault_at(table: Table, fault: str | PydanticCustomError, *keys: str) -> ValidationError:
+def fault_at(table: CaseTable, fault: str | PydanticCustomError, *keys: str) -> ValidationError:
     """Return an error at a key, for validators of a whole table, whose own errors name no key."""
     at = [InitErrorDetails(type=fault, loc=(k,), input=getattr(table, k)) for k in keys]
     return ValidationError.from_exception_data(type(table).__name__, at)
 
 
-def left_out(table: Table, given: str, *keys: str) -> ValidationError:
+def left_out(table: CaseTable, given: str, *keys: str) -> ValidationError:
     """Return a validator's error for keys that repeat another one."""
     what = {"what": f"{given} is given; leave one of them out"}
     return fault_at(table, PydanticCustomError("unsuitable", "{what}", what), *keys)

@@ -10,10 +10,10 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator
 from pydantic_core import PydanticCustomError, PydanticKnownError
 
-from runs.case.limits import In, NotNegative, Number, Table
+from runs.case.limits import CaseTable, In, NotNegative, Number
 
 
-class PlaceTable(Table):
+class PlaceTable(CaseTable):
     """A distance from an end: of a segment, or of the overlap of a joint's."""
 
     tail: Annotated[NotNegative, In("m")] | None = None

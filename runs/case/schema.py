@@ -23,6 +23,7 @@ from runs.case.limits import (
     MOST_SEGMENTS,
     MOST_STATIONS,
     MOST_TIMES,
+    CaseTable,
     Count,
     Exponent,
     Few,
@@ -34,7 +35,6 @@ from runs.case.limits import (
     Number,
     Part,
     Positive,
-    Table,
     Text,
     fault_at,
 )
@@ -44,7 +44,7 @@ from runs.case.units import System, SystemName
 from runs.paper.statements import CaseKeys
 
 
-class TimeTable(Table):
+class TimeTable(CaseTable):
     """How long, and how finely reported."""
 
     duration: Annotated[Positive, In("s")]
@@ -57,7 +57,7 @@ class TimeTable(Table):
     """the part of the deflections' range by which the step may change them"""
 
 
-class EnsembleTable(Table):
+class EnsembleTable(CaseTable):
     """Every model with play once more, many times, with data changed a little."""
 
     members: Annotated[int, Field(strict=True, ge=2, le=MOST_MEMBERS)]
@@ -70,7 +70,7 @@ class EnsembleTable(Table):
     """what is changed, all of it by one factor"""
 
 
-class StopTable(Table):
+class StopTable(CaseTable):
     """A rest on the ground that a segment may touch across a play."""
 
     segment: str
@@ -90,7 +90,7 @@ class StopTable(Table):
     the box's height unless given"""
 
 
-class CylinderTable(Table):
+class CylinderTable(CaseTable):
     """A luffing cylinder: a spring between a lug of a segment and a point of the ground."""
 
     segment: str
@@ -113,7 +113,7 @@ class CylinderTable(Table):
 Times = Annotated[tuple[tuple[Number, Number], ...], In("s", "1")]
 
 
-class HistoryTable(Table):
+class HistoryTable(CaseTable):
     """How something goes with time: at once and kept, unless one of these is given."""
 
     ramp: Annotated[Positive, In("s")] | None = None
@@ -170,7 +170,7 @@ class LoadTable(HistoryTable):
         return super().units_of(key, exponent)
 
 
-class AxialTable(Table):
+class AxialTable(CaseTable):
     """A force along the boom, constant, that presses it towards the base: a hoist rope, say."""
 
     segment: str | None = None
@@ -185,7 +185,7 @@ class AxialTable(Table):
     """the mass in kg that the rope carries; the payload's unless given"""
 
 
-class PayloadTable(Table):
+class PayloadTable(CaseTable):
     """A mass at the tip."""
 
     mass: Annotated[Positive, In("kg")]
@@ -195,7 +195,7 @@ class PayloadTable(Table):
     unless given, or that of the table gravity"""
 
 
-class GravityTable(Table):
+class GravityTable(CaseTable):
     """By what everything weighs."""
 
     acceleration: Annotated[NotNegative, In("m/s^2")] = 9.80665
@@ -216,7 +216,7 @@ class BaseTable(HistoryTable):
     amount: ClassVar[str] = "acceleration"
 
 
-class VelocityTable(Table):
+class VelocityTable(CaseTable):
     """How a segment moves at t = 0, as a rigid body would."""
 
     bare: ClassVar[str] = "z"
@@ -244,7 +244,7 @@ Velocity = Annotated[
 ]
 
 
-class StartTable(Table):
+class StartTable(CaseTable):
     """The state at t = 0."""
 
     state: Literal["rest", "equilibrium"] = "rest"
@@ -258,7 +258,7 @@ class StartTable(Table):
         return self.state == "equilibrium"
 
 
-class ObserveTable(Table):
+class ObserveTable(CaseTable):
     """What is recorded of every model besides the ends of the segments."""
 
     name: Name
@@ -272,7 +272,7 @@ class ObserveTable(Table):
     the rotation of the cross-section; in space the lateral deflection and the twist"""
 
 
-class DampingTable(Table):
+class DampingTable(CaseTable):
     """Damping of the boom."""
 
     modal: Annotated[float, Field(strict=True, ge=0.0, lt=1.0), In("1")] = 0.0
@@ -283,7 +283,7 @@ class DampingTable(Table):
     """Rayleigh's factor of the stiffness in s"""
 
 
-class LifeTable(Table):
+class LifeTable(CaseTable):
     """What the stresses of a run are held against for fatigue."""
 
     detail_category: Annotated[Positive, In("1")] | None = None
@@ -301,7 +301,7 @@ else:
     Model = Annotated[reduce(or_, KINDS.values()), Field(discriminator="kind")]
 
 
-class CaseHeading(Table):
+class CaseHeading(CaseTable):
     """What a case is called, and its units."""
 
     title: Text

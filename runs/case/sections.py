@@ -12,10 +12,10 @@ from pydantic import Discriminator, Field, Tag
 from geometry.polygon import closed_polygon
 from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import BoxSection, Section
-from runs.case.limits import MOST_FACETS, Few, In, Length, Number, Table
+from runs.case.limits import MOST_FACETS, CaseTable, Few, In, Length, Number
 
 
-class ShapeTable(Table):
+class ShapeTable(CaseTable):
     """What every shape's table has."""
 
     shape: str

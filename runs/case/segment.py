@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from runs.case.limits import (
+    CaseTable,
     Few,
     In,
     Length,
@@ -15,7 +16,6 @@ from runs.case.limits import (
     NotNegative,
     Number,
     Positive,
-    Table,
     fault_at,
     left_out,
 )
@@ -23,7 +23,7 @@ from runs.case.places import End, Place
 from runs.case.sections import AnySection
 
 
-class MaterialTable(Table):
+class MaterialTable(CaseTable):
     """Isotropic linear elasticity: the case's for all segments, or a segment's own."""
 
     youngs_modulus: Annotated[Positive, In("Pa")]
@@ -36,7 +36,7 @@ class MaterialTable(Table):
     """the yield strength in Pa, beside which a run shows stresses"""
 
 
-class SupportTable(Table):
+class SupportTable(CaseTable):
     """A place where the ground holds a segment; in space it holds sideways and in twist too."""
 
     bare: ClassVar[str] = "x"
@@ -57,7 +57,7 @@ class SupportTable(Table):
     cylinder or axial forces"""
 
 
-class MassTable(Table):
+class MassTable(CaseTable):
     """A mass on a segment."""
 
     x: Place
@@ -66,7 +66,7 @@ class MassTable(Table):
     """the mass in kg"""
 
 
-class CollarTable(Table):
+class CollarTable(CaseTable):
     """A doubler around a segment; the walls' mid-surfaces stay where they are."""
 
     span: tuple[Place, Place]
@@ -75,7 +75,7 @@ class CollarTable(Table):
     """the thickness in m that it adds to all walls"""
 
 
-class DiaphragmTable(Table):
+class DiaphragmTable(CaseTable):
     """A plate that closes a segment's box, welded to its walls."""
 
     x: Place
@@ -95,7 +95,7 @@ Support = Annotated[
 ]
 
 
-class SegmentTable(Table):
+class SegmentTable(CaseTable):
     """One box of the boom."""
 
     name: Name

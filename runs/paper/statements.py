@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from runs.case.limits import Few, Table
+from runs.case.limits import CaseTable, Few
 
 StatementId = Literal["S1", "S2", "S3", "S4", "S5", "S6", "S7", "S8", "S9", "S10", "S11"]
 STATEMENTS: dict[StatementId, str] = {
@@ -31,7 +31,7 @@ STATEMENTS: dict[StatementId, str] = {
 SURVEY_FILE, THEN_FILE = "readings.json", "then.json"
 
 
-class CaseKeys(Table):
+class CaseKeys(CaseTable):
     """What a case says of the paper."""
 
     statements: Annotated[tuple[StatementId, ...], Few] = ()

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.signal import find_peaks
 
 from dynamics.failure import NumericsError
-from dynamics.predictability.ensemble import Member, Vary, run_members
+from dynamics.predictability.ensemble import EnsembleMember, Vary, run_members
 from dynamics.predictability.horizon import SHARES, horizon
 from geometry.arrays import Array
 from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT
@@ -245,7 +245,7 @@ def comparable_until(
     vary: Vary = "load" if plan.motion.system.largest_load.any() else "velocity"
     try:
         same = plan.integrator.like(plan.trajectory())
-        (run,) = run_members([Member(plan.motion, vary, CHANGE, same, ("tip",))])
+        (run,) = run_members([EnsembleMember(plan.motion, vary, CHANGE, same, ("tip",))])
     except NumericsError:
         # Differences that one time step more or less decides are not compared.
         return float(time[0])

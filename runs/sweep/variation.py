@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from runs.case.limits import Table
+from runs.case.limits import CaseTable
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.units import scaled
@@ -123,13 +123,13 @@ def unit_of(place: Place, case: Case) -> str:
     here: Any = case
     units: tuple[str, ...] = ()
     for step in place.steps:
-        if isinstance(here, Table):
+        if isinstance(here, CaseTable):
             names = {field.alias or name: name for name, field in type(here).model_fields.items()}
             units = here.units_of(names[str(step)])
             here = getattr(here, names[str(step)])
         else:
             here = here[step]
-    if isinstance(here, Table) and here.bare:
+    if isinstance(here, CaseTable) and here.bare:
         units = here.units_of(here.bare)
     return units[0] if len(units) == 1 and units[0] != "1" else ""
 

@@ -39,7 +39,7 @@ _POINTS = 4
 _Point = tuple[Side, float, Reading]
 
 
-class _Touch(NamedTuple):
+class _PadContact(NamedTuple):
     """Pairs of points of a pad, and the sliding of the pad."""
 
     points: Sequence[_Point]
@@ -207,7 +207,7 @@ def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
 
 def _touch(
     pad: Pad, corners: Sequence[CornerLines], walls: Sequence[WallPoints], line: ContactLine
-) -> _Touch:
+) -> _PadContact:
     """Return the rows of a pad. Collective."""
     ends = pad.joint.inner, pad.joint.outer
     read = _PadReadings(
@@ -219,21 +219,21 @@ def _touch(
             approach = read.at_corners(pad.direction, pad.inner, pad.outer)
         else:
             approach = read.over_patch(pad.patch, pad.side, pad.half)
-        return _Touch([(pad.side, pad.weight, approach)], slide)
+        return _PadContact([(pad.side, pad.weight, approach)], slide)
     if pad.patch is not None:
         points = []
         for side in (pad.side,) if pad.side else _SIDES:
             right, left = (read.over_patch(pad.patch, side, half) for half in (1, -1))
             points.append((side, pad.weight, 0.5 * right + 0.5 * left))
         if pad.side:
-            return _Touch(points, points[0][2])
+            return _PadContact(points, points[0][2])
     elif line == "across":
         points = list(read.across())
     else:
         points = [(side, 1.0, read.at_corners("z", (0.0, side), (0.0, side))) for side in _SIDES]
     # Both flanges together slide as their mean does.
     first, *others = (0.5 * weight * approach for _, weight, approach in points)
-    return _Touch(points, sum(others, first))
+    return _PadContact(points, sum(others, first))
 
 
 def _check_line(boom: Boom, line: ContactLine) -> None:

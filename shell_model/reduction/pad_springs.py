@@ -30,7 +30,7 @@ SLOW, _FASTEST = 50.0, 10000.0
 _NOTHING = 1.0e-4
 
 
-class Answers(NamedTuple):
+class PadResponses(NamedTuple):
     """Responses of the full model to rows of a segment, (num_columns, num_columns).
 
     Args:
@@ -44,7 +44,7 @@ class Answers(NamedTuple):
     tested: Array
 
 
-def answers(folding: Folding, columns: Array, test: float) -> Answers:
+def pad_responses(folding: Folding, columns: Array, test: float) -> PadResponses:
     """Return responses to columns (num_owned, num_columns) at ``SLOW`` and ``test`` Hz.
 
     Collective.
@@ -64,7 +64,7 @@ def answers(folding: Folding, columns: Array, test: float) -> Answers:
         return np.array([*slow, tested])
 
     start = np.zeros((3, columns.shape[1], columns.shape[1]))
-    return Answers(*folding.sum_families(columns, start, of_family))
+    return PadResponses(*folding.sum_families(columns, start, of_family))
 
 
 def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:

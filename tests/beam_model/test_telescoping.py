@@ -21,7 +21,7 @@ from dynamics.arrays import Array
 from dynamics.contact import PowerContact
 from dynamics.drive.travel import SCurve, Stroke, Together
 from dynamics.equilibrium import equilibrium
-from dynamics.excitation import History, Table
+from dynamics.excitation import History, PiecewiseLinear
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
@@ -168,7 +168,7 @@ def test_the_ledger_of_the_papers_boom(paper_boom: Boom) -> None:
 
 def test_out_and_in_again(paper_boom: Boom) -> None:
     """Reference: analytic, the same boom at rest: what never touches swings on as it did."""
-    there_and_back = Table([0.0, 0.2, 0.4], [0.0, 4.0, 0.0])
+    there_and_back = PiecewiseLinear([0.0, 0.2, 0.4], [0.0, 4.0, 0.0])
     boom = telescope(paper_boom, 0.0, Drive(there_and_back, DRIVE.carriers))
     boom = replace(boom, segments=tuple(replace(one, load=0.0) for one in boom.segments))
     system = finite_element_system(touching(boom, LAW), element_length=1.0)
@@ -200,7 +200,7 @@ def driven(history: History, least: float = 0.0) -> Drive:
         (lambda boom: telescope(boom, 0.0, driven(SCurve(-5.5, 5.0))),
          "joints[0].drive: draws 'inner' in by 5.5 m; it must be at most 5 m, where it is wholly "
          "in 'outer'"),
-        (lambda boom: telescope(boom, 0.0, driven(Table([0.0, 1.0], [0.0, 0.0]))),
+        (lambda boom: telescope(boom, 0.0, driven(PiecewiseLinear([0.0, 1.0], [0.0, 0.0]))),
          "joints[0].drive: draws 'inner' nowhere; leave it out"),
         (lambda boom: telescope(boom, 0.0, DRIVE, tied=True),
          "joints[0].drive: the joint is tied, and nothing slides; leave it out"),

@@ -20,7 +20,7 @@ from dynamics.failure import NumericsError
 from dynamics.integrator import AdaptiveStep, FixedStep, Integrator
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import (
-    Member,
+    EnsembleMember,
     Vary,
     changed,
     check_varied,
@@ -219,7 +219,7 @@ def test_refuses_what_is_no_ensemble(
 def test_the_beginning_of_a_run_is_that_of_the_whole_run(part: float) -> None:
     """Reference: the whole run."""
     motion = Motion(CHAOTIC, 2.0, 1e-2)
-    whole = Member(motion, "load", 0.0, FixedStep(1e-3), ("gap", "contact_force"))
+    whole = EnsembleMember(motion, "load", 0.0, FixedStep(1e-3), ("gap", "contact_force"))
     some, all_ = run_members([whole.within(part), whole])
     assert some.sizes["time"] == 1 + round(part * whole.motion.outputs)
     for name in whole.kept:

@@ -12,7 +12,7 @@ import pytest
 
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
-from dynamics.excitation import Excitation, History, Ramp, Sine, Step, Table, followed
+from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine, Step, followed
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
@@ -35,7 +35,7 @@ def test_histories_by_hand() -> None:
     assert Ramp(2.0)(time).tolist() == [0.0, 0.0, 0.25, 0.5, 1.0]
     assert Sine(0.5)(time) == pytest.approx([-1.0, 0.0, 1.0, 0.0, 0.0], abs=1e-15)
     assert Sine(0.5, np.pi / 2.0)(time) == pytest.approx([0.0, 1.0, 0.0, -1.0, -1.0], abs=1e-15)
-    table = Table((0.0, 1.0, 2.0), (1.0, -3.0, 0.5))
+    table = PiecewiseLinear((0.0, 1.0, 2.0), (1.0, -3.0, 0.5))
     assert table(time) == pytest.approx([1.0, 1.0, -1.0, -3.0, 0.5], abs=1e-15)
     assert [h.peak for h in (Step(), Ramp(2.0), Sine(0.5), table)] == [1.0, 1.0, 1.0, 3.0]
     assert [h.fastest for h in (Step(), Ramp(2.0), Sine(0.5), table)] == [0.0, 0.0, np.pi, 0.0]
@@ -46,7 +46,7 @@ def test_histories_by_hand() -> None:
 def test_what_is_followed_has_both_ends() -> None:
     """Reference: analytic; kinks too near to an end to tell a slope from are beside it."""
     kinks = (1.0e-9, 2.5 + 1.0e-9, 5.0 - 1.0e-9)
-    times = followed([Table(kinks, (0.0, 1.0, 0.0))], 5.0)
+    times = followed([PiecewiseLinear(kinks, (0.0, 1.0, 0.0))], 5.0)
     assert times[[0, 1, -2, -1]].tolist() == [0.0, kinks[0], kinks[2], 5.0]
     assert kinks[1] in times
     assert 2.5 not in times
@@ -63,7 +63,7 @@ def test_a_step_is_a_load(one_mass: OneMass) -> None:
     assert two.data.identical(one.data)
 
 
-KINKS = {**KINKED, "a jump": Table((0.507, 0.507 + 1.0e-6), (0.0, 1.0))}
+KINKS = {**KINKED, "a jump": PiecewiseLinear((0.507, 0.507 + 1.0e-6), (0.0, 1.0))}
 
 
 @pytest.mark.parametrize("step", [2.0e-2, 1.0e-3, 1.0e-4])
@@ -88,7 +88,9 @@ def test_the_line_that_stands_for_a_history() -> None:
     first = first / w + (np.sin(w * after) - np.sin(w * before)) / w**2
     assert mean == pytest.approx(integral / h, rel=2e-7)
     assert change == pytest.approx(12.0 * first / h**2, rel=2e-5)
-    mean, change = moments(Table((0.05, 0.05 + 1e-12), (0.0, 1.0)), np.array([0.0, 0.2, 0.4]))
+    mean, change = moments(
+        PiecewiseLinear((0.05, 0.05 + 1e-12), (0.0, 1.0)), np.array([0.0, 0.2, 0.4])
+    )
     assert mean == pytest.approx([0.75, 1.0])
     assert change == pytest.approx([12.0 * 0.75 * 0.125, 0.0], abs=1e-9)
 
@@ -121,7 +123,7 @@ def test_a_sine_against_its_closed_form(one_mass: OneMass, dashpot: float) -> No
 def test_excitations_add_up() -> None:
     """Reference: analytic, superposition over five modes and three loads."""
     system = replace(masses(Sine(1.1)), load=np.linspace(0.3, -0.2, 5), damping=np.full(5, 1.5))
-    push = Excitation(np.linspace(-0.5, 4.0, 5), Table((0.0, 0.7, 0.9), (0.0, 1.0, -0.4)))
+    push = Excitation(np.linspace(-0.5, 4.0, 5), PiecewiseLinear((0.0, 0.7, 0.9), (0.0, 1.0, -0.4)))
     parts = [*system.excitations, push]
     dead = replace(system, load=np.zeros(5))
     together, alone, *single = (
@@ -149,7 +151,7 @@ class Own:
 
 def test_a_history_of_one_s_own() -> None:
     """Reference: the same as a table."""
-    system = masses(Table((0.0, 1.0, 3.0), (1.0, 1.0, -1.0)))
+    system = masses(PiecewiseLinear((0.0, 1.0, 3.0), (1.0, 1.0, -1.0)))
     own = replace(system, excitations=[Excitation(np.ones(len(OMEGAS)), Own())])
     runs = [FixedStep(0.01)(Motion(one, 2.0, 0.03)) for one in (own, system)]
     np.testing.assert_allclose(runs[0].states, runs[1].states, rtol=1e-12, atol=1e-14)
@@ -161,15 +163,19 @@ def test_a_history_of_one_s_own() -> None:
         (Ramp, (0.0,), "duration must be finite and positive, got 0.0 s"),
         (Sine, (-1.0,), "frequency must be finite and positive, got -1.0 Hz"),
         (Sine, (1.0, float("inf")), "phase must be finite, got inf rad"),
-        (Table, ((), ()), "a table needs one value for each time, got 0 for 0"),
-        (Table, ((0.0, 1.0), (1.0,)), "a table needs one value for each time, got 1 for 2"),
-        (Table, ((0.0, 0.0), (1.0, 2.0)), "times must rise"),
-        (Table, ((0.0, 1.0), (1.0, float("nan"))), "times and values must be finite"),
+        (PiecewiseLinear, ((), ()), "a history needs one value for each time, got 0 for 0"),
+        (
+            PiecewiseLinear,
+            ((0.0, 1.0), (1.0,)),
+            "a history needs one value for each time, got 1 for 2",
+        ),
+        (PiecewiseLinear, ((0.0, 0.0), (1.0, 2.0)), "times must rise"),
+        (PiecewiseLinear, ((0.0, 1.0), (1.0, float("nan"))), "times and values must be finite"),
         (
             Excitation,
             (np.ones(1), np.cos),
             "a history needs kinks, peak and fastest beside its values; give a Step, Ramp, Sine, "
-            "Table or other History, got ufunc",
+            "PiecewiseLinear or other History, got ufunc",
         ),
         (
             Excitation,

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from dynamics.contact import PowerContact
-from dynamics.excitation import Excitation, Step, Table
+from dynamics.excitation import Excitation, PiecewiseLinear, Step
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 
@@ -50,7 +50,8 @@ def test_friction_excitations_and_directions_are_optional() -> None:
     assert tuple(system.station_directions) == ("z", "z")
     assert system.largest_load.tolist() == [1.0, 2.0, 3.0]
     excited = GapSystem(
-        **parts() | {"excitations": [Excitation(np.array([0.0, -1.0, 2.0]), Table([0.0], [-3.0]))]}
+        **parts()
+        | {"excitations": [Excitation(np.array([0.0, -1.0, 2.0]), PiecewiseLinear([0.0], [-3.0]))]}
     )
     assert excited.largest_load.tolist() == [1.0, 5.0, 9.0]
 

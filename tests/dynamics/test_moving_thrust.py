@@ -14,7 +14,7 @@ from dynamics.contact import PowerContact
 from dynamics.drive.row_table import MovingThrust, RowTable
 from dynamics.drive.travel import SCurve, Travel
 from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Table
+from dynamics.excitation import PiecewiseLinear
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.kernels.moving_thrusts import add_thrust_forces, thrust_arrays, thrust_energies
 from dynamics.motion import Motion
@@ -47,7 +47,7 @@ def softer(s: float) -> np.ndarray:
     return np.asarray(0.5 * s * FORCE * total)
 
 
-def pressed_along(history: SCurve | Table) -> GapSystem:
+def pressed_along(history: SCurve | PiecewiseLinear) -> GapSystem:
     """Six modes on a soft contact, whose row stays where it is."""
     row = np.array([[0.1, -0.2, 0.3, 0.2, 0.1, -0.3]])
     table = RowTable(np.array([-1.0, 2.0]), np.array([[row, 0 * row, 0 * row, 0 * row]]))

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from dynamics.arrays import Array
 from dynamics.drive.stick_slip import DriveMotion, ElasticDrive, follow
 from dynamics.drive.travel import SCurve, Stroke
-from dynamics.excitation import Table
+from dynamics.excitation import PiecewiseLinear
 
 MASS, STIFFNESS, FRICTION = 500.0, 1.0e5, 1000.0
 OMEGA = np.sqrt(STIFFNESS / MASS)
@@ -201,7 +201,7 @@ def test_friction_that_changes() -> None:
 def test_a_drive_that_goes_back_and_forth() -> None:
     """Reference: analytic. Quasi-static it lags by R/k on the way out and is as far ahead on the
     way in; with nothing between sticking and slipping it neither overshoots nor swings."""
-    way = Table((0.0, 10.0, 20.0), (0.0, 0.5, 0.0))
+    way = PiecewiseLinear((0.0, 10.0, 20.0), (0.0, 0.5, 0.0))
     time = np.linspace(0.0, 20.0, 4001)
     found = follow(replace(damped(0.3), sticking=1.0), way, time, np.full(time.size, FRICTION))
     assert found.drive_lag[1900] == pytest.approx(FRICTION / STIFFNESS, rel=1e-6)

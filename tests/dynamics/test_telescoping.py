@@ -16,7 +16,7 @@ from dynamics.contact import ContactLaw, PowerContact
 from dynamics.drive.row_table import RowTable
 from dynamics.drive.travel import SCurve, Stroke, Together, Travel
 from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Excitation, History, Ramp, Table
+from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
@@ -117,7 +117,7 @@ def test_a_moving_force_on_a_beam() -> None:
 @pytest.mark.parametrize("drawn", [lossy, pressed_along])
 def test_what_never_moves_rests_bit_for_bit(drawn: Drawn) -> None:
     """Reference: what was before, the same system without a travel."""
-    moving = drawn(Table([0.0, 1.0], [0.0, 0.0]))
+    moving = drawn(PiecewiseLinear([0.0, 1.0], [0.0, 0.0]))
     resting = replace(moving, travels=())
     runs = [FixedStep(5.0e-5)(Motion(system, 0.3, 1.0e-3)) for system in (moving, resting)]
     assert np.array_equal(runs[0].states, runs[1].states)
@@ -261,7 +261,7 @@ _TABLE = RowTable(np.array([0.0, 1.0]), np.zeros((1, 4, 1, 1)))
             "the table has 1 rows, and 0 move",
         ),
         (
-            lambda: Travel(Table([0.0, 1.0], [0.5, 1.0]), _TABLE, (("rows", 0),)),
+            lambda: Travel(PiecewiseLinear([0.0, 1.0], [0.5, 1.0]), _TABLE, (("rows", 0),)),
             "a travel must be 0 at t = 0, got 0.5 m",
         ),
         (

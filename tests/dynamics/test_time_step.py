@@ -19,7 +19,7 @@ from dynamics.contact_table import TableContact
 from dynamics.drive.travel import SCurve, Stroke
 from dynamics.energy import check_energy
 from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Excitation, Sine, Table
+from dynamics.excitation import Excitation, PiecewiseLinear, Sine
 from dynamics.failure import NumericsError
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
@@ -66,7 +66,7 @@ DRAGGED = {"dashpots": 2.0 * ACROSS}
 # The second and third modes creep, the others swing.
 DAMPED = {"damping": np.array([0.5, 60.0, 200.0, 20.0])}
 PUSHED = np.array([30.0, -20.0, 10.0, 40.0])
-KINKED = Excitation(PUSHED, Table((0.0, 0.00037, 0.0101, 0.0733), (0.0, 1.0, -1.0, 2.0)))
+KINKED = Excitation(PUSHED, PiecewiseLinear((0.0, 0.00037, 0.0101, 0.0733), (0.0, 1.0, -1.0, 2.0)))
 SHAKEN = Excitation(PUSHED[::-1], Sine(7.3, 0.4))
 PRESSED = DryFriction(0.4, 0, 0.0, (0, 1)), DryFriction(0.3, 1, 5.0, (1,))
 # What moves, and the energy that it has to exchange.
@@ -142,7 +142,10 @@ def telescoping() -> Motion:
 
 def driven() -> Motion:
     still = pressed(2.0)
-    loads = [Excitation(0.2 * PUSHED, Sine(3.0, 0.4)), Excitation(PUSHED, Table((0, 1), (0, 1)))]
+    loads = [
+        Excitation(0.2 * PUSHED, Sine(3.0, 0.4)),
+        Excitation(PUSHED, PiecewiseLinear((0, 1), (0, 1))),
+    ]
     return replace(still, system=replace(still.system, excitations=loads))
 
 
@@ -355,7 +358,7 @@ def test_a_closed_contact_is_a_spring() -> None:
     """Reference: analytic, a mass on a spring under a load that rises to −5 N within 10.4 ms, and
     the impulse that momentum and loads ask for."""
     weight, stiffness, rise, load = 10.0, 1.0e6, 0.0104, -5.0
-    ramp = Excitation(np.array([load]), Table((0.0, rise), (0.0, 1.0)))
+    ramp = Excitation(np.array([load]), PiecewiseLinear((0.0, rise), (0.0, 1.0)))
     system = GapSystem(
         omega2=np.zeros(1),
         load=np.array([-weight]),

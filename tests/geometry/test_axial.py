@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.excitation import Table
+from dynamics.excitation import PiecewiseLinear
 from geometry.axial import Entry, Thrust, carried, entry, with_compression
 from geometry.boom import (
     Boom,
@@ -137,7 +137,7 @@ def test_drawn_out_a_force_goes_along(
     """Reference: other code path, the forces of the boom whose fly lies 1 m farther out or in, in
     the places of the material.
     """
-    ways = Table([0.0, 1.0], [0.0, 1.0])
+    ways = PiecewiseLinear([0.0, 1.0], [0.0, 1.0])
     rope, drive = [Thrust(1, 14.0, 1000.0)], Drive(ways, ("inner", "outer"), 0.0, carrier)
     joint = replace(JOINT, drive=drive, locked_at=locked)
     own = with_compression(segments(), [joint], rope, gravity=5.0)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.excitation import Ramp, Sine, Step, Table
+from dynamics.excitation import PiecewiseLinear, Ramp, Sine, Step
 from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.build import build_boom
@@ -218,8 +218,8 @@ def test_histories_are_what_the_case_says(tmp_path: Path) -> None:
         Step(),
         Ramp(0.3),
         Sine(2.0),
-        Table((0.0, 1.0), (1.0, 2.0)),
-        Table((0.0, 0.5, 2.0), (0.0, 1.0, -0.25)),
+        PiecewiseLinear((0.0, 1.0), (1.0, 2.0)),
+        PiecewiseLinear((0.0, 0.5, 2.0), (0.0, 1.0, -0.25)),
     ]
 
 

@@ -11,7 +11,7 @@ import pytest
 from dynamics.contact import PowerContact
 from dynamics.drive.row_table import RowTable
 from dynamics.drive.travel import Travel
-from dynamics.excitation import Excitation, History, Ramp, Sine, Table
+from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine
 from dynamics.gap_system import GapSystem
 from protractile.cases import change
 from runs import CASES
@@ -94,10 +94,10 @@ def test_no_swing_of_a_load_is_missed() -> None:
 
 def test_a_drawn_boom_rests_under_the_largest_loads_of_where_it_is() -> None:
     """Reference: by hand. Out from 1 s on, while the second of two peaks comes; in at 3 s."""
-    ways = Table([0.0, 1.0, 2.0, 3.0], [0.0, 4.0, 4.0, -1.0])
+    ways = PiecewiseLinear([0.0, 1.0, 2.0, 3.0], [0.0, 4.0, 4.0, -1.0])
     still = RowTable.of(lambda s: np.ones((1, 1)), [-1.0, 4.0])
     drawn = [Travel(ways, still, (("rows", 0),), "")]
-    system = ball(Table([0.0, 0.5, 1.0, 1.5, 2.0], [0.0, 1.0, 0.2, 0.6, 0.3]))
+    system = ball(PiecewiseLinear([0.0, 0.5, 1.0, 1.5, 2.0], [0.0, 1.0, 0.2, 0.6, 0.3]))
     assert instants(system, 4.0) == [0.0, 0.5]
     assert extended_instants(replace(system, travels=drawn), 4.0) == [1.0, 1.5, 3.0]
     assert extended_instants(system, 4.0) == []

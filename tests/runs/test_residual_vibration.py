@@ -14,7 +14,7 @@ from matplotlib.figure import Figure as Sheet
 from dynamics.contact import PowerContact
 from dynamics.drive.row_table import RowTable
 from dynamics.drive.travel import SCurve, Travel
-from dynamics.excitation import Excitation, History, Ramp, Sine, Table
+from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import simulate
@@ -91,7 +91,7 @@ def of_follower(load: History) -> float:
     return farthest_from_rest(system, Trajectory(data, tip[:, None]))[0]
 
 
-WAVE = Table(np.arange(0.0, 10.0, 0.1).tolist(), [0.0, 1.0, 1.0, 0.0] * 25)
+WAVE = PiecewiseLinear(np.arange(0.0, 10.0, 0.1).tolist(), [0.0, 1.0, 1.0, 0.0] * 25)
 
 
 @pytest.mark.parametrize("load", [Sine(5.0), Ramp(0.2), WAVE])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from dynamics.excitation import Table
+from dynamics.excitation import PiecewiseLinear
 from runs.case.schema import Case
 from studies.histories import response
 from studies.model_ladder import LADDER
@@ -48,7 +48,7 @@ def test_the_ladder_has_its_models(case: Case) -> None:
 @pytest.mark.parametrize("omega", [0.0, 3.0])
 def test_the_closed_form_is_duhamel_s_integral(omega: float) -> None:
     """Reference: other code, scipy's quadrature of ∫ g(s) sin(ω (t − s))/ω ds."""
-    table = Table((0.2, 0.5, 1.1), (0.4, -1.0, 2.0))
+    table = PiecewiseLinear((0.2, 0.5, 1.1), (0.4, -1.0, 2.0))
     (found,) = response(omega, table, np.array([1.7]))
     expected, _ = quad(
         lambda s: float(table(np.array(s))) * (1.7 - s) * np.sinc(omega * (1.7 - s) / np.pi),

@@ -16,7 +16,7 @@ from pydantic import PrivateAttr
 from beam_model.component import SegmentModel
 from geometry.boom import Boom, BoomError
 from runs.case.contact import ContactTable
-from runs.case.limits import In, Name, Positive, Table
+from runs.case.limits import CaseTable, In, Name, Positive
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -121,7 +121,7 @@ class StandIn:
     seconds: float = 0.0
 
 
-class ModelTable(Table):
+class ModelTable(CaseTable):
     """What every kind of model has."""
 
     name: Name
