@@ -183,7 +183,7 @@ def test_sections_fit_where_they_touch() -> None:
         "fly", 6.0, 14.0, STEEL, inner, head_section=replace(inner, height=0.98), masses=()
     )
     joint = Joint(outer=0, inner=1, stations=(6.0, 8.0), play=0.01)
-    with pytest.raises(ValueError, match=r"joint\[1\].play: 'fly' does not fit in 'arm': -0.05 m"):
+    with pytest.raises(ValueError, match=r"joints\[0\].play: 'fly' does not fit in 'arm': -0.05 m"):
         Boom((outer, fly), (joint,))
     slender = replace(fly, head_section=replace(inner, height=0.3))
     assert Boom((outer, slender), (joint,)).stations == [(6.0, "z"), (8.0, "z")]
@@ -192,7 +192,7 @@ def test_sections_fit_where_they_touch() -> None:
 def test_ends_are_alike() -> None:
     """Reference: the messages."""
     other = octagon(0.3, 0.35, 0.05, 0.01, 0.01, 0.008)
-    with pytest.raises(ValueError, match=r"segment\[1\].head_section: has other shapes than the"):
+    with pytest.raises(ValueError, match=r"segments\[0\].head_section: has other shapes than the"):
         Boom((replace(arm(), head_section=other),), ())
     loaded = replace(arm(), masses=(PointMass(8.0, 10.0),), section=None)
     with pytest.raises(ValueError, match="a segment tapers from a section; give section"):
