@@ -21,7 +21,7 @@ from runs.paper.reading import LITERAL
 from runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
 from runs.paper.statements import THEN_FILE
 from runs.process.terminal import show_notices
-from runs.report.numerals import NONE, number
+from runs.report.formatting import NONE, number
 from runs.report.tables import Cell, Table, wide_console, write
 from studies.study import Piece, Plot, Tell, titled
 from studies.then.modal_integrators import NEWMARK, WILSON, proofs

@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from runs.case.build import build_boom
-from runs.report.numerals import scientific
+from runs.report.formatting import scientific
 from runs.report.tables import Cell, Table
 from shell_model.segment.forms import DRILLING, DRILLING_OF_CURVED
 from studies.motions import friction_case

@@ -27,7 +27,7 @@ from runs.folder.files import whole_folder, write_whole
 from runs.process.terminal import show_notices
 from runs.report import theme
 from runs.report.figure_context import Figure
-from runs.report.numerals import fixed, number
+from runs.report.formatting import fixed, number
 from runs.report.pages import page
 from runs.report.tables import Table, wide_console, write
 from studies.study import Plot, Proof, Study

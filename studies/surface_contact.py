@@ -17,7 +17,7 @@ from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.report.numerals import number
+from runs.report.formatting import number
 from runs.report.tables import Table
 from studies.motions import (
     OUTPUT_STEP,

@@ -45,7 +45,7 @@ from runs.paper.rules import DIVERGENCE
 from runs.paper.statements import SURVEY_FILE
 from runs.paper.verdicts import MARKS, TEMPLATES, read_copy
 from runs.process.terminal import show_notices
-from runs.report.numerals import number
+from runs.report.formatting import number
 from runs.report.pages import page
 from runs.report.tables import Table, write
 

@@ -25,7 +25,7 @@ from runs.case.schema import Case
 from runs.case.user_files import read_text
 from runs.paper.statements import STATEMENTS, THEN_FILE
 from runs.process.terminal import message, say, shown
-from runs.report.numerals import NONE, number
+from runs.report.formatting import NONE, number
 from runs.report.pages import Addition
 from runs.report.tables import Table, as_json
 

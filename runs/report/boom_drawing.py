@@ -28,9 +28,9 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.folder.files import whole
-from runs.report import numerals, theme
-from runs.report.figure_context import Figure, Pen
-from runs.report.marks import PINNED, Mark, abbreviated, edges, look, marks
+from runs.report import formatting, theme
+from runs.report.figure_context import Figure, FigureContext
+from runs.report.symbols import PINNED, Symbol, abbreviated, boom_symbols, edges, marker_style
 
 # Part of the panel's height that the outermost section takes where heights are exaggerated.
 SECTION_SHARE = 0.2
@@ -88,23 +88,23 @@ class Panel:
         """Draw a line through x and z in m."""
         self.axes.plot(*self.turn.transform(np.array(places)).T, **given)
 
-    def sign(self, mark: Mark) -> None:
-        """Draw the symbol of a mark at its places."""
-        places = [(x, mark.z(self.boom, x)) for x in mark.places]
+    def draw_symbol(self, symbol: Symbol) -> None:
+        """Draw the symbol of a support or load at its places."""
+        places = [(x, symbol.z(self.boom, x)) for x in symbol.places]
         size = SIGN if len(places) == 1 else SMALL
-        shown = look(mark.turned(self.angle), mark.color, size)
+        shown = marker_style(symbol.turned(self.angle), symbol.color, size)
         self.line(places, clip_on=False, zorder=5, **shown)
-        corners = np.asarray(mark.sign.vertices)
+        corners = np.asarray(symbol.path.vertices)
         centred = corners - 0.5 * (corners.min(axis=0) + corners.max(axis=0))
-        in_legend = look(Sign(centred, mark.sign.codes), mark.color, SMALL)
-        self.meanings.setdefault(mark.meaning, Line2D([], [], **in_legend))
+        in_legend = marker_style(Sign(centred, symbol.path.codes), symbol.color, SMALL)
+        self.meanings.setdefault(symbol.meaning, Line2D([], [], **in_legend))
 
 
-def boom(pen: Pen) -> list[Figure]:
+def boom(run: FigureContext) -> list[Figure]:
     """Draw the boom of a run."""
-    path = pen.folder / "boom.png"
+    path = run.folder / "boom.png"
     if not path.exists():
-        draw_boom_of(pen.case, path)
+        draw_boom_of(run.case, path)
     return [Figure(path, "The boom", CAPTION, part="case")]
 
 
@@ -159,10 +159,10 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
     sheet = Sheet(figsize=(theme.WIDTH, 1.0))
     theme.Canvas(sheet)
     panels: dict[str, Axes] = sheet.subplot_mosaic(rows, height_ratios=heights)
-    signs = list(marks(case, boom))
-    _draw_whole(Panel(panels["whole"], boom, angle, 1.0, whole=True), signs)
+    symbols = list(boom_symbols(case, boom))
+    _draw_whole(Panel(panels["whole"], boom, angle, 1.0, whole=True), symbols)
     lying = Panel(panels["along"], boom, 0.0, _larger(boom), whole=False)
-    _draw_along(lying, signs)
+    _draw_along(lying, symbols)
     if sections:
         _draw_sections(panels["sections"], sections)
     entries = lying.meanings | dict.fromkeys(_remarks(case, boom), Line2D([], [], linestyle=""))
@@ -182,9 +182,9 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
     return sheet
 
 
-def _draw_whole(panel: Panel, signs: Sequence[Mark]) -> None:
+def _draw_whole(panel: Panel, symbols: Sequence[Symbol]) -> None:
     """Draw the boom to scale at its angle, with its supports and loads."""
-    _draw(panel, [mark for mark in signs if len(mark.places) == 1])
+    _draw(panel, [symbol for symbol in symbols if len(symbol.places) == 1])
     boom, axes, angle = panel.boom, panel.axes, panel.angle
     low, high = _extent(boom, angle)
     margin = MARGIN * boom.length
@@ -204,9 +204,9 @@ def _draw_whole(panel: Panel, signs: Sequence[Mark]) -> None:
         axes.text(x, z, degrees, color=theme.PLAY_FREE, va="center", fontsize=10.0)
 
 
-def _draw_along(panel: Panel, signs: Sequence[Mark]) -> None:
+def _draw_along(panel: Panel, symbols: Sequence[Symbol]) -> None:
     """Draw the boom horizontally, with exaggerated heights, names and x."""
-    _draw(panel, signs)
+    _draw(panel, symbols)
     boom, axes, larger = panel.boom, panel.axes, panel.larger
     for number, segment in enumerate(boom.segments):
         # Many names stand on two lines above the visible part.
@@ -235,18 +235,18 @@ def _draw_along(panel: Panel, signs: Sequence[Mark]) -> None:
     axes.set_title(f"along the boom{drawn}", fontsize=10.0)
 
 
-def _draw(panel: Panel, signs: Sequence[Mark]) -> None:
+def _draw(panel: Panel, symbols: Sequence[Symbol]) -> None:
     """Draw the boom with its supports and loads."""
     for number in reversed(range(len(panel.boom.segments))):
         _draw_segment(panel, number)
     for joint in () if panel.whole else panel.boom.joints:
         _draw_stations(panel, joint)
-    for mark in (mark for mark in signs if mark.stands):
-        panel.sign(mark)
+    for symbol in (symbol for symbol in symbols if symbol.stands):
+        panel.draw_symbol(symbol)
     for cylinder in panel.boom.cylinders:
         _draw_cylinder(panel, cylinder)
-    for mark in (mark for mark in signs if not mark.stands):
-        panel.sign(mark)
+    for symbol in (symbol for symbol in symbols if not symbol.stands):
+        panel.draw_symbol(symbol)
 
 
 def _draw_segment(panel: Panel, number: int) -> None:
@@ -293,7 +293,7 @@ def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
     panel.line([lug, ground], color=theme.INK, linewidth=1.6)
     panel.line([0.5 * (lug + ground), ground], color=theme.INK, linewidth=4.0)
     if panel.whole:
-        panel.line([ground], **look(PINNED, theme.INK, SIGN))
+        panel.line([ground], **marker_style(PINNED, theme.INK, SIGN))
     thick = Line2D([], [], color=theme.INK, linewidth=4.0)
     panel.meanings[f"cylinder, {abbreviated(cylinder.stiffness, 'N/m')}"] = thick
 
@@ -332,7 +332,7 @@ def _remarks(case: Case, boom: Boom) -> Iterator[str]:
     for base in case.base:
         yield f"the ground shakes along {base.direction}"
     if case.gravity is not None:
-        yield f"weights by {numerals.number(case.gravity.acceleration, 4)} m/s²"
+        yield f"weights by {formatting.number(case.gravity.acceleration, 4)} m/s²"
 
 
 def _several(values: Iterable[float]) -> str:

@@ -15,7 +15,6 @@ from PIL import Image
 from geometry.arrays import Array
 from geometry.typography import listed
 from runs.report import theme
-from runs.report.marks import look
 from runs.report.scene import (
     DISPLACEMENT_DRAWN,
     SAME_PLACE,
@@ -24,6 +23,7 @@ from runs.report.scene import (
     Scene,
 )
 from runs.report.sheet import MATTE, SHEET, Camera, Sheet, sharp_edges, stage, surface
+from runs.report.symbols import marker_style
 
 PIXELS = (SHEET[0], 470)
 
@@ -72,7 +72,7 @@ class BoomView:
         rest = surface(scene.drawn(np.zeros_like(scene.points), scale), scene.triangles)
         begin, end = scene.reach(times)
         half = SECTION_DRAWN * scene.points[:, 2].max()
-        off = max((mark.clearance for mark in scene.marks), default=0.0)
+        off = max((symbol.clearance for symbol in scene.symbols), default=0.0)
         bottom, top = scale * min(low, -off) - 3.0 * half, scale * max(high, off) + 2.0 * half
         width = max(1.1 * (end - begin), (top - bottom) * pixels[0] / pixels[1])
         centre = np.array([0.5 * (begin + end), 0.0, 0.5 * (bottom + top)])
@@ -102,13 +102,13 @@ class BoomView:
     def draw_marks(self, sheet: Sheet, places: Array) -> str:
         """Draw the symbols of supports and loads on a sheet; return their meanings in words."""
         scene, axes = self.scene, sheet.picture
-        shown = [mark for mark in scene.marks if len(mark.places) == 1]
-        for mark in shown:
-            (x,) = mark.places
-            around = self.rest.points if mark.stands else places
-            place = _at(scene, around, mark.segment, x, mark.z(scene.boom, x))
-            place[2] += (1.0 if mark.edge == "top" else -1.0) * self.scale * mark.clearance
-            sign = look(mark.sign, mark.color, SIGN)
+        shown = [symbol for symbol in scene.symbols if len(symbol.places) == 1]
+        for symbol in shown:
+            (x,) = symbol.places
+            around = self.rest.points if symbol.stands else places
+            place = _at(scene, around, symbol.segment, x, symbol.z(scene.boom, x))
+            place[2] += (1.0 if symbol.edge == "top" else -1.0) * self.scale * symbol.clearance
+            sign = marker_style(symbol.path, symbol.color, SIGN)
             sheet.pass_by(*axes.plot(*self.camera.project(place), clip_on=False, **sign))
         cylinders = () if scene.from_above else scene.boom.cylinders
         for cylinder in cylinders:
@@ -121,7 +121,7 @@ class BoomView:
             sheet.pass_by(*axes.plot(*rod.T, linewidth=4.0, **black))
             rod[0] = rod.mean(axis=0)
             sheet.pass_by(*axes.plot(*rod.T, linewidth=9.0, **black))
-        kinds = [str(mark.kind) for mark in shown]
+        kinds = [str(symbol.kind) for symbol in shown]
         return listed(dict.fromkeys(kinds + ["cylinders"] * bool(cylinders))) if kinds else ""
 
 
@@ -167,7 +167,7 @@ def draw_boom(
             boom.points, edges.points = places, places[edges["number"]]
             boom["deflection"] = 1.0e3 * np.abs(moved[:, 2])
             sheet.show(camera.see(plotter))
-            signs = view.draw_marks(sheet, places)
+            symbols = view.draw_marks(sheet, places)
             last = int(np.abs(time - instant.time).argmin())
             now: dict[str, Any] = {"color": theme.FORCE, "markersize": 13, "clip_on": False}
             sheet.pass_by(
@@ -179,7 +179,7 @@ def draw_boom(
                 f"{'seen from above; ' if side else ''}displacements and play × "
                 f"{view.scale:g}, sections × {SECTION_DRAWN:g}\ngrey: undeformed"
                 f"{', as at t = 0' if scene.boom.driven else ''}"
-                f"{f'; signs: {signs}' if signs else ''}{pace}",
+                f"{f'; symbols: {symbols}' if symbols else ''}{pace}",
             )
             yield sheet.image()
 

@@ -14,14 +14,14 @@ from runs.case import toml
 from runs.pipeline.results import Results
 from runs.process.terminal import message, say, shown
 from runs.report import theme
-from runs.report.answer_tables import answer_tables
 from runs.report.charts import packed_charts, packed_plotly
 from runs.report.figure_context import Figure
-from runs.report.first_look import first_table, play_sentence, strength_sentence, trust_line
-from runs.report.knowledge import compared_tables, known_tables
+from runs.report.formatting import number, percent
 from runs.report.model_tables import model_table, model_tables
-from runs.report.numerals import number, percent
 from runs.report.pages import Addition, page
+from runs.report.predictability import comparison_tables, predictability_tables
+from runs.report.result_tables import result_tables
+from runs.report.summary_table import deviation_note, play_effect, strength_verdict, summary_table
 from runs.report.tables import Column, Table
 
 # Columns of the models' table for the terminal → their headings there.
@@ -57,12 +57,12 @@ def render(
 
     Without plotly the report shows static pictures of curves only.
     """
-    first = first_table(results)
+    first = summary_table(results)
     tables: dict[str, list[Table]] = {
         "first": [first] if first else [],
-        "answers": answer_tables(results),
-        "known": known_tables(results),
-        "compared": compared_tables(results),
+        "answers": result_tables(results),
+        "known": predictability_tables(results),
+        "compared": comparison_tables(results),
         "added": [],
         "models": model_tables(results),
     }
@@ -86,10 +86,10 @@ def render(
         remarks=addition.remarks,
         labels={thing.anchor: label for thing, label in shown},
         colors={name: strokes[name].color for name in names},
-        adds=play_sentence(results),
+        adds=play_effect(results),
         of=results.play.model if results.play else "",
-        strength=strength_sentence(results),
-        nearness=trust_line(results),
+        strength=strength_verdict(results),
+        nearness=deviation_note(results),
         trust=[known.line for known in results.summary.answers.trust],
         viewer=viewer,
         charts=packed_charts(charts) if charts else "",

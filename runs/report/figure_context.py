@@ -65,7 +65,7 @@ class Figure:
         return f"figure-{self.path.stem}"
 
 
-class Pen:
+class FigureContext:
     """Context for drawing one run's figures, with one line style per model."""
 
     def __init__(self, results: Results, folder: Path) -> None:

@@ -17,7 +17,7 @@ from runs.pipeline.results import CASE, ENSEMBLES, TRAJECTORIES, Results
 from runs.pipeline.summary import Snapshots
 from runs.report import theme
 from runs.report.boom_drawing import boom
-from runs.report.figure_context import Figure, Pen
+from runs.report.figure_context import Figure, FigureContext
 from runs.report.force_figures import (
     contact_peaks,
     drives,
@@ -40,7 +40,7 @@ from runs.report.rest_figures import at_rest, envelopes, mode_shapes
 FOLDER = "figures"
 DRAWN_OF = ".drawn-of"
 
-FIGURES: Sequence[Callable[[Pen], list[Figure]]] = (
+FIGURES: Sequence[Callable[[FigureContext], list[Figure]]] = (
     boom,
     tip,
     close_up,
@@ -69,8 +69,8 @@ def draw(results: Results, folder: Path) -> list[Figure]:
         folder: of the PNG files; it must exist. Existing files are kept.
     """
     with matplotlib.rc_context(theme.RC):
-        pen = Pen(results, folder)
-        return [figure for figures in FIGURES for figure in figures(pen)]
+        run = FigureContext(results, folder)
+        return [figure for figures in FIGURES for figure in figures(run)]
 
 
 def draw_in(results: Results, folder: Path) -> list[Figure]:

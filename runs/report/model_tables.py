@@ -14,7 +14,7 @@ from runs.case.schema import Case
 from runs.pipeline.metrics import metrics
 from runs.pipeline.results import Results
 from runs.pipeline.summary import CalibrationCard, FirstPeak, ModelSummary
-from runs.report.numerals import number, percent
+from runs.report.formatting import number, percent
 from runs.report.tables import Cell, Column, Table
 
 if TYPE_CHECKING:

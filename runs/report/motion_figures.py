@@ -15,8 +15,8 @@ from geometry.arrays import Array
 from geometry.typography import TO_MILLI
 from runs.report import theme
 from runs.report.charts import Chart
-from runs.report.figure_context import Figure, Pen, farthest, highest, new_sheet
-from runs.report.numerals import fixed, scientific
+from runs.report.figure_context import Figure, FigureContext, farthest, highest, new_sheet
+from runs.report.formatting import fixed, scientific
 
 # This percentage of an ensemble's members lies in its band.
 BAND = (5.0, 95.0)
@@ -31,37 +31,37 @@ HELD = {"strain_energy": 0.65, "kinetic_energy": 0.3, "contact_energy": 1.0}
 LOST = (0.75, 0.45, 0.2)
 
 
-def tip(pen: Pen) -> list[Figure]:
+def tip(run: FigureContext) -> list[Figure]:
     """Draw the tip deflection of all models in one panel."""
-    sheet, (axes,) = pen.over_time(1, 3.9)
+    sheet, (axes,) = run.over_time(1, 3.9)
     axes.set_ylabel("deflection (mm)")
-    for name in pen.models:
-        pen.line(axes, name, pen.time, TO_MILLI * pen.of(name, "tip"))
-        _members(pen, axes, name, "tip")
-    caption = f"Deflection of the tip, all models.{_sampled(pen, 'tip')}"
-    title = f"Tip: {_reach(pen, 'tip')}"
-    return [pen.finish(sheet, axes, "tip", title, caption, chart=_chart(pen, "tip"))]
+    for name in run.models:
+        run.line(axes, name, run.time, TO_MILLI * run.of(name, "tip"))
+        _members(run, axes, name, "tip")
+    caption = f"Deflection of the tip, all models.{_sampled(run, 'tip')}"
+    title = f"Tip: {_reach(run, 'tip')}"
+    return [run.finish(sheet, axes, "tip", title, caption, chart=_chart(run, "tip"))]
 
 
-def close_up(pen: Pen) -> list[Figure]:
+def close_up(run: FigureContext) -> list[Figure]:
     """Draw the tip until shortly after its first peak; nothing where no model has a peak."""
-    if not any(pen.summary[name].first_peak["tip"].time for name in pen.models):
+    if not any(run.summary[name].first_peak["tip"].time for name in run.models):
         return []
-    end = pen.first_stretch
-    shown = pen.time <= end
-    sheet, (axes,) = pen.over_time(1, 3.9, end)
+    end = run.first_stretch
+    shown = run.time <= end
+    sheet, (axes,) = run.over_time(1, 3.9, end)
     contacts, peakless = [], []
     circle: dict[str, Any] = {"mfc": "white", "ms": 7, "mew": 1.6}
-    for name in pen.models:
-        deflection = TO_MILLI * pen.of(name, "tip")
-        pen.line(axes, name, pen.time[shown], deflection[shown])
-        color = pen.strokes[name].color
-        contact = pen.summary[name].first_contact
+    for name in run.models:
+        deflection = TO_MILLI * run.of(name, "tip")
+        run.line(axes, name, run.time[shown], deflection[shown])
+        color = run.strokes[name].color
+        contact = run.summary[name].first_contact
         if contact and contact <= end:
             contacts.append(contact)
-            then = np.interp(contact, pen.time, deflection)
+            then = np.interp(contact, run.time, deflection)
             axes.plot(contact, then, "o", color=color, zorder=4, **circle)
-        peak, height = pen.summary[name].first_peak["tip"]
+        peak, height = run.summary[name].first_peak["tip"]
         if peak is None or height is None:
             peakless.append(name)
         elif peak <= end:
@@ -77,103 +77,103 @@ def close_up(pen: Pen) -> list[Figure]:
         marked = "Circles mark where a model's segments first touch, triangles its"
     caption = f"Close-up of the tip. {marked} first peak."
     if peakless:
-        caption += f" No peak within {pen.case.time.duration:g} s: {', '.join(peakless)}."
-    return [pen.finish(sheet, axes, "tip-close-up", title, caption)]
+        caption += f" No peak within {run.case.time.duration:g} s: {', '.join(peakless)}."
+    return [run.finish(sheet, axes, "tip-close-up", title, caption)]
 
 
-def heads(pen: Pen) -> list[Figure]:
+def heads(run: FigureContext) -> list[Figure]:
     """Draw the heads of the outer segments, with a panel per model because they rattle."""
-    joints = range(1, len(pen.case.joints) + 1)
+    joints = range(1, len(run.case.joints) + 1)
     places = ["head", *(f"head-{number}" for number in joints if number > 1)]
-    return [_head(pen, place) for place in places if place in pen.data]
+    return [_head(run, place) for place in places if place in run.data]
 
 
-def _head(pen: Pen, place: str) -> Figure:
-    models = pen.with_play or pen.models
+def _head(run: FigureContext, place: str) -> Figure:
+    models = run.with_play or run.models
     # A single panel has room for the names of its axes.
-    sheet, panels = pen.over_time(len(models), 1.1 + max(1.25 * len(models), 2.2))
-    curves = {name: TO_MILLI * pen.of(name, place) for name in pen.models}
+    sheet, panels = run.over_time(len(models), 1.1 + max(1.25 * len(models), 2.2))
+    curves = {name: TO_MILLI * run.of(name, place) for name in run.models}
     for axes, name in zip(panels, models, strict=True):
-        for other in pen.play_free:
+        for other in run.play_free:
             if other != name:
-                pen.line(axes, other, pen.time, curves[other], linewidth=0.9)
-        pen.line(axes, name, pen.time, curves[name], linewidth=1.1, alone=True)
-        _members(pen, axes, name, place)
-        axes.set_title(name, color=pen.strokes[name].color)
+                run.line(axes, other, run.time, curves[other], linewidth=0.9)
+        run.line(axes, name, run.time, curves[name], linewidth=1.1, alone=True)
+        _members(run, axes, name, place)
+        axes.set_title(name, color=run.strokes[name].color)
         axes.set_ylim(_limits(list(curves.values())))
     sheet.supylabel("deflection (mm)", fontsize=theme.RC["font.size"])
     number = int(place.partition("-")[2] or 1)
-    which = pen.case.joints[number - 1].outer if pen.case.joints else pen.case.segments[0].name
-    tied = [pen.labels[name] for name in pen.play_free if name in pen.models]
+    which = run.case.joints[number - 1].outer if run.case.joints else run.case.segments[0].name
+    tied = [run.labels[name] for name in run.play_free if name in run.models]
     dashed = f" Dashed: {', '.join(tied)}, without play." if tied else ""
     caption = (
         f"Deflection of the head of the segment {which!r}, model by model.{dashed}"
-        f"{_sampled(pen, place)}"
+        f"{_sampled(run, place)}"
     )
-    title = f"{place.replace('-', ' ').capitalize()}: {_reach(pen, place)}"
-    return pen.finish(sheet, panels[0], place, title, caption, chart=_chart(pen, place))
+    title = f"{place.replace('-', ' ').capitalize()}: {_reach(run, place)}"
+    return run.finish(sheet, panels[0], place, title, caption, chart=_chart(run, place))
 
 
-def lateral_tip(pen: Pen) -> list[Figure]:
+def lateral_tip(run: FigureContext) -> list[Figure]:
     """Draw the lateral tip deflection of a spatial boom."""
-    if "tip_lateral" not in pen.data:
+    if "tip_lateral" not in run.data:
         return []
-    sheet, (axes,) = pen.over_time(1, 3.9)
+    sheet, (axes,) = run.over_time(1, 3.9)
     axes.set_ylabel("displacement (mm)")
-    curves = {name: TO_MILLI * pen.of(name, "tip_lateral") for name in pen.models}
-    chart = Chart(pen.time, axes.get_ylabel(), pen.plot(axes, curves))
+    curves = {name: TO_MILLI * run.of(name, "tip_lateral") for name in run.models}
+    chart = Chart(run.time, axes.get_ylabel(), run.plot(axes, curves))
     caption = "Displacement of the tip along y, to the sides, all models."
-    title = f"Tip, to the sides: {_reach(pen, 'tip_lateral')}"
-    return [pen.finish(sheet, axes, "tip-lateral", title, caption, chart=chart)]
+    title = f"Tip, to the sides: {_reach(run, 'tip_lateral')}"
+    return [run.finish(sheet, axes, "tip-lateral", title, caption, chart=chart)]
 
 
-def _chart(pen: Pen, place: str) -> Chart:
+def _chart(run: FigureContext, place: str) -> Chart:
     """Return the chart of one place in all models, with the bands of their ensembles."""
     curves = [
-        pen.curve(name, TO_MILLI * pen.of(name, place), band=_band(pen, name, place))
-        for name in pen.models
+        run.curve(name, TO_MILLI * run.of(name, place), band=_band(run, name, place))
+        for name in run.models
     ]
-    return Chart(pen.time, "deflection (mm)", curves)
+    return Chart(run.time, "deflection (mm)", curves)
 
 
-def _reach(pen: Pen, place: str) -> str:
+def _reach(run: FigureContext, place: str) -> str:
     """Return the maximum deflection at one place over the models, those with play if any."""
-    reaches = {name: farthest(pen.of(name, place)) for name in pen.with_play or pen.models}
+    reaches = {name: farthest(run.of(name, place)) for name in run.with_play or run.models}
     name = max(reaches, key=lambda one: np.nan_to_num(abs(reaches[one]), nan=-1.0))
     most = fixed(reaches[name], 0, TO_MILLI)
     return f"up to {most} mm" + (f" in {name}" if len(reaches) > 1 else "")
 
 
-def _members(pen: Pen, axes: Axes, name: str, place: str) -> None:
+def _members(run: FigureContext, axes: Axes, name: str, place: str) -> None:
     """Draw the band of a model's ensemble behind its curve, and its horizons."""
-    band = _band(pen, name, place)
+    band = _band(run, name, place)
     if band is None:
         return
-    color = pen.strokes[name].color
+    color = run.strokes[name].color
     low, high = band
-    shade = min(0.25, SHADE / len(pen.with_play))
-    axes.fill_between(pen.time, low, high, color=color, alpha=shade, linewidth=0, zorder=1)
+    shade = min(0.25, SHADE / len(run.with_play))
+    axes.fill_between(run.time, low, high, color=color, alpha=shade, linewidth=0, zorder=1)
     for share, dashes in zip(SHARES, (":", "--"), strict=True):
-        ensemble = pen.summary[name].ensemble
+        ensemble = run.summary[name].ensemble
         if ensemble and (known := ensemble.horizon(share)) is not None:
             axes.axvline(known, color=color, linestyle=dashes, linewidth=0.9)
 
 
-def _band(pen: Pen, name: str, place: str) -> tuple[Array, Array] | None:
+def _band(run: FigureContext, name: str, place: str) -> tuple[Array, Array] | None:
     """Return the limits (num_times,) in mm between which most members of an ensemble lie."""
-    if pen.ensembles is None or name not in pen.ensembles["model"] or place not in pen.ensembles:
+    if run.ensembles is None or name not in run.ensembles["model"] or place not in run.ensembles:
         return None
-    members = TO_MILLI * pen.ensembles[place].sel(model=name).values
+    members = TO_MILLI * run.ensembles[place].sel(model=name).values
     low, high = np.percentile(members, BAND, axis=0)
     return low, high
 
 
-def _sampled(pen: Pen, place: str) -> str:
+def _sampled(run: FigureContext, place: str) -> str:
     """Return a sentence on the accuracy of a curve and on the marks of its ensemble."""
-    if not pen.with_play or pen.stays_pressed:
+    if not run.with_play or run.stays_pressed:
         return ""
-    if pen.ensembles is None or place not in pen.ensembles:
-        if pen.regular or pen.ensembles is not None:
+    if run.ensembles is None or place not in run.ensembles:
+        if run.regular or run.ensembles is not None:
             return ""
         return (
             " After the first presses a curve with play may be one sample of a chaotic motion; an "
@@ -181,14 +181,14 @@ def _sampled(pen: Pen, place: str) -> str:
         )
     low, high = BAND
     band = (
-        f" Shaded: {low:g} to {high:g} % of the {pen.ensembles.sizes['member']} members of each "
+        f" Shaded: {low:g} to {high:g} % of the {run.ensembles.sizes['member']} members of each "
         "model's ensemble."
     )
-    sampled = [found for name in pen.with_play if (found := pen.summary[name].ensemble)]
+    sampled = [found for name in run.with_play if (found := run.summary[name].ensemble)]
     if not any(time is not None for found in sampled for time in found.horizons.values()):
         return f"{band} They stay together to the end."
     first, last = (f"{100.0 * share:g} %" for share in SHARES)
-    beyond = "" if pen.regular else ", beyond which a curve is one sample of a chaotic motion"
+    beyond = "" if run.regular else ", beyond which a curve is one sample of a chaotic motion"
     return (
         f"{band} Vertical lines: from when its members are {first} (dotted) and {last} (dashed) of "
         f"the tip's range around one another{beyond}."
@@ -203,12 +203,12 @@ def _limits(curves: Sequence[Array]) -> tuple[float, float]:
     return low - margin, high + margin
 
 
-def slow_peaks(pen: Pen) -> list[Figure]:
+def slow_peaks(run: FigureContext) -> list[Figure]:
     """Draw the peaks of the slow motion that all members of an ensemble share, with spreads."""
     found = {
         name: peaks
-        for name in pen.with_play
-        if (ensemble := pen.summary[name].ensemble)
+        for name in run.with_play
+        if (ensemble := run.summary[name].ensemble)
         and (peaks := ensemble.slow_peaks)
         and peaks.time
     }
@@ -216,7 +216,7 @@ def slow_peaks(pen: Pen) -> list[Figure]:
         return []
     sheet, (axes,) = new_sheet(1, 3.9)
     for name, peaks in found.items():
-        stroke = pen.strokes[name]
+        stroke = run.strokes[name]
         axes.errorbar(
             peaks.time,
             TO_MILLI * np.array(peaks.height),
@@ -230,7 +230,7 @@ def slow_peaks(pen: Pen) -> list[Figure]:
             markersize=4.0,
             label=name,
         )
-    axes.set(xlabel="time (s)", ylabel="height (mm)", xlim=(0.0, pen.time[-1]))
+    axes.set(xlabel="time (s)", ylabel="height (mm)", xlim=(0.0, run.time[-1]))
     counts = [len(peaks.time) for peaks in found.values()]
     number = f"{min(counts)} to {max(counts)}" if min(counts) < max(counts) else f"{counts[0]}"
     caption = (
@@ -239,18 +239,18 @@ def slow_peaks(pen: Pen) -> list[Figure]:
         "not all its members have the next peak."
     )
     title = f"Slow peaks: {number} are common to all members"
-    return [pen.finish(sheet, axes, "slow-peaks", title, caption, "knowledge")]
+    return [run.finish(sheet, axes, "slow-peaks", title, caption, "knowledge")]
 
 
-def horizons(pen: Pen) -> list[Figure]:
+def horizons(run: FigureContext) -> list[Figure]:
     """Draw the horizon over the size of the perturbation, of models with measured growth."""
-    measured = {name: found for name in pen.with_play if (found := pen.summary[name].horizons)}
+    measured = {name: found for name in run.with_play if (found := run.summary[name].horizons)}
     if not measured:
         return []
     sheet, (axes,) = new_sheet(1, 3.9)
     shares: dict[float, str] = {}
     for name, found in measured.items():
-        color = pen.strokes[name].color
+        color = run.strokes[name].color
         logs = np.log10(found.relatives)
         times = np.array(found.times, dtype=float)
         for i, (share, dashes) in enumerate(zip(found.shares, DASHES, strict=False)):
@@ -271,25 +271,25 @@ def horizons(pen: Pen) -> list[Figure]:
         "with a finer step is as far from the run; below the line's end a finer step would help."
     )
     title = "Horizons: how long a motion can be predicted"
-    return [pen.finish(sheet, axes, "horizons", title, caption, "knowledge")]
+    return [run.finish(sheet, axes, "horizons", title, caption, "knowledge")]
 
 
-def energies(pen: Pen) -> list[Figure]:
+def energies(run: FigureContext) -> list[Figure]:
     """Draw the energies of one model: the last with play, which is the most detailed."""
-    name = (pen.with_play or pen.models)[-1]
-    columns = dict(zip(DRIVEN_ENERGIES, _energies(pen, name).T, strict=False))
+    name = (run.with_play or run.models)[-1]
+    columns = dict(zip(DRIVEN_ENERGIES, _energies(run, name).T, strict=False))
     drawn = columns.pop("drive_work", None)
     work = columns.pop("work") + (0.0 if drawn is None else drawn)
     of = "work of the load" if drawn is None else "work of load and drive"
     held = {energy: columns.pop(energy) for energy in HELD}
     lost = {energy: values for energy, values in columns.items() if values.any()}
     parts = held | lost
-    color = pen.strokes[name].color
+    color = run.strokes[name].color
     tints = [theme.tint(color, strength) for strength in HELD.values()]
     tints += [theme.tint(theme.LOSS, strength) for strength in LOST[: len(lost)]]
-    sheet, (axes,) = pen.over_time(1, 3.9)
+    sheet, (axes,) = run.over_time(1, 3.9)
     areas = axes.stackplot(
-        pen.time,
+        run.time,
         *parts.values(),
         labels=[_named(energy) for energy in parts],
         colors=tints,
@@ -300,7 +300,7 @@ def energies(pen: Pen) -> list[Figure]:
         area.set(hatch="///", edgecolor="white")
     start = float(sum(values[0] for values in parts.values()))
     total = f"start and {of}" if start else of
-    axes.plot(pen.time, start + work, color=theme.INK, linewidth=1.3, label=total)
+    axes.plot(run.time, start + work, color=theme.INK, linewidth=1.3, label=total)
     axes.set_ylabel("energy (J)")
     losses = " and ".join(_named(energy) for energy in lost)
     hatched = f"; hatched: {losses}" if lost else ""
@@ -310,31 +310,31 @@ def energies(pen: Pen) -> list[Figure]:
         f"is the {of}{more}, up to the residual of the next figure."
     )
     title = f"{name}: the load's work, and where it is"
-    return [pen.finish(sheet, axes, "energies", title, caption, part="numerics")]
+    return [run.finish(sheet, axes, "energies", title, caption, part="numerics")]
 
 
-def residuals(pen: Pen) -> list[Figure]:
+def residuals(run: FigureContext) -> list[Figure]:
     """Draw the energy residual of every model, as its running maximum."""
     sheet, (axes,) = new_sheet(1, 3.9)
     worst = []
-    for name in pen.models:
-        so_far = np.fmax.accumulate(np.abs(energy_residual(_energies(pen, name))))
+    for name in run.models:
+        so_far = np.fmax.accumulate(np.abs(energy_residual(_energies(run, name))))
         worst.append(float(so_far[-1]))
-        pen.line(axes, name, pen.time, np.maximum(so_far, ROUND_OFF))
+        run.line(axes, name, run.time, np.maximum(so_far, ROUND_OFF))
     axes.set_yscale("log")
-    axes.set(xlabel="time (s)", ylabel="part of the work (–)", xlim=(0.0, pen.time[-1]))
+    axes.set(xlabel="time (s)", ylabel="part of the work (–)", xlim=(0.0, run.time[-1]))
     caption = (
         "Kinetic, strain and contact energy, plus what was lost, less the work of the load, over "
         "the largest work: the largest so far. Without contact the motion is exact to round-off."
     )
     title = f"Unaccounted energy: up to {scientific(highest(worst), 2)} of the work"
-    return [pen.finish(sheet, axes, "energy-residual", title, caption, part="numerics")]
+    return [run.finish(sheet, axes, "energy-residual", title, caption, part="numerics")]
 
 
-def _energies(pen: Pen, name: str) -> Array:
+def _energies(run: FigureContext, name: str) -> Array:
     """Return energies (num_times, num_energies) in J by :func:`dynamics.energy.energy_residual`."""
-    known = [energy for energy in DRIVEN_ENERGIES if energy in pen.data]
-    return np.array([pen.of(name, energy) for energy in known]).T
+    known = [energy for energy in DRIVEN_ENERGIES if energy in run.data]
+    return np.array([run.of(name, energy) for energy in known]).T
 
 
 def _named(energy: str) -> str:

@@ -13,9 +13,9 @@ from geometry.typography import TO_MILLI, signed
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.at_rest import AtRest
 from runs.pipeline.moved import Envelope
-from runs.report import numerals, theme
+from runs.report import formatting, theme
 from runs.report.charts import Chart, Curve
-from runs.report.figure_context import Figure, Pen, new_sheet, of_rests, of_start
+from runs.report.figure_context import Figure, FigureContext, new_sheet, of_rests, of_start
 
 # Quantity → heading of its panel, and the conversion factor to its unit.
 _PANELS: Mapping[str, tuple[str, float]] = {
@@ -45,47 +45,47 @@ class _Line(NamedTuple):
     dashes: str
 
 
-def at_rest(pen: Pen) -> list[Figure]:
+def at_rest(run: FigureContext) -> list[Figure]:
     """Draw the boom's deflection and section forces at rest, with and without play."""
-    found = dict(_read_first(pen))
+    found = dict(_read_first(run))
     farthest = {name: own.farthest_rest for name, own in found.items()}
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     if not rests:
         return []
-    lines = {name: _rest_lines(rest, name, pen.strokes[name].color) for name, rest in rests.items()}
+    lines = {name: _rest_lines(rest, name, run.strokes[name].color) for name, rest in rests.items()}
     # None stands for the position at the end of telescoping.
     tied = [
         rest
         for name in rests
-        if name in pen.with_play
+        if name in run.with_play
         for rest in found[name].tied
         if rest.time == rests[name].time
     ]
-    if tied and not rests.keys() & set(pen.play_free):
+    if tied and not rests.keys() & set(run.play_free):
         lines["without play"] = _rest_lines(tied[0], "without play", theme.PLAY_FREE)
     caption = (
         "Static under the maximum load: deflection and section forces. "
         "Normal forces pull where they are positive, moments where they are pull at the top; "
         "where segments overlap each has its own."
-        + of_start(pen.case)
-        + of_rests(pen.case, rests.values())
+        + of_start(run.case)
+        + of_rests(run.case, rests.values())
     )
     far = max(rests.values(), key=lambda rest: abs(rest.tip)).tip
     title = (
         f"Static deflection under the maximum load: the tip at {signed(f'{TO_MILLI * far:.1f}')} mm"
     )
-    return _stacked(pen, lines, "at-rest", title, caption)
+    return _stacked(run, lines, "at-rest", title, caption)
 
 
-def envelopes(pen: Pen) -> list[Figure]:
+def envelopes(run: FigureContext) -> list[Figure]:
     """Draw the limits of the section forces in motion."""
-    found = {name: own.moved.envelopes for name, own in _read_first(pen) if own.moved is not None}
+    found = {name: own.moved.envelopes for name, own in _read_first(run) if own.moved is not None}
     lines = {
         name: {
             what: [
                 line
                 for envelope in several
-                for line in _both_ends(envelope, what, name, pen.strokes[name].color)
+                for line in _both_ends(envelope, what, name, run.strokes[name].color)
             ]
             for what in _FORCES
         }
@@ -93,14 +93,14 @@ def envelopes(pen: Pen) -> list[Figure]:
     }
     caption = (
         "Between what the section forces of each segment are over the run: the lowest and the "
-        "highest at every place, whenever they are." + of_start(pen.case)
+        "highest at every place, whenever they are." + of_start(run.case)
     )
-    return _stacked(pen, lines, "envelopes", "Section forces in motion", caption)
+    return _stacked(run, lines, "envelopes", "Section forces in motion", caption)
 
 
-def mode_shapes(pen: Pen) -> list[Figure]:
+def mode_shapes(run: FigureContext) -> list[Figure]:
     """Draw the first modes of the leading model."""
-    found = [(name, own.modes) for name, own in _read_first(pen) if own.modes]
+    found = [(name, own.modes) for name, own in _read_first(run) if own.modes]
     if not found:
         return []
     name, modes = found[0]
@@ -110,7 +110,7 @@ def mode_shapes(pen: Pen) -> list[Figure]:
         for number, shape in enumerate(mode.shapes):
             if (values := shape.curves.get(_DISPLACED[mode.way])) is not None:
                 axes.plot(shape.x, values, color=theme.segment_color(number), linewidth=1.8)
-        axes.set_title(f"{numerals.number(mode.frequency, 4)} Hz, {mode.way}")
+        axes.set_title(f"{formatting.number(mode.frequency, 4)} Hz, {mode.way}")
         axes.set_yticks([0.0])
     panels[-1].set_xlabel("x along the boom (m)")
     caption = (
@@ -118,14 +118,14 @@ def mode_shapes(pen: Pen) -> list[Figure]:
         "are then. Each segment has its colour; the height is arbitrary."
     )
     return [
-        pen.finish(sheet, None, "modes", "Mode shapes with joints pressed", caption, part="rest")
+        run.finish(sheet, None, "modes", "Mode shapes with joints pressed", caption, part="rest")
     ]
 
 
-def _read_first(pen: Pen) -> Iterator[tuple[str, ModelAnswers]]:
-    for name in pen.models:
-        if name in pen.leading and name in pen.answers:
-            yield name, pen.answers[name]
+def _read_first(run: FigureContext) -> Iterator[tuple[str, ModelAnswers]]:
+    for name in run.models:
+        if name in run.leading and name in run.answers:
+            yield name, run.answers[name]
 
 
 def _rest_lines(rest: AtRest, name: str, color: str) -> dict[str, list[_Line]]:
@@ -147,7 +147,7 @@ def _both_ends(envelope: Envelope, what: str, name: str, color: str) -> Iterator
 
 
 def _stacked(
-    pen: Pen,
+    run: FigureContext,
     lines: Mapping[str, Mapping[str, Sequence[_Line]]],
     stem: str,
     title: str,
@@ -187,4 +187,4 @@ def _stacked(
         [_PANELS[what][0] for what in shown],
         along="x along the boom (m)",
     )
-    return [pen.finish(sheet, panels[0], stem, title, caption, part="rest", chart=chart)]
+    return [run.finish(sheet, panels[0], stem, title, caption, part="rest", chart=chart)]

@@ -28,7 +28,7 @@ from geometry.typography import signed
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.pipeline.model_output import BeamOutput, MovedSegment
-from runs.report.marks import Mark, edges, marks
+from runs.report.symbols import Symbol, boom_symbols, edges
 from shell_model.stress.stresses import ShellStress
 
 Numbers = npt.NDArray[np.int32]
@@ -85,7 +85,7 @@ class Scene:
 
     Args:
         boom: the boom.
-        marks: of its supports and loads.
+        symbols: of its supports and loads.
         points: (num_points, 3) in m.
         triangles: (num_triangles, 3) point numbers.
         segment: (num_triangles,) of each triangle.
@@ -97,7 +97,7 @@ class Scene:
     """
 
     boom: Boom
-    marks: Sequence[Mark]
+    symbols: Sequence[Symbol]
     points: Array
     triangles: Numbers
     segment: Numbers
@@ -122,7 +122,7 @@ class Scene:
         boom = build_boom(case)
         side = cls(
             boom=boom,
-            marks=list(marks(case, boom)),
+            symbols=list(boom_symbols(case, boom)),
             points=fields["points"].values,
             triangles=fields["triangles"].values,
             segment=fields["segment"].values,
@@ -135,7 +135,7 @@ class Scene:
             return [side]
         above = replace(
             side,
-            marks=[],
+            symbols=[],
             points=side.points @ _FROM_ABOVE,
             modes=side.modes @ _FROM_ABOVE.astype(np.float32),
             motion=motion.assign(tip=motion["tip_lateral"]),
@@ -166,7 +166,7 @@ class Scene:
         frames = np.eye(output.time.size)
         scene = cls(
             boom=boom,
-            marks=[],
+            symbols=[],
             points=np.concatenate([tube.points for tube in tubes]),
             triangles=np.concatenate(numbered).astype(np.int32),
             segment=np.repeat(

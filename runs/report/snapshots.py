@@ -339,7 +339,7 @@ def describe_one(results: Results, path: Path) -> Figure:
         "boom": (
             "Boom",
             f"The boom of {state}. Colour: magnitude of deflection{aside}; grey: undeformed; "
-            "signs: supports, cylinders, masses and loads. Displacements and play are magnified "
+            "symbols: supports, cylinders, masses and loads. Displacements and play are magnified "
             "by the factor above the picture.",
         ),
         "stress": (

@@ -18,7 +18,7 @@ from rich.text import Text
 
 from geometry.typography import TO_KILO, TO_MEGA, TO_MICRO, TO_MILLI, TO_PERCENT
 from runs.folder.files import write_whole
-from runs.report.numerals import NONE, count, fixed, number, repeated
+from runs.report.formatting import NONE, count, fixed, number, repeated
 
 if TYPE_CHECKING:
     import pandas as pd

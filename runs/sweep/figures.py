@@ -27,7 +27,7 @@ from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
 from runs.pipeline.metrics import Metric
 from runs.report import theme
 from runs.report.figure_context import new_sheet
-from runs.report.numerals import number
+from runs.report.formatting import number
 from runs.sweep.quantities import DISTANCES, LEVELS, QUANTITIES, TIP_OFF, UNTIL
 from runs.sweep.residual_vibration import draw_swings
 

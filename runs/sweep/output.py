@@ -16,7 +16,7 @@ from runs.folder.files import changed_folder, exclusive, whole
 from runs.pipeline.metrics import Metric, metrics
 from runs.pipeline.results import CONVENTIONS
 from runs.pipeline.summary import ModelSummary
-from runs.report.numerals import NONE, number
+from runs.report.formatting import NONE, number
 from runs.report.tables import Table
 from runs.sweep.figures import draw, draw_distances
 from runs.sweep.points import Plan

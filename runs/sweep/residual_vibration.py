@@ -14,7 +14,7 @@ from geometry.arrays import Array
 from geometry.typography import TO_MILLI
 from runs.report import theme
 from runs.report.figure_context import new_sheet
-from runs.report.numerals import number
+from runs.report.formatting import number
 
 # A vibration that exceeds the level by at most this part counts as equal: steps and impacts cause
 # such differences.

@@ -14,7 +14,7 @@ from runs.case.build import build_boom
 from runs.case.reading import load
 from runs.report import theme
 from runs.report.boom_drawing import boom_sheet
-from runs.report.marks import PAYLOAD, abbreviated, marks
+from runs.report.symbols import PAYLOAD, abbreviated, boom_symbols
 
 
 def drawn(name: str) -> Figure:
@@ -89,7 +89,7 @@ def test_a_force_down_points_down() -> None:
     """Reference: an arrow's head is at the place that it marks; on a boom that stands upright what
     acts across it comes from the left, and a payload hangs all the same."""
     case = load(str(CASES / "crane.toml"))
-    acts = {mark.meaning: mark for mark in marks(case, build_boom(case))}
+    acts = {symbol.meaning: symbol for symbol in boom_symbols(case, build_boom(case))}
     load_across = acts["24.52 kN down across the boom within 0.5 s"]
     (_, tail), (_, head) = load_across.turned(0.0).vertices[:2]
     assert tail > head == 0.0

@@ -27,11 +27,11 @@ from runs.pipeline.inferred import print_inferred
 from runs.pipeline.models import build
 from runs.pipeline.results import Results
 from runs.report import theme
-from runs.report.answer_tables import drive_table, record_tables, rest_tables
 from runs.report.boom_drawing import boom_sheet
 from runs.report.figure_context import Figure, of_rests
 from runs.report.figures import draw
-from runs.report.first_look import first_table
+from runs.report.result_tables import drive_table, record_tables, rest_tables
+from runs.report.summary_table import summary_table
 from runs.sweep.points import plan
 
 DRAWN = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
@@ -284,7 +284,7 @@ def _check_rests(results: Results) -> None:
     Reference: by hand. With 1 m of overlap play of 14 mm turns by 14 mrad, which lifts the tip,
     10 m on, by 133 mm; the lever rule's forces press contacts of 1e9 N/m in by 2.2 and 2.8 µm.
     """
-    answers, table = results.summary.answers, first_table(results)
+    answers, table = results.summary.answers, summary_table(results)
     own = answers.models["kantorovich-5"]
     (begun,), (ended,) = own.rests, own.drawn
     assert (begun.time, ended.time) == pytest.approx((0.0, 0.2))

@@ -20,7 +20,7 @@ from runs.case import reading as case_file
 from runs.pipeline.results import Results
 from runs.pipeline.summary import FirstPeak
 from runs.report import theme
-from runs.report.figure_context import Figure, Pen, new_sheet
+from runs.report.figure_context import Figure, FigureContext, new_sheet
 from runs.report.figures import draw
 from runs.report.force_figures import contact_peaks, first_contacts, friction
 from runs.report.model_tables import model_table
@@ -48,12 +48,14 @@ class Drawn:
     def __init__(self, folder: Path) -> None:
         self.folder, self.sheets = folder, dict[str, Sheet]()
 
-    def __call__(self, of: Callable[[Pen], list[Figure]], results: Results) -> list[Figure]:
+    def __call__(
+        self, of: Callable[[FigureContext], list[Figure]], results: Results
+    ) -> list[Figure]:
         """Draw some of the figures of a run anew."""
         for earlier in self.folder.glob("*.png"):
             earlier.unlink()
         with matplotlib.rc_context(theme.RC):
-            return of(Pen(results, self.folder))
+            return of(FigureContext(results, self.folder))
 
 
 @pytest.fixture(scope="module")

@@ -14,9 +14,9 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.results import Results
 from runs.report.document import render
-from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import law_table, model_table, step_table
 from runs.report.pages import Addition
+from runs.report.predictability import comparison_tables, predictability_tables
 from tests.runs.summaries import model_summary, steps_for_peaks, summary_of
 
 COARSE = CASES / "coarse.toml"
@@ -77,14 +77,14 @@ MEASURED = {
 
 
 def test_nothing_is_known_of_a_run_without_ensembles() -> None:
-    assert known_tables(results()) == []
-    assert compared_tables(results()) == []
+    assert predictability_tables(results()) == []
+    assert comparison_tables(results()) == []
     assert not any("horizon" in heading for heading in model_table(results()).headings)
 
 
 def test_horizons_and_slow_peaks_are_the_summary_s() -> None:
     found = results(ensemble=ENSEMBLE)
-    horizons, peaks = known_tables(found)
+    horizons, peaks = predictability_tables(found)
     assert horizons.rows == [("kantorovich-4", "0.80", "> 10", "2", "1.044 ± 0.021")]
     assert "32 members, loads changed by up to 1 × 10⁻⁹" in horizons.notes[0]
     assert peaks.headings == ("peak", "kantorovich-4")
@@ -98,7 +98,7 @@ def test_horizons_and_slow_peaks_are_the_summary_s() -> None:
 
 
 def test_an_ensemble_without_slow_peaks_has_horizons() -> None:
-    (horizons,) = known_tables(results(ensemble=ENSEMBLE | {"slow_peaks": None}))
+    (horizons,) = predictability_tables(results(ensemble=ENSEMBLE | {"slow_peaks": None}))
     assert horizons.rows == [("kantorovich-4", "0.80", "> 10", "–", "–")]
 
 
@@ -119,7 +119,7 @@ def test_peaks_that_no_model_has_make_no_table() -> None:
 
 
 def test_growth_says_what_limits() -> None:
-    _, growth, _ = known_tables(results(ensemble=ENSEMBLE, horizons=MEASURED))
+    _, growth, _ = predictability_tables(results(ensemble=ENSEMBLE, horizons=MEASURED))
     assert growth.headings[2:4] == ("change 1 × 10⁻¹²\ns", "change 1 × 10⁻⁶\ns")
     assert growth.rows == [
         ("kantorovich-4", "1 %", "1.50", "1.00", "1.20", "28", "the step"),
@@ -130,7 +130,7 @@ def test_growth_says_what_limits() -> None:
 def test_each_level_says_what_it_decides() -> None:
     """Reference: the classes that measure, and the numbers by hand, in mm and ms."""
     ensembles = {"kantorovich-4": LEVELS}
-    tables = compared_tables(results({"reference": "shell", "ensembles": ensembles}))
+    tables = comparison_tables(results({"reference": "shell", "ensembles": ensembles}))
     for table, level in zip(tables, (Pointwise, PeakDifferences, Distributions), strict=True):
         assert level.decides in table.notes
         assert "against shell" in table.title
@@ -147,7 +147,7 @@ def test_each_level_says_what_it_decides() -> None:
 
 def test_a_whole_run_is_compared_with_friction() -> None:
     whole = {"kantorovich-4": {"until": [5.0, 10.0], "largest": [0.1, 0.25], "rms": [0.05, 0.125]}}
-    (table,) = compared_tables(results({"reference": "shell", "whole": whole}, friction=0.2))
+    (table,) = comparison_tables(results({"reference": "shell", "whole": whole}, friction=0.2))
     assert "above the step error, in the table of steps" in " ".join(table.notes)
     assert table.headings[1:3] == ("largest difference\nto 5 s, %", "rms\nto 5 s, %")
     assert table.rows == [("kantorovich-4", "10.00", "5.00", "25.00", "12.50")]

@@ -20,8 +20,8 @@ from runs.pipeline.inferred import print_inferred
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Summary
-from runs.report.answer_tables import pad_table
-from runs.report.first_look import first_table
+from runs.report.result_tables import pad_table
+from runs.report.summary_table import summary_table
 from tests.runs.coarse_case import COARSE
 from tests.touching import contact_laws
 
@@ -125,7 +125,7 @@ def test_pressure_is_told_beside_what_pads_bear(tmp_path: Path) -> None:
 def test_the_first_look_has_the_pad_that_presses_most(tmp_path: Path) -> None:
     """Reference: the table of all pads; a pad that may bear next to nothing stands out."""
     found = results(tmp_path, PAD.replace("2e7", "1e3"))
-    table = first_table(found)
+    table = summary_table(found)
     assert table is not None
     told = {row[0]: row[1] for row in table.rows}
     pads = pad_table(found)

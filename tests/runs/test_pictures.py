@@ -262,7 +262,7 @@ def test_mesh_and_sections_are_drawn(shell: Scene) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("_opengl")
 def test_loads_masses_and_cylinders_are_marked_where_the_boom_is(shell: Scene) -> None:
-    """Reference: analytic. The signs of the drawing, 30 pt high: a red arrow and a black ball at
+    """Reference: analytic. The symbols of the drawing, 30 pt high: a red arrow and a black ball at
     the tip where that is, and a black bar along the line of the cylinder.
     """
     payload = PayloadTable(mass=100.0)

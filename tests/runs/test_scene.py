@@ -68,14 +68,14 @@ def test_segments_move_along_as_drives_extend_them(shell: Scene) -> None:
 
 def test_supports_and_forces_are_marked(shell: Scene) -> None:
     """Reference: the case. Two supports that stand, and arrows along both segments."""
-    held = [mark for mark in shell.marks if mark.stands]
-    assert [(mark.kind, mark.segment, mark.places) for mark in held] == [
+    held = [symbol for symbol in shell.symbols if symbol.stands]
+    assert [(symbol.kind, symbol.segment, symbol.places) for symbol in held] == [
         ("supports", 0, (0.0,)),
         ("supports", 0, (2.0,)),
     ]
     assert held[0].z(BOOM, 0.0) == pytest.approx(-0.5 * OUTER.size("z"))
-    loads = [mark for mark in shell.marks if mark.kind == "loads"]
-    assert [mark.segment for mark in loads] == [0, 1]
+    loads = [symbol for symbol in shell.symbols if symbol.kind == "loads"]
+    assert [symbol.segment for symbol in loads] == [0, 1]
 
 
 def test_the_change_of_a_sections_shape_leaves_out_its_motion_as_a_whole(shell: Scene) -> None:
@@ -157,7 +157,7 @@ def test_from_above_y_points_up(shell: Scene) -> None:
     motion = moving_trajectories().sel(model="shell").isel(station=[0, 1, 0, 1])
     motion = motion.assign(tip_lateral=-2.0 * motion["tip"])
     side, above = Scene.views(moving_fields(), motion, load(str(CASES / "spatial.toml")))
-    assert (side.from_above, above.from_above, above.marks) == (False, True, [])
+    assert (side.from_above, above.from_above, above.symbols) == (False, True, [])
     assert above.half_height(0) == pytest.approx(0.5 * OUTER.size("y"))
     moved = side.displacement(0.5), above.displacement(0.5)
     assert moved[1][:, 1] == pytest.approx(-moved[0][:, 2])

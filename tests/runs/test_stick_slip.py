@@ -23,9 +23,9 @@ from runs.pipeline.inferred import print_inferred
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Summary
 from runs.report import theme
-from runs.report.answer_tables import answer_tables, stick_slip_table
-from runs.report.figure_context import Pen
+from runs.report.figure_context import FigureContext
 from runs.report.force_figures import drives
+from runs.report.result_tables import result_tables, stick_slip_table
 from runs.sweep.quantities import measure
 from tests.runs.case_texts import read_case, refusal
 from tests.runs.summaries import printed
@@ -249,11 +249,11 @@ def _check_shown(results: Results, folder: Path) -> None:
         "kantorovich-5", "inner", own.mean, own.peak, own.sticks, own.slip, own.behind, own.speed,
         own.acceleration,
     ]  # fmt: skip
-    assert table.title in [one.title for one in answer_tables(results)]
+    assert table.title in [one.title for one in result_tables(results)]
     measured = measure(results, "kantorovich-5")
     assert (measured["drive_force"], measured["drive_slip"]) == (own.peak, own.slip)
     with rc_context(theme.RC):
-        _, figure = drives(Pen(results, folder))
+        _, figure = drives(FigureContext(results, folder))
     assert figure.path.name == "stick-slip.png"
     assert figure.title.startswith(f"Drive of inner: sticks {own.sticks} times, slips by up to ")
 

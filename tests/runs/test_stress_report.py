@@ -16,7 +16,7 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.results import Results
 from runs.report import theme
-from runs.report.figure_context import Pen
+from runs.report.figure_context import FigureContext
 from runs.report.force_figures import stress_history
 from runs.report.model_tables import wall_table
 from tests.runs.summaries import model_summary, summary_of
@@ -63,7 +63,7 @@ def results(stress: dict[str, Any] | None) -> Results:
 
 def test_the_figure_says_how_large_and_what_to_trust(tmp_path: Path) -> None:
     with matplotlib.rc_context(theme.RC):
-        (figure,) = stress_history(Pen(results(STRESS), tmp_path))
+        (figure,) = stress_history(FigureContext(results(STRESS), tmp_path))
     assert figure.title == (
         "shell: von Mises stress over a patch up to 31 MPa, in a triangle up to 91.6 MPa"
     )
@@ -81,7 +81,7 @@ def test_the_table_says_what_each_wall_carries() -> None:
 
 def test_without_a_shell_there_is_nothing(tmp_path: Path) -> None:
     assert wall_table(results(None)) is None
-    assert stress_history(Pen(results(None), tmp_path)) == []
+    assert stress_history(FigureContext(results(None), tmp_path)) == []
 
 
 def test_the_largest_stress_stands_beside_the_yield_strength_where_it_is_known() -> None:

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure as Sheet
 from PIL import Image
 
 from runs.report import theme
-from runs.report.numerals import number
+from runs.report.formatting import number
 from runs.sweep import output
 from runs.sweep.figures import in_shown_units
 from runs.sweep.points import Plan

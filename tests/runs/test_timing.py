@@ -8,7 +8,7 @@ from functools import partial
 
 import pytest
 
-from runs.report.numerals import repeated
+from runs.report.formatting import repeated
 from studies.cost import timing
 from studies.cost.timing import MEASURABLE, by_turns
 

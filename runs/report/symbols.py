@@ -21,7 +21,7 @@ from runs.case import actions
 from runs.case.places import at
 from runs.case.schema import Case, HistoryTable, LoadTable
 from runs.report import theme
-from runs.report.numerals import number
+from runs.report.formatting import number
 
 # A segment of unknown plates is drawn with this part of the boom's length as its height.
 UNKNOWN = 0.015
@@ -85,7 +85,7 @@ MOMENT = CLOCKWISE.transformed(Affine2D().scale(-1.0, 1.0))
 
 
 @dataclass(frozen=True, slots=True)
-class Mark:
+class Symbol:
     """A support or a load of a boom.
 
     Args:
@@ -93,7 +93,7 @@ class Mark:
         segment: its number.
         places: x in m of its symbols.
         edge: of the segment at which they stand, or z in m.
-        sign: path of the symbol.
+        path: of the symbol.
         meaning: in words.
         color: of the symbol.
         turns: whether the symbol rotates with the boom.
@@ -105,7 +105,7 @@ class Mark:
     segment: int
     places: tuple[float, ...]
     edge: Edge
-    sign: Path
+    path: Path
     meaning: str
     color: str = theme.FORCE
     turns: bool = True
@@ -114,7 +114,7 @@ class Mark:
 
     def turned(self, angle: float) -> Path:
         """Return the symbol on a boom at an angle in degrees."""
-        return _rotated(self.sign, angle) if self.turns else self.sign
+        return _rotated(self.path, angle) if self.turns else self.path
 
     def z(self, boom: Boom, x: float) -> float:
         """Return z of the edge at x, in m."""
@@ -123,11 +123,11 @@ class Mark:
         return edges(boom, boom.segments[self.segment], x)[self.edge == "top"]
 
 
-def look(sign: Path, color: str, size: float) -> dict[str, Any]:
+def marker_style(path: Path, color: str, size: float) -> dict[str, Any]:
     """Return matplotlib's style of a symbol of a size in pt, scaled by its farthest point."""
     return {
-        "marker": sign,
-        "markersize": 2.0 * size * float(np.abs(sign.vertices).max()),
+        "marker": path,
+        "markersize": 2.0 * size * float(np.abs(path.vertices).max()),
         "linestyle": "",
         "markeredgecolor": color,
         "markerfacecolor": "none",
@@ -153,9 +153,9 @@ def abbreviated(value: float, unit: str) -> str:
     return f"{number(value, 4)} {unit}"
 
 
-def marks(case: Case, boom: Boom) -> Iterator[Mark]:
+def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
     """Yield supports and stops, then masses, loads and axial forces, those of segments first."""
-    yield from _ground_marks(boom)
+    yield from _support_symbols(boom)
     for index, segment in enumerate(boom.segments):
         given = case.segments[index]
         if given.load:
@@ -173,37 +173,37 @@ def marks(case: Case, boom: Boom) -> Iterator[Mark]:
     for thrust in actions.thrusts(case, boom.segments):
         sign = FORCE_BACK if thrust.force > 0.0 else FORCE_ON
         along = f"{abbreviated(abs(thrust.force), 'N')} along the boom"
-        yield Mark("loads", thrust.segment, (thrust.x,), 0.0, sign, along)
+        yield Symbol("loads", thrust.segment, (thrust.x,), 0.0, sign, along)
 
 
-def _ground_marks(boom: Boom) -> Iterator[Mark]:
-    """Yield the marks of supports other than cylinders."""
+def _support_symbols(boom: Boom) -> Iterator[Symbol]:
+    """Yield the symbols of supports other than cylinders."""
     upright: dict[str, Any] = {"color": theme.INK, "turns": False, "stands": True}
     for index, segment in enumerate(boom.segments):
         for support in segment.supports:
             place = (support.x,)
             edge: Edge = -support.depth if support.depth else "bottom"
             if support.kind == "clamped":
-                yield Mark("supports", index, place, 0.0, CLAMPED, "clamped", **upright)
+                yield Symbol("supports", index, place, 0.0, CLAMPED, "clamped", **upright)
             elif support.stiffness is None:
-                yield Mark("supports", index, place, edge, PINNED, "support", **upright)
+                yield Symbol("supports", index, place, edge, PINNED, "support", **upright)
             else:
                 meaning = f"elastic support, {abbreviated(support.stiffness, 'N/m')}"
-                yield Mark("springs", index, place, edge, ELASTIC, meaning, **upright)
+                yield Symbol("springs", index, place, edge, ELASTIC, meaning, **upright)
     for stop in boom.stops:
         grey = {**upright, "color": theme.PLAY_FREE, "clearance": 0.5 * stop.play}
         meaning = f"rest, {1e3 * stop.play:g} mm of play"
         if -1 in stop.sides:
-            yield Mark("stops", stop.segment, (stop.x,), "bottom", REST_BELOW, meaning, **grey)
+            yield Symbol("stops", stop.segment, (stop.x,), "bottom", REST_BELOW, meaning, **grey)
         if 1 in stop.sides:
-            yield Mark("stops", stop.segment, (stop.x,), "top", REST_ABOVE, meaning, **grey)
+            yield Symbol("stops", stop.segment, (stop.x,), "top", REST_ABOVE, meaning, **grey)
 
 
-def _mass(index: int, x: float, meaning: str) -> Mark:
-    return Mark("masses", index, (x,), "bottom", PAYLOAD, meaning, theme.INK, turns=False)
+def _mass(index: int, x: float, meaning: str) -> Symbol:
+    return Symbol("masses", index, (x,), "bottom", PAYLOAD, meaning, theme.INK, turns=False)
 
 
-def _load(table: LoadTable, boom: Boom, index: int) -> Mark:
+def _load(table: LoadTable, boom: Boom, index: int) -> Symbol:
     ends = boom.segments[index].ends
     how = _history(table) + (", let go" if table.released else "")
     largest = table.magnitude * max((abs(f) for _, f in table.table or ()), default=1.0)
@@ -214,7 +214,7 @@ def _load(table: LoadTable, boom: Boom, index: int) -> Mark:
     place = (at(table.x, *ends),)
     if table.moment:
         sign = MOMENT if largest > 0.0 else CLOCKWISE
-        return Mark(
+        return Symbol(
             "loads", index, place, 0.0, sign, f"moment {abbreviated(abs(largest), 'N m')}{how}"
         )
     return _force(index, place, largest, table.direction, "N", how)
@@ -222,7 +222,7 @@ def _load(table: LoadTable, boom: Boom, index: int) -> Mark:
 
 def _spread(
     boom: Boom, index: int, span: tuple[float, float], load: float, direction: str, how: str
-) -> Mark:
+) -> Symbol:
     """Return arrows along a part of a segment."""
     start, end = span
     arrows = max(2, round((end - start) / (APART * boom.length)))
@@ -233,14 +233,14 @@ def _spread(
 
 def _force(
     index: int, places: tuple[float, ...], value: float, direction: str, unit: str, how: str
-) -> Mark:
+) -> Symbol:
     size = abbreviated(abs(value), unit)
     if direction == "y":
         sign = AWAY if value > 0.0 else TOWARDS
-        return Mark("loads", index, places, 0.0, sign, f"{size} sideways{how}")
+        return Symbol("loads", index, places, 0.0, sign, f"{size} sideways{how}")
     if value > 0.0:
-        return Mark("loads", index, places, "bottom", FORCE_UP, f"{size} up across the boom{how}")
-    return Mark("loads", index, places, "top", FORCE_DOWN, f"{size} down across the boom{how}")
+        return Symbol("loads", index, places, "bottom", FORCE_UP, f"{size} up across the boom{how}")
+    return Symbol("loads", index, places, "top", FORCE_DOWN, f"{size} down across the boom{how}")
 
 
 def _history(table: HistoryTable) -> str:

@@ -19,8 +19,8 @@ from runs.pipeline.summary import (
     Predictability,
     Whole,
 )
+from runs.report.formatting import NONE, fixed, number, percent, scientific
 from runs.report.model_tables import horizon_column
-from runs.report.numerals import NONE, fixed, number, percent, scientific
 from runs.report.tables import Column, Table
 
 # Texts of a table for ``limits``.
@@ -34,7 +34,7 @@ _TIME = ".2f", "s"
 VARIED = {"load": "loads", "clearance": "clearances", "velocity": "initial velocities"}
 
 
-def known_tables(results: Results) -> list[Table]:
+def predictability_tables(results: Results) -> list[Table]:
     """Return the tables of each model's ensembles; empty without any."""
     models, asked = results.summary.models, results.summary.ensemble
     sampled = {name: model for name, model in models.items() if model.ensemble}
@@ -55,7 +55,7 @@ def known_tables(results: Results) -> list[Table]:
     return tables
 
 
-def compared_tables(results: Results) -> list[Table]:
+def comparison_tables(results: Results) -> list[Table]:
     """Return the differences of the models from the reference; empty without comparisons."""
     compared = results.summary.comparisons
     tables: list[Table] = []

@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from runs.report.numerals import fixed, number, scientific
+from runs.report.formatting import fixed, number, scientific
 
 
 @pytest.mark.parametrize(

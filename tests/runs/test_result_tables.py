@@ -17,18 +17,18 @@ from runs.pipeline.pads import PressedPad
 from runs.pipeline.results import Results
 from runs.pipeline.statics import Reaction
 from runs.pipeline.strength import COUNTS, Life, WallStress
-from runs.report.answer_tables import (
-    answer_tables,
+from runs.report.result_tables import (
     mode_table,
     play_table,
     rest_tables,
+    result_tables,
     stress_table,
 )
-from runs.report.first_look import (
-    first_table,
-    play_sentence,
-    strength_sentence,
-    trust_line,
+from runs.report.summary_table import (
+    deviation_note,
+    play_effect,
+    strength_verdict,
+    summary_table,
 )
 from runs.report.tables import Table
 
@@ -61,7 +61,7 @@ def test_the_first_look_says_what_the_answers_do(results: Results) -> None:
     """Reference: summary.json, in mm, Hz, s, kN; a swing dies as exp(−2π ζ f t)."""
     own = results.summary.answers.models[PLAYED]
     assert own.moved is not None
-    found = cells(first_table(results))
+    found = cells(summary_table(results))
     said = {
         asked: row[PLAYED].replace("−", "-").split("\n")[0].split(" ")[0]
         for asked, row in found.items()
@@ -89,7 +89,7 @@ def test_play_is_said_in_a_sentence(results: Results) -> None:
         Added("stress", "outer", "Pa", 12e7, 10e7),
     ]
     told = answering(results, play=[PlayAdds(PLAYED, numbers)])
-    assert play_sentence(told) == (
+    assert play_effect(told) == (
         "Play adds 50 mm (+50 %) to the static tip deflection (maximum load) and 20 MPa "
         "(+20 %) to the maximum bending stress. The first frequency is 1.5 Hz in place of 2 Hz."
     )
@@ -132,14 +132,14 @@ def test_what_nears_the_yield_strength_stands_out(results: Results) -> None:
         "Bending stress, maximum (utilisation), MPa",
         "Plate stress at pads (patch mean, utilisation), MPa",
     )
-    near = first_table(with_stress(results, 300e6))
+    near = summary_table(with_stress(results, 300e6))
     found = cells(near)
     assert found[fibre][PLAYED] == "300, 84.5 %\nouter, 2.0 m"
     assert found[wall][PLAYED] == "330, 93 %\nouter, 10.0 m"
     assert found[wall][TIED] == "–"
     assert near is not None
     assert list(near.strong) == [found[wall][PLAYED]]
-    beyond = first_table(with_stress(results, 340e6))
+    beyond = summary_table(with_stress(results, 340e6))
     found = cells(beyond)
     assert found[fibre][PLAYED] == "340, 95.8 %\nouter, 2.0 m"
     assert found[wall][PLAYED] == "374, 105 %\nbeyond yield\nouter, 10.0 m"
@@ -149,13 +149,13 @@ def test_what_nears_the_yield_strength_stands_out(results: Results) -> None:
 
 def test_a_sentence_tells_whether_it_is_strong_enough(results: Results) -> None:
     """Reference: by hand, as above; without a yield strength nothing is told."""
-    assert strength_sentence(results) == ""
-    assert strength_sentence(with_stress(results, 300e6)) == (
+    assert strength_verdict(results) == ""
+    assert strength_verdict(with_stress(results, 300e6)) == (
         "Of what is known all is strong enough without a safety factor: plates at pads "
         "bear 93 % of their yield strength (outer, 10.0 m) and outer fibres bear 84.5 % of their "
         "yield strength (outer, 2.0 m). No yield strength is given of outer and inner."
     )
-    assert strength_sentence(with_stress(results, 340e6)).startswith("Not strong enough: ")
+    assert strength_verdict(with_stress(results, 340e6)).startswith("Not strong enough: ")
 
 
 def test_pads_of_unknown_strength_are_not_strong_enough(results: Results) -> None:
@@ -173,18 +173,18 @@ def test_pads_of_unknown_strength_are_not_strong_enough(results: Results) -> Non
         ),
     ):
         found = replace(told, summary=told.summary.model_copy(update={"pads": pads}))
-        assert strength_sentence(found).startswith(f"{start}strong enough without a safety factor")
-        assert strength_sentence(found).endswith(end)
+        assert strength_verdict(found).startswith(f"{start}strong enough without a safety factor")
+        assert strength_verdict(found).endswith(end)
 
 
 def test_a_life_that_is_used_up_is_not_strong_enough(results: Results) -> None:
     """Reference: by hand, a damage of 3.2."""
     life = Life("inner", 10.0, 0.0, 0.2, 4.0, 9e7, 8e7, [9e7], [4.0], 1.6e-4, 3.2)
     told = answering(results, own={"life": [life]})
-    assert strength_sentence(told) == (
+    assert strength_verdict(told) == (
         "Not strong enough: 320 % of a life is used. No yield strength is given of outer and inner."
     )
-    table = first_table(told)
+    table = summary_table(told)
     assert table is not None
     assert list(table.strong) == ["3.2"]
     assert cells(table)["Fatigue damage (Miner)"][PLAYED] == "3.2"
@@ -192,18 +192,18 @@ def test_a_life_that_is_used_up_is_not_strong_enough(results: Results) -> None:
 
 def test_the_tip_travels_from_where_it_is_at_first(results: Results) -> None:
     """Reference: by hand, of a tip that is moved by 20 mm; one that starts at zero tells once."""
-    assert "Tip travel from t = 0, mm" not in cells(first_table(results))
+    assert "Tip travel from t = 0, mm" not in cells(summary_table(results))
     tip = results.trajectories["tip"]
     moved = replace(results, trajectories=results.trajectories.assign(tip=tip - 0.02))
     own = tip.sel(model=PLAYED).values
     most = 1e3 * own[abs(own).argmax()]
-    said = cells(first_table(moved))["Tip travel from t = 0, mm"][PLAYED]
+    said = cells(summary_table(moved))["Tip travel from t = 0, mm"][PLAYED]
     assert float(said.replace("−", "-")) == pytest.approx(most, abs=0.06)
 
 
 def test_one_line_says_how_near_models_are(results: Results) -> None:
     """Reference: by hand, a second model whose tip rests a tenth lower."""
-    assert trust_line(results) == ""
+    assert deviation_note(results) == ""
     answers = results.summary.answers
     own = answers.models[PLAYED]
     other = replace(own, rests=[replace(rest, tip=0.9 * rest.tip) for rest in own.rests])
@@ -220,15 +220,15 @@ def test_one_line_says_how_near_models_are(results: Results) -> None:
     case = results.case.model_copy(update={"models": (four, *results.case.models)})
     both = replace(results, case=case, summary=summary, trajectories=tips)
     line = f"Deviation of the static tip deflection (maximum load) from {PLAYED}: "
-    assert trust_line(both) == f"{line}kantorovich-4 −10 %."
-    table = first_table(both)
+    assert deviation_note(both) == f"{line}kantorovich-4 −10 %."
+    table = summary_table(both)
     assert table is not None
     assert list(table.headings) == ["", PLAYED, "kantorovich-4", TIED]
 
 
 def test_every_answer_has_its_table(results: Results) -> None:
     """Reference: what a beam with play leaves."""
-    titles = [table.name for table in answer_tables(results)]
+    titles = [table.name for table in result_tables(results)]
     expected = ["play", "tilts", "pressed", "reactions", "modes", "peaks", "stress"]
     assert titles == [*expected, *(["life"] if COUNTS else [])]
     modes = cells(mode_table(results))
@@ -245,6 +245,6 @@ def test_every_answer_has_its_table(results: Results) -> None:
 def test_a_folder_without_answers_has_no_tables(results: Results) -> None:
     """Reference: a summary of an earlier version."""
     without = replace(results, summary=results.summary.model_copy(update={"answers": Answers({})}))
-    assert first_table(without) is None
-    assert answer_tables(without) == []
-    assert play_sentence(without) == ""
+    assert summary_table(without) is None
+    assert result_tables(without) == []
+    assert play_effect(without) == ""

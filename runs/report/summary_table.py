@@ -14,9 +14,9 @@ from runs.pipeline.model_quality import off_at_rest
 from runs.pipeline.moved import Peak
 from runs.pipeline.pads import PressedPad
 from runs.pipeline.results import Results
-from runs.report.answer_tables import hardly, times
 from runs.report.figure_context import farthest
-from runs.report.numerals import NONE, SHOWN, amount, fixed, number, percent
+from runs.report.formatting import NONE, SHOWN, amount, fixed, number, percent
+from runs.report.result_tables import hardly, times
 from runs.report.tables import Column, Table
 
 # Decay time: until the vibration has fallen to this part.
@@ -25,7 +25,7 @@ TENTH = 0.1
 NEAR = 0.9
 
 
-def first_table(results: Results) -> Table | None:
+def summary_table(results: Results) -> Table | None:
     """Return the design results of the leading models, the reference's before the others'."""
     names, answers = results.read_first, results.summary.answers.models
     if not answers:
@@ -78,7 +78,7 @@ def first_table(results: Results) -> Table | None:
     return Table("The answers", columns, [" ".join(_notes(results, rows))], "answers", strong)
 
 
-def trust_line(results: Results) -> str:
+def deviation_note(results: Results) -> str:
     """Return the deviation of the other models with play from the reference; else empty."""
     answers, reference = results.summary.answers.models, results.reference
     if not answers or reference is None:
@@ -100,7 +100,7 @@ def trust_line(results: Results) -> str:
     )
 
 
-def play_sentence(results: Results) -> str:
+def play_effect(results: Results) -> str:
     """Return a sentence on the effect of play, of the reference model; else empty."""
     found = results.play
     if found is None:
@@ -121,7 +121,7 @@ def play_sentence(results: Results) -> str:
     return " ".join(said)
 
 
-def strength_sentence(results: Results) -> str:
+def strength_verdict(results: Results) -> str:
     """Return the utilisation of steel and pads in the leading model, or an empty text.
 
     The text is empty where neither strengths, allowable pressures nor a fatigue life are known.

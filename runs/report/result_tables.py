@@ -13,8 +13,8 @@ from runs.pipeline.metrics import records
 from runs.pipeline.moved import Peak
 from runs.pipeline.results import Results
 from runs.report.figure_context import of_rests
+from runs.report.formatting import NONE, amount, number
 from runs.report.model_tables import metric_columns
-from runs.report.numerals import NONE, amount, number
 from runs.report.tables import Column, Table
 
 # Share of a number that is negligible.
@@ -23,7 +23,7 @@ HARDLY = 0.005
 ROUND_OFF = 1.0e-9
 
 
-def answer_tables(results: Results) -> list[Table]:
+def result_tables(results: Results) -> list[Table]:
     """Return all tables but the summary for which a run has numbers, in the report's order."""
     found = [
         play_table(results),
