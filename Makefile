@@ -10,11 +10,8 @@ VERIFY_CASES := $(SHELL_CASES) drawn-out crane-telescopes
 ROOMS := $(patsubst %/__init__.py,%,$(wildcard */__init__.py))
 SOURCES := pyproject.toml $(wildcard runs/report/templates/*) \
     $(shell find $(ROOMS) -path runs/out -prune -o -name '*.py' -print)
-STUDIES := $(shell find studies -name '*.py')
 REPORTS := $(VERIFY_CASES:%=runs/out/%/report.html)
-READINGS := runs/out/readings/readings.json
 SWINGS := runs/out/drawn-out-sweep/sweep.csv
-THEN := runs/out/then/then.json
 
 # One thread each: parallelism is MPI ranks, `make -j` and test workers. Open MPI refuses root else.
 export OMP_NUM_THREADS ?= 1
@@ -34,7 +31,7 @@ READY := .venv/ready-$(RELEASE)
 SPHINX := .venv/sphinx-$(RELEASE)
 endif
 
-.PHONY: help verify snapshots gallery bench readings convergence validity other-codes test fuzz torture quick lint docs matrix clean distclean debian-packages
+.PHONY: help verify snapshots gallery bench convergence validity other-codes test fuzz torture quick lint docs matrix clean distclean debian-packages
 .DELETE_ON_ERROR:
 
 help: ## list these targets
@@ -42,9 +39,7 @@ help: ## list these targets
 
 # As many cases at a time as there are cores, of which nproc tells no more than OMP_NUM_THREADS.
 verify: $(READY) ## run the cases where they are not up to date, print the verdicts
-	@$(MAKE) --no-print-directory --jobs=$$(OMP_NUM_THREADS= nproc) $(REPORTS) $(READINGS) $(THEN)
-	@cp $(READINGS) $(THEN) runs/out/paper/
-	@cp $(THEN) runs/out/paper-friction/
+	@$(MAKE) --no-print-directory --jobs=$$(OMP_NUM_THREADS= nproc) $(REPORTS)
 	@$(BIN)/protractile report $(VERIFY_CASES:%=runs/out/%)
 
 snapshots: $(REPORTS) ## pictures of the verify cases with a shell
@@ -55,9 +50,6 @@ gallery: $(REPORTS) $(SWINGS) ## the pictures of docs/gallery.md, from the verif
 
 bench: $(READY) ## what integrators and reductions cost, into runs/out/bench
 	$(BIN)/python -m studies.cost.bench
-
-readings: $(READY) ## which readings of the data the paper's statements exclude, into runs/out/readings
-	$(BIN)/python -m runs.paper.readings
 
 convergence: $(READY) ## what proves the models: benchmarks, refinements, other codes; into runs/out/convergence
 	$(BIN)/python -m studies.convergence
@@ -110,18 +102,10 @@ runs/out/%/report.html: runs/cases/%.toml $(SOURCES) | $(READY)
 	@echo "running the models of $< ..."
 	@$(BIN)/protractile run $< --out $(@D) >/dev/null || { [ $$? -eq 1 ] && [ -f $@ ]; }
 
-$(READINGS): runs/cases/paper.toml $(SOURCES) | $(READY)
-	@echo "surveying readings of $< ..."
-	@$(BIN)/python -m runs.paper.readings >/dev/null
-
 # How fast the boom may be drawn out.
 $(SWINGS): runs/cases/drawn-out.toml $(SOURCES) | $(READY)
 	@$(BIN)/protractile sweep $< --out $(@D) --models timoshenko \
 	    --vary joint.drive.time=0.5,0.7,1,1.2,1.4,1.7,2,3,5
-
-$(THEN): runs/cases/paper.toml runs/cases/paper-friction.toml $(SOURCES) $(STUDIES) | $(READY)
-	@echo "solving $< as it was solved in 1997 ..."
-	@$(BIN)/python -m studies.as_computed_then >/dev/null
 
 .venv/ready-$(RELEASE): pyproject.toml .ci/constraints-$(RELEASE).txt | debian-packages
 	@echo "installing Python packages into .venv (a minute or two) ..."

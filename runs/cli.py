@@ -397,7 +397,7 @@ def _rendered_again(folder: str) -> Iterator[tuple[Results, Addition, Path]]:
     with exclusive(path):
         results = Results.load(path)
         check_left(path, folder, "folder")
-        judged = judge(results, path)
+        judged = judge(results)
         with changed_folder(path) as part:
             yield results, judged, part
             output.write_report(results, judged, part)

@@ -8,7 +8,6 @@ Another client would replace the names here and there.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -18,23 +17,11 @@ if TYPE_CHECKING:
     from runs.report.pages import Addition
 
 
-def judge(results: Results, folder: Path | None = None) -> Addition:
-    """Return what the client adds to the report of a run.
+def judge(results: Results) -> Addition:
+    """Return the client's additions to the report of a run."""
+    from runs.paper import rules, verdicts
 
-    Args:
-        results: of the run.
-        folder: of a finished run, which may hold the client's files.
-
-    Raises:
-        BadInput: one of these files is damaged, or of another case.
-    """
-    from runs.paper import readings, rules, verdicts
-
-    found, case = rules.judge(results), results.case
-    if folder is None:
-        return verdicts.addition(case, found)
-    found = verdicts.beside(found, folder, case)
-    return verdicts.addition(case, found, readings.load(folder, case))
+    return verdicts.addition(results.case, rules.judge(results))
 
 
 def show(judged: Mapping[str, Addition], console: Console) -> int:

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from studies.then.modal_integrators import NEWMARK, own_root
+from studies.numerics_1997.schemes import NEWMARK, measured_root
 from tests import rubbing
 
 
 def compile_loops(rubbed: Path) -> None:
     """Move a system that rubs, told to a file, and one by the numerics of 1997."""
     rubbing.compile_loop(rubbed)
-    own_root(NEWMARK, 0.1)
+    measured_root(NEWMARK, 0.1)

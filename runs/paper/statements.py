@@ -26,10 +26,6 @@ STATEMENTS: dict[StatementId, str] = {
     "and plane.",
 }
 
-# Possible copies in a run's folder: a survey of the paper's readings, and results of numerics of
-# its time.
-SURVEY_FILE, THEN_FILE = "readings.json", "then.json"
-
 
 class CaseKeys(CaseTable):
     """What a case says of the paper."""

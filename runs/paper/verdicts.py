@@ -1,33 +1,24 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Verdicts on the paper's statements: in the report, in the terminal and in ``verdicts.json``.
-
-Results of numerics of the paper's own time accompany each verdict: ``python -m
-studies.as_computed_then`` computes them, and a run's folder may contain a copy.
-"""
+"""Verdicts on the paper's statements: in the report, in the terminal and in ``verdicts.json``."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, ValidationError
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table as Grid
 from rich.text import Text
 
-from runs.case import toml
-from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case
-from runs.case.user_files import read_text
-from runs.paper.statements import STATEMENTS, THEN_FILE
+from runs.paper.statements import STATEMENTS
 from runs.process.terminal import message, say, shown
 from runs.report.formatting import NONE, number
 from runs.report.pages import Addition
-from runs.report.tables import Table, as_json
+from runs.report.tables import as_json
 
 Judgement = Literal["reproduced", "contradicted", "undecided"]
 MARKS: Mapping[Judgement, str] = {"reproduced": "✓", "contradicted": "✗", "undecided": "?"}
@@ -35,9 +26,6 @@ _STYLES = {"reproduced": "green", "contradicted": "red", "undecided": "yellow"}
 
 TEMPLATES = Path(__file__).parent / "templates"
 FILE = "verdicts.json"
-_STUDY = "run python -m studies.as_computed_then again"
-
-_Read = TypeVar("_Read")
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +41,6 @@ class Verdict:
         verdict: result of the rule.
         why: what was compared, and what the number can and cannot decide.
         demanded: the case takes no other verdict than ``reproduced``.
-        then: what numerics of the statement's own time show; empty where none were tried.
     """
 
     id: str
@@ -64,7 +51,6 @@ class Verdict:
     verdict: Judgement
     why: str
     demanded: bool = False
-    then: str = ""
 
     def with_unit(self, value: float | None) -> str:
         """Return one of its numbers as text."""
@@ -72,74 +58,8 @@ class Verdict:
         return f"{text} {self.unit}" if self.unit and text != NONE else text
 
 
-class Outcome(BaseModel):
-    """Whether some numerics of then show a statement, and which."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    shown: bool
-    why: str
-
-    def __str__(self) -> str:
-        return f"{'shown' if self.shown else 'not shown'}: {self.why}"
-
-
-class Outcomes(BaseModel):
-    """The file: of which cases it is, and what it says by statement."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    case_hashes: list[str]
-    outcomes: Mapping[str, Outcome]
-
-
-def beside(verdicts: Sequence[Verdict], folder: Path, case: Case) -> list[Verdict]:
-    """Return the verdicts completed from the file in a run's folder; unchanged without one.
-
-    Raises:
-        BadInput: the file is damaged, or of another case.
-    """
-
-    def read(data: Any) -> tuple[Sequence[str], Outcomes]:
-        found = Outcomes.model_validate(data)
-        return found.case_hashes, found
-
-    found = read_copy(folder / THEN_FILE, case, read, _STUDY)
-    says = {key: str(outcome) for key, outcome in found.outcomes.items()} if found else {}
-    return [replace(one, then=says.get(one.id, "")) for one in verdicts]
-
-
-def read_copy(
-    path: Path, case: Case, read: Callable[[Any], tuple[Sequence[str], _Read]], remedy: str
-) -> _Read | None:
-    """Return the content of a JSON file in a run's folder; None without the file.
-
-    Args:
-        path: of the file.
-        case: the run's.
-        read: returns hashes of the cases of the data, and their content.
-        remedy: how to make the file again.
-
-    Raises:
-        BadInput: it is damaged, or of another case.
-    """
-    try:
-        hashes, found = read(json.loads(read_text(path)))
-    except FileNotFoundError:
-        return None
-    except ValidationError as error:
-        what = f"{first_fault(error)}; is damaged or another version's"
-    except (OSError, ValueError, TypeError, KeyError) as error:
-        what = f"cannot be understood ({error})"
-    else:
-        if toml.digest(case) in hashes:
-            return found
-        what = "is not of the case in case.toml"
-    raise BadInput(str(path.parent), path.name, f"{what}; remove it, or {remedy}")
-
-
-def addition(case: Case, verdicts: Sequence[Verdict], surveyed: Sequence[Table] = ()) -> Addition:
-    """Return the additions of verdicts, and of a survey of readings, to the report of a run."""
+def addition(case: Case, verdicts: Sequence[Verdict]) -> Addition:
+    """Return the additions of verdicts to the report of a run."""
     judged = [verdict.verdict for verdict in verdicts]
     known = evidence(case)
     figures = {"tip": 8, "head": 9} if case.regular else {"tip": 6, "head": 7}
@@ -157,13 +77,11 @@ def addition(case: Case, verdicts: Sequence[Verdict], surveyed: Sequence[Table] 
         "marks": MARKS,
         "counts": {kind: judged.count(kind) for kind in MARKS},
         "evidence": {verdict.id: known[verdict.id] for verdict in verdicts},
-        "then": any(verdict.then for verdict in verdicts),
     }
     written = {FILE: as_json([asdict(verdict) for verdict in verdicts])} if verdicts else {}
     return Addition(
         TEMPLATES / "judged_report.html",
         content,
-        surveyed,
         remarks if case.statements else {},
         written,
     )
@@ -225,11 +143,7 @@ def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> N
     table.add_column("measured", justify="right")
     table.add_column("threshold", justify="right")
     table.add_column("statement", ratio=1)
-    found = decisive(runs)
-    by_then = any(verdict.then for _, verdict in found)
-    if by_then:
-        table.add_column("as computed then", ratio=1)
-    for name, verdict in found:
+    for name, verdict in decisive(runs):
         demanded = " (demanded)" if verdict.demanded else ""
         unit = f" ({verdict.unit})" if verdict.unit else ""
         table.add_row(
@@ -241,7 +155,6 @@ def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> N
             number(verdict.measured),
             number(verdict.threshold),
             Text.assemble(verdict.statement, (unit, "dim")),
-            *((verdict.then or NONE,) if by_then else ()),
         )
     console.print(table)
 

@@ -63,11 +63,9 @@ def render(
         "answers": result_tables(results),
         "known": predictability_tables(results),
         "compared": comparison_tables(results),
-        "added": [],
         "models": model_tables(results),
     }
     texts = {part: [table for table in several if table.rows] for part, several in tables.items()}
-    texts |= {"added": [*addition.tables]}
     pictures = {part: [figure for figure in figures if figure.part == part] for part in PARTS}
     pictures |= {"snapshots": [*snapshots]}
     shown = [

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
@@ -12,8 +12,6 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from PIL import Image
-
-from runs.report.tables import Table
 
 TEMPLATES = Path(__file__).parent / "templates"
 # A picture in a page is compressed to a third of its size on the disk without visible loss; it has
@@ -31,14 +29,12 @@ class Addition:
     Args:
         template: extends ``report.html`` and fills its blocks ``added_…``.
         content: further variables of the template.
-        tables: numbered with the report's own.
         remarks: sentences below tables and figures, by their anchors.
         files: for the run's folder, their text by name.
     """
 
     template: Path = TEMPLATES / "report.html"
     content: Mapping[str, Any] = field(default_factory=dict)
-    tables: Sequence[Table] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
     files: Mapping[str, str] = field(default_factory=dict)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import csv
 import json
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +14,7 @@ import xarray as xr
 
 from runs import CASES
 from runs.case import reading as case_file
-from runs.case import toml
-from runs.case.messages import BadInput
 from runs.client import judge
-from runs.paper.reading import JUDGED, MODELS, Judged, Reading, ReadingFinding
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.at_rest import place_names
 from runs.pipeline.means import Means
@@ -48,31 +45,6 @@ def folder(run: Run, tmp_path: Path, few_figures: None) -> Path:
     out.mkdir()
     write(run, judge(run.results), out, out)
     return out
-
-
-def leave_survey(folder: Path, case_hash: str) -> None:
-    """Write a survey as ``python -m runs.paper.readings``: one reading of 7 mm, reproduced."""
-    findings = {key: ReadingFinding("reproduced", (0.1,)) for key in JUDGED}
-    peaks = dict.fromkeys(MODELS, 0.17)
-    judged = Judged(Reading(0.007, "restored", "as printed", 2.0), findings, peaks, 1e-5)
-    data = {"case_hash": case_hash, "readings": [asdict(judged)]}
-    (folder / "readings.json").write_text(json.dumps(data), encoding="utf-8")
-
-
-def test_a_survey_in_the_folder_is_in_the_report(run: Run, folder: Path) -> None:
-    assert "7, restored, as printed, 2" not in (folder / "report.html").read_text(encoding="utf-8")
-    leave_survey(folder, toml.digest(run.results.case))
-    results = Results.load(folder)
-    write_report(results, judge(results, folder), folder)
-    page = (folder / "report.html").read_text(encoding="utf-8")
-    assert page.count("7, restored, as printed, 2") == 2
-    assert "0 of 1 readings are excluded." in page
-
-
-def test_a_survey_of_another_case_is_refused(run: Run, folder: Path) -> None:
-    leave_survey(folder, "of another")
-    with pytest.raises(BadInput, match=r"readings\.json: is not of the case in case\.toml"):
-        judge(run.results, folder)
 
 
 def header(folder: Path) -> list[str]:

@@ -30,7 +30,6 @@ from runs.pipeline.summary import Snapshots, Summary
 from runs.report.document import print_models, render
 from runs.report.figure_context import Figure
 from runs.report.pages import Addition
-from runs.report.tables import Table
 from tests.runs.summaries import changed, model_summary, printed, summary_of
 
 COARSE = CASES / "coarse.toml"
@@ -76,11 +75,10 @@ def report(
     results: Results,
     figures: list[Figure],
     verdicts: list[Verdict] | None = None,
-    surveyed: Sequence[Table] = (),
     snapshots: Sequence[Figure] = (),
 ) -> str:
     found = judge(results) if verdicts is None else verdicts
-    return render(results, addition(results.case, found, surveyed), figures, snapshots)
+    return render(results, addition(results.case, found), figures, snapshots)
 
 
 @pytest.fixture
@@ -195,25 +193,6 @@ def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Fi
     lines = {line.split()[0]: line for line in tables(results).splitlines() if line.split()}
     assert re.search("no peak +within 0.6 s", lines["kantorovich-4"])
     assert "no peak" not in lines["beam-fe-tied"]
-
-
-def test_shows_a_survey_of_readings(results: Results, figures: list[Figure]) -> None:
-    table = Table.of_rows("readings", "A <survey>", ("reading", "S1"), [("one", "✗")], ("A note.",))
-    page = Page(report(results, figures, surveyed=[table]))
-    assert "A <survey>" in page.text
-    assert {"data-name": "S1", "class": "no"} in page.all("td")
-    assert {"href": "#readings"} in page.all("a")
-    assert {"href": "#readings"} not in Page(report(results, figures)).all("a")
-
-
-def test_shows_what_was_computed_then_where_it_was(results: Results, figures: list[Figure]) -> None:
-    verdicts = judge(results)
-    tried = [replace(verdicts[0], then="not shown: in <no> run"), *verdicts[1:]]
-    with_it, without = (Page(report(results, figures, found)) for found in (tried, verdicts))
-    cells = [cell for cell in with_it.all("td") if cell.get("data-name") == "As computed then"]
-    assert [cell.get("class") for cell in cells] == [None, *["none"] * (len(verdicts) - 1)]
-    assert "not shown: in <no> run" in with_it.text
-    assert "As computed then" not in without.text
 
 
 def test_cautions_stand_above_everything(results: Results, figures: list[Figure]) -> None:

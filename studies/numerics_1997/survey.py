@@ -21,12 +21,12 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.paper.rules import ELEMENT_STEPS, INTERVAL, MOST, SERIES_STEPS
 from studies.cost.generic_solvers import array_rates
-from studies.then.samples import (
+from studies.numerics_1997.samples import (
     MEMBERS,
+    PAPER_STEP,
     SERIES,
-    THEN,
     Example,
-    Moved,
+    ModelRun,
     Numerics,
     Sample,
     all_numerics,
@@ -34,7 +34,7 @@ from studies.then.samples import (
 
 METHODS = {"LSODA": LSODA, "RK45": RK45}
 # In m: a deflection of half the boom's length ends the integration.
-AWAY = 10.0
+LARGEST_TIP = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ def solve(system: GapSystem, duration: float, method: str, tolerance: float, mos
         solver.step()
         time.append(solver.t)
         states.append(solver.y.copy())
-        if not abs(tip @ solver.y[: tip.size]) < AWAY:
+        if not abs(tip @ solver.y[: tip.size]) < LARGEST_TIP:
             break
     whole = np.array(states)
     return Solved(np.array(time), *np.split(whole, 2, axis=1))
@@ -101,18 +101,18 @@ class Survey:
     with_friction: Example
     #: Their samples by the numerics.
     free: Mapping[Numerics, Sequence[Sample]]
-    rubbed: Mapping[Numerics, Sequence[Sample]]
+    frictional: Mapping[Numerics, Sequence[Sample]]
     #: By the general solver in the steps that the paper allows the series, in s.
     reached: Mapping[Way, float]
     #: Elements without and with friction whose contacts are as stiff as printed.
-    printed: Mapping[Numerics, Sequence[Sequence[Moved]]]
+    printed: Mapping[Numerics, Sequence[Sequence[ModelRun]]]
 
     @classmethod
     def of(cls, tell: Callable[[str], None]) -> Survey:
         """Run all numerics."""
-        tell("both examples solved well")
-        free, rubbed = (case_file.load(str(path)) for path in (WITHOUT, WITH))
-        without, with_friction = Example.of(free, MEMBERS), Example.of(rubbed, 1)
+        tell("both examples solved accurately")
+        free, frictional = (case_file.load(str(path)) for path in (WITHOUT, WITH))
+        without, with_friction = Example.of(free, MEMBERS), Example.of(frictional, 1)
         tell("the general solver")
         reached = reach(without, False) | reach(with_friction, True)
         tell("without friction")
@@ -127,19 +127,28 @@ class Survey:
     @cached_property
     def outcomes(self) -> dict[str, Outcome]:
         """Outcomes by statement."""
-        free, rubbed = named(self.without, self.free), named(self.with_friction, self.rubbed)
+        free, frictional = (
+            named(self.without, self.free),
+            named(self.with_friction, self.frictional),
+        )
         return {
-            "S3": _most(free, lambda one: one.conforms_then_parts(self.without.cutoff)),
-            "S7": _most(rubbed, Sample.stratifies),
+            "S3": _most(free, lambda one: one.conforms_then_diverges(self.without.cutoff)),
+            "S7": _most(frictional, Sample.stratifies),
             "S8": self._s8(),
             "S10": self._s10(),
         }
 
     def _s8(self) -> Outcome:
-        at_the_step = {how: found for how, found in self.rubbed.items() if how.step == THEN}
-        found = _most({str(how): found for how, found in at_the_step.items()}, lost_then)
+        at_the_step = {
+            how: found for how, found in self.frictional.items() if how.step == PAPER_STEP
+        }
+        found = _most({str(how): found for how, found in at_the_step.items()}, diverges_near_7_s)
         breaks = {
-            how: sorted(one.elements.breaks for one in found if one.elements.breaks < np.inf)
+            how: sorted(
+                one.elements.divergence_time
+                for one in found
+                if one.elements.divergence_time < np.inf
+            )
             for how, found in at_the_step.items()
         }
         how = max(breaks, key=lambda how: max(breaks[how], default=0.0))
@@ -159,7 +168,7 @@ class Survey:
         stand = {
             round(INTERVAL / how.step)
             for how, found in self.free.items()
-            if share(one.elements.breaks > INTERVAL for one in found) >= MOST
+            if share(one.elements.divergence_time > INTERVAL for one in found) >= MOST
         }
         fewest = f"elements stand in {min(stand)} steps" if stand else "no elements stand so long"
         shown = farthest >= INTERVAL and bool(stand) and min(stand) > ELEMENT_STEPS
@@ -171,13 +180,14 @@ def named(
 ) -> dict[str, Sequence[Sample]]:
     """Return all models by the same numerics, and the elements alone, by their names."""
     return {str(how): found for how, found in samples.items()} | {
-        f"{how}, the series solved well": example.mixed(found) for how, found in samples.items()
+        f"{how}, the series solved accurately": example.with_accurate_series(found)
+        for how, found in samples.items()
     }
 
 
-def lost_then(sample: Sample) -> bool:
+def diverges_near_7_s(sample: Sample) -> bool:
     """Return whether the elements diverge at about the time of the paper's (S8)."""
-    return abs(sample.elements.breaks - INTERVAL) <= ABOUT
+    return abs(sample.elements.divergence_time - INTERVAL) <= ABOUT
 
 
 def reach(example: Example, friction: bool) -> dict[Way, float]:

@@ -1,40 +1,37 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Statements of the paper that fail when its equations are solved well, as solved in 1997.
-
-``python -m studies.as_computed_then`` leaves what verdicts on the paper's cases show of it.
-"""
+"""Study of statements of the paper that an accurate solution contradicts, by numerics of 1997."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 
 from geometry.arrays import Array
 from geometry.typography import TO_PERCENT
-from runs.case import reading as case_file
-from runs.case import toml
-from runs.paper.reading import LITERAL
 from runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
-from runs.paper.statements import THEN_FILE
-from runs.process.terminal import show_notices
 from runs.report.formatting import NONE, number
-from runs.report.tables import Cell, Table, wide_console, write
+from runs.report.tables import Cell, Table
+from studies.interpretations import LITERAL
+from studies.numerics_1997.samples import MEMBERS, MODES, PAPER_STEP, SERIES, ModelRun, Numerics
+from studies.numerics_1997.schemes import NEWMARK, WILSON, proofs
+from studies.numerics_1997.survey import (
+    ABOUT,
+    METHODS,
+    TOLERANCES,
+    Survey,
+    diverges_near_7_s,
+    share,
+)
 from studies.study import Piece, Plot, Tell, titled
-from studies.then.modal_integrators import NEWMARK, WILSON, proofs
-from studies.then.samples import MEMBERS, MODES, SERIES, THEN, Moved, Numerics
-from studies.then.survey import ABOUT, METHODS, TOLERANCES, WITH, WITHOUT, Survey, lost_then, share
 
-OUT = Path("runs/out/then")
-TITLE = "Statements of the paper as they were computed then"
+TITLE = "The statements of the paper by numerics of 1997"
 # Figures show unaccounted energy up to this many percent, and this many points of a curve.
 CUT, POINTS = 150.0, 1000
 
 
-@titled("as-computed-then", TITLE)
+@titled("numerics-1997", TITLE)
 def study(tell: Tell) -> Iterator[Piece]:
     """Run both examples by every scheme with few modes, gaps iterated or lagged, three steps."""
     survey = Survey.of(tell)
@@ -45,7 +42,7 @@ def study(tell: Tell) -> Iterator[Piece]:
 
 def tables(survey: Survey) -> list[Table]:
     """Return all tables of a survey."""
-    made = outcome_table, free_table, rubbed_table, printed_table, reach_table
+    made = outcome_table, free_table, frictional_table, printed_table, reach_table
     return [table(survey) for table in made]
 
 
@@ -55,7 +52,7 @@ def outcome_table(survey: Survey) -> Table:
         (key, "yes" if found.shown else "no", found.why) for key, found in survey.outcomes.items()
     ]
     return Table.of_rows(
-        "then-statements",
+        "numerics-1997-statements",
         "Which numerics of 1997 show what the paper says",
         {"statement": "", "shown": "", "by": ""},
         rows,
@@ -70,13 +67,13 @@ def outcome_table(survey: Survey) -> Table:
 def free_table(survey: Survey) -> Table:
     """Return the table without friction: a row for each numerics, and an accurate one."""
     example = survey.without
-    peak = np.mean([one.elements.first_peak for one in example.well])
+    peak = np.mean([one.elements.first_peak for one in example.accurate])
     rows: list[Sequence[Cell]] = []
-    for how, samples in (("solved well", example.well), *survey.free.items()):
+    for how, samples in (("solved accurately", example.accurate), *survey.free.items()):
         off = TO_PERCENT * (np.array([one.elements.first_peak for one in samples]) / peak - 1.0)
         alike, mixed = (
             [one.peaks(example.cutoff) for one in found]
-            for found in (samples, example.mixed(samples))
+            for found in (samples, example.with_accurate_series(samples))
         )
         energies = _energies([one.elements for one in samples])
         rows.append((str(how), *energies, _span(off), *_parting(alike), *_parting(mixed)))
@@ -85,40 +82,44 @@ def free_table(survey: Survey) -> Table:
         "numerics": "", "elements gain more\nthan was put in at (s)": "",
         "energy at the end\n(% of that put in)": "", "first peak of the\nelements off (%)": "",
         **dict.fromkeys(headings, ".0f"),
-        **dict.fromkeys((f"{one},\nseries solved well" for one in headings), ".0f"),
+        **dict.fromkeys((f"{one},\nseries solved accurately" for one in headings), ".0f"),
     }  # fmt: skip
     return Table.of_rows(
-        "then-free", "Without friction: the tip by numerics of 1997", columns, rows
+        "numerics-1997-free", "Without friction: the tip by numerics of 1997", columns, rows
     )
 
 
-def rubbed_table(survey: Survey) -> Table:
+def frictional_table(survey: Survey) -> Table:
     """Return the table with friction: the same rows."""
     rows: list[Sequence[Cell]] = []
     example = survey.with_friction
-    for how, samples in (("solved well", example.well), *survey.rubbed.items()):
-        apart = TO_PERCENT * np.array([one.apart() for one in samples])
+    for how, samples in (("solved accurately", example.accurate), *survey.frictional.items()):
+        apart = TO_PERCENT * np.array([one.tip_distances() for one in samples])
         rows.append(
             (
                 str(how),
                 *_energies([one.elements for one in samples]),
-                _span([TO_PERCENT * one.elements.unsettled for one in samples]),
-                _span([TO_PERCENT * example.off(one.elements) for one in samples]),
+                _span([TO_PERCENT * one.elements.unconverged for one in samples]),
+                _span([TO_PERCENT * example.tip_error(one.elements) for one in samples]),
                 _span(apart[:, 0]),
                 _span(apart[:, 1]),
                 TO_PERCENT * share(one.stratifies() for one in samples),
-                TO_PERCENT * share(one.stratifies() for one in example.mixed(samples)),
-                TO_PERCENT * share(map(lost_then, samples)),
+                TO_PERCENT
+                * share(one.stratifies() for one in example.with_accurate_series(samples)),
+                TO_PERCENT * share(map(diverges_near_7_s, samples)),
             )
         )
     columns = {
         "numerics": "", "elements gain more\nthan was put in at (s)": "",
         "energy at the end\n(% of that put in)": "", "steps without\nagreement (%)": "",
         "elements off to 6 s\n(% of range)": "", "models apart to 6 s\n(% of range)": "",
-        "and later": "", "as S7 says\n(% of runs)": ".0f", "with the series\nsolved well": ".0f",
+        "and later": "", "as S7 says\n(% of runs)": ".0f",
+        "with the series\nsolved accurately": ".0f",
         f"lost at {INTERVAL - ABOUT:g} to {INTERVAL + ABOUT:g} s\n(% of runs)": ".0f",
     }  # fmt: skip
-    return Table.of_rows("then-rubbed", "With friction: the tip by numerics of 1997", columns, rows)
+    return Table.of_rows(
+        "numerics-1997-friction", "With friction: the tip by numerics of 1997", columns, rows
+    )
 
 
 def printed_table(survey: Survey) -> Table:
@@ -130,7 +131,7 @@ def printed_table(survey: Survey) -> Table:
         for how, both in survey.printed.items()
     ]
     return Table.of_rows(
-        "then-printed",
+        "numerics-1997-printed",
         f"With contacts of {number(LITERAL)} N/m, as the print has them",
         {"numerics": "", **dict.fromkeys(headings, "")},
         rows,
@@ -149,31 +150,34 @@ def reach_table(survey: Survey) -> Table:
         "four terms, friction": ".3g", "five terms, friction": ".3g",
     }  # fmt: skip
     return Table.of_rows(
-        "then-series", f"How far {SERIES_STEPS} steps of a general solver reach (s)", columns, rows
+        "numerics-1997-series",
+        f"How far {SERIES_STEPS} steps of a general solver reach (s)",
+        columns,
+        rows,
     )
 
 
 def plots(survey: Survey) -> Iterator[Plot]:
     """Plot the tip by both iterated schemes at the paper's step, and their energy."""
     for name, what, example, samples in (
-        ("then-free", "Without friction", survey.without, survey.free),
-        ("then-rubbed", "With friction", survey.with_friction, survey.rubbed),
+        ("numerics-1997-free", "Without friction", survey.without, survey.free),
+        ("numerics-1997-friction", "With friction", survey.with_friction, survey.frictional),
     ):
         by = {
             f"{scheme.name}, iterated": max(
-                (one.elements for one in samples[Numerics(scheme, True, THEN)]),
-                key=lambda run: run.breaks,
+                (one.elements for one in samples[Numerics(scheme, True, PAPER_STEP)]),
+                key=lambda run: run.divergence_time,
             )
             for scheme in (NEWMARK, WILSON)
         }
-        runs = {**by, "solved well": example.well[0].elements}
+        runs = {**by, "solved accurately": example.accurate[0].elements}
         yield Plot(
             name,
-            f"{what}: the beam elements' tip, solved well and as computed then",
+            f"{what}: the beam elements' tip, solved accurately and by numerics of 1997",
             "time (s)",
             "tip (mm)",
             {label: _curve(run.time, 1e3 * run.tip) for label, run in runs.items()},
-            f"{1e3 * THEN:g} ms; of {MEMBERS * len(MODES)} runs the one that lasts longest.",
+            f"{1e3 * PAPER_STEP:g} ms; of {MEMBERS * len(MODES)} runs the one that lasts longest.",
             logarithmic=False,
         )
         yield Plot(
@@ -192,9 +196,9 @@ def plots(survey: Survey) -> Iterator[Plot]:
         )
 
 
-def _energies(runs: Sequence[Moved]) -> tuple[str, str]:
+def _energies(runs: Sequence[ModelRun]) -> tuple[str, str]:
     """Return when the energy diverges, and the gain or loss otherwise."""
-    breaks = [run.breaks for run in runs]
+    breaks = [run.divergence_time for run in runs]
     ends = [TO_PERCENT * run.balance[-1] for run in runs]
     return _span(breaks), _span([end for end in ends if end < TO_PERCENT])
 
@@ -220,28 +224,3 @@ def _curve(time: Array, values: Array) -> tuple[list[float], list[float]]:
     """Return a curve with as many points as are visible in a figure."""
     shown = slice(None, None, max(1, time.size // POINTS))
     return time[shown].tolist(), values[shown].tolist()
-
-
-def leave(survey: Survey, made: Sequence[Table], folder: Path) -> None:
-    """Write ``then.json`` and ``then.md`` with these tables."""
-    cases = [case_file.load(str(path)) for path in (WITHOUT, WITH)]
-    data = {
-        "case_hashes": [toml.digest(case) for case in cases],
-        "outcomes": {key: asdict(found) for key, found in survey.outcomes.items()},
-    }
-    write(folder, Path(THEN_FILE).stem, TITLE, data, [table for table in made])
-
-
-def main() -> None:
-    """Print the tables, and write them for the verdicts."""
-    survey = Survey.of(lambda what: print(f"{what} ...", flush=True))
-    made = tables(survey)
-    for table in made:
-        table.show(wide_console())
-    leave(survey, made, OUT)
-    print(f"written to {OUT}")
-
-
-if __name__ == "__main__":
-    show_notices()
-    main()

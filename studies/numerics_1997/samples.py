@@ -23,20 +23,20 @@ from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.paper.reading import LITERAL
 from runs.paper.rules import CONFORMITY, DIVERGENCE
 from runs.paper.run_query import peaks_apart
 from runs.pipeline.members import slow_below
 from runs.pipeline.models import MotionPlan
+from studies.interpretations import LITERAL
 from studies.motions import gap_system, model_of, side_by_side
-from studies.then.modal_integrators import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
+from studies.numerics_1997.schemes import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
 
 SERIES = ("kantorovich-4", "kantorovich-5")
 ELEMENTS, TIED = "beam-fe", "beam-fe-tied"
 
 # The paper's step, 4375 of which make 7 s, and its neighbours, in s.
 STEPS = (3.2e-3, 1.6e-3, 0.8e-3)
-THEN = STEPS[1]
+PAPER_STEP = STEPS[1]
 # A few modes of both segments, which the modal technique keeps.
 MODES = (6, 8, 10, 12, 14)
 # Slightly changed loads: each run is a sample.
@@ -48,11 +48,11 @@ class Numerics:
     """Numerics of 1997 for motions of modes."""
 
     scheme: Scheme  #: of its steps
-    settled: bool  #: whether gaps and friction agree with the end of a step, or lag by one
+    iterated: bool  #: whether gaps and friction agree with the end of a step, or lag by one
     step: float  #: in s
 
     def __str__(self) -> str:
-        gaps = "iterated" if self.settled else "lagged"
+        gaps = "iterated" if self.iterated else "lagged"
         return f"{self.scheme.name}, gaps {gaps}, {1e3 * self.step:g} ms"
 
 
@@ -63,7 +63,7 @@ def all_numerics() -> list[Numerics]:
 
 
 @dataclass(frozen=True, slots=True)
-class Moved:
+class ModelRun:
     """Run of one model."""
 
     time: Array  #: (num_times,) in s
@@ -72,27 +72,27 @@ class Moved:
     head: Array
     gained: Array  #: (num_times,) unaccounted energy in J, a loss if negative
     put_in: float  #: largest energy input of the loads in an accurate motion, in J
-    unsettled: float = 0.0  #: part of the steps without convergence of friction and gaps
+    unconverged: float = 0.0  #: part of the steps without convergence of friction and gaps
 
     @classmethod
-    def of(cls, run: Trajectory, put_in: float = 0.0, unsettled: float = 0.0) -> Moved:
+    def of(cls, run: Trajectory, put_in: float = 0.0, unconverged: float = 0.0) -> ModelRun:
         """Create a run from a trajectory; without ``put_in`` by its own energy."""
         kinetic, strain, contact, work, *losses = (run.data[name].values for name in ENERGIES)
         present = kinetic + strain + contact + sum(losses)
         tip, head = (run.data[place].values for place in ("tip", "head"))
         scale = put_in or float(np.abs(work).max())
-        return cls(run.time, tip, head, present - present[0] - work, scale, unsettled)
+        return cls(run.time, tip, head, present - present[0] - work, scale, unconverged)
 
     @property
     def balance(self) -> Array:
         """Unaccounted energy (num_times,) as a part of that put in, NaN after a finite motion."""
         return self.gained / self.put_in
 
-    def at(self, time: Array) -> Moved:
+    def at(self, time: Array) -> ModelRun:
         """Return the same at other times in s."""
         curves = self.tip, self.head, self.gained
         tip, head, gained = (np.interp(time, self.time, curve) for curve in curves)
-        return Moved(time, tip, head, gained, self.put_in, self.unsettled)
+        return ModelRun(time, tip, head, gained, self.put_in, self.unconverged)
 
     @property
     def first_peak(self) -> float:
@@ -100,7 +100,7 @@ class Moved:
         return float(self.tip[self.time <= 1.0].max())
 
     @property
-    def breaks(self) -> float:
+    def divergence_time(self) -> float:
         """Time in s at which the energy gain exceeds all energy put in; infinite if never."""
         gained = ~(self.balance < 1.0)
         return float(self.time[np.argmax(gained)]) if gained.any() else np.inf
@@ -110,11 +110,11 @@ class Moved:
 class Sample:
     """Models with play by the same numerics, and the model without play."""
 
-    models: Sequence[Moved]  #: of ``SERIES`` and ``ELEMENTS``
-    tied: Moved  #: the elements without play, accurate with any numerics
+    models: Sequence[ModelRun]  #: of ``SERIES`` and ``ELEMENTS``
+    tied: ModelRun  #: the elements without play, accurate with any numerics
 
     @property
-    def elements(self) -> Moved:
+    def elements(self) -> ModelRun:
         """Finite elements with play."""
         return self.models[-1]
 
@@ -123,29 +123,31 @@ class Sample:
 
         They are infinite and NaN if the energy of a model diverges.
         """
-        if min(one.breaks for one in self.models) < np.inf:
+        if min(one.divergence_time for one in self.models) < np.inf:
             return np.inf, np.nan
         tips = np.array([one.tip for one in self.models])
         time, apart = peaks_apart(tips, self.elements.time, cutoff)
         early = time <= CONFORMITY
         return float(apart[early].max(initial=0.0)), float(apart[~early].max(initial=0.0))
 
-    def conforms_then_parts(self, cutoff: float) -> bool:
+    def conforms_then_diverges(self, cutoff: float) -> bool:
         """Return whether the sample shows S3."""
         early, late = self.peaks(cutoff)
         return early <= DIVERGENCE < late
 
-    def apart(self) -> tuple[float, float]:
+    def tip_distances(self) -> tuple[float, float]:
         """Return the largest distance of two tips up to six seconds and after, by range (S7)."""
-        distance = _apart([one.tip for one in self.models])
+        distance = _largest_difference([one.tip for one in self.models])
         early = self.elements.time <= CONFORMITY
         return float(distance[early].max()), float(distance[~early].max())
 
     def stratifies(self) -> bool:
         """Return whether the sample shows S7, by the rule on trajectories."""
-        early, late = self.apart()
-        head = float(_apart([one.head for one in self.models]).max())
-        without = min(float(_apart([one.tip, self.tied.tip]).max()) for one in self.models)
+        early, late = self.tip_distances()
+        head = float(_largest_difference([one.head for one in self.models]).max())
+        without = min(
+            float(_largest_difference([one.tip, self.tied.tip]).max()) for one in self.models
+        )
         return early < DIVERGENCE < without and early < late < head
 
 
@@ -156,7 +158,9 @@ class Example:
     case: Case  #: its file's
     systems: Mapping[str, GapSystem]  #: of its models by their names
     cutoff: float  #: of the slow motion in Hz
-    well: Sequence[Sample]  #: by this program; a single one if friction makes the motion regular
+    accurate: Sequence[
+        Sample
+    ]  #: by this program; a single one if friction makes the motion regular
 
     @classmethod
     def of(cls, case: Case, members: int) -> Example:
@@ -168,52 +172,54 @@ class Example:
         assert cutoff is not None
         runs = side_by_side(
             # As a run of the case moves the model.
-            lambda one: Moved.of(one[1].integrator(changed(one[1].motion, "load", one[0]))),
+            lambda one: ModelRun.of(one[1].integrator(changed(one[1].motion, "load", one[0]))),
             [
                 (factor, MotionPlan.of(systems[name], case, model_of(case, name)))
                 for factor, name in product(factors(members), names)
             ],
         )
-        well = [Sample(runs[i : i + 3], runs[i + 3]) for i in range(0, len(runs), len(names))]
-        return cls(case, systems, cutoff, well)
+        accurate = [Sample(runs[i : i + 3], runs[i + 3]) for i in range(0, len(runs), len(names))]
+        return cls(case, systems, cutoff, accurate)
 
     def samples(self, how: Numerics, modes: Sequence[int] = MODES) -> list[Sample]:
         """Return a sample for each number of the elements' modes and each member."""
-        well = self.well[0].models
-        series = [(self.systems[name], run.put_in) for name, run in zip(SERIES, well, strict=False)]
-        whole, put_in = self.systems[ELEMENTS], well[-1].put_in
+        accurate = self.accurate[0].models
+        series = [
+            (self.systems[name], run.put_in) for name, run in zip(SERIES, accurate, strict=False)
+        ]
+        whole, put_in = self.systems[ELEMENTS], accurate[-1].put_in
         models = [*series, *((lowest(whole, few), put_in) for few in modes)]
         tasks = [(*model, factor) for model in models for factor in factors(MEMBERS)]
-        runs = side_by_side(lambda one: _then(how, self.case.time.duration, *one), tasks)
+        runs = side_by_side(lambda one: _move(how, self.case.time.duration, *one), tasks)
         four, five, *others = (runs[i : i + MEMBERS] for i in range(0, len(runs), MEMBERS))
-        tied = self.well[0].tied.at(four[0].time)
+        tied = self.accurate[0].tied.at(four[0].time)
         return [
             Sample(played, tied)
             for other in others
             for played in zip(four, five, other, strict=True)
         ]
 
-    def mixed(self, samples: Sequence[Sample]) -> list[Sample]:
+    def with_accurate_series(self, samples: Sequence[Sample]) -> list[Sample]:
         """Return the samples with accurate series, as by a general solver without a limit."""
-        members = [self.well[i % MEMBERS % len(self.well)] for i in range(len(samples))]
+        members = [self.accurate[i % MEMBERS % len(self.accurate)] for i in range(len(samples))]
         return [
             replace(one, models=[*(run.at(one.elements.time) for run in series), one.elements])
-            for one, well in zip(samples, members, strict=True)
-            for series in [well.models[: len(SERIES)]]
+            for one, accurate in zip(samples, members, strict=True)
+            for series in [accurate.models[: len(SERIES)]]
         ]
 
-    def as_printed(self, how: Numerics) -> list[Moved]:
+    def as_printed(self, how: Numerics) -> list[ModelRun]:
         """Return the elements with linear contacts of the stiffness as printed."""
-        system, put_in = self.systems[ELEMENTS], self.well[0].elements.put_in
+        system, put_in = self.systems[ELEMENTS], self.accurate[0].elements.put_in
         laws = [PowerContact(LITERAL, 1.0).behind(0.5 * law.play) for law in system.laws]
         tasks = [(lowest(replace(system, laws=laws), few), put_in, 1.0) for few in MODES]
-        return side_by_side(lambda one: _then(how, self.case.time.duration, *one), tasks)
+        return side_by_side(lambda one: _move(how, self.case.time.duration, *one), tasks)
 
-    def off(self, run: Moved) -> float:
+    def tip_error(self, run: ModelRun) -> float:
         """Return the largest distance of the elements' tip from the accurate one, by its range."""
-        well = self.well[0].elements
-        distance = np.abs(run.tip - np.interp(run.time, well.time, well.tip))
-        return float(distance[run.time <= CONFORMITY].max() / np.ptp(well.tip))
+        accurate = self.accurate[0].elements
+        distance = np.abs(run.tip - np.interp(run.time, accurate.time, accurate.tip))
+        return float(distance[run.time <= CONFORMITY].max() / np.ptp(accurate.tip))
 
 
 def factors(members: int) -> Array:
@@ -221,12 +227,14 @@ def factors(members: int) -> Array:
     return 1.0 + perturbations(members, RELATIVE, SEED)
 
 
-def _then(how: Numerics, duration: float, system: GapSystem, put_in: float, factor: float) -> Moved:
+def _move(
+    how: Numerics, duration: float, system: GapSystem, put_in: float, factor: float
+) -> ModelRun:
     motion = changed(Motion(system, duration, how.step), "load", factor)
-    run = integrate(motion, how.scheme, how.settled)
-    return Moved.of(run.trajectory, put_in, float(run.unsettled[: run.lasted].mean()))
+    run = integrate(motion, how.scheme, how.iterated)
+    return ModelRun.of(run.trajectory, put_in, float(run.unconverged[: run.finite_steps].mean()))
 
 
-def _apart(curves: Sequence[Array]) -> Array:
+def _largest_difference(curves: Sequence[Array]) -> Array:
     """Return the largest difference (num_times,) of any two, as a part of the largest range."""
     return np.asarray(np.ptp(np.array(curves), axis=0) / max(np.ptp(one) for one in curves))

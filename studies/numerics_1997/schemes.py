@@ -30,9 +30,9 @@ from studies.study import Proof
 # Rounds of gaps and friction within a step, and of gaps alone.
 ROUNDS, NEWTON = 8, 30
 # Tolerance of penetrations in m.
-AGREED = 1.0e-13
+TOLERANCE = 1.0e-13
 # Divergence limit in √kg·m.
-LOST = 1.0e5
+DIVERGED = 1.0e5
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,13 +50,13 @@ CENTRAL = Scheme("central differences", 0.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Stepped:
+class SchemeRun:
     """Results of such a code."""
 
     trajectory: Trajectory  #: an output for each step, NaN after the last finite one
-    lasted: int  #: steps until the motion is not finite
+    finite_steps: int  #: steps until the motion is not finite
     #: (num_steps,) steps without convergence of friction and gaps.
-    unsettled: Array
+    unconverged: Array
 
 
 def lowest(system: GapSystem, modes: int) -> GapSystem:
@@ -74,51 +74,51 @@ def lowest(system: GapSystem, modes: int) -> GapSystem:
     )
 
 
-def integrate(motion: Motion, scheme: Scheme, settled: bool) -> Stepped:
+def integrate(motion: Motion, scheme: Scheme, iterated: bool) -> SchemeRun:
     """Integrate a system by a scheme, in one step for each output.
 
     Args:
         motion: that of a system under constant loads without damping.
         scheme: one of the family.
-        settled: whether gaps and friction agree with the end of a step, or lag by one.
+        iterated: whether gaps and friction agree with the end of a step, or lag by one.
     """
     system = motion.system
     n, h = motion.outputs, motion.output_step
     states, speeds = np.full((2, n + 1, system.num_modes), np.nan)
-    losses, unsettled = np.zeros(n + 1), np.zeros(n, dtype=bool)
+    losses, unconverged = np.zeros(n + 1), np.zeros(n, dtype=bool)
     states[0], speeds[0] = motion.position, motion.velocity
     terms = contact_terms(system.laws)
     drag = np.array([f.coefficient * f.normal_force for f in system.frictions])
     rows, slides = (np.ascontiguousarray(part) for part in (system.rows, system.friction_rows))
     arrays = system.omega2, system.load, rows, terms, slides, drag
-    lasted = _march(
-        arrays, h, scheme.beta, scheme.theta, settled, states, speeds, losses, unsettled
+    finite_steps = _fill_motion(
+        arrays, h, scheme.beta, scheme.theta, iterated, states, speeds, losses, unconverged
     )
     gaps = states @ system.rows.T
     forces, energies = np.zeros(gaps.shape), np.zeros((n + 1, len(ENERGIES)))
-    _press(gaps[: lasted + 1], terms, forces, energies[:, 2])
+    _fill_contact(gaps[: finite_steps + 1], terms, forces, energies[:, 2])
     energies[:, 0] = 0.5 * (speeds**2).sum(axis=1)
     energies[:, 1] = 0.5 * states**2 @ system.omega2
     energies[:, 3] = (states - states[0]) @ system.load
     energies[:, 5] = losses
     pressed = forces != 0.0
-    rubbed = -np.sign(speeds @ system.friction_rows.T) * drag
+    frictional = -np.sign(speeds @ system.friction_rows.T) * drag
     trajectory = Trajectory.record(
         system,
         h * np.arange(n + 1),
         Output(
-            states, speeds, energies, gaps, forces, np.abs(forces), rubbed, np.zeros((n + 1, 0))
+            states, speeds, energies, gaps, forces, np.abs(forces), frictional, np.zeros((n + 1, 0))
         ),
         step=h,
-        steps=lasted,
+        steps=finite_steps,
         first_contact=h * int(np.argmax(pressed.any(axis=1))) if pressed.any() else np.nan,
         contact_changes=int(np.count_nonzero(np.diff(pressed, axis=0))),
     )
-    return Stepped(trajectory, lasted, unsettled)
+    return SchemeRun(trajectory, finite_steps, unconverged)
 
 
 @njit(**LOOP)
-def _press(gaps: Array, terms: Terms, forces: Array, energy: Array) -> None:
+def _fill_contact(gaps: Array, terms: Terms, forces: Array, energy: Array) -> None:
     """Fill in contact forces and friction at gaps (num_times, num_rows)."""
     for k in range(len(gaps)):
         contact_forces(gaps[k], terms, forces[k])
@@ -126,12 +126,12 @@ def _press(gaps: Array, terms: Terms, forces: Array, energy: Array) -> None:
 
 
 @njit(**LOOP)
-def _settle(free: Array, cross: Array, terms: Terms, y: Array, force: Array) -> bool:
+def _solve_gaps(free: Array, cross: Array, terms: Terms, y: Array, force: Array) -> bool:
     """Solve y + ``cross`` F(y) = ``free`` for gaps (num_rows,) by Newton's method."""
     for _ in range(NEWTON):
         contact_forces(y, terms, force)
         excess = y + cross @ force - free
-        if (excess**2).sum() < AGREED**2:
+        if (excess**2).sum() < TOLERANCE**2:
             return True
         slopes = np.eye(y.size)
         for t in range(terms.size):
@@ -143,16 +143,16 @@ def _settle(free: Array, cross: Array, terms: Terms, y: Array, force: Array) -> 
 
 
 @njit(**LOOP)
-def _march(
+def _fill_motion(
     system: tuple[Array, Array, Array, Terms, Array, Array],
     h: float,
     beta: float,
     theta: float,
-    settled: bool,
+    iterated: bool,
     states: Array,
     speeds: Array,
     losses: Array,
-    unsettled: Array,
+    unconverged: Array,
 ) -> int:
     """Fill in states, speeds and friction losses; return the number of finite steps."""
     omega2, load, rows, terms, slides, drag = system
@@ -165,31 +165,31 @@ def _march(
     contact_forces(y, terms, force)
     sign = np.sign(slides @ v)
     acceleration = load - omega2 * a - force @ rows - (drag * sign) @ slides
-    for k in range(unsettled.size):
+    for k in range(unconverged.size):
         ahead = a + tau * v + (0.5 * tau**2 - reach) * acceleration
-        if not settled:
+        if not iterated:
             contact_forces(rows @ a, terms, force)
             sign = np.sign(slides @ v)
         for _ in range(ROUNDS):
             pushed = load - omega2 * ahead - (drag * sign) @ slides
-            agreed = not settled or _settle(
+            converged = not iterated or _solve_gaps(
                 rows @ (ahead + reach * give * pushed), cross, terms, y, force
             )
             there = give * (pushed - force @ rows)
             after = acceleration + (there - acceleration) / theta
             v1 = v + 0.5 * h * (acceleration + after)
             before, sign = sign, np.sign(slides @ v1)
-            if not settled or (agreed and np.array_equal(before, sign)):
+            if not iterated or (converged and np.array_equal(before, sign)):
                 break
         else:
-            unsettled[k] = True
+            unconverged[k] = True
         a = a + h * v + h**2 * ((0.5 - beta) * acceleration + beta * after)
-        if not np.abs(a).max() < LOST:
+        if not np.abs(a).max() < DIVERGED:
             return k
         losses[k + 1] = losses[k] + 0.5 * h * (drag * before) @ (slides @ (v + v1))
         v, acceleration = v1, after
         states[k + 1], speeds[k + 1] = a, v
-    return int(unsettled.size)
+    return int(unconverged.size)
 
 
 PER_PERIOD = 10
@@ -220,15 +220,15 @@ def textbook_root(scheme: Scheme, phase: float) -> complex:
         [1.0 - 0.5 / theta - b * theta**2 / 6.0, 1.0 - 0.5 * b * theta, -0.5 * b],
         [0.5 - (1.0 / theta + b * theta**2 / 3.0) / 6.0, 1.0 - b * theta / 6.0, 1.0 - b / 6.0],
     ]
-    return _turning(np.linalg.eigvals(matrix))
+    return _rotating_root(np.linalg.eigvals(matrix))
 
 
-def own_root(scheme: Scheme, phase: float) -> complex:
+def measured_root(scheme: Scheme, phase: float) -> complex:
     """Return the same, measured from the motion of an oscillator."""
     motion = Motion(oscillator(), STEPS * phase, phase, position=np.ones(1))
-    way = integrate(motion, scheme, settled=False).trajectory.states[:, 0]
+    way = integrate(motion, scheme, iterated=False).trajectory.states[:, 0]
     behind = np.stack([way[2:-1], way[1:-2], way[:-3]], axis=1)
-    return _turning(np.roots([1.0, *-np.linalg.lstsq(behind, way[3:], rcond=1.0e-9)[0]]))
+    return _rotating_root(np.roots([1.0, *-np.linalg.lstsq(behind, way[3:], rcond=1.0e-9)[0]]))
 
 
 def oscillator() -> GapSystem:
@@ -244,12 +244,12 @@ def oscillator() -> GapSystem:
     )
 
 
-def longer_period(root: complex, phase: float) -> float:
+def period_elongation(root: complex, phase: float) -> float:
     """Return the relative increase of the period by a root."""
     return float(phase / np.angle(root)) - 1.0
 
 
-def lost_amplitude(root: complex) -> float:
+def amplitude_loss(root: complex) -> float:
     """Return the relative loss of amplitude in a period."""
     return 1.0 - float(abs(root) ** (2.0 * np.pi / np.angle(root)))
 
@@ -258,12 +258,12 @@ def proofs() -> Iterator[Proof]:
     """Return the proofs of period and amplitude of each scheme in ten steps a period."""
     phase = 2.0 * np.pi / PER_PERIOD
     for scheme in (NEWMARK, WILSON, CENTRAL):
-        roots = own_root(scheme, phase), textbook_root(scheme, phase)
+        roots = measured_root(scheme, phase), textbook_root(scheme, phase)
         periods, amplitudes = (
             [100.0 * error for error in errors]
             for errors in (
-                [longer_period(root, phase) for root in roots],
-                [lost_amplitude(root) for root in roots],
+                [period_elongation(root, phase) for root in roots],
+                [amplitude_loss(root) for root in roots],
             )
         )
         name = f"{scheme.name}, {PER_PERIOD} steps a period"
@@ -274,6 +274,6 @@ def proofs() -> Iterator[Proof]:
             yield Proof(f"{name}: {what}", value, reference, "%", "analytic", SOURCE, 1.0e-6)
 
 
-def _turning(roots: object) -> complex:
+def _rotating_root(roots: object) -> complex:
     """Return the root of several with positive rotation."""
     return complex(max(np.asarray(roots), key=lambda root: root.imag))

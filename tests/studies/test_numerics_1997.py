@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,19 +13,34 @@ import pytest
 from dynamics.friction import DryFriction
 from geometry.arrays import Array
 from runs.case import reading as case_file
-from runs.paper.verdicts import Verdict, beside
-from studies.as_computed_then import leave, tables
-from studies.then.modal_integrators import oscillator
-from studies.then.samples import SERIES, STEPS, Example, Moved, Numerics, Sample, all_numerics
-from studies.then.survey import METHODS, TOLERANCES, WITH, WITHOUT, Survey, lost_then, solve
+from studies.numerics_1997.samples import (
+    SERIES,
+    STEPS,
+    Example,
+    ModelRun,
+    Numerics,
+    Sample,
+    all_numerics,
+)
+from studies.numerics_1997.schemes import oscillator
+from studies.numerics_1997.survey import (
+    METHODS,
+    TOLERANCES,
+    WITH,
+    WITHOUT,
+    Survey,
+    diverges_near_7_s,
+    solve,
+)
+from studies.numerics_1997.tables import tables
 
 TIME = np.arange(0.0, 10.0, 1.6e-3)
 CUTOFF = 1.7
 
 
-def moved(tip: Array, head: float = 0.1, gained: float = 0.0, since: float = 0.0) -> Moved:
+def moved(tip: Array, head: float = 0.1, gained: float = 0.0, since: float = 0.0) -> ModelRun:
     """Return a tip, a head that is a part of it, and an energy in J of 1 J initially."""
-    return Moved(TIME, tip, head * tip, np.where(since <= TIME, gained, 0.0), 1.0)
+    return ModelRun(TIME, tip, head * tip, np.where(since <= TIME, gained, 0.0), 1.0)
 
 
 def swing(frequency: float = 0.9, late: float = 0.0) -> Array:
@@ -53,20 +67,20 @@ def test_peaks_conform_and_part(others: Array, early: float, late: float) -> Non
     """
     found = sample(swing(), swing(), others)
     assert found.peaks(CUTOFF) == pytest.approx((early, late), abs=0.04)
-    assert found.conforms_then_parts(CUTOFF) == (late > 0.2)
+    assert found.conforms_then_diverges(CUTOFF) == (late > 0.2)
 
 
 def test_peaks_of_what_breaks_out_are_none() -> None:
     lost = sample(swing(), swing(), swing(late=0.4), gained=2.0, since=6.5)
     assert lost.peaks(CUTOFF) == pytest.approx((np.inf, np.nan), nan_ok=True)
-    assert not lost.conforms_then_parts(CUTOFF)
+    assert not lost.conforms_then_diverges(CUTOFF)
 
 
 def test_the_series_solved_well_take_the_place_of_those_of_then() -> None:
     case = case_file.load(str(WITHOUT))
-    well = sample(swing(), 2.0 * swing(), 3.0 * swing())
+    accurate = sample(swing(), 2.0 * swing(), 3.0 * swing())
     found = sample(swing(), swing(), swing(late=0.4))
-    (mixed,) = Example(case, {}, CUTOFF, [well]).mixed([found])
+    (mixed,) = Example(case, {}, CUTOFF, [accurate]).with_accurate_series([found])
     heights = [np.abs(one.tip).max() for one in mixed.models]
     assert heights == pytest.approx([1.0, 2.0, 1.0], rel=1e-3)
     assert mixed.elements is found.elements
@@ -77,7 +91,7 @@ def test_models_are_as_far_apart_as_their_tips() -> None:
     seconds: 0.1 of a range of 2.2.
     """
     larger = np.where(TIME > 6.0, 1.1, 1.0) * swing()
-    early, late = sample(swing(), swing(), larger).apart()
+    early, late = sample(swing(), swing(), larger).tip_distances()
     assert early == 0.0
     assert late == pytest.approx(0.1 / 2.2, rel=0.01)
 
@@ -95,8 +109,8 @@ def test_s7_takes_all_of_its_parts(head: float, stratifies: bool) -> None:
 @pytest.mark.parametrize(("gained", "breaks"), [(0.9, np.inf), (-2.0, np.inf), (1.1, 6.5)])
 def test_what_gains_more_than_was_put_in_breaks(gained: float, breaks: float) -> None:
     run = moved(swing(), gained=gained, since=6.5)
-    assert run.breaks == pytest.approx(breaks, abs=2e-3)
-    assert lost_then(sample(swing(), gained=gained, since=6.5)) == np.isfinite(breaks)
+    assert run.divergence_time == pytest.approx(breaks, abs=2e-3)
+    assert diverges_near_7_s(sample(swing(), gained=gained, since=6.5)) == np.isfinite(breaks)
 
 
 def test_every_numerics_is_tried_once() -> None:
@@ -157,14 +171,7 @@ def test_outcomes_follow_from_the_runs() -> None:
     assert outcomes["S10"].why.startswith("2000 steps of a general solver reach 2 s of the 7 s")
 
 
-def test_the_verdicts_read_what_the_study_leaves(tmp_path: Path) -> None:
-    done = survey([sample(swing(), swing(), swing())], 2.0)
-    made = tables(done)
-    leave(done, made, tmp_path)
-    case = case_file.load(str(WITH))
-    verdict = Verdict("S7", "", None, None, "", "undecided", "")
-    (found,) = beside([verdict], tmp_path, case)
-    assert found.then == f"not shown: {done.outcomes['S7'].why}"
-    names = [table.name for table in made]
-    text = (tmp_path / "then.md").read_text(encoding="utf-8")
-    assert len(names) == text.count("| :--")
+def test_every_table_has_a_row_for_each_of_its_numerics() -> None:
+    """Reference: 4 statements; 18 numerics, in the first two after the accurate run; 2 solvers."""
+    made = tables(survey([sample(swing(), swing(), swing())], 2.0))
+    assert [len(table.rows) for table in made] == [4, 19, 19, 18, 2 * len(TOLERANCES)]

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Interpretations of the paper become cases, and a contradicted statement excludes them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import pytest
+
+from dynamics.contact import PowerContact
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.kinds.kantorovich import Kantorovich
+from runs.case.schema import Case
+from runs.paper.verdicts import Judgement
+from studies.interpretations import (
+    ALL,
+    COMMON,
+    JUDGED,
+    MODELS,
+    PAPER,
+    Finding,
+    Interpretation,
+    JudgedInterpretation,
+    conclude,
+    judge_exponents,
+    number_table,
+    survey,
+    verdict_table,
+)
+from tests.touching import contact_laws
+
+LITERAL = Interpretation(0.014, "literal", "as printed", 2.0)
+RESTORED = replace(LITERAL, stiffness="restored")
+
+
+@pytest.fixture
+def paper() -> Case:
+    return case_file.load(str(PAPER))
+
+
+def judged(one: Interpretation, peak: float = 0.17, **verdicts: Judgement) -> JudgedInterpretation:
+    """Return an interpretation with verdicts, by default reproduced, and a peak height in m."""
+    findings: Mapping[str, Finding] = {
+        key: Finding(verdicts.get(key, "reproduced"), ()) for key in JUDGED
+    }
+    return JudgedInterpretation(one, findings, dict.fromkeys(MODELS, peak), 0.0)
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
+def test_restored_laws_are_equally_stiff_where_the_pads_work(exponent: float) -> None:
+    """Reference: 1e9 N/m, the quadratic law's slope 2 √(1e13 · 25e3) by hand; the slope here is a
+    difference of forces, good to 1e-6.
+    """
+    stiffness = replace(RESTORED, exponent=exponent).contact_stiffness
+    law = PowerContact(stiffness, exponent)
+    depth = (2.5e4 / stiffness) ** (1.0 / exponent)
+    assert float(law.force(depth)) == pytest.approx(2.5e4)
+    slope = (law.force(depth * 1.001) - law.force(depth * 0.999)) / (0.002 * depth)
+    assert float(slope) == pytest.approx(1.0e9, rel=1e-6)
+
+
+def test_all_combinations_occur_once() -> None:
+    """Reference: 2 plays, 2 stiffnesses, 3 bases, 3 exponents; the literal stiffness by hand."""
+    assert len(set(ALL)) == len(ALL) == 36
+    for one in ALL:
+        assert (one.contact_stiffness == 1.01e6) == (one.stiffness == "literal")
+
+
+def test_every_model_of_the_case_has_the_interpretation(paper: Case) -> None:
+    case = Interpretation(0.028, "literal", "pinned", 1.5).case(paper, 0.5)
+    assert [model.name for model in case.models] == list(MODELS)
+    for model in case.models:
+        (law,) = contact_laws(case, model)
+        assert law == PowerContact(1.01e6, 1.5).behind(0.014)
+        assert not isinstance(model, Kantorovich) or model.base == "pinned"
+    assert [one.load for one in build_boom(case).segments] == [1.5 * 83.16, 1.5 * 55.07]
+
+
+def test_contradicted_statements_exclude_and_undecided_ones_do_not() -> None:
+    """Reference: by hand."""
+    verdicts = [
+        judged(LITERAL, S2="contradicted", S9="contradicted"),
+        judged(RESTORED, S4="undecided"),
+    ]
+    assert [entry.excluded_by for entry in verdicts] == [["S2", "S9"], []]
+    assert conclude(verdicts) == [
+        "1 of 2 interpretations are excluded.",
+        "stiffness literal: all excluded, by S2 1 times, S9 1 times.",
+        "stiffness restored: none excluded.",
+    ]
+    pinned = [judged(replace(one, base="pinned")) for one in (LITERAL, RESTORED)]
+    assert "stiffness literal: 1 of 2 excluded, by S2 1 times, S9 1 times." in conclude(
+        [*verdicts, *pinned]
+    )
+
+
+@pytest.mark.parametrize(
+    ("peak", "verdict"), [(0.171, "reproduced"), (0.1785, "undecided"), (0.34, "contradicted")]
+)
+def test_exponents_are_compared_within_their_group(peak: float, verdict: str) -> None:
+    """Reference: peaks 0.6 %, 5.0 % and 100 % apart by hand, against 5 % ± 0.5 %."""
+    group = [judged(RESTORED), judged(replace(RESTORED, exponent=1.0), peak)]
+    *both, other = judge_exponents([*group, judged(LITERAL, 1.7)])
+    for entry in both:
+        assert entry.findings["S9"].verdict == verdict
+        assert entry.findings["S9"].measured == pytest.approx([peak / 0.17 - 1.0])
+    assert other.findings["S9"] == Finding("undecided", ())
+
+
+@pytest.mark.slow
+def test_a_survey_of_two_interpretations() -> None:
+    """Reference: the literal stiffness gives n = 1 and n = 2 first tip peaks that differ by more
+    than half, and the series stay within a tenth of one another; non-regression.
+    """
+    found = survey([replace(LITERAL, exponent=exponent) for exponent in (1.0, 2.0)], members=2)
+    for entry in found:
+        assert sorted(entry.findings) == sorted(JUDGED)
+        assert set(COMMON) < set(entry.findings)
+        assert {"S2", "S9"} <= set(entry.excluded_by)
+        assert entry.findings["S9"].measured[0] > 0.5
+        assert max(entry.findings["S2"].measured) < 0.15
+        assert entry.energy_residual < 1e-2
+    for table in (verdict_table(found), number_table(found)):
+        assert [row[0] for row in table.rows] == [f"14, literal, as printed, {n}" for n in (1, 2)]
