@@ -125,13 +125,12 @@ class Interpretation:
         )
 
 
+STIFFNESSES: tuple[Stiffness, ...] = ("restored", "literal")
+BASES: tuple[Base, ...] = ("as printed", "pinned", "complete")
 ALL = tuple(
     Interpretation(play, stiffness, base, exponent)
     for play, stiffness, exponent, base in product(
-        (0.014, 0.028),
-        ("restored", "literal"),
-        (1.0, 1.5, 2.0),
-        ("as printed", "pinned", "complete"),
+        (0.014, 0.028), STIFFNESSES, (1.0, 1.5, 2.0), BASES
     )
 )
 
