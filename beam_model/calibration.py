@@ -23,9 +23,9 @@ from dynamics.gap_system import GapSystem
 from dynamics.reduction import residual_compliance, with_springs
 from geometry.arrays import Array
 from geometry.boom import Boom, Segment
-from geometry.far_field import FAR_SHIFT, Bent, FarField
+from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
 
-# Weight of the logarithm of a factor beside relative errors of the far field. It determines a
+# Weight of the logarithm of a factor beside relative errors of responses. It determines a
 # stiffness without influence, and changes no other.
 _PRIOR = 1.0e-4
 # Minimum elements of a segment; shear-flexible ones are exact at their nodes in statics.
@@ -69,7 +69,7 @@ class Calibration:
 def calibrate(
     boom: Boom,
     shell: GapSystem,
-    far_fields: Sequence[FarField],
+    probe_responses: Sequence[ProbeResponses],
     segments: Callable[[Boom], Sequence[SegmentModel]],
 ) -> tuple[GapSystem, Calibration]:
     """Return a beam with the contact places and local compliance of a shell, and its calibration.
@@ -77,12 +77,12 @@ def calibrate(
     Args:
         boom: all its segments with sections.
         shell: of the boom, pressed near its webs or by pads.
-        far_fields: of the shell's segments.
+        probe_responses: of the shell's segments.
         segments: makes beams of a boom.
     """
     found = [
         effective_stiffness(segment, far)
-        for segment, far in zip(boom.segments, far_fields, strict=True)
+        for segment, far in zip(boom.segments, probe_responses, strict=True)
     ]
     stiff = stiffened(boom, found)
     beam = gap_system(stiff, segments(stiff), AT_PADS)
@@ -95,7 +95,7 @@ def stiffened(boom: Boom, stiffness: Sequence[Stiffness]) -> Boom:
     return replace(boom, segments=tuple(map(with_stiffness, boom.segments, stiffness)))
 
 
-def effective_stiffness(segment: Segment, far: FarField) -> Stiffness:
+def effective_stiffness(segment: Segment, far: ProbeResponses) -> Stiffness:
     """Return the stiffness with which a beam responds to the probes as the shell of the segment.
 
     For a tapered segment it is the beam's own, half-way.
@@ -143,7 +143,7 @@ def with_stiffness(segment: Segment, stiffness: Stiffness) -> Segment:
     return replace(changed, lateral=lateral)
 
 
-def _bending(segment: Segment, far: FarField, motion: Bent) -> tuple[float, float]:
+def _bending(segment: Segment, far: ProbeResponses, motion: ProbedMotion) -> tuple[float, float]:
     """Return E J and G A_s of a segment, turned to bend along y."""
     assert segment.shear_stiffness is not None
     if segment.head_section is not None:
@@ -154,7 +154,7 @@ def _bending(segment: Segment, far: FarField, motion: Bent) -> tuple[float, floa
     return float(bending * segment.bending_stiffness), float(shear * segment.shear_stiffness)
 
 
-def _fit(segment: Segment, far: FarField, motion: Bent, count: int) -> Array:
+def _fit(segment: Segment, far: ProbeResponses, motion: ProbedMotion, count: int) -> Array:
     """Return (count,) factors of the stiffnesses, by least squares of the relative errors."""
     first, turns = _component(segment, far, motion, np.ones(count))
     probes = _probes(first, far, motion)
@@ -171,7 +171,7 @@ def _fit(segment: Segment, far: FarField, motion: Bent, count: int) -> Array:
 
     def errors(logarithms: Array) -> Array:
         component, _ = _component(segment, far, motion, np.exp(logarithms))
-        sigma = (2.0 * np.pi * FAR_SHIFT) ** 2
+        sigma = (2.0 * np.pi * PROBE_FREQUENCY) ** 2
         pushes = _probes(component, far, motion).T @ balanced
         beam = pushes.T @ np.linalg.solve(component.stiffness + sigma * component.mass, pushes)
         return np.concatenate([((beam - shell) / sizes)[pairs], _PRIOR * logarithms])
@@ -180,7 +180,7 @@ def _fit(segment: Segment, far: FarField, motion: Bent, count: int) -> Array:
 
 
 def _component(
-    segment: Segment, far: FarField, motion: Bent, factors: Array
+    segment: Segment, far: ProbeResponses, motion: ProbedMotion, factors: Array
 ) -> tuple[Component, int]:
     """Return a motion of the segment with factors of its stiffness, and its rigid motions."""
     if motion == "twist":
@@ -203,7 +203,7 @@ def _component(
     return component, component.rigid_modes
 
 
-def _probes(component: Component, far: FarField, motion: Bent) -> Array:
+def _probes(component: Component, far: ProbeResponses, motion: ProbedMotion) -> Array:
     """Return the load vectors (num_probes, num_dofs) of the probes."""
     rows = [component.at(x) for x in far.places]
     if motion != "twist":

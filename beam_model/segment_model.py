@@ -27,11 +27,11 @@ from geometry.section import Offset
 from geometry.telescoping import drives_below
 
 
-class Touch(NamedTuple):
+class ContactGeometry(NamedTuple):
     """Contact geometry of beams.
 
     Args:
-        sides: of a pad or stop that presses both ways, see ``GapBuilder.press``.
+        sides: of a pad or stop that presses both ways, see ``GapBuilder.add_contact``.
         x: m of a pad's approach, and of its slide.
         offsets: (y, z) in m of a pad's inner and outer point.
     """
@@ -42,37 +42,39 @@ class Touch(NamedTuple):
 
 
 # At the stations, by the whole law on the axis.
-AT_STATIONS = Touch((0,), lambda pad: (pad.x, pad.x), lambda pad: (pad.inner, pad.outer))
+AT_STATIONS = ContactGeometry((0,), lambda pad: (pad.x, pad.x), lambda pad: (pad.inner, pad.outer))
 # At the pads of a shell, each side separately, like a shell's walls.
-AT_PADS = Touch((1, -1), lambda pad: (pad.middle, pad.slid), lambda pad: pad.covered)
+AT_PADS = ContactGeometry((1, -1), lambda pad: (pad.middle, pad.slid), lambda pad: pad.covered)
 
 
 def gap_system(
     boom: Boom,
     models: Sequence[SegmentModel],
-    touch: Touch = AT_STATIONS,
+    contact: ContactGeometry = AT_STATIONS,
 ) -> GapSystem:
     """Return segments in modal coordinates, coupled by contact, friction and ties alone.
 
-    ``touch`` gives the places where pads are read.
+    ``contact`` gives the places where pads are read.
     """
     modes = BoomModes(boom, models)
-    system = standing_system(boom, modes, touch)
-    rows_at = partial(_rows, boom, modes, touch)
+    system = undriven_system(boom, modes, contact)
+    rows_at = partial(_rows, boom, modes, contact)
     members = [modes.member(number) for number in range(len(boom.segments))]
     return replace(system, travels=travels(boom, models, rows_at, members))
 
 
-def standing_system(boom: Boom, modes: BoomModes, touch: Touch = AT_STATIONS) -> GapSystem:
+def undriven_system(
+    boom: Boom, modes: BoomModes, contact: ContactGeometry = AT_STATIONS
+) -> GapSystem:
     """Return the gap system at the start, without drives.
 
     Args:
-        boom, touch: as of :func:`gap_system`.
+        boom, contact: as of :func:`gap_system`.
         modes: of the boom's segments.
     """
     members = [modes.member(number) for number in range(len(boom.segments))]
     ends: tuple[Quantity, ...] = ("deflection", "lateral") if boom.spatial else ("deflection",)
-    return _rows(boom, modes, touch, {}).system(
+    return _rows(boom, modes, contact, {}).system(
         lambda row: row,
         modes.omega2,
         sum((push for _, push in pin_moments(boom.segments, boom.joints, members)), modes.load),
@@ -90,15 +92,10 @@ def standing_system(boom: Boom, modes: BoomModes, touch: Touch = AT_STATIONS) ->
     )
 
 
-def tied_system(boom: Boom, models: Sequence[SegmentModel]) -> GapSystem:
-    """Return the boom without play: each joint's segments move alike at its stations."""
-    return gap_system(boom.play_free, models)
-
-
 def _rows(
     boom: Boom,
     modes: BoomModes,
-    touch: Touch,
+    contact: ContactGeometry,
     extensions: Mapping[int, float],
 ) -> GapBuilder[Array]:
     """Return contact, friction and dashpot rows at the extensions of joints in m."""
@@ -106,27 +103,27 @@ def _rows(
     for pad in pads(boom):
         on_outer, on_inner = pad.ways(extensions.get(pad.number, 0.0))
         law = pad.joint.law(pad.direction)
-        pressed, slid = touch.x(pad)
+        pressed, slid = contact.x(pad)
         joint = pad.joint
         # u − w of the pad's two points.
         approach, slide = (
             modes.displacement(joint.inner, x + on_inner, direction, inner)
             - modes.displacement(joint.outer, x + on_outer, direction, outer)
             for direction, x, (inner, outer) in (
-                (pad.direction, pressed, touch.offsets(pad)),
+                (pad.direction, pressed, contact.offsets(pad)),
                 (pad.rubs, slid, (pad.inner, pad.outer)),
             )
         )
-        sides = (pad.side,) if pad.side else touch.sides
+        sides = (pad.side,) if pad.side else contact.sides
         points = [(side, pad.weight, approach) for side in sides]
-        pressing = rows.press(pad.station, law, points, pad.raised)
-        rows.drag(pad.station, joint.dashpot, points)
-        rows.rub(pad.station, joint.friction, slide, pad.normal_force, pressing)
+        pressing = rows.add_contact(pad.station, law, points, pad.raised)
+        rows.add_dashpot(pad.station, joint.dashpot, points)
+        rows.add_friction(pad.station, joint.friction, slide, pad.normal_force, pressing)
     for station, stop in boom.numbered_stops:
         drives = drives_below(boom.joints, stop.segment)
         moved = sum(extensions.get(number, 0.0) for number in drives)
         row = modes.displacement(stop.segment, stop.x - moved, "z")
-        rows.stop(station, stop.law, [(side, 1.0, row) for side in touch.sides])
+        rows.add_stop(station, stop.law, [(side, 1.0, row) for side in contact.sides])
     return rows
 
 

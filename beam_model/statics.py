@@ -2,7 +2,7 @@
 """Static states and support reactions: forces of supports, joints, cylinders and stops on beams.
 
 A segment without supports, deflected as the boom at rest, is in equilibrium with its loads except
-where something holds it. So the residual K w − f at a node is the reaction there, for any number
+where something supports it. So the residual K w − f at a node is the reaction there, for any number
 of supports.
 """
 
@@ -19,7 +19,7 @@ from beam_model.boom_modes import BoomModes
 from beam_model.component import Component, SegmentModel
 from beam_model.elements import Theory
 from beam_model.finite_element import finite_element_segment, finite_element_segments
-from beam_model.segment_model import gap_system, standing_system
+from beam_model.segment_model import gap_system, undriven_system
 from dynamics.equilibrium import rest_at
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
@@ -29,7 +29,7 @@ from geometry.boom import Boom
 COMPRESSED_ELEMENTS = 20
 
 
-class Hold(NamedTuple):
+class Reaction(NamedTuple):
     """Reaction on a segment at a place: N along z, and N·m towards a larger slope."""
 
     segment: int
@@ -45,13 +45,13 @@ class StaticState(NamedTuple):
         boom: the boom.
         system: of its beams.
         position: (num_modes,) of the system in √kg·m.
-        holds: by segment, from its start to its end.
+        reactions: by segment, from its start to its end.
     """
 
     boom: Boom
     system: GapSystem
     position: Array
-    holds: list[Hold]
+    reactions: list[Reaction]
 
     @property
     def tip(self) -> float:
@@ -76,11 +76,11 @@ class Elements:
 
     @cached_property
     def unsupported(self) -> list[Component]:
-        """Components along z without supports, with nodes where something may hold them."""
+        """Components along z without supports, with nodes where something may support them."""
         size, theory = self._kind
         found = []
         for number, segment in enumerate(self.boom.segments):
-            breaks = [*_held_places(self.boom, number), *self.boom.stations_of(number)]
+            breaks = [*_reaction_places(self.boom, number), *self.boom.stations_of(number)]
             alone = replace(segment, supports=())
             model = finite_element_segment(alone, size, breaks, theory, rotary_inertia=False)
             found.append(model.components["z"])
@@ -112,14 +112,14 @@ def static_state(
     """
     elements = elements or Elements(boom)
     modes = BoomModes(boom, elements.segments)
-    system = standing_system(boom, modes).gathered()
+    system = undriven_system(boom, modes).gathered()
     position = rest_at(system)
-    holds = [
-        hold
+    reactions = [
+        reaction
         for number, component in enumerate(elements.unsupported)
-        for hold in _holds(boom, number, component, modes, position)
+        for reaction in _reactions(boom, number, component, modes, position)
     ]
-    return StaticState(boom, system, position, holds)
+    return StaticState(boom, system, position, reactions)
 
 
 def telescoping_system(boom: Boom) -> GapSystem:
@@ -127,7 +127,7 @@ def telescoping_system(boom: Boom) -> GapSystem:
     return gap_system(boom, Elements(boom).segments).gathered()
 
 
-def handed_on(boom: Boom, holds: Sequence[Hold]) -> list[Hold]:
+def net_reactions(boom: Boom, reactions: Sequence[Reaction]) -> list[Reaction]:
     """Return the reactions of a boom, each force once, without those that segments transfer.
 
     Where a segment is supported in another one, the reaction is that of the other segment, and
@@ -135,20 +135,20 @@ def handed_on(boom: Boom, holds: Sequence[Hold]) -> list[Hold]:
 
     Args:
         boom: at rest.
-        holds: of all its segments; those of an outer one lack the forces that the inner transfers.
+        reactions: of all its segments; those of an outer one lack what the inner transfers.
     """
-    whole = {hold[:2]: hold for hold in holds}
+    whole = {reaction[:2]: reaction for reaction in reactions}
     for joint in sorted(boom.joints, key=lambda joint: -joint.inner):
         for x in joint.stations:
             inner, outer = whole[joint.inner, x], whole[joint.outer, x]
             whole[joint.outer, x] = outer._replace(
                 force=outer.force + inner.force, moment=outer.moment + inner.moment
             )
-    return [whole[hold[:2]] for hold in holds]
+    return [whole[reaction[:2]] for reaction in reactions]
 
 
-def _held_places(boom: Boom, number: int) -> set[float]:
-    """Return the x in m on a segment where something may hold it."""
+def _reaction_places(boom: Boom, number: int) -> set[float]:
+    """Return the x in m on a segment where something may support it."""
     places = {support.x for support in boom.segments[number].supports}
     places |= {stop.x for stop in boom.stops if stop.segment == number}
     places |= {jack.x for jack in boom.cylinders if jack.segment == number}
@@ -156,10 +156,10 @@ def _held_places(boom: Boom, number: int) -> set[float]:
     return places | {x for joint in joints for x in joint.stations}
 
 
-def _holds(
+def _reactions(
     boom: Boom, number: int, component: Component, modes: BoomModes, position: Array
-) -> list[Hold]:
-    """Return the residual of a segment without its supports where something may hold it."""
+) -> list[Reaction]:
+    """Return the residual of a segment without its supports where something may support it."""
     nodes = component.breaks
     bent = [
         row @ position
@@ -174,6 +174,6 @@ def _holds(
     stiffness = component.stiffness - component.softening
     left = (stiffness @ np.array(bent) - load).reshape(-1, 2)
     return [
-        Hold(number, x, *map(float, left[np.abs(nodes - x).argmin()]))
-        for x in sorted(_held_places(boom, number))
+        Reaction(number, x, *map(float, left[np.abs(nodes - x).argmin()]))
+        for x in sorted(_reaction_places(boom, number))
     ]

@@ -68,7 +68,7 @@ class GapBuilder(Generic[R]):
     dashpots: dict[int, Dashpot[R]] = field(default_factory=dict)
     grounded: list[int] = field(default_factory=list)
 
-    def press(
+    def add_contact(
         self,
         station: int,
         law: ContactLaw,
@@ -93,12 +93,14 @@ class GapBuilder(Generic[R]):
                 self.contacts.append(Contact(reading, part, station))
         return tuple(range(first, len(self.contacts)))
 
-    def stop(self, station: int, law: ContactLaw, points: Iterable[tuple[int, float, R]]) -> None:
-        """Add contact with the ground, as :meth:`press` does between segments."""
+    def add_stop(
+        self, station: int, law: ContactLaw, points: Iterable[tuple[int, float, R]]
+    ) -> None:
+        """Add contact with the ground, as :meth:`add_contact` does between segments."""
         self.grounded.append(station)
-        self.press(station, law, points)
+        self.add_contact(station, law, points)
 
-    def rub(
+    def add_friction(
         self,
         station: int,
         coefficient: float,
@@ -114,10 +116,10 @@ class GapBuilder(Generic[R]):
             law = DryFriction(coefficient, station, normal_force or 0.0, pressed_by)
             self.frictions.append(Friction(slide, law))
 
-    def drag(
+    def add_dashpot(
         self, station: int, coefficient: float, points: Iterable[tuple[int, float, R]]
     ) -> None:
-        """Add a dashpot in N·s/m against the mean speed of points, see :meth:`press`."""
+        """Add a dashpot in N·s/m against the mean speed of points, see :meth:`add_contact`."""
         if coefficient > 0.0:
             dashpot = self.dashpots.setdefault(station, Dashpot(coefficient, []))
             # The weights of each of two sides sum to one.
@@ -125,7 +127,7 @@ class GapBuilder(Generic[R]):
             dashpot.parts.extend(parts)
 
     @property
-    def dragged(self) -> list[R]:
+    def dashpot_readings(self) -> list[R]:
         """All readings of dashpots."""
         return [reading for dashpot in self.dashpots.values() for _, reading in dashpot.parts]
 

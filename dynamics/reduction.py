@@ -183,17 +183,17 @@ def _resisting(system: GapSystem) -> Array:
     return np.vstack([system.rows, system.friction_rows, system.dashpots])
 
 
-def tied_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, Array]:
+def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, Array]:
     """Return the bonded system and its shapes (num_modes, num_tied_modes).
 
     Its stations are those of the ground.
 
-    >>> from dynamics.reduction import tied_system
+    >>> from dynamics.reduction import bonded_system
     >>> pair = replace(ball, omega2=np.array([0.0, 4.0]), load=np.zeros(2), stations=[1.0],
     ...     rows=np.array([[1.0, -1.0]]), observers={}, damping=np.zeros(2),
     ...     released=np.zeros(2), thrown=np.zeros(2), dashpots=np.zeros((0, 2)),
     ...     friction_rows=np.zeros((0, 2)))
-    >>> tied_system(pair, [np.zeros(2)])[0].omega2.round(6)
+    >>> bonded_system(pair, [np.zeros(2)])[0].omega2.round(6)
     array([2.])
 
     Args:

@@ -23,10 +23,10 @@ from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.observation import Quantity, Read
 from geometry.plating import PlatedMesh, plated, tapered_mesh
 from geometry.spots import spots
-from shell_model.contact.rows import Touching, ties
+from shell_model.contact.rows import ShellContacts, ties
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.reduction.krylov import KrylovOptions
-from shell_model.reduction.symmetry import Folding
+from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.cross_section import Outline, Reading, Row
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 
@@ -90,7 +90,7 @@ class BoomShell:
     comm: MPI.Comm
     shells: Sequence[SegmentShell]
     stations: Sequence[tuple[float, Direction]]
-    touching: Touching
+    touching: ShellContacts
     rows: GapBuilder[Reading]
     ties: Sequence[Reading]
     own_loads: Sequence[Array]
@@ -100,13 +100,13 @@ class BoomShell:
     pin_moments: Sequence[tuple[int, Array]] = ()
 
     @cached_property
-    def foldings(self) -> Sequence[Folding]:
+    def symmetries(self) -> Sequence[SymmetryReduction]:
         """Symmetry reductions of the segments, computed once for all solves. Collective.
 
         Raises:
             NumericsError: a segment is not its own mirror image.
         """
-        return [Folding(shell) for shell in self.shells]
+        return [SymmetryReduction(shell) for shell in self.shells]
 
     @property
     def num_dofs(self) -> int:
@@ -121,7 +121,7 @@ class BoomShell:
 
     def forces(self, number: int) -> Array:
         """Return all forces that act on a segment (num_owned, num_forces), contacts first."""
-        dragged = self.columns(number, self.rows.dragged)
+        dragged = self.columns(number, self.rows.dashpot_readings)
         return np.column_stack([self.joined(number), dragged, self.pushed(number)])
 
     def pushed(self, number: int) -> Array:
@@ -162,7 +162,7 @@ def assemble_boom(
     watch = stages or Stages()
     shells = assemble_segments(boom, options, comm, watch)
     with watch.stage("rows"):
-        touching = Touching.of(boom, shells, options.contact_line, options.surface)
+        touching = ShellContacts.of(boom, shells, options.contact_line, options.surface)
         return BoomShell(
             comm=comm,
             shells=shells,

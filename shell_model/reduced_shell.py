@@ -16,15 +16,15 @@ from dynamics.gap_system import GapSystem
 from dynamics.stages import Stages
 from geometry.arrays import Array
 from geometry.boom import Boom
-from geometry.far_field import FarField
 from geometry.plating import PlatedMesh
+from geometry.probe_responses import ProbeResponses
 from shell_model.boom_shell import BoomShell, ShellOptions, assemble_boom
 from shell_model.contact.local_compliance import (
     compliance,
     extrapolated_error,
-    far_field,
     full_compliance,
     local_compliance,
+    probe_segment,
 )
 from shell_model.contact.rows import ties
 from shell_model.contact.surface import without_stiff_modes
@@ -55,7 +55,7 @@ class ReducedShell:
         meshes: one for each segment, on rank 0.
         critical_factor: that of the axial forces with closed joints, see
             :func:`dynamics.second_order.buckling_factor`; infinite without any.
-        far_fields: unit responses of the segments, to which beams are calibrated.
+        probe_responses: unit responses of the segments, to which beams are calibrated.
         own_loads: (num_segments, num_modes) the part of each in ``system.load``, in N/√kg.
     """
 
@@ -68,7 +68,7 @@ class ReducedShell:
     seconds: dict[str, float]
     meshes: Sequence[PlatedMesh]
     critical_factor: float | None = float("inf")
-    far_fields: Sequence[FarField] = ()
+    probe_responses: Sequence[ProbeResponses] = ()
     own_loads: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
 
@@ -104,8 +104,8 @@ def reduce_boom(
             )
         )
         mesh_error = extrapolated_error(local, coarse_local, options.order)
-    with stages.stage("far field"):
-        far_fields = [far_field(boom, number, one) for number, one in enumerate(full.foldings)]
+    with stages.stage("unit responses"):
+        responses = [probe_segment(boom, number, one) for number, one in enumerate(full.symmetries)]
     return ReducedShell(
         system=found.system,
         num_dofs=full.num_dofs,
@@ -120,7 +120,7 @@ def reduce_boom(
         seconds=stages.seconds,
         meshes=[shell.mesh for shell in full.shells if shell.mesh is not None],
         critical_factor=critical_factor(boom, full, found.segments),
-        far_fields=far_fields,
+        probe_responses=responses,
         own_loads=found.own_loads,
     )
 
@@ -195,7 +195,7 @@ def _reduced(
     observed = full.columns(number, [seen.reading for seen in full.observed.values()])
     with stages.stage("reduction", number, len(full.shells)) as tell:
         forces = np.hstack([full.forces(number), *beside])
-        own = reduce_segment(full.foldings[number], forces, krylov, tell, readings=observed)
+        own = reduce_segment(full.symmetries[number], forces, krylov, tell, readings=observed)
         if at_surface and joined.size:
             own = without_stiff_modes(full.comm, own, joined)
     return own

@@ -168,7 +168,7 @@ class TelescopingShell:
         for number in range(len(full.shells)):
             own = reduce(number, self._columns(number, _EVERY))
             read = self._read(number)
-            self._answers.append(pad_responses(full.foldings[number], read.columns, test))
+            self._answers.append(pad_responses(full.symmetries[number], read.columns, test))
             self.reduced.append(self._kept(number, own, read))
         # Springs represent the response beyond the modes of the unloaded boom.
         free = [replace(one, geometric=0.0 * one.geometric) for one in self.reduced]

@@ -23,9 +23,9 @@ from geometry.arrays import Array
 from geometry.boom import Segment, Support
 from geometry.section import BoxSection
 from shell_model.contact.wall_rows import gauss
-from shell_model.reduction.krylov import KrylovOptions, reduce_family
-from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, Family
-from shell_model.reduction.symmetry import Folding
+from shell_model.reduction.krylov import KrylovOptions, reduce_class
+from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, SymmetryClass
+from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.cross_section import Outline, Row
 from shell_model.segment.shell import Shell
 from shell_model.segment.solver import ShiftedSolver, times
@@ -62,7 +62,7 @@ class Probe(NamedTuple):
     """Reading of a segment, and force on it."""
 
     what: str  #: its name
-    family: Family  #: symmetry class of the motions
+    family: SymmetryClass  #: symmetry class of the motions
     places: Mapping[float, float]  #: x in m → weight of what is read there
     read: Callable[[Outline], Row]  #: of the section
 
@@ -164,21 +164,23 @@ def pair(wall: float) -> tuple[Segment, Segment]:
     return box("outer", 0.0, HEAD, OUTER, wall, held), box("inner", TAIL, TIP, INNER, wall)
 
 
-def shell_parts(segment: Segment, probes: Sequence[Probe], size: float) -> dict[Family, Quarter]:
+def shell_parts(
+    segment: Segment, probes: Sequence[Probe], size: float
+) -> dict[SymmetryClass, Quarter]:
     """Return a segment's symmetry classes as shells, with triangles of a size in m."""
     whole = shell_alone(segment, size, [x for probe in probes for x in probe.places])
     rows = np.column_stack([whole.row(probe.row(whole.outline)) for probe in probes])
-    folding = Folding(whole)
+    symmetry = SymmetryReduction(whole)
     return {
-        job.family: Quarter(
-            job.shell(folding.part),
+        job.symmetry_class: Quarter(
+            job.shell(symmetry.part),
             {
                 probe.what: force
                 for probe, force in zip(probes, job.forces.T, strict=True)
-                if probe.family == job.family
+                if probe.family == job.symmetry_class
             },
         )
-        for job in folding.jobs(rows, np.zeros((len(rows), 0)))
+        for job in symmetry.jobs(rows, np.zeros((len(rows), 0)))
     }
 
 
@@ -189,7 +191,7 @@ def solid_parts(
     around: float,
     splits: int,
     layers: int = 2,
-) -> dict[Family, Quarter]:
+) -> dict[SymmetryClass, Quarter]:
     """Return a segment's symmetry classes as solids; see :func:`mesh_quarter` for the sizes."""
     assert isinstance(segment.section, BoxSection)
     read = (x for probe in probes for x in probe.places)
@@ -222,7 +224,7 @@ def blow(outer: Quarter, inner: Quarter, wall: float) -> Blow:
     for part, struck_at in ((outer, "head"), (inner, "struck")):
         push = part.rows[struck_at][:, None]
         read = np.column_stack(list(part.rows.values()))
-        coordinates.append(reduce_family(part.model, push, read, KRYLOV, lambda done: None))
+        coordinates.append(reduce_class(part.model, push, read, KRYLOV, lambda done: None))
     head, struck = coordinates[0].shapes, coordinates[1].shapes
     up = np.zeros((len(struck), 1))
     up[inner.model.node_dofs[:, 2]] = SPEED

@@ -167,7 +167,7 @@ def measure(case: Case, where: str, sizes: Sizes) -> Compared:
     points = Point.each(sizes.plays, sizes.loads)
     moved = move_all(systems, points, sizes.duration)
     reduction = built[SHELL].seconds["reduction"]
-    calibration = built[SHELL].seconds["far field"] + built[SPRUNG].seconds["calibration"]
+    calibration = built[SHELL].seconds["unit responses"] + built[SPRUNG].seconds["calibration"]
     return Compared(where, points, systems, moved, (reduction, calibration))
 
 

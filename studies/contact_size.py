@@ -76,14 +76,14 @@ def squeezed(contact: Contact, part: float) -> Array:
     """Return the local compliance (num_stations,) in m/N with edges a multiple of the default."""
     from shell_model.boom_shell import assemble_segments
     from shell_model.contact.local_compliance import full_compliance, local_compliance
-    from shell_model.contact.rows import Touching
+    from shell_model.contact.rows import ShellContacts
 
     boom = build_boom(contact.case)
     model = finer(shell_of(contact.case), part)
     options = model.options()
     shells = assemble_segments(boom, options, MPI.COMM_SELF)
     seen = model.joined(boom).boom
-    touching = Touching.of(seen, shells, options.contact_line, options.surface)
+    touching = ShellContacts.of(seen, shells, options.contact_line, options.surface)
     rows = touching.rows({}).contacts
     stations = [row.station for row in rows]
     local = local_compliance(full_compliance(shells, rows), [row.law for row in rows], stations)
@@ -103,7 +103,7 @@ def supported(case: Case, parts: Sequence[float]) -> list[float]:
     """
     from shell_model.boom_shell import assemble_segments
     from shell_model.contact.local_compliance import shell_compliance
-    from shell_model.reduction.symmetry import Folding
+    from shell_model.reduction.symmetry import SymmetryReduction
 
     boom = build_boom(case)
     outer = boom.segments[0]
@@ -122,7 +122,7 @@ def supported(case: Case, parts: Sequence[float]) -> list[float]:
         )
         share = (there[1] - x) / (there[1] - there[0])
         squeeze = at - share * before - (1.0 - share) * after
-        found.append(float(shell_compliance(Folding(shell), squeeze[:, None])[0, 0]))
+        found.append(float(shell_compliance(SymmetryReduction(shell), squeeze[:, None])[0, 0]))
     return found
 
 

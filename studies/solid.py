@@ -17,7 +17,7 @@ import numpy as np
 
 from geometry.section import BoxSection
 from runs.report.tables import Cell, Table
-from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, Family
+from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, SymmetryClass
 from shell_model.segment.solver import quadratic_form
 from studies.box_pair import (
     FREQUENCY,
@@ -63,11 +63,11 @@ class Measured(NamedTuple):
     label: str  #: in figures
     unit: str  #: of the values
     segment: Literal[0, 1]  #: 0 for the outer box, 1 for the inner one
-    family: Family  #: of the motions
+    family: SymmetryClass  #: of the motions
     probe: str = FREQUENCY  #: whose compliance it is, or ``FREQUENCY``, the lowest natural one
     allowed: float = ALLOWED  #: permitted error of the thinnest walls
 
-    def of(self, answers: Sequence[Mapping[Family, Mapping[str, float]]]) -> float:
+    def of(self, answers: Sequence[Mapping[SymmetryClass, Mapping[str, float]]]) -> float:
         """Return its value in one of the models."""
         return answers[self.segment][self.family][self.probe]
 
@@ -129,10 +129,10 @@ def compare(sizes: Sizes, tell: Callable[[str], None]) -> list[Comparison]:
         boxes = pair(wall)
         tell(f"walls of {1.0e3 * wall:g} mm")
 
-        def shells(number: int, size: float) -> Mapping[Family, Quarter]:
+        def shells(number: int, size: float) -> Mapping[SymmetryClass, Quarter]:
             return shell_parts(boxes[number], PROBES[number], size)
 
-        def solids(number: int, splits: int) -> Mapping[Family, Quarter]:
+        def solids(number: int, splits: int) -> Mapping[SymmetryClass, Quarter]:
             return solid_parts(boxes[number], PROBES[number], sizes.along, sizes.around, splits)
 
         shell, of_shell = _refined(wall, "shell", sizes.triangles, shells)
@@ -149,7 +149,7 @@ def _refined(
     wall: float,
     model: str,
     sizes: Sequence[_Size],
-    parts_of: Callable[[int, _Size], Mapping[Family, Quarter]],
+    parts_of: Callable[[int, _Size], Mapping[SymmetryClass, Quarter]],
 ) -> tuple[dict[Measured, Refined], Blow]:
     """Return every quantity on every mesh, and the impact on the finest but one."""
     answers = []
@@ -166,7 +166,9 @@ def _refined(
     }, struck
 
 
-def measure(parts: Sequence[Mapping[Family, Quarter]]) -> list[dict[Family, dict[str, float]]]:
+def measure(
+    parts: Sequence[Mapping[SymmetryClass, Quarter]],
+) -> list[dict[SymmetryClass, dict[str, float]]]:
     """Return the quantities of both segments."""
     return [{family: part.measure() for family, part in of.items()} for of in parts]
 
@@ -230,7 +232,7 @@ def solid_proofs() -> Iterator[Proof]:
     yield Proof("solid box: lowest frequency as a rod", found, float(rod), "Hz", *held)
 
 
-def _solid(family: Family) -> SolidFamily:
+def _solid(family: SymmetryClass) -> SolidFamily:
     assert isinstance(BAR.section, BoxSection)
     mesh = mesh_quarter(BAR.section, (BAR.start, BAR.end), (0.1, 0.1), 0.1)
     return assemble_solid(BAR, mesh, family)

@@ -20,7 +20,7 @@ from shell_model.boom_shell import ShellOptions
 from shell_model.contact.wall_rows import CornerLines
 from shell_model.reduced_shell import reduce_boom
 from shell_model.stress.fields import gather_stress_modes
-from shell_model.stress.history import near_places
+from shell_model.stress.history import stress_near_places
 from shell_model.stress.stresses import ShellStress, wall_forces
 from studies.motions import friction_case, model_of
 from studies.reference_models.lone_segment import at_rest, shell_alone
@@ -128,7 +128,7 @@ class Pressed:
 
     def near(self, x: float) -> tuple[float, float]:
         """Return the largest von Mises stress in the band round x, and that of a patch, in Pa."""
-        found = near_places(self.stress, [x], [self.boom.segments[INNER].name]).isel(time=0)
+        found = stress_near_places(self.stress, [x], [self.boom.segments[INNER].name]).isel(time=0)
         return float(found["von_mises"].item()), float(found["von_mises_patch"].item())
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from dynamics.failure import NUMERICS
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
-from dynamics.reduction import tied_system
+from dynamics.reduction import bonded_system
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom
@@ -114,7 +114,7 @@ def _tied(boom: Boom, model: Model, played: _Model, found: Mapping[float, Array]
         system = own[0].gathered()
         return _Model(without, system, with_cylinders(without, system, own[1]))
     begun = [position for time, position in found.items() if _as_begun(boom, time)]
-    system, basis = tied_system(played.system.standing(0.0), begun)
+    system, basis = bonded_system(played.system.standing(0.0), begun)
     return _Model(without, system, [line.on(basis) for line in played.lines])
 
 

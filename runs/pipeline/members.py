@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from beam_model.finite_element import finite_element_segments
-from beam_model.segment_model import tied_system
+from beam_model.segment_model import gap_system
 from dynamics.integrator import FixedStep, Integrator
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import Vary
@@ -74,7 +74,7 @@ def slow_below(boom: Boom, time: TimeTable) -> float | None:
     try:
         with np.errstate(all="ignore"):
             segments = finite_element_segments(boom, ELEMENT_LENGTH, "euler-bernoulli", True)
-            frequencies = tied_system(boom, segments).frequencies
+            frequencies = gap_system(boom.play_free, segments).frequencies
     except (ArithmeticError, np.linalg.LinAlgError, ValueError):
         return None
     elastic = frequencies[frequencies > 0.0]

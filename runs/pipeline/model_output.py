@@ -20,7 +20,7 @@ from runs.pipeline.at_rest import positions
 from runs.pipeline.modes import MODES
 from runs.pipeline.results import CONVENTIONS
 from shell_model.stress.field_series import series_times, write_field_series
-from shell_model.stress.history import StressSummary, near_places, sum_up
+from shell_model.stress.history import StressSummary, stress_near_places, summarise
 from shell_model.stress.stresses import ShellStress
 
 if TYPE_CHECKING:
@@ -83,9 +83,9 @@ class ShellOutput:
             **_modes(reduced),
         ).assign_attrs(model=name)
         shell = ShellStress.of(fields)
-        stresses = near_places(shell, _places(boom), names).assign_attrs(model=name)
+        stresses = stress_near_places(shell, _places(boom), names).assign_attrs(model=name)
         meshes = dict(zip(names, reduced.meshes, strict=True))
-        return cls(fields, stresses, sum_up(shell, stresses), meshes)
+        return cls(fields, stresses, summarise(shell, stresses), meshes)
 
     def write_files(self, folder: Path, prefix: str) -> None:
         """Write stresses, series and meshes to a run's folder that already has the fields.

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from rich.console import Console
 
-from beam_model.statics import Elements, StaticState, handed_on, static_state
+from beam_model.statics import Elements, StaticState, net_reactions, static_state
 from dynamics.damping import pressed_modes
 from dynamics.failure import NUMERICS
 from geometry.axial import on_foot
@@ -98,18 +98,20 @@ def _held(state: StaticState) -> dict[tuple[int, float], Reaction]:
     places |= {(number, one.x) for number, s in enumerate(boom.segments) for one in s.supports}
     places |= {(stop.segment, stop.x) for stop in boom.stops}
     places |= {(cylinder.segment, cylinder.x) for cylinder in boom.cylinders}
-    holds = [hold for hold in handed_on(boom, state.holds) if hold[:2] in places]
-    least = ROUND_OFF * max((abs(hold.force) for hold in holds), default=0.0)
+    reactions = [
+        reaction for reaction in net_reactions(boom, state.reactions) if reaction[:2] in places
+    ]
+    least = ROUND_OFF * max((abs(reaction.force) for reaction in reactions), default=0.0)
     return {
-        hold[:2]: Reaction(
-            segment=boom.segments[hold.segment].name,
-            x=hold.x,
-            force=hold.force if abs(hold.force) > least else 0.0,
-            moment=hold.moment,
-            depth=depths.get(hold[:2]),
-            along=along[hold[:2]],
+        reaction[:2]: Reaction(
+            segment=boom.segments[reaction.segment].name,
+            x=reaction.x,
+            force=reaction.force if abs(reaction.force) > least else 0.0,
+            moment=reaction.moment,
+            depth=depths.get(reaction[:2]),
+            along=along[reaction[:2]],
         )
-        for hold in holds
+        for reaction in reactions
     }
 
 
@@ -219,7 +221,10 @@ def _reactions(state: StaticState, system: System) -> Table:
         )
         rows.append(row)
     return Table.of_rows(
-        "", "", ("holds at rest", x, "force (kN)", *along, "moment (kN m)", "pressed in (mm)"), rows
+        "",
+        "",
+        ("holds at rest", x, "force (kN)", *along, "moment (kN m)", "pressed in (mm)"),
+        rows,
     )
 
 

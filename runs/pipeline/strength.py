@@ -249,7 +249,7 @@ def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
 
     Args:
         boom: that of the shell.
-        stresses: those of :func:`shell_model.stress.history.near_places`.
+        stresses: those of :func:`shell_model.stress.history.stress_near_places`.
     """
     found = []
     for segment in boom.segments:

@@ -17,8 +17,8 @@ from dynamics.contact import ContactLaw
 from dynamics.gap_builder import Contact
 from geometry.arrays import Array
 from geometry.boom import Boom
-from geometry.far_field import FAR_SHIFT, Bent, FarField, far_places
-from shell_model.reduction.symmetry import Folding, Job
+from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses, probe_places
+from shell_model.reduction.symmetry import Job, SymmetryReduction
 from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import ShiftedSolver
@@ -43,23 +43,23 @@ def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact[R
         parts = [shell.row(contacts[i].reading[number]) for i in touching]
         rows = np.array(parts).reshape(-1, shell.free.size).T
         # Only the symmetry reductions of these shells are used.
-        found[np.ix_(touching, touching)] += shell_compliance(Folding(shell), rows)
+        found[np.ix_(touching, touching)] += shell_compliance(SymmetryReduction(shell), rows)
     return found
 
 
-def shell_compliance(folding: Folding, rows: Array, frequency: float = SLOW) -> Array:
+def shell_compliance(symmetry: SymmetryReduction, rows: Array, frequency: float = SLOW) -> Array:
     """Return the compliance (num_rows, num_rows) in m/N of rows of an unreduced shell.
 
     Rows are (num_owned, num_rows); the shift is of a frequency in Hz. Collective.
     """
 
     def answers(_: int, job: Job) -> Array:
-        solve = ShiftedSolver(job.shell(folding.part), frequency)
+        solve = ShiftedSolver(job.shell(symmetry.part), frequency)
         found = job.forces.T @ solve(job.forces)
         solve.destroy()
         return found
 
-    return folding.sum_families(rows, np.zeros((rows.shape[1], rows.shape[1])), answers)
+    return symmetry.sum_classes(rows, np.zeros((rows.shape[1], rows.shape[1])), answers)
 
 
 def local_compliance(
@@ -104,13 +104,13 @@ def _opposite(
             yield above[k * len(above) // most], below[k * len(below) // most]
 
 
-def far_field(boom: Boom, number: int, folding: Folding) -> FarField:
+def probe_segment(boom: Boom, number: int, symmetry: SymmetryReduction) -> ProbeResponses:
     """Compute the unit responses of a segment, with all degrees of freedom. Collective.
 
     In space this includes lateral bending and torsion. The mesh has lines at the places used.
     """
-    places, shell = far_places(boom, number), folding.shell
-    probes: dict[Bent, list[Array]] = {
+    places, shell = probe_places(boom, number), symmetry.shell
+    probes: dict[ProbedMotion, list[Array]] = {
         direction: [
             *(shell.force(x, direction) for x in places),
             *(shell.moment(x, direction) for x in (places[0], places[-1])),
@@ -120,10 +120,10 @@ def far_field(boom: Boom, number: int, folding: Folding) -> FarField:
     if boom.spatial:
         probes["twist"] = [shell.torque(x) for x in places]
     whole = shell_compliance(
-        folding, np.array([row for rows in probes.values() for row in rows]).T, FAR_SHIFT
+        symmetry, np.array([row for rows in probes.values() for row in rows]).T, PROBE_FREQUENCY
     )
     found, first = {}, 0
     for motion, rows in probes.items():
         own = slice(first, first + len(rows))
         found[motion], first = whole[own, own], own.stop
-    return FarField(places, found)
+    return ProbeResponses(places, found)

@@ -111,7 +111,7 @@ class _PadReadings:
 
 
 @dataclass(frozen=True, slots=True)
-class Touching:
+class ShellContacts:
     """Possible contacts, friction and dashpots of a boom's shells.
 
     Args:
@@ -134,7 +134,7 @@ class Touching:
         shells: Sequence[SegmentShell],
         line: ContactLine,
         surface: SurfaceOptions,
-    ) -> Touching:
+    ) -> ShellContacts:
         """Create the contacts of shells. Collective.
 
         Args:
@@ -169,9 +169,11 @@ class Touching:
                 pressing = tuple(i for i, point in enumerate(points) if point.presses(pad))
             else:
                 law = pad.joint.law(pad.direction)
-                pressing = rows.press(pad.station, law, touch.points, pad.raised)
-            rows.drag(pad.station, pad.joint.dashpot, touch.points)
-            rows.rub(pad.station, pad.joint.friction, touch.slide, pad.normal_force, pressing)
+                pressing = rows.add_contact(pad.station, law, touch.points, pad.raised)
+            rows.add_dashpot(pad.station, pad.joint.dashpot, touch.points)
+            rows.add_friction(
+                pad.station, pad.joint.friction, touch.slide, pad.normal_force, pressing
+            )
         for rest in rests(boom):
             segment, drives = rest.stop.segment, drives_below(boom.joints, rest.stop.segment)
             extension = sum(extensions.get(number, 0.0) for number in drives)
@@ -181,7 +183,7 @@ class Touching:
                 (side, 1.0, Reading({segment: lines.deflection(pressed, "z", 0.0, side)}))
                 for side in _SIDES
             ]
-            rows.stop(rest.station, rest.stop.law, flanges)
+            rows.add_stop(rest.station, rest.stop.law, flanges)
         return rows
 
 

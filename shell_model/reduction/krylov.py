@@ -62,7 +62,7 @@ class KrylovOptions:
         return [float(frequency) for frequency in between[::-1]]
 
 
-class FamilyCoordinates(NamedTuple):
+class ClassCoordinates(NamedTuple):
     """Mass-normalised coordinates of a symmetry class.
 
     Args:
@@ -82,13 +82,13 @@ class FamilyCoordinates(NamedTuple):
     geometric: Array
 
 
-def reduce_family(
+def reduce_class(
     shell: Shell,
     inputs: Array,
     readings: Array,
     options: KrylovOptions,
     progress: Callable[[float], None],
-) -> FamilyCoordinates:
+) -> ClassCoordinates:
     """Reduce a shell that is stored on this rank alone.
 
     Args:
@@ -143,7 +143,7 @@ def reduce_family(
     geometric = np.zeros((omega2.size, omega2.size))
     if shell.geometric is not None:
         geometric = shapes.T @ times(shell.geometric, shapes)
-    return FamilyCoordinates(omega2, shapes, *errors, lost, right, geometric)
+    return ClassCoordinates(omega2, shapes, *errors, lost, right, geometric)
 
 
 class _Full(NamedTuple):

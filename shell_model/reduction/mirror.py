@@ -29,7 +29,7 @@ from geometry.section import COMPONENT, Direction
 _ON_PLACE = 1.0e-8
 
 
-class Family(NamedTuple):
+class SymmetryClass(NamedTuple):
     """Symmetry class: 1 for a motion that equals its mirror image, −1 for its opposite.
 
     There is a number for each mirror, 0 if the section does not have it.
@@ -42,7 +42,7 @@ class Family(NamedTuple):
     def signs(self) -> Array:
         """Factors (4, 6) of the components in each quarter relative to the positive part.
 
-        Rows are the quarters (see :func:`quarter_of`), columns the components of the displacement,
+        Rows are the quarters (see :func:`image_of`), columns the components of the displacement,
         which mirrors as an arrow, then those of the rotation, which mirrors as an axis.
         """
         signs = np.ones((4, 6))
@@ -67,20 +67,20 @@ class Family(NamedTuple):
 _BEYOND: Final = {1: [1, 3], 2: [2, 3]}
 
 BREATHING, ALONG_Z, ALONG_Y, TWISTING = (
-    Family(1, 1),
-    Family(1, -1),
-    Family(-1, 1),
-    Family(-1, -1),
+    SymmetryClass(1, 1),
+    SymmetryClass(1, -1),
+    SymmetryClass(-1, 1),
+    SymmetryClass(-1, -1),
 )
 
 
-def families(mirrors: Sequence[Direction]) -> list[Family]:
+def symmetry_classes(mirrors: Sequence[Direction]) -> list[SymmetryClass]:
     """Return the symmetry classes of a section with these mirrors."""
     parities = ((1, -1) if axis in mirrors else (0,) for axis in COMPONENT)
-    return [Family(*parity) for parity in product(*parities)]
+    return [SymmetryClass(*parity) for parity in product(*parities)]
 
 
-def quarter_of(places: Array, mirrors: Sequence[Direction]) -> Indices:
+def image_of(places: Array, mirrors: Sequence[Direction]) -> Indices:
     """Return the quarter (num_places,): 1 at negative y, 2 at negative z, 3 at both, 0 at neither.
 
     Of the mirrors' axes alone: without that of z there are the halves 0 and 1.
@@ -89,7 +89,7 @@ def quarter_of(places: Array, mirrors: Sequence[Direction]) -> Indices:
     return np.asarray(sum(beyond, np.zeros(len(places))), dtype=np.int64)
 
 
-def folded(places: Array, mirrors: Sequence[Direction]) -> Array:
+def to_cell(places: Array, mirrors: Sequence[Direction]) -> Array:
     """Return the images of places (num_places, 3) on the positive side of the mirrors."""
     images = places.copy()
     for axis in mirrors:
@@ -110,7 +110,7 @@ def matches(places: Array, among: Array) -> Indices | None:
     return np.asarray(number, dtype=np.int64)
 
 
-def quarter_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
+def cell_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
     """Return the part of a segment's mesh on the positive side of its section's mirrors.
 
     Raises:
@@ -126,7 +126,7 @@ def quarter_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
         images = _sorted(partner[mesh.triangles], mesh.thickness)
         if not all(np.array_equal(own, image) for own, image in zip(ours, images, strict=True)):
             raise NumericsError(f"a segment's shell is not its own mirror image in {axis}")
-    mine = (quarter_of(mesh.points, mirrors) == 0)[mesh.triangles].all(axis=1)
+    mine = (image_of(mesh.points, mirrors) == 0)[mesh.triangles].all(axis=1)
     if 2 ** len(mirrors) * mine.sum() != mine.size:
         raise NumericsError("a segment's mesh has triangles that cross its mirrors")
     points, triangles = np.unique(mesh.triangles[mine], return_inverse=True)

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.arrays import Array
-from shell_model.reduction.symmetry import Folding, Job
+from shell_model.reduction.symmetry import Job, SymmetryReduction
 from shell_model.segment.solver import ShiftedSolver, times
 
 # Hz of the shift at which springs are matched, above rigid motions and below all that they take,
@@ -44,14 +44,14 @@ class PadResponses(NamedTuple):
     tested: Array
 
 
-def pad_responses(folding: Folding, columns: Array, test: float) -> PadResponses:
+def pad_responses(symmetry: SymmetryReduction, columns: Array, test: float) -> PadResponses:
     """Return responses to columns (num_owned, num_columns) at ``SLOW`` and ``test`` Hz.
 
     Collective.
     """
 
-    def of_family(_: int, job: Job) -> Array:
-        shell = job.shell(folding.part)
+    def of_class(_: int, job: Job) -> Array:
+        shell = job.shell(symmetry.part)
         solve = ShiftedSolver(shell, SLOW)
         # Pads press at few of all places.
         pressed = np.flatnonzero((job.forces != 0.0).any(axis=1))
@@ -64,7 +64,7 @@ def pad_responses(folding: Folding, columns: Array, test: float) -> PadResponses
         return np.array([*slow, tested])
 
     start = np.zeros((3, columns.shape[1], columns.shape[1]))
-    return PadResponses(*folding.sum_families(columns, start, of_family))
+    return PadResponses(*symmetry.sum_classes(columns, start, of_class))
 
 
 def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:

@@ -23,8 +23,8 @@ from scipy.linalg import block_diag
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array
-from shell_model.reduction.krylov import FamilyCoordinates, KrylovOptions, reduce_family
-from shell_model.reduction.symmetry import Folding, Job, shared
+from shell_model.reduction.krylov import ClassCoordinates, KrylovOptions, reduce_class
+from shell_model.reduction.symmetry import Job, SymmetryReduction, shared
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ class ReducedSegment:
 
 
 def reduce_segment(
-    folding: Folding,
+    symmetry: SymmetryReduction,
     inputs: Array,
     options: KrylovOptions,
     progress: Callable[[float], None] | None = None,
@@ -64,7 +64,7 @@ def reduce_segment(
     """Reduce a segment to the space that its inputs excite. Collective.
 
     Args:
-        folding: symmetry reduction of the full model.
+        symmetry: symmetry reduction of the full model.
         inputs: (num_owned, num_inputs) forces that act on it, in any order; zero and dependent
             ones cost nothing.
         options: shifts and moments, or a tolerance.
@@ -74,20 +74,20 @@ def reduce_segment(
     Raises:
         NumericsError: a compliance is not finite, all inputs are zero, or the tolerance is not met.
     """
-    comm = folding.shell.comm
-    jobs = folding.jobs(inputs, np.zeros((len(inputs), 0)) if readings is None else readings)
-    families = comm.bcast([job.family for job in jobs])
-    if not families:
+    comm = symmetry.shell.comm
+    jobs = symmetry.jobs(inputs, np.zeros((len(inputs), 0)) if readings is None else readings)
+    symmetry_classes = comm.bcast([job.symmetry_class for job in jobs])
+    if not symmetry_classes:
         raise NumericsError("nothing acts on a segment, and it has no motion: give it a load")
     tell = progress or (lambda part: None)
     # Each symmetry class may have the same number of coordinates for each of its forces.
     counts = comm.bcast([np.count_nonzero(job.forces.any(axis=0)) for job in jobs])
 
-    def reduce_one(number: int, job: Job) -> FamilyCoordinates:
-        mine = range(comm.rank, len(families), comm.size)
+    def reduce_one(number: int, job: Job) -> ClassCoordinates:
+        mine = range(comm.rank, len(symmetry_classes), comm.size)
         done, most = mine.index(number), options.most
-        return reduce_family(
-            job.shell(folding.part),
+        return reduce_class(
+            job.shell(symmetry.part),
             job.forces,
             job.readings,
             replace(options, most=most and most * counts[number] // sum(counts)),
@@ -96,8 +96,10 @@ def reduce_segment(
 
     parts = []
     shapes = []
-    for family, (root, own) in zip(families, shared(comm, jobs, reduce_one), strict=True):
-        shapes.append(folding.unfold(None if own is None else own.shapes, family, root))
+    for symmetry_class, (root, own) in zip(
+        symmetry_classes, shared(comm, jobs, reduce_one), strict=True
+    ):
+        shapes.append(symmetry.expand(None if own is None else own.shapes, symmetry_class, root))
         parts.append(comm.bcast(None if own is None else own._replace(shapes=np.empty(0)), root))
     omega2 = np.concatenate([part.omega2 for part in parts])
     right = np.concatenate([part.right for part in parts])

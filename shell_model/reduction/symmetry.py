@@ -25,16 +25,16 @@ from geometry.boom import Segment
 from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT, Direction
 from shell_model.reduction.mirror import (
-    Family,
     Rows,
+    SymmetryClass,
+    cell_mesh,
     components,
-    families,
-    folded,
+    image_of,
     matches,
     on_plane,
-    quarter_mesh,
-    quarter_of,
     rows_of,
+    symmetry_classes,
+    to_cell,
 )
 from shell_model.segment.attachments import Attached
 from shell_model.segment.segment_shell import SegmentShell
@@ -73,7 +73,7 @@ class _Compact(Matrices):
 
 
 @dataclass(frozen=True)
-class FoldedPart:
+class SymmetryCell:
     """Part of a segment, a quarter or half, whose mirror images are the rest.
 
     Each rank assembles it once for all classes that it computes; its matrices stay there.
@@ -103,8 +103,8 @@ class FoldedPart:
         """Component of each row, and the mirrors in which the row lies."""
         return rows_of(self.nodes)
 
-    def __reduce__(self) -> tuple[type[FoldedPart], tuple[Any, ...]]:
-        return FoldedPart, (self.segment, self.mirrors, self.mesh)
+    def __reduce__(self) -> tuple[type[SymmetryCell], tuple[Any, ...]]:
+        return SymmetryCell, (self.segment, self.mirrors, self.mesh)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,18 +112,18 @@ class Job:
     """Data for the rank that computes a symmetry class.
 
     Args:
-        family: the symmetry class.
+        symmetry_class: the symmetry class.
         forces, readings: (num_rows, num_columns) on that part's rows, images added up.
         springs, masses: of the segment, on these rows.
     """
 
-    family: Family
+    symmetry_class: SymmetryClass
     forces: Array
     readings: Array
     springs: Attached
     masses: Attached
 
-    def shell(self, part: FoldedPart) -> Shell:
+    def shell(self, part: SymmetryCell) -> Shell:
         """Return the shell of the part of a segment, with the energies of the whole one."""
         plates, mirrors = part.plates, part.mirrors
         holds = [
@@ -131,7 +131,7 @@ class Job:
             *(
                 hold(plates.space, kind, component, partial(on_plane, axis=axis))
                 for axis in (COMPONENT[mirror] for mirror in mirrors)
-                for kind, component in self.family.held(axis)
+                for kind, component in self.symmetry_class.held(axis)
             ),
         ]
         (nodes, node_dofs), (rotation_nodes, rotation_dofs) = part.nodes
@@ -150,24 +150,24 @@ class Job:
         )
 
 
-def _part_of(shell: SegmentShell) -> FoldedPart:
+def _part_of(shell: SegmentShell) -> SymmetryCell:
     """Assemble the part of a segment on each rank; rank 0 reduces by symmetry. Collective."""
     mirrors, comm = shell.section.mirrors, shell.comm
 
-    def of_mesh() -> FoldedPart | None:
+    def of_mesh() -> SymmetryCell | None:
         if shell.mesh is None:
             return None
-        part = FoldedPart(shell.segment, mirrors, quarter_mesh(shell.mesh, mirrors))
+        part = SymmetryCell(shell.segment, mirrors, cell_mesh(shell.mesh, mirrors))
         # Assembled here, where all ranks receive an error.
         assert part.nodes
         return part
 
     found = together(comm, of_mesh)
-    sent: FoldedPart = comm.bcast(found)
+    sent: SymmetryCell = comm.bcast(found)
     return found or sent
 
 
-class Folding:
+class SymmetryReduction:
     """Map between the distributed rows of a segment and those of its quarter. Collective.
 
     Args:
@@ -183,15 +183,15 @@ class Folding:
         parts = (shell.nodes, shell.node_dofs), (shell.rotation_nodes, shell.rotation_dofs)
         first, _ = shell.owned
         shape = 3, shell.free.size
-        self._row, self._quarter_of_row, self._component = np.empty(shape, dtype=np.int64)
+        self._row, self._image_of_row, self._component = np.empty(shape, dtype=np.int64)
         for number, (nodes, dofs) in enumerate(parts):
-            gathered = self._comm.gather(folded(nodes, self._mirrors))
+            gathered = self._comm.gather(to_cell(nodes, self._mirrors))
             found: Sequence[Any] = []
             if gathered is not None:
                 places, rows = self.part.nodes[number]
                 found = [rows[matches(some, places)] for some in gathered]
             self._row[dofs - first] = self._comm.scatter(found)
-            self._quarter_of_row[dofs - first] = quarter_of(nodes, self._mirrors)[:, None]
+            self._image_of_row[dofs - first] = image_of(nodes, self._mirrors)[:, None]
             self._component[dofs - first] = components(number)
 
     def jobs(self, inputs: Array, readings: Array) -> list[Job]:
@@ -206,18 +206,18 @@ class Folding:
             return []
         images = [self._images(entries) for entries in gathered if entries is not None]
         jobs = []
-        for family in families(self._mirrors):
-            signs = family.signs[:, self.part.rows.component]
+        for symmetry_class in symmetry_classes(self._mirrors):
+            signs = symmetry_class.signs[:, self.part.rows.component]
             forces, read, springs, masses = (_added_up(image, signs) for image in images)
             if forces.any():
                 attached = (
                     Attached(springs, shell.springs.factors),
                     Attached(masses, shell.masses.factors),
                 )
-                jobs.append(Job(family, forces, read, *attached))
+                jobs.append(Job(symmetry_class, forces, read, *attached))
         return jobs
 
-    def sum_families(
+    def sum_classes(
         self, columns: Array, total: Array, compute: Callable[[int, Job], Array]
     ) -> Array:
         """Add the results of each class that columns (num_owned, num_columns) excite.
@@ -229,7 +229,7 @@ class Folding:
             total += self._comm.bcast(found, root)
         return total
 
-    def unfold(self, shapes: Array | None, family: Family, root: int) -> Array:
+    def expand(self, shapes: Array | None, symmetry_class: SymmetryClass, root: int) -> Array:
         """Return shapes (num_owned, num_shapes) of a class on the whole segment. Collective.
 
         On the quarter they are (num_rows, num_shapes) on the rank ``root``, None elsewhere.
@@ -240,7 +240,7 @@ class Folding:
         every = sizes = None
         if rows is not None:
             every, sizes = np.concatenate(rows), [one.size for one in rows]
-        signs = family.signs[self._quarter_of_row, self._component]
+        signs = symmetry_class.signs[self._image_of_row, self._component]
         unfolded = np.empty((self._row.size, count), order="F")
         for column in range(count):
             # One after another, so that no rank holds the whole block.
@@ -253,7 +253,7 @@ class Folding:
         """Gather the nonzero entries of a block on rank 0."""
         row, column = np.nonzero(block)
         value, columns = block[row, column], block.shape[1]
-        mine = _Entries(self._row[row], self._quarter_of_row[row], column, value, columns)
+        mine = _Entries(self._row[row], self._image_of_row[row], column, value, columns)
         return self._comm.gather(mine)
 
     def _images(self, gathered: list[_Entries]) -> Array:

@@ -103,7 +103,9 @@ class Largest(NamedTuple):
     triangle: int
 
 
-def near_places(shell: ShellStress, places: Sequence[float], names: Sequence[str]) -> xr.Dataset:
+def stress_near_places(
+    shell: ShellStress, places: Sequence[float], names: Sequence[str]
+) -> xr.Dataset:
     """Return the largest stresses of each segment in a band around each place, over time.
 
     Args:
@@ -151,8 +153,8 @@ def near_places(shell: ShellStress, places: Sequence[float], names: Sequence[str
     )
 
 
-def sum_up(shell: ShellStress, history: xr.Dataset) -> StressSummary:
-    """Return the maxima of :func:`near_places`, of triangles and patches, with wall forces."""
+def summarise(shell: ShellStress, history: xr.Dataset) -> StressSummary:
+    """Return the maxima of triangles and patches of a run, with wall forces."""
     names = [str(name) for name in history["segment"].values]
     places = [float(x) for x in history["place"].values]
     worst = _largest(shell, history)

@@ -24,7 +24,7 @@ from geometry.arrays import Array, Indices
 from geometry.boom import Material, Segment
 from geometry.section import BoxSection
 from shell_model import compat
-from shell_model.reduction.mirror import Family, on_plane
+from shell_model.reduction.mirror import SymmetryClass, on_plane
 from shell_model.segment.attachments import Attached
 from shell_model.segment.cross_section import Outline, Row
 from shell_model.segment.shell import ON_LINE, Matrices, Shell
@@ -226,7 +226,7 @@ class SolidMatrices(Matrices):
         return matrix
 
 
-def assemble_solid(segment: Segment, mesh: SolidMesh, family: Family) -> SolidFamily:
+def assemble_solid(segment: Segment, mesh: SolidMesh, family: SymmetryClass) -> SolidFamily:
     """Assemble one symmetry class of a segment's motions on this process.
 
     A pinned support fixes the whole section along y and z, which leaves it free to tilt; a
@@ -280,7 +280,7 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: Family) -> SolidFa
     )
 
 
-def _means(mesh: SolidMesh, nodes: Array, family: Family) -> tuple[Array, csr_matrix]:
+def _means(mesh: SolidMesh, nodes: Array, family: SymmetryClass) -> tuple[Array, csr_matrix]:
     """Return places on the mid-surfaces of the whole segment, and the rows of the means there."""
     places, quarter = _quarter_means(mesh, nodes)
     parts: list[tuple[Array, csr_matrix]] = []
@@ -292,7 +292,7 @@ def _means(mesh: SolidMesh, nodes: Array, family: Family) -> tuple[Array, csr_ma
     return np.concatenate([at for at, _ in parts]), csr_matrix(vstack([rows for _, rows in parts]))
 
 
-# Of the quarters, in the order of ``Family.signs``.
+# Of the quarters, in the order of ``SymmetryClass.signs``.
 _SIDES = np.array([(1, 1, 1), (1, -1, 1), (1, 1, -1), (1, -1, -1)])
 
 

@@ -11,7 +11,7 @@ import pytest
 from beam_model.calibration import effective_stiffness, with_stiffness
 from beam_model.finite_element import finite_element_segment
 from geometry.boom import Material, Segment, Support
-from geometry.far_field import FAR_SHIFT, Bent, FarField
+from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
 from geometry.section import BoxSection
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
@@ -23,19 +23,19 @@ def box(*supports: Support) -> Segment:
     return Segment.of_section("box", 0.0, 10.0, STEEL, BOX, supports=supports)
 
 
-def probed(segment: Segment) -> FarField:
+def probed(segment: Segment) -> ProbeResponses:
     """Return a beam's own responses, with finer elements."""
-    found: dict[Bent, np.ndarray[tuple[int, int], np.dtype[np.float64]]] = {}
+    found: dict[ProbedMotion, np.ndarray[tuple[int, int], np.dtype[np.float64]]] = {}
     model = finite_element_segment(segment, 0.2, PLACES, "timoshenko", True)
     for motion, component in model.components.items():
         rows = [component.at(x) for x in PLACES]
         if motion != "twist":
             rows += [component.rotation_at(x) for x in (PLACES[0], PLACES[-1])]
-        sigma = (2.0 * np.pi * FAR_SHIFT) ** 2
+        sigma = (2.0 * np.pi * PROBE_FREQUENCY) ** 2
         probes = np.array(rows)
         solved = np.linalg.solve(component.stiffness + sigma * component.mass, probes.T)
         found[motion] = probes @ solved
-    return FarField(PLACES, found)
+    return ProbeResponses(PLACES, found)
 
 
 @pytest.mark.parametrize(

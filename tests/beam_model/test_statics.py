@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What holds a boom at rest, by hand where it is statically determinate, in balance anyway."""
+"""Support reactions against hand calculations and balance."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.statics import Hold, handed_on, static_state
+from beam_model.statics import Reaction, net_reactions, static_state
 from dynamics.contact import PowerContact
 from dynamics.excitation import Ramp, Step
 from geometry.boom import Boom, Cylinder, Load, PointMass, Segment, Support
@@ -28,13 +28,17 @@ def test_supports_and_stations_bear_what_the_lever_rule_says(paper_boom: Boom) -
     far = -(831.6 * 5.0 + tail * 9.0 + head * 10.0) / 2.0
     near = -831.6 - 550.7 - far
     expected = [
-        Hold(0, 0.0, near, 0.0), Hold(0, 2.0, far, 0.0), Hold(0, 9.0, tail, 0.0),
-        Hold(0, 10.0, head, 0.0), Hold(1, 9.0, -tail, 0.0), Hold(1, 10.0, -head, 0.0),
+        Reaction(0, 0.0, near, 0.0), Reaction(0, 2.0, far, 0.0), Reaction(0, 9.0, tail, 0.0),
+        Reaction(0, 10.0, head, 0.0), Reaction(1, 9.0, -tail, 0.0), Reaction(1, 10.0, -head, 0.0),
     ]  # fmt: skip
     found = static_state(touching(paper_boom, LAW))
-    assert [(hold.segment, hold.x) for hold in found.holds] == [h[:2] for h in expected]
-    np.testing.assert_allclose([h.force for h in found.holds], [h[2] for h in expected], rtol=1e-5)
-    assert np.abs([h.moment for h in found.holds]).max() < 1e-3
+    assert [(reaction.segment, reaction.x) for reaction in found.reactions] == [
+        h[:2] for h in expected
+    ]
+    np.testing.assert_allclose(
+        [h.force for h in found.reactions], [h[2] for h in expected], rtol=1e-5
+    )
+    assert np.abs([h.moment for h in found.reactions]).max() < 1e-3
 
 
 def test_what_is_handed_on_is_counted_once(paper_boom: Boom) -> None:
@@ -46,8 +50,8 @@ def test_what_is_handed_on_is_counted_once(paper_boom: Boom) -> None:
     boom = replace(paper_boom, segments=(moved, inner))
     head = 550.7 * (14.0 - 9.0) / (10.0 - 9.0)
     far = -(831.6 * 5.0 + 550.7 * 14.0) / 9.0
-    holds = handed_on(boom, static_state(touching(boom, LAW)).holds)
-    found = {hold[:2]: hold.force for hold in holds}
+    reactions = net_reactions(boom, static_state(touching(boom, LAW)).reactions)
+    found = {reaction[:2]: reaction.force for reaction in reactions}
     assert found == {
         (0, 0.0): pytest.approx(-831.6 - 550.7 - far),
         (0, 9.0): pytest.approx(far),
@@ -77,15 +81,15 @@ def test_a_clamp_bears_force_and_moment(beam: Callable[..., Segment]) -> None:
         Moment(0, "z", 400.0, 6.0, Step()),
         Load(0, "z", -1.0e6, 8.0, Ramp(1.0)),
     )
-    (hold,) = static_state(Boom((segment,), (), loads)).holds
-    assert hold.force == pytest.approx(500.0 + 2000.0 + 600.0)
-    assert hold.moment == pytest.approx(500.0 * 2.5 + 2000.0 * 5.0 + 600.0 * 3.0 - 400.0)
+    (reaction,) = static_state(Boom((segment,), (), loads)).reactions
+    assert reaction.force == pytest.approx(500.0 + 2000.0 + 600.0)
+    assert reaction.moment == pytest.approx(500.0 * 2.5 + 2000.0 * 5.0 + 600.0 * 3.0 - 400.0)
 
 
 def test_three_supports_bear_by_their_stiffness(beam: Callable[..., Segment]) -> None:
     """Reference: analytic, the middle of two equal spans bears 5/4 q L of a slender beam."""
     segment = replace(beam(supports=[3.0, 5.5, 8.0], load=-100.0), section=None)
-    forces = [hold.force for hold in static_state(Boom((segment,), ())).holds]
+    forces = [reaction.force for reaction in static_state(Boom((segment,), ())).reactions]
     span = 2.5 * 100.0
     assert forces == pytest.approx([0.375 * span, 1.25 * span, 0.375 * span])
 
@@ -94,7 +98,7 @@ def test_a_cylinder_bears_what_turns_about_the_hinge(beam: Callable[..., Segment
     """Reference: by hand. 500 N at 2.5 m from the hinge on an upright cylinder 2 m from it."""
     segment = beam(supports=[3.0], load=-100.0)
     jack = Cylinder(0, 5.0, 0.3, (5.0, -2.0), 1.0e7)
-    hinge, lug = static_state(Boom((segment,), (), cylinders=(jack,))).holds
+    hinge, lug = static_state(Boom((segment,), (), cylinders=(jack,))).reactions
     assert (hinge.x, lug.x) == (3.0, 5.0)
     assert lug.force == pytest.approx(500.0 * 2.5 / 2.0, rel=1e-5)
     assert hinge.force == pytest.approx(500.0 - lug.force, rel=1e-5)

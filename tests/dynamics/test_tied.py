@@ -12,7 +12,7 @@ from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Excitation, Step
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.reduction import tied_system
+from dynamics.reduction import bonded_system
 
 LAW = PowerContact(1e6, 1.0).behind(0.01)
 
@@ -41,7 +41,7 @@ def test_the_tied_boom_lacks_the_play_alone(pair: GapSystem) -> None:
     Together they swing at √(100/2) rad/s.
     """
     rest = equilibrium(pair, pair.load)
-    tied, basis = tied_system(pair, [rest])
+    tied, basis = bonded_system(pair, [rest])
     hung = equilibrium(tied, tied.load)
     np.testing.assert_allclose(basis @ hung, [-0.05, -0.05], rtol=1e-9)
     tip = tied.observers["tip"].row @ hung
@@ -53,19 +53,19 @@ def test_the_tied_boom_lacks_the_play_alone(pair: GapSystem) -> None:
 def test_what_axial_forces_soften_stays_softer(pair: GapSystem) -> None:
     """Reference: analytic. Of 100 N/m they take 30 N/m, and both swing at √(70/2) rad/s."""
     pressed = replace(pair, softening=np.diag([30.0, 0.0]))
-    tied, _ = tied_system(pressed, [equilibrium(pressed, pressed.load)])
+    tied, _ = bonded_system(pressed, [equilibrium(pressed, pressed.load)])
     np.testing.assert_allclose(tied.omega2, [35.0], rtol=1e-12)
     assert tied.in_own_modes() is tied
 
 
 def test_the_ground_is_still_met(pair: GapSystem) -> None:
     """Reference: by hand. −100 N press it 0.5 m and (100 − 50)/(1e5 + 100) m down."""
-    tied, basis = tied_system(pair, [equilibrium(pair, pair.load)])
+    tied, basis = bonded_system(pair, [equilibrium(pair, pair.load)])
     assert (list(tied.stations), list(tied.grounded)) == ([2.0], [0])
     deep = basis @ equilibrium(tied, np.array([0.0, -100.0]) @ basis)
     assert deep[1] == pytest.approx(-0.5 - 50.0 / (1e5 + 100.0), rel=1e-6)
 
 
 def test_where_nothing_presses_all_is_tied(pair: GapSystem) -> None:
-    tied, _ = tied_system(pair, [])
+    tied, _ = bonded_system(pair, [])
     np.testing.assert_allclose(tied.omega2, [50.0], rtol=1e-12)

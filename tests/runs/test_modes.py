@@ -13,7 +13,7 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.lines import lines
 from beam_model.rigid import rigid_segment
-from beam_model.segment_model import tied_system
+from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.damping import pressed_modes
 from dynamics.gap_system import GapSystem
@@ -37,7 +37,7 @@ def arm(spatial_boom: Boom, steel: Material) -> Boom:
 
 
 def found(boom: Boom, models: list[SegmentModel]) -> list[Mode]:
-    system = tied_system(boom, models)
+    system = gap_system(boom.play_free, models)
     return modes(boom, system, lines(boom, models), np.zeros(system.num_modes))
 
 
@@ -88,7 +88,7 @@ def test_rigid_segments_swing_on_their_springs(steel: Material) -> None:
     bar = Segment.of_section("bar", 0.0, 4.0, steel, BOX)
     segment = replace(bar, supports=(Support(0.0, stiffness=1e6), Support(4.0, stiffness=1e6)))
     boom = Boom((segment,), ())
-    system = tied_system(boom, [rigid_segment(segment)])
+    system = gap_system(boom.play_free, [rigid_segment(segment)])
     found = modes(boom, system, lines(boom, [rigid_segment(segment)]), np.zeros(2))
     mass = bar.mass_per_length * 4.0
     inertia = mass * 4.0**2 / 12.0 + bar.rotary_inertia * 4.0

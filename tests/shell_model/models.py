@@ -13,7 +13,7 @@ from mpi4py import MPI
 
 from beam_model.component import natural_modes
 from beam_model.finite_element import finite_element_segment, finite_element_segments
-from beam_model.segment_model import tied_system
+from beam_model.segment_model import gap_system
 from dynamics.contact import ContactLaw
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
@@ -23,7 +23,7 @@ from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import reduce_segment
-from shell_model.reduction.symmetry import Folding
+from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell
 from tests.shell_model.booms import LATERAL_LAW, LAW
 from tests.touching import touching
@@ -66,14 +66,14 @@ def assert_rests_as_beams(system: GapSystem, boom: Boom, rel: float) -> None:
 
 def tied_beams(boom: Boom, length: float = 0.25) -> GapSystem:
     """Timoshenko elements of a length in m, without play."""
-    return tied_system(boom, finite_element_segments(boom, length, "timoshenko", True))
+    return gap_system(boom.play_free, finite_element_segments(boom, length, "timoshenko", True))
 
 
 def frequencies_off(shell: SegmentShell, direction: Direction = "z", count: int = 1) -> Array:
     """(count,) how far the first elastic ones are from those of the Timoshenko beam."""
     tip = shell.row(shell.outline(10.0).wall_deflection(direction))
     inputs = np.column_stack([shell.unit_loads[direction], tip])
-    found = reduce_segment(Folding(shell), inputs, KrylovOptions())
+    found = reduce_segment(SymmetryReduction(shell), inputs, KrylovOptions())
     part = finite_element_segment(shell.segment, 0.25, (), "timoshenko", True).components[direction]
     modes = natural_modes(part.stiffness, part.mass, part.rigid_modes)
     assert np.count_nonzero(found.omega2 == 0.0) == part.rigid_modes

@@ -23,7 +23,7 @@ from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Cylinder, Stop
 from shell_model.boom_shell import BoomShell, ShellOptions, assemble_boom
-from shell_model.contact.rows import Touching
+from shell_model.contact.rows import ShellContacts
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.segment.cross_section import Reading
@@ -61,7 +61,7 @@ class _Loaded:
         self.rest = float(gains.sum())
         self.period = 2.0 * np.pi / float(self._omega.max())
         observed = {"tip": Observed(Reading({0: tip}))}
-        touching = Touching(Boom((shell.segment,), ()), "near webs", [], [], [])
+        touching = ShellContacts(Boom((shell.segment,), ()), "near webs", [], [], [])
         self.few, self.all = (
             BoomShell(MPI.COMM_WORLD, [shell], [], touching, GapBuilder(), [], [push], [], observed)
             for push in (narrow, load)

@@ -14,10 +14,10 @@ from beam_model.calibration import Stiffness, effective_stiffness
 from dynamics.contact import PowerContact
 from geometry.boom import Boom, PadSize, Stop, Support
 from shell_model.boom_shell import ShellOptions, assemble_segments
-from shell_model.contact.local_compliance import SLOW, compliance, far_field
-from shell_model.contact.rows import Touching
+from shell_model.contact.local_compliance import SLOW, compliance, probe_segment
+from shell_model.contact.rows import ShellContacts
 from shell_model.contact.surface import SurfaceOptions
-from shell_model.reduction.symmetry import Folding
+from shell_model.reduction.symmetry import SymmetryReduction
 from tests.shell_model.booms import LAW, boom_in_space, flat_boom, three_segments
 from tests.shell_model.conftest import compliance as given_way
 from tests.shell_model.models import reduced
@@ -88,7 +88,7 @@ def stiffness(boom: Boom, contact_tolerance: float | None = None) -> list[Stiffn
     options = ShellOptions(0.25, contact_tolerance=contact_tolerance)
     shells = assemble_segments(boom, options, MPI.COMM_WORLD)
     return [
-        effective_stiffness(segment, far_field(boom, number, Folding(shells[number])))
+        effective_stiffness(segment, probe_segment(boom, number, SymmetryReduction(shells[number])))
         for number, segment in enumerate(boom.segments)
     ]
 
@@ -114,7 +114,7 @@ def test_plates_are_nearly_the_beam_of_their_section(boom: Boom) -> None:
 
 @pytest.mark.slow
 def test_a_mesh_that_is_fine_where_something_presses_finds_the_same() -> None:
-    """Reference: other code, a uniform mesh; the far field does not know of contacts."""
+    """Reference: other code, a uniform mesh; unit responses are far from contacts."""
     for coarse, fine in zip(stiffness(flat_boom()), stiffness(flat_boom(), 0.01), strict=True):
         assert coarse.bending == pytest.approx(fine.bending, rel=2e-3)
         assert coarse.shear == pytest.approx(fine.shear, rel=0.02)
@@ -141,7 +141,9 @@ def _squeezed(boom: Boom, tolerance: float | None) -> float:
     options = ShellOptions(0.1, contact_tolerance=tolerance)
     shells = assemble_segments(boom, options, MPI.COMM_WORLD)
     contacts = (
-        Touching.of(touching(boom, LAW), shells, "near webs", SurfaceOptions()).rows({}).contacts
+        ShellContacts.of(touching(boom, LAW), shells, "near webs", SurfaceOptions())
+        .rows({})
+        .contacts
     )
     up, down = (contact.reading for contact in contacts if contact.station == 0)
     return sum(given_way(shell, up[k] - down[k]) for k, shell in enumerate(shells))

@@ -15,8 +15,8 @@ from geometry.boom import Collar, Diaphragm, PointMass, Support
 from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.plating import plated
 from geometry.section import Section
-from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, Family
-from shell_model.reduction.symmetry import Folding, Job
+from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, SymmetryClass
+from shell_model.reduction.symmetry import Job, SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from shell_model.segment.solver import times
 from tests.shell_model.booms import HELD, box_segment
@@ -40,32 +40,32 @@ def _laden(section: Section) -> SegmentShell:
     return assemble_segment(MPI.COMM_WORLD, segment, plated(segment, mesh))
 
 
-def _everything(shell: SegmentShell) -> tuple[Folding, list[Job]]:
+def _everything(shell: SegmentShell) -> tuple[SymmetryReduction, list[Job]]:
     """Return the symmetry classes that a force on every row excites."""
-    folding = Folding(shell)
+    symmetry = SymmetryReduction(shell)
     force = np.random.default_rng(1).standard_normal((shell.num_dofs, 1)) * shell.free[:, None]
-    return folding, folding.jobs(force, force)
+    return symmetry, symmetry.jobs(force, force)
 
 
 @pytest.mark.parametrize(
     ("section", "own"),
     [
         (BOX, {BREATHING: [0], ALONG_Z: [2, 4], ALONG_Y: [1, 5], TWISTING: [3]}),
-        (UNEQUAL, {Family(1, 0): [0, 2, 4], Family(-1, 0): [1, 3, 5]}),
+        (UNEQUAL, {SymmetryClass(1, 0): [0, 2, 4], SymmetryClass(-1, 0): [1, 3, 5]}),
     ],
     ids=["box", "unequal"],
 )
 def test_rigid_motions_belong_to_their_families(
-    box_shell: Shells, section: Section, own: Mapping[Family, list[int]]
+    box_shell: Shells, section: Section, own: Mapping[SymmetryClass, list[int]]
 ) -> None:
     """Reference: analytic. Slides along x, y, z, then turns about them."""
     shell = box_shell(0.5, section=section)
     motions = shell.rigid_motions()
-    folding, jobs = _everything(shell)
-    assert [job.family for job in jobs] == list(own)
+    symmetry, jobs = _everything(shell)
+    assert [job.symmetry_class for job in jobs] == list(own)
     for job in jobs:
-        found = folding.unfold(job.shell(folding.part).rigid_motions(), job.family, 0)
-        expected = motions[:, own[job.family]]
+        found = symmetry.expand(job.shell(symmetry.part).rigid_motions(), job.symmetry_class, 0)
+        expected = motions[:, own[job.symmetry_class]]
         assert found.shape == expected.shape
         combination = np.linalg.lstsq(expected, found, rcond=None)[0]
         assert expected @ combination == pytest.approx(found, abs=1.0e-12)
@@ -82,17 +82,17 @@ def test_a_quarter_moves_as_its_family_does_in_the_whole(box_shell: Shells, kind
         "unequal": lambda: _laden(UNEQUAL),
     }
     shell = shells[kind]()
-    folding, jobs = _everything(shell)
+    symmetry, jobs = _everything(shell)
     for job in jobs:
-        quarter = job.shell(folding.part)
+        quarter = job.shell(symmetry.part)
         motion = np.random.default_rng(2).standard_normal((quarter.num_dofs, 1))
         motion *= quarter.free[:, None]
-        whole = folding.unfold(motion, job.family, 0)
+        whole = symmetry.expand(motion, job.symmetry_class, 0)
         assert not whole[~shell.free].any()
         for full, part in ((shell.stiffness, quarter.stiffness), (shell.mass, quarter.mass)):
             force = times(full, whole) * shell.free[:, None]
-            (found,) = folding.jobs(force, force)
-            assert found.family == job.family
+            (found,) = symmetry.jobs(force, force)
+            assert found.symmetry_class == job.symmetry_class
             expected = times(part, motion) * quarter.free[:, None]
             off = found.forces * quarter.free[:, None] - expected
             assert np.abs(off).max() < 1.0e-12 * np.abs(expected).max()
@@ -102,15 +102,15 @@ def test_a_quarter_moves_as_its_family_does_in_the_whole(box_shell: Shells, kind
 def test_forces_do_the_same_work_on_the_parts(box_shell: Shells, section: Section) -> None:
     """Reference: analytic. The families make up every force."""
     shell = box_shell(0.5, supports=HELD, section=section)
-    folding = Folding(shell)
+    symmetry = SymmetryReduction(shell)
     force = np.random.default_rng(1).standard_normal((shell.num_dofs, 2)) * shell.free[:, None]
     total, parts = np.zeros(2), np.zeros(2)
-    for job in folding.jobs(force, force):
+    for job in symmetry.jobs(force, force):
         assert np.array_equal(job.forces, job.readings)
         motion = np.random.default_rng(2).standard_normal((len(job.forces), 1))
-        motion *= job.shell(folding.part).free[:, None]
+        motion *= job.shell(symmetry.part).free[:, None]
         parts += (job.forces.T @ motion)[:, 0]
-        total += (force.T @ folding.unfold(motion, job.family, 0))[:, 0]
+        total += (force.T @ symmetry.expand(motion, job.symmetry_class, 0))[:, 0]
     assert parts == pytest.approx(total, rel=1.0e-10)
 
 
@@ -123,15 +123,15 @@ def test_a_load_in_the_plane_of_bending_excites_two_families(box_shell: Shells) 
         (shell.unit_loads["y"], [ALONG_Y]),
         (push, [BREATHING, ALONG_Z]),
     ):
-        jobs = Folding(shell).jobs(force[:, None], force[:, None])
-        assert [job.family for job in jobs] == expected
+        jobs = SymmetryReduction(shell).jobs(force[:, None], force[:, None])
+        assert [job.symmetry_class for job in jobs] == expected
 
 
 def test_what_a_family_does_not_do_is_held_in_the_mirrors() -> None:
     """Reference: analytic. Bending along z: u_z is its own image in both, the slope too."""
-    assert Family(1, -1).held(1) == [(0, 1), (1, 0), (1, 2)]
-    assert Family(1, -1).held(2) == [(0, 0), (0, 1), (1, 2)]
-    assert Family(1, 0).held(1) == Family(1, -1).held(1)
+    assert SymmetryClass(1, -1).held(1) == [(0, 1), (1, 0), (1, 2)]
+    assert SymmetryClass(1, -1).held(2) == [(0, 0), (0, 1), (1, 2)]
+    assert SymmetryClass(1, 0).held(1) == SymmetryClass(1, -1).held(1)
 
 
 def _shifted(mesh: SegmentMesh) -> SegmentMesh:
@@ -162,4 +162,4 @@ def test_refuses_a_mesh_that_is_no_mirror_image(
     shell = assemble_segment(MPI.COMM_WORLD, segment, plated(segment, mesh))
     message = f"^a segment's {what} is not its own mirror image in y$"
     with pytest.raises(NumericsError, match=message):
-        Folding(shell)
+        SymmetryReduction(shell)

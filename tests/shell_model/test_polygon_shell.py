@@ -30,7 +30,7 @@ from geometry.section import BoxSection, Section
 from shell_model.contact.wall_rows import CornerLines, Wall, WallPoints
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import reduce_segment
-from shell_model.reduction.symmetry import Folding
+from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.cross_section import Row
 from shell_model.segment.segment_shell import SegmentShell
 from studies import sections
@@ -114,7 +114,7 @@ def test_a_segment_on_its_side_vibrates_along_y_as_upright_along_z(box_shell: Sh
     found = []
     for shell, direction in ((upright, "z"), (lying, "y")):
         inputs = shell.unit_loads[direction][:, None]
-        found.append(reduce_segment(Folding(shell), inputs, KrylovOptions()).omega2)
+        found.append(reduce_segment(SymmetryReduction(shell), inputs, KrylovOptions()).omega2)
     assert found[1] == pytest.approx(found[0], rel=1e-6, abs=1e-3)
 
 

@@ -15,7 +15,7 @@ from geometry.arrays import Array
 from shell_model.reduction.coordinates import exact_product
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import ReducedSegment, reduce_segment
-from shell_model.reduction.symmetry import Folding
+from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import ShiftedSolver
 from studies.reference_models.lone_segment import natural_frequencies
@@ -38,7 +38,7 @@ def test_compliance_is_that_of_full_solves_far_from_the_shifts(box_shell: Shells
     """Reference: the full model. Statics, and frequencies the basis was not built at."""
     shell = box_shell(0.25, supports=HELD)
     inputs = _inputs(shell)
-    reduced = reduce_segment(Folding(shell), inputs, KrylovOptions())
+    reduced = reduce_segment(SymmetryReduction(shell), inputs, KrylovOptions())
     gains = reduced.shapes.T @ inputs
     for frequency in (0.1, 20.0, 120.0, 700.0):
         solve = ShiftedSolver(shell, frequency)
@@ -55,8 +55,10 @@ def test_compliance_is_that_of_full_solves_far_from_the_shifts(box_shell: Shells
 def test_a_poorer_basis_reports_a_larger_error(box_shell: Shells) -> None:
     shell = box_shell(0.25, supports=HELD)
     inputs = _inputs(shell)
-    rich = reduce_segment(Folding(shell), inputs, KrylovOptions())
-    poor = reduce_segment(Folding(shell), inputs, KrylovOptions(shifts=(5.0, 300.0), moments=1))
+    rich = reduce_segment(SymmetryReduction(shell), inputs, KrylovOptions())
+    poor = reduce_segment(
+        SymmetryReduction(shell), inputs, KrylovOptions(shifts=(5.0, 300.0), moments=1)
+    )
     assert poor.omega2.size < rich.omega2.size
     assert poor.compliance_error > 1.0e3 * rich.compliance_error
 
@@ -65,7 +67,7 @@ def test_a_poorer_basis_reports_a_larger_error(box_shell: Shells) -> None:
 def test_modes_below_the_stated_limit_are_the_full_models(box_shell: Shells) -> None:
     """Reference: SLEPc on the full model. Each ω below the limit is a natural one to 1e-6."""
     shell = box_shell(0.25)
-    reduced = reduce_segment(Folding(shell), _inputs(shell), KrylovOptions())
+    reduced = reduce_segment(SymmetryReduction(shell), _inputs(shell), KrylovOptions())
     frequencies = np.sqrt(reduced.omega2) / (2.0 * np.pi)
     claimed = frequencies[(frequencies > 0.0) & (frequencies <= reduced.frequency_limit)]
     assert claimed.size >= 1
@@ -80,13 +82,13 @@ def test_a_load_in_the_plane_of_bending_leaves_two_rigid_modes_exactly_zero(
 ) -> None:
     """Heave and pitch; the load moves nothing else freely, so the four others drop out."""
     shell = box_shell(0.25)
-    reduced = reduce_segment(Folding(shell), _inputs(shell), KrylovOptions())
+    reduced = reduce_segment(SymmetryReduction(shell), _inputs(shell), KrylovOptions())
     assert np.count_nonzero(reduced.omega2 == 0.0) == 2
 
 
 def test_shapes_are_mass_orthonormal(box_shell: Shells) -> None:
     shell = box_shell(0.25)
-    reduced = reduce_segment(Folding(shell), _inputs(shell), KrylovOptions(moments=2))
+    reduced = reduce_segment(SymmetryReduction(shell), _inputs(shell), KrylovOptions(moments=2))
     right, left = shell.mass.createVecs()
     product = np.empty_like(reduced.shapes)
     for column, shape in enumerate(reduced.shapes.T):
@@ -103,7 +105,9 @@ def test_inputs_that_depend_on_others_cost_nothing(box_shell: Shells) -> None:
     inputs = _inputs(shell)
     twice = np.column_stack([inputs, inputs[:, :1] + inputs[:, 1:2], 0.0 * inputs, inputs])
     options = KrylovOptions(moments=2)
-    once, again = (reduce_segment(Folding(shell), block, options) for block in (inputs, twice))
+    once, again = (
+        reduce_segment(SymmetryReduction(shell), block, options) for block in (inputs, twice)
+    )
     assert again.omega2 == pytest.approx(once.omega2, rel=1.0e-9)
 
 
@@ -111,7 +115,7 @@ def test_a_segment_that_nothing_acts_on_has_no_motion(box_shell: Shells) -> None
     shell = box_shell(0.5)
     message = "^nothing acts on a segment, and it has no motion: give it a load$"
     with pytest.raises(NumericsError, match=message):
-        reduce_segment(Folding(shell), np.zeros((shell.free.size, 2)), KrylovOptions())
+        reduce_segment(SymmetryReduction(shell), np.zeros((shell.free.size, 2)), KrylovOptions())
 
 
 FREQUENCIES = (1.0, 20.0, 120.0, 400.0, 700.0)
@@ -146,7 +150,7 @@ def test_a_basis_grows_until_it_meets_the_tolerance(box_shell: Shells) -> None:
     sizes = []
     for tolerance in TOLERANCES:
         reduced = reduce_segment(
-            Folding(shell), inputs, KrylovOptions(tolerance=tolerance), readings=rows
+            SymmetryReduction(shell), inputs, KrylovOptions(tolerance=tolerance), readings=rows
         )
         sizes.append(reduced.omega2.size)
         assert max(reduced.compliance_error, reduced.reading_error) <= tolerance
@@ -158,7 +162,9 @@ def test_no_more_coordinates_than_are_allowed(box_shell: Shells) -> None:
     """And what these leave is told: fewer err more."""
     shell = box_shell(0.5, supports=HELD)
     inputs = _inputs(shell)
-    few, more = (reduce_segment(Folding(shell), inputs, KrylovOptions(most=n)) for n in (12, 24))
+    few, more = (
+        reduce_segment(SymmetryReduction(shell), inputs, KrylovOptions(most=n)) for n in (12, 24)
+    )
     assert few.omega2.size <= 12 < more.omega2.size <= 24
     assert few.compliance_error > 10.0 * more.compliance_error
 
@@ -171,7 +177,9 @@ def test_a_tolerance_that_is_not_met_is_said(box_shell: Shells) -> None:
         r"is less$"
     )
     with pytest.raises(NumericsError, match=message):
-        reduce_segment(Folding(shell), _inputs(shell), KrylovOptions(tolerance=1.0e-9, most=20))
+        reduce_segment(
+            SymmetryReduction(shell), _inputs(shell), KrylovOptions(tolerance=1.0e-9, most=20)
+        )
 
 
 def _terms() -> tuple[np.ndarray, np.ndarray]:

@@ -17,8 +17,8 @@ from geometry.boom import Collar, PointMass, Segment, Support
 from geometry.mesh import mesh_segment
 from geometry.plating import plated
 from geometry.section import BoxSection
-from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, Family
-from shell_model.reduction.symmetry import Folding
+from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, SymmetryClass
+from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.cross_section import Outline
 from shell_model.segment.segment_shell import assemble_segment
 from shell_model.segment.solver import ShiftedSolver, quadratic_form, times
@@ -66,7 +66,7 @@ def energy(solid: SolidFamily, field: Array) -> float:
         (TWISTING, np.array([[0, 0, 0], [0, 0, 1], [0, 1, 0]])),
     ],
 )
-def test_patch_of_constant_strain(family: Family, strain: Array) -> None:
+def test_patch_of_constant_strain(family: SymmetryClass, strain: Array) -> None:
     """Reference: analytic. V (2 μ ε:ε + λ tr² ε), in a mesh whose inner points are moved; nodes
     within feel no force.
     """
@@ -190,10 +190,10 @@ def test_the_shell_of_a_thin_box_is_the_solid_s() -> None:
     mesh = mesh_segment(thin, {"a": 0.0, "held": 0.5, "b": 2.0}, 0.05)
     shell = assemble_segment(MPI.COMM_SELF, box, plated(box, mesh))
     lift = shell.row(shell.outline(2.0).wall_deflection("z"))
-    folding = Folding(shell)
-    (job,) = folding.jobs(lift[:, None], np.zeros((lift.size, 0)))
-    assert job.family == ALONG_Z
-    quarter = job.shell(folding.part)
+    symmetry = SymmetryReduction(shell)
+    (job,) = symmetry.jobs(lift[:, None], np.zeros((lift.size, 0)))
+    assert job.symmetry_class == ALONG_Z
+    quarter = job.shell(symmetry.part)
     solid = assemble_solid(box, mesh_quarter(thin, (0.0, 0.5, 2.0), (0.02, 0.2), 0.05), ALONG_Z)
     of_shell, of_solid = (
         _compliance(model, row)

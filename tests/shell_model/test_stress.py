@@ -21,7 +21,7 @@ from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from shell_model.stress.fields import gather_stress_modes
-from shell_model.stress.history import near_places, sum_up
+from shell_model.stress.history import stress_near_places, summarise
 from shell_model.stress.stresses import Modes, ShellStress, Stress, WallForces, wall_forces
 from studies.second_order import BOX as COLUMN_BOX
 from studies.second_order import CLAMP, CRITICAL, LENGTH, column
@@ -335,7 +335,7 @@ def test_bands_see_the_spot_and_patches_its_mean(shell: ShellStress) -> None:
     """Reference: analytic. The bending is 1 MPa at the flanges at its height; a spot in a patch
     of thirty triangles raises their mean by a thirtieth of it.
     """
-    history = near_places(shell, [1.0, 3.0, 9.0], ["box"])
+    history = stress_near_places(shell, [1.0, 3.0, 9.0], ["box"])
     near = history["von_mises"].sel(segment="box")
     assert near.sel(place=1.0).max() == pytest.approx(1.0e6, rel=1e-5)
     assert float(near["time"][int(near.sel(place=1.0).argmax("time"))]) == pytest.approx(0.5)
@@ -353,7 +353,7 @@ def test_bands_see_the_spot_and_patches_its_mean(shell: ShellStress) -> None:
 @pytest.mark.parametrize("places", [[1.0, 3.0], []])
 def test_the_largest_is_found(shell: ShellStress, places: list[float]) -> None:
     """With a band it is the spot; without, what all triangles have at some instants."""
-    found = sum_up(shell, near_places(shell, places, ["box"]))
+    found = summarise(shell, stress_near_places(shell, places, ["box"]))
     if not places:
         assert found.von_mises == pytest.approx(1.0e6, rel=1e-3)
         assert found.patch is None

@@ -15,7 +15,7 @@ from geometry.boom import Direction, PointMass, Support
 from geometry.section import BoxSection
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import reduce_segment
-from shell_model.reduction.symmetry import Folding
+from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import times
 from tests.shell_model.booms import HELD, STEEL, box_segment
@@ -113,7 +113,7 @@ def test_lowest_frequency_is_the_beams_in_each_plane(
     """
     shell = box_shell(0.25, supports=HELD, masses=masses)
     push = shell.row(shell.outline(10.0).wall_deflection(direction))[:, None]
-    found = np.sqrt(reduce_segment(Folding(shell), push, KrylovOptions(moments=2)).omega2)
+    found = np.sqrt(reduce_segment(SymmetryReduction(shell), push, KrylovOptions(moments=2)).omega2)
     beam = replace(box_segment("beam", 0.0, 10.0, BOX, supports=HELD), masses=masses)
     elements = finite_element_segment(beam, 0.25, (), "timoshenko", rotary_inertia=True)
     part = elements.components[direction]
@@ -130,7 +130,9 @@ def test_twisting_frequency_is_bredts(box_shell: Shells) -> None:
     box = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
     shell = box_shell(0.25, length=20.0, supports=HELD, section=box)
     push = shell.row(shell.outline(20.0).twist())[:, None]
-    found = np.sqrt(reduce_segment(Folding(shell), push, KrylovOptions(moments=2)).omega2[0])
+    found = np.sqrt(
+        reduce_segment(SymmetryReduction(shell), push, KrylovOptions(moments=2)).omega2[0]
+    )
     inertia = STEEL.density * box.polar_second_moment_of_area
     expected = np.sqrt(SHEAR * box.torsion_constant / inertia) * 2.0 * np.pi / (4.0 * 18.0)
     assert found == pytest.approx(expected, rel=0.01)

@@ -20,7 +20,7 @@ from geometry.contact_places import ContactLine
 from geometry.contact_places import pads as places_of_pads
 from geometry.joint import PadSide
 from shell_model.boom_shell import ShellOptions, assemble_segments
-from shell_model.contact.rows import Touching
+from shell_model.contact.rows import ShellContacts
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.contact.wall_rows import Wall, WallPoints
 from shell_model.reduced_shell import reduce_boom
@@ -268,7 +268,7 @@ def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
     boom = replace(boom, joints=(replace(boom.joints[0], pads=pads),))
     shells = assemble_segments(boom, ShellOptions(mesh_size=0.4), MPI.COMM_SELF)
     seen = touching(boom, LAW, LAW)
-    rows = Touching.of(seen, shells, "near webs", SurfaceOptions()).rows({})
+    rows = ShellContacts.of(seen, shells, "near webs", SurfaceOptions()).rows({})
     inner, places = shells[1], places_of_pads(boom)
     corners = 1 if len(sides) == 2 else 2
     assert len(rows.contacts) == 2 * len(pads) * corners

@@ -20,7 +20,7 @@ from geometry.profiles import hexagon, u_section
 from geometry.section import COMPONENT, BoxSection, Section
 from geometry.taper import mean_area
 from shell_model.boom_shell import ShellOptions, assemble_segments
-from shell_model.contact.rows import Touching
+from shell_model.contact.rows import ShellContacts
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.reduced_shell import reduce_boom
 from shell_model.stress.lines import lines
@@ -174,7 +174,9 @@ def test_pads_lie_on_tapered_walls(pad: PadSize | None, lateral: float | None) -
     """
     boom = tapered_boom(pad, lateral)
     shells = assemble_segments(boom, ShellOptions(mesh_size=0.3), MPI.COMM_SELF)
-    rows = Touching.of(touching(boom, LAW, LAW), shells, "near webs", SurfaceOptions()).rows({})
+    rows = ShellContacts.of(touching(boom, LAW, LAW), shells, "near webs", SurfaceOptions()).rows(
+        {}
+    )
     inner = shells[1]
     directions = [boom.stations[contact.station][1] for contact in rows.contacts]
     assert len(directions) == (4 if lateral is None else 16)

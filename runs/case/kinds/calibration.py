@@ -113,7 +113,9 @@ class CalibratedTable(BeamTable):
         assert made.shell is not None
         begin = perf_counter()
         boom = joined.boom
-        beam, calibration = calibrate(boom, made.shell.system, made.shell.far_fields, self.segments)
+        beam, calibration = calibrate(
+            boom, made.shell.system, made.shell.probe_responses, self.segments
+        )
         built = Built(
             beam,
             beam.num_modes,

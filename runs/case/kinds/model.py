@@ -359,14 +359,12 @@ class BeamTable(ModelTable):
         """Return each segment in coordinates of its own."""
 
     def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
-        from beam_model.segment_model import gap_system, tied_system
+        from beam_model.segment_model import gap_system
 
         start = perf_counter()
         beams = joined.beams(self)
-        if self.play_free:
-            system = tied_system(joined.boom, beams.segments)
-        else:
-            system = gap_system(joined.boom, beams.segments)
+        boom = joined.boom.play_free if self.play_free else joined.boom
+        system = gap_system(boom, beams.segments)
         factor, seconds = beams.critical_factor, {"build": perf_counter() - start}
         return Built(system, system.num_modes, seconds, factor)
 
@@ -377,10 +375,10 @@ class BeamTable(ModelTable):
 
     def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
         from beam_model.lines import lines
-        from beam_model.segment_model import tied_system
+        from beam_model.segment_model import gap_system
 
         segments = self.segments(boom)
-        return tied_system(boom, segments), lines(boom.play_free, segments)
+        return gap_system(boom.play_free, segments), lines(boom.play_free, segments)
 
     def critical_factor(self, joined: Joined) -> float | None:
         return joined.beams(self).critical_factor

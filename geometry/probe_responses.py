@@ -14,27 +14,27 @@ from typing import Literal
 from geometry.arrays import Array
 from geometry.boom import Boom
 
-Bent = Literal["z", "y", "twist"]
+ProbedMotion = Literal["z", "y", "twist"]
 
 # Hz: slow beside all elastic motion; forces that leave a free segment at rest do not excite it.
-FAR_SHIFT = 2.0
+PROBE_FREQUENCY = 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class FarField:
+class ProbeResponses:
     """Compliance of a segment between the places where it is probed.
 
     Args:
         places: x in m of forces and torques, rising; the first and the last also of moments.
-        compliance: motion → (num_probes, num_probes) at σ = (2π · ``FAR_SHIFT``)² in m/N, rad/N
-            and rad/(N·m); of bending the forces come first.
+        compliance: motion → (num_probes, num_probes) at σ = (2π · ``PROBE_FREQUENCY``)² in m/N,
+            rad/N and rad/(N·m); of bending the forces come first.
     """
 
     places: tuple[float, ...]
-    compliance: Mapping[Bent, Array]
+    compliance: Mapping[ProbedMotion, Array]
 
 
-def far_places(boom: Boom, number: int) -> tuple[float, ...]:
+def probe_places(boom: Boom, number: int) -> tuple[float, ...]:
     """Return the x in m where a segment is probed."""
     segment = boom.segments[number]
     return tuple(sorted({segment.start, *boom.stations_of(number), segment.end}))
