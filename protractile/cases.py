@@ -13,7 +13,7 @@ from runs.case import reading
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.folder.cache import Cache
-from runs.pipeline.means import Means
+from runs.pipeline.context import RunContext
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case as run_models
 from runs.sweep.variation import Unplaced, find
@@ -98,7 +98,7 @@ def run_case(case: Case, models: Sequence[str] | None = None) -> Results:
         from mpi4py import MPI
 
         comm = MPI.COMM_SELF
-    run = run_models(chosen, _CASE, Means(comm, cache=Cache.of_user()))
+    run = run_models(chosen, _CASE, RunContext(comm, cache=Cache.of_user()))
     assert run is not None
-    run.answer()
+    run.evaluate()
     return run.results

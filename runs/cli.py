@@ -117,7 +117,7 @@ def run(
     from runs.folder.cache import Cache
     from runs.folder.files import whole_folder
     from runs.pipeline import estimates
-    from runs.pipeline.means import Means
+    from runs.pipeline.context import RunContext
     from runs.pipeline.run import run_case
     from runs.report import output
     from runs.report.document import say_what_failed
@@ -132,20 +132,20 @@ def run(
     with _all_ranks_end_together(comm):
         if ending.launched_rank() if comm is None else comm.rank:
             if comm is not None:
-                run_case(effective, case, Means(comm, cache=cache))
+                run_case(effective, case, RunContext(comm, cache=cache))
             return 0
         folder = output.prepare(out or f"runs/out/{Path(case).stem}", case)
         with (
             whole_folder(folder) as part,
-            progress.display([model.name for model in effective.models]) as tell,
+            progress.display([model.name for model in effective.models]) as report_progress,
         ):
-            finished = run_case(effective, case, Means(comm, tell, cache, cache))
+            finished = run_case(effective, case, RunContext(comm, report_progress, cache, cache))
             assert finished is not None
-            finished.answer()
+            finished.evaluate()
             judged = judge(finished.results)
-            tell("report", "pictures and figures", 0.0)
+            report_progress("report", "pictures and figures", 0.0)
             output.write(finished, judged, part, snapshots_now=not no_pictures)
-            tell("report", "pictures and figures", 1.0)
+            report_progress("report", "pictures and figures", 1.0)
         print(printable(str(folder / output.REPORT)))
         status = _show({case: finished.results}, {case: judged})
         return say_what_failed(case, finished.results) or status
@@ -233,9 +233,9 @@ def sweep(
         with members.rank_executor(comm) if several else workers.workers(None) as pool:
             if pool is None:
                 return 0
-            with progress.display() as tell:
+            with progress.display() as report_progress:
                 cache = None if no_cache else Cache.of_user()
-                outcomes = sweep_runs.run_points(plan, folder, pool, tell, cache)
+                outcomes = sweep_runs.run_points(plan, folder, pool, report_progress, cache)
         data = charts.write(plan, outcomes, folder)
         print(printable(str(folder / charts.CSV)))
         charts.show(data, against, Terminal())
@@ -268,8 +268,8 @@ def frequencies(
             return 0
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
         sweep_runs.prepare(folder, case)
-        with progress.display() as tell:
-            data = charts.gather(plan, charts.measure(cases, comm, cache, tell))
+        with progress.display() as report_progress:
+            data = charts.gather(plan, charts.measure(cases, comm, cache, report_progress))
         charts.write(data, folder)
         print(printable(str(folder / f"{charts.NAME}.csv")))
         charts.table(data).show(Terminal())

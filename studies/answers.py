@@ -17,12 +17,12 @@ from dynamics.integrator import simulate
 from geometry.boom import Boom, Segment
 from runs import CASES
 from runs.case import reading as case_file
-from runs.pipeline.answers import Answers, ModelAnswers
-from runs.pipeline.at_rest import Diagram, at_rest, positions
-from runs.pipeline.means import Means
+from runs.pipeline.context import RunContext
+from runs.pipeline.design_results import DesignResults, ModelDesignResults
 from runs.pipeline.modes import modes
-from runs.pipeline.moved import Motions, gone_through
+from runs.pipeline.motion_results import Motions, evaluate_motion
 from runs.pipeline.run import run_case
+from runs.pipeline.static_results import Diagram, positions, static_result
 from runs.pipeline.strength import counted, endurance
 from studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
 from studies.study import Held, Proof, Tell, titled
@@ -63,16 +63,16 @@ def study(tell: Tell) -> Iterator[Proof]:
     yield from _cycles()
 
 
-def answered() -> Answers:
+def answered() -> DesignResults:
     """Return the design results of the paper's boom in a run too short for much motion."""
     case = case_file.load(str(CASES / "coarse.toml"))
     time = case.time.model_copy(update={"duration": 0.01})
     models = tuple(model for model in case.models if model.name in MODELS)
     short = case.model_copy(update={"models": models, "time": time})
-    run = run_case(short, "coarse.toml", Means(MPI.COMM_SELF))
+    run = run_case(short, "coarse.toml", RunContext(MPI.COMM_SELF))
     assert run is not None
-    run.answer()
-    return run.results.summary.answers
+    run.evaluate()
+    return run.results.summary.design
 
 
 def station_forces() -> tuple[float, float]:
@@ -89,8 +89,8 @@ def support_forces() -> tuple[float, float]:
     return -OUTER * HEAD - tail - head - far, far
 
 
-def _at_rest(name: str, own: ModelAnswers) -> Iterator[Proof]:
-    (rest,) = own.rests
+def _at_rest(name: str, own: ModelDesignResults) -> Iterator[Proof]:
+    (rest,) = own.static
     tail, head = station_forces()
     tilt = (PLAY + (abs(tail) + head) / STIFF) / (HEAD - TAIL)
     held: Held = ("analytic", "2 Δ and what contacts give way, over the overlap", CLOSE)
@@ -129,30 +129,30 @@ def _cantilever() -> Iterator[Proof]:
         mode = next(one for one in own.modes if one.number == number)
         what = f"cantilever, {mode.way}, mode {number}"
         yield Proof(what, mode.frequency, root**2 * rate, "Hz", "analytic", "Blevins 1979", CLOSE)
-    assert own.moved is not None
+    assert own.motion is not None
     moment = 0.5 * abs(LOAD) * LENGTH**2
     stress = moment * 0.5 * (BOX.height + BOX.flange) / BOX.second_moment_of_area
-    (fibre,) = own.moved.fibres
+    (fibre,) = own.motion.fibres
     assert fibre.at_rest is not None
     held: Held = ("analytic", "M c/J, Navier 1826", CLOSE)
     yield Proof("outer fibre of it at rest", 1e-6 * fibre.at_rest, 1e-6 * stress, "MPa", *held)
     single = swung(boom, kantorovich_segments(boom, [1], "complete", rotary_inertia=False))
-    assert single.moved is not None
-    for peak in single.moved.peaks:
+    assert single.motion is not None
+    for peak in single.motion.peaks:
         assert peak.factor is not None
         what = f"dynamic factor of its {peak.what}, one coordinate, loaded suddenly"
         yield Proof(what, peak.factor, 2.0, "", "analytic", "1 − cos ωt", CLOSE)
 
 
-def swung(boom: Boom, segments: list[SegmentModel]) -> ModelAnswers:
+def swung(boom: Boom, segments: list[SegmentModel]) -> ModelDesignResults:
     """Return half a second of motion of a single-segment boom under a sudden load."""
     system, along = gap_system(boom.play_free, segments), lines(boom, segments)
     rest = positions(system)[0.0]
-    told = [at_rest(boom, system, along, 0.0, rest)]
+    told = [static_result(boom, system, along, 0.0, rest)]
     motion = simulate(system, duration=0.5)
     motions = Motions(boom, along, motion, rest[None], told, jumps=False)
-    moved, _ = gone_through(motions)
-    return ModelAnswers(rests=told, modes=modes(boom, system, along, rest), moved=moved)
+    moved, _ = evaluate_motion(motions)
+    return ModelDesignResults(static=told, modes=modes(boom, system, along, rest), motion=moved)
 
 
 def _cycles() -> Iterator[Proof]:

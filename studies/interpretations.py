@@ -28,7 +28,7 @@ from runs.case.schema import Case
 from runs.folder.cache import Memory
 from runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER, judge
 from runs.paper.verdicts import MARKS, Judgement
-from runs.pipeline.means import Means
+from runs.pipeline.context import RunContext
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
 from runs.report.formatting import number
@@ -241,7 +241,7 @@ def judge_exponents(judged: Sequence[JudgedInterpretation]) -> list[JudgedInterp
 
 
 def _results(case: Case, motions: Memory) -> Results:
-    finished = run_case(case, "paper.toml", Means(kept=motions))
+    finished = run_case(case, "paper.toml", RunContext(motions=motions))
     assert finished is not None
     for model, why in finished.results.summary.failures.items():
         raise NumericsError(f"{model}: {why}")

@@ -19,7 +19,7 @@ from runs.case.drive import fastest
 from runs.case.elastic_drive import elastic_drives, with_elastic_drives
 from runs.case.schema import Case
 from runs.case.units import System
-from runs.pipeline.at_rest import extended_positions, instants, positions
+from runs.pipeline.static_results import extended_positions, instants, positions
 from runs.pipeline.statics import statics, with_play_seen
 
 if TYPE_CHECKING:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Display formats of a model's numbers, declared beside the fields of their records.
 
->>> from runs.pipeline.residual_vibration import Swing
->>> metrics(Swing)["tip"].title
-'swing while drawn out'
+>>> from runs.pipeline.residual_vibration import ResidualVibration
+>>> metrics(ResidualVibration)["tip"].title
+'residual vibration'
 """
 
 from __future__ import annotations

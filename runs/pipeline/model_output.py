@@ -16,9 +16,9 @@ from dynamics.line import Line, Quantity
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom
-from runs.pipeline.at_rest import positions
 from runs.pipeline.modes import MODES
 from runs.pipeline.results import CONVENTIONS
+from runs.pipeline.static_results import positions
 from shell_model.stress.field_series import series_times, write_field_series
 from shell_model.stress.history import StressSummary, stress_near_places, summarise
 from shell_model.stress.stresses import ShellStress
@@ -110,7 +110,7 @@ class ShellOutput:
             mesh.write_gmsh(meshes / f"{segment}.msh")
 
 
-class MovedSegment(NamedTuple):
+class SegmentMotion(NamedTuple):
     """Quantities (num_frames, num_places) along one segment, at rising x (num_places,) in m."""
 
     x: Array
@@ -121,7 +121,7 @@ class BeamOutput(NamedTuple):
     """Quantities along all segments at times (num_frames,) in s."""
 
     time: Array
-    segments: list[MovedSegment]
+    segments: list[SegmentMotion]
 
     @classmethod
     def of(cls, lines: Sequence[Line], trajectory: Trajectory) -> BeamOutput:
@@ -132,7 +132,7 @@ class BeamOutput(NamedTuple):
             last = np.append(np.diff(line.x) > 0.0, True)
             read = line.read(trajectory.states[steps])
             moved.append(
-                MovedSegment(line.x[last], {name: along[:, last] for name, along in read.items()})
+                SegmentMotion(line.x[last], {name: along[:, last] for name, along in read.items()})
             )
         return cls(trajectory.time[steps], moved)
 

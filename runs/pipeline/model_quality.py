@@ -20,7 +20,7 @@ from geometry.boom import Boom
 from geometry.typography import TO_PERCENT, listed
 from runs.case.actions import series_notes
 from runs.case.schema import Case, Model
-from runs.pipeline.answers import Answers, ModelAnswers, QualityNote
+from runs.pipeline.design_results import DesignResults, ModelDesignResults, QualityNote
 from runs.pipeline.drives import lag_cautions, slip_cautions, slippings
 from runs.pipeline.proportions import of_buckling, of_period, of_tip, slips
 from runs.pipeline.summary import Comparisons, Levels, Summary, Whole
@@ -114,7 +114,9 @@ def _others(data: xr.Dataset, reference: str) -> list[str]:
     return [str(name) for name in data["model"].values if name != reference]
 
 
-def quality_notes(summary: Summary, answers: Answers, duration: float) -> Iterator[QualityNote]:
+def quality_notes(
+    summary: Summary, answers: DesignResults, duration: float
+) -> Iterator[QualityNote]:
     """Yield notes on the accuracy of a run.
 
     Args:
@@ -157,7 +159,7 @@ def _percent(part: float) -> str:
     return f"{TO_PERCENT * part:.2g} %"
 
 
-def _agreement(answers: Answers) -> Iterator[str]:
+def _agreement(answers: DesignResults) -> Iterator[str]:
     """Yield the agreement of the models with play with the reference."""
     if answers.modes is None:
         return
@@ -169,16 +171,16 @@ def _agreement(answers: Answers) -> Iterator[str]:
             parts.append(f"{_percent(abs(off))} in the tip at rest")
         if (first := matches[0]) is not None:
             parts.append(f"{_percent(abs(first.off))} in the first frequency")
-        if own.moved is not None and other.moved is not None and own.moved.peaks[0].largest:
-            ratio = other.moved.peaks[0].largest / own.moved.peaks[0].largest
+        if own.motion is not None and other.motion is not None and own.motion.peaks[0].largest:
+            ratio = other.motion.peaks[0].largest / own.motion.peaks[0].largest
             parts.append(f"{_percent(abs(ratio - 1.0))} in the largest deflection of the tip")
         if parts:
             yield f"{name} is off {reference} by {listed(parts)}."
 
 
-def off_at_rest(own: ModelAnswers, other: ModelAnswers) -> float | None:
+def off_at_rest(own: ModelDesignResults, other: ModelDesignResults) -> float | None:
     """Return the relative difference of static tips under the largest loads; None where unknown."""
-    tips = [max((rest.tip for rest in one.rests), key=abs, default=None) for one in (own, other)]
+    tips = [max((rest.tip for rest in one.static), key=abs, default=None) for one in (own, other)]
     if tips[1] is None or not tips[0]:
         return None
     return tips[1] / tips[0] - 1.0
@@ -231,7 +233,7 @@ def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
     for name, model in summary.models.items():
         yield from of_buckling(name, model.critical_factor)
         yield from of_tip(f"in {name}", model.static_tip, boom)
-    found = summary.answers.models.items()
+    found = summary.design.models.items()
     slowest = min(((mode.frequency, name) for name, one in found for mode in one.modes), default=())
     if slowest:
         yield from of_period(f"in {slowest[1]}", slowest[0], case)

@@ -24,7 +24,7 @@ from runs.case.kinds.model import Built, Workshop
 from runs.case.schema import Case, Model
 from runs.folder.cache import key
 from runs.pipeline import members
-from runs.pipeline.means import Means
+from runs.pipeline.context import RunContext
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.proportions import static_tip
@@ -45,7 +45,7 @@ class SharedFailure(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Finished:
+class CompletedMotion:
     """A completed motion; ``ensemble`` where the case asks for one."""
 
     trajectory: Trajectory
@@ -59,7 +59,7 @@ class ModelRun:
 
     model: Model
     built: Built
-    moved: Finished
+    motion: CompletedMotion
     shell: ShellOutput | None
     stages: Stages
 
@@ -75,7 +75,7 @@ def failure_reason(error: Exception) -> str:
 
 
 def run_model(
-    boom: Boom, model: Model, case: Case, cutoff: float | None, means: Means
+    boom: Boom, model: Model, case: Case, cutoff: float | None, context: RunContext
 ) -> ModelRun | None:
     """Build, integrate and summarise a model; return None except on rank 0. Collective.
 
@@ -87,37 +87,37 @@ def run_model(
         model: a model of the case.
         case: that of the run.
         cutoff: cut-off of the slow motion in Hz; None without one.
-        means: the context of the run.
+        context: the context of the run.
 
     Raises:
         NumericsError: the model cannot be computed.
         SharedFailure: likewise, for a shell that several ranks share.
     """
-    begin, comm = perf_counter(), means.comm
-    stages = Stages(partial(means.progress, model.name))
-    if model.needs_shell or means.first_rank:
-        tools = None if comm is None else Workshop(comm, stages.tell, means.cache)
+    begin, comm = perf_counter(), context.comm
+    stages = Stages(partial(context.progress, model.name))
+    if model.needs_shell or context.first_rank:
+        tools = None if comm is None else Workshop(comm, stages.tell, context.cache)
         try:
             built = build(case, boom, model, tools)
         except NUMERICS as error:
-            if means.alone or not model.needs_shell:
+            if context.alone or not model.needs_shell:
                 raise
             raise SharedFailure(failure_reason(error)) from error
         stages.seconds |= built.seconds
     with members.rank_executor(comm if case.ensemble else None) as executor:
-        if not means.first_rank:
+        if not context.first_rank:
             return None
         alone = case.unjudged().model_copy(update={"models": (model,), "title": ""})
-        system, kept = built.system, means.kept
+        system, store = built.system, context.motions
         content = toml.digest(alone), system.omega2, system.load, system.rows, cutoff
         name = key([*content])
-        moved = kept.load(name, Finished) if kept else None
-        if moved is None:
+        motion = store.load(name, CompletedMotion) if store else None
+        if motion is None:
             moving = Stages(stages.tell)
-            moved = _move(built, model, case, cutoff, executor, moving)
-            if kept is not None:
-                kept.remember(name, moved)
-    summary, reduced = moved.summary, built.shell
+            motion = _move(built, model, case, cutoff, executor, moving)
+            if store is not None:
+                store.remember(name, motion)
+    summary, reduced = motion.summary, built.shell
     if boom.compressed:
         summary.critical_factor = built.critical_factor
     if built.calibration is not None:
@@ -130,10 +130,10 @@ def run_model(
         summary.local_compliance = list(reduced.local_compliance)
         summary.mesh_error = reduced.mesh_error
         with stages.stage("stress"):
-            shell = ShellOutput.of(boom, model.name, reduced, moved.trajectory)
+            shell = ShellOutput.of(boom, model.name, reduced, motion.trajectory)
         summary.stress = shell.largest
     summary.seconds, summary.wall_time = stages.seconds, perf_counter() - begin
-    return ModelRun(model, built, moved, shell, stages)
+    return ModelRun(model, built, motion, shell, stages)
 
 
 def _move(
@@ -143,7 +143,7 @@ def _move(
     cutoff: float | None,
     executor: Executor | None,
     stages: Stages,
-) -> Finished:
+) -> CompletedMotion:
     """Integrate a model; measure its step error, its ensemble and its horizons."""
     plan, table = MotionPlan.of(built.system, case, model), case.ensemble
     motion, system = plan.motion, plan.motion.system
@@ -179,7 +179,7 @@ def _move(
             with stages.stage("step counts"):
                 summary.steps_for_peaks = members.steps_for_peaks(motion, peaks, cutoff)
     summary.seconds = stages.seconds
-    return Finished(trajectory, summary, ensemble)
+    return CompletedMotion(trajectory, summary, ensemble)
 
 
 def _summary(

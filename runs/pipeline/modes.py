@@ -78,7 +78,7 @@ class Match:
 
 
 @dataclass(frozen=True, slots=True)
-class ModesBeside:
+class ModeComparison:
     """The modes of all models beside those of a reference.
 
     Args:

@@ -33,43 +33,59 @@ _TIP = ("tip", "tip_lateral")
 
 # Formats of a length, and of one that is a constant beside a curve.
 _metres = partial(Metric, unit="m", factor=TO_MILLI, shown_unit="mm")
-_level, _AT = partial(_metres, charted=False), "at rest where\nit "
+_level = partial(_metres, charted=False)
 
 
 @dataclass(frozen=True, slots=True)
-class Swing(Record):
+class ResidualVibration(Record):
     """Vibration of the tip during and after the extension.
 
     Args:
         tip: largest distance of the tip from equilibrium in m.
         time: its time in s.
-        where_begun, where_ended: those of the same boom at constant initial and final extension,
-            under the same loads, in m; None where they cannot be computed.
+        initial, final: those of the same boom at constant initial and final extension, under the
+            same loads, in m; None where they cannot be computed.
         speed: mean speed of the fastest drive while it moves, in m/s.
     """
 
-    title = "Swing while it is drawn"
+    title = "Residual vibration during telescoping"
     notes = (
-        "The largest distance of the tip from where it would rest, drawn out as far as it is and "
-        "under the loads of that moment; beside it that of the same boom that is not drawn.",
+        "Largest distance of the tip from its static position at the current extension and under "
+        "the current loads; beside it that of the same boom without telescoping.",
     )
 
-    tip: Annotated[float, _metres("swing", title="swing while drawn out", heading="tip swings")]
-    time: Annotated[float, Metric("", "s", "time of the swing", 1.0, "s", heading="at", form=".3f")]
+    tip: Annotated[
+        float,
+        _metres("residual_vibration", title="residual vibration", heading="residual\nvibration"),
+    ]
+    time: Annotated[
+        float,
+        Metric("", "s", "time of the residual vibration", 1.0, "s", heading="at", form=".3f"),
+    ]
     speed: Annotated[
         float, Metric("drive_speed", "m/s", "mean speed of the drive", 1.0, "m/s", charted=False)
     ]
-    where_begun: Annotated[
+    initial: Annotated[
         float | None,
-        _level("swing_where_begun", title="swing at rest where it begins", heading=_AT + "begins"),
+        _level(
+            "residual_vibration_initial",
+            title="vibration at the initial extension",
+            heading="at initial\nextension",
+        ),
     ]
-    where_ended: Annotated[
+    final: Annotated[
         float | None,
-        _level("swing_where_ended", title="swing at rest where it ends", heading=_AT + "ends"),
+        _level(
+            "residual_vibration_final",
+            title="vibration at the final extension",
+            heading="at final\nextension",
+        ),
     ]
 
 
-def swing(system: GapSystem, trajectory: Trajectory, case: Case, model: Model) -> Swing | None:
+def residual_vibration(
+    system: GapSystem, trajectory: Trajectory, case: Case, model: Model
+) -> ResidualVibration | None:
     """Return the vibration of a model that extends; None without extension or an equilibrium path.
 
     Args:
@@ -90,7 +106,7 @@ def swing(system: GapSystem, trajectory: Trajectory, case: Case, model: Model) -
         _standing(system.standing(when).in_own_modes(), case, model) for when in (0.0, max(ends))
     ]
     speed = max(_speed(travel) for travel in system.travels)
-    return Swing(tip, time, speed, *stands)
+    return ResidualVibration(tip, time, speed, *stands)
 
 
 def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float, float]:

@@ -25,11 +25,11 @@ from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case, Model
 from runs.case.user_files import check_regular
 from runs.folder.files import MANIFEST, damaged, write_whole
-from runs.pipeline.answers import PlayAdds
-from runs.pipeline.at_rest import place_names
+from runs.pipeline.design_results import PlayEffect
 from runs.pipeline.model_quality import cautions, leading, reference_of
-from runs.pipeline.moved import Moved
+from runs.pipeline.motion_results import MotionResult
 from runs.pipeline.pads import pressed_pads
+from runs.pipeline.static_results import place_names
 from runs.pipeline.summary import Summary
 
 TRAJECTORIES = "trajectories.nc"
@@ -140,9 +140,9 @@ class Results:
         return reference_of(self.ran)
 
     @property
-    def play(self) -> PlayAdds | None:
+    def play(self) -> PlayEffect | None:
         """Increase by play in the model that the others are compared with."""
-        known = (one for one in self.summary.answers.play if one.numbers)
+        known = (one for one in self.summary.design.play if one.numbers)
         return next((one for one in known if one.model == self.reference), None)
 
     @cached_property
@@ -153,13 +153,13 @@ class Results:
         return sorted(first, key=lambda name: (name != self.reference, names.index(name)))
 
     @property
-    def moved(self) -> dict[str, Moved]:
+    def motions(self) -> dict[str, MotionResult]:
         """Extreme values of the motions of the most important models."""
-        own = self.summary.answers.models
+        own = self.summary.design.models
         return {
             name: moved
             for name in self.read_first
-            if name in own and (moved := own[name].moved) is not None
+            if name in own and (moved := own[name].motion) is not None
         }
 
 

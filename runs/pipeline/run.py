@@ -17,13 +17,13 @@ from runs.case.build import build_boom
 from runs.case.schema import Case, Model
 from runs.folder.versions import versions
 from runs.pipeline import members
-from runs.pipeline.answering import answer_model, answer_run
-from runs.pipeline.answers import ModelAnswers
-from runs.pipeline.means import Means
+from runs.pipeline.context import RunContext
+from runs.pipeline.design_results import ModelDesignResults
+from runs.pipeline.evaluation import answer_model, answer_run
 from runs.pipeline.model_output import BeamOutput, ShellOutput
 from runs.pipeline.model_quality import compare_models
 from runs.pipeline.model_run import (
-    Finished,
+    CompletedMotion,
     ModelRun,
     SharedFailure,
     failure_reason,
@@ -50,12 +50,12 @@ class Run:
         """Output of each beam."""
         boom = self.results.boom
         return {
-            name: BeamOutput.of(one.model.lines(boom, one.built), one.moved.trajectory)
+            name: BeamOutput.of(one.model.lines(boom, one.built), one.motion.trajectory)
             for name, one in self.ran.items()
             if one.shell is None
         }
 
-    def answer(self) -> None:
+    def evaluate(self) -> None:
         """Put the design results and the limits of validity into the summary.
 
         A model whose design results cannot be computed is in ``failures``, too.
@@ -67,23 +67,26 @@ class Run:
         answers = {}
         for name, ran in self.ran.items():
             own = summary.models[name]
-            with ran.stages.stage("answers"), np.errstate(all="ignore"):
+            with ran.stages.stage("design results"), np.errstate(all="ignore"):
                 try:
                     answers[name] = answer_model(
-                        boom, case, ran.model, ran.built, ran.moved.trajectory, ran.shell
+                        boom, case, ran.model, ran.built, ran.motion.trajectory, ran.shell
                     )
                     check_finite(answers[name])
                 except NUMERICS as error:
-                    summary.failures[name], answers[name] = failure_reason(error), ModelAnswers()
+                    summary.failures[name], answers[name] = (
+                        failure_reason(error),
+                        ModelDesignResults(),
+                    )
             own.seconds = ran.stages.seconds
-            own.wall_time = (own.wall_time or 0.0) + own.seconds["answers"]
-        summary.answers = answer_run(boom, case, summary, answers)
+            own.wall_time = (own.wall_time or 0.0) + own.seconds["design results"]
+        summary.design = answer_run(boom, case, summary, answers)
         self.results.conclude()
         check_finite(summary)
 
 
-def run_case(case: Case, file: str, means: Means) -> Run | None:
-    """Run all models of a case without design results, see :meth:`Run.answer`. Collective.
+def run_case(case: Case, file: str, context: RunContext) -> Run | None:
+    """Run all models of a case without design results, see :meth:`Run.evaluate`. Collective.
 
     Return None except on rank 0. The summary's ``failures`` name each model that cannot be
     computed, with the reason.
@@ -91,7 +94,7 @@ def run_case(case: Case, file: str, means: Means) -> Run | None:
     Args:
         case: a checked case.
         file: its name in messages.
-        means: the context of the run.
+        context: the context of the run.
 
     Raises:
         NumericsError: no model can be computed, or a shell that several ranks share.
@@ -103,9 +106,9 @@ def run_case(case: Case, file: str, means: Means) -> Run | None:
         # Overflow is detected and reported where it matters.
         with np.errstate(all="ignore"):
             try:
-                found = run_model(boom, model, case, cutoff, means)
+                found = run_model(boom, model, case, cutoff, context)
                 if found is not None:
-                    check_finite(found.moved.summary)
+                    check_finite(found.motion.summary)
                 return found
             except NUMERICS as error:
                 return error
@@ -113,8 +116,8 @@ def run_case(case: Case, file: str, means: Means) -> Run | None:
                 number = 1 + case.models.index(model)
                 raise NumericsError(f"{file}: model[{number}]: {error}") from error
 
-    outcomes = _attempt_all(case.models, attempt, means.alone)
-    if not means.first_rank:
+    outcomes = _attempt_all(case.models, attempt, context.alone)
+    if not context.first_rank:
         return None
     ran = {name: one for name, one in outcomes.items() if isinstance(one, ModelRun)}
     failures = {
@@ -123,15 +126,15 @@ def run_case(case: Case, file: str, means: Means) -> Run | None:
     for number, model in enumerate(case.models, start=1):
         if not ran and model.name in failures:
             raise NumericsError(f"{file}: model[{number}]: {failures[model.name]}")
-    moved = {name: one.moved for name, one in ran.items()}
-    return Run(_results(boom, case, cutoff, moved, failures), ran)
+    motions = {name: one.motion for name, one in ran.items()}
+    return Run(_results(boom, case, cutoff, motions, failures), ran)
 
 
 def _results(
     boom: Boom,
     case: Case,
     cutoff: float | None,
-    moved: Mapping[str, Finished],
+    motions: Mapping[str, CompletedMotion],
     failures: dict[str, str],
 ) -> Results:
     """Return the results of the motions of a case."""
@@ -139,14 +142,14 @@ def _results(
         title=case.title,
         case_hash=toml.digest(case),
         versions=versions(),
-        models={name: one.summary for name, one in moved.items()},
+        models={name: one.summary for name, one in motions.items()},
         failures=failures,
     )
     # Every file names its case, so that a folder cannot mix two runs unnoticed.
-    trajectories = {name: one.trajectory for name, one in moved.items()}
+    trajectories = {name: one.trajectory for name, one in motions.items()}
     data = label(boom, trajectories).assign_attrs(case_hash=summary.case_hash)
     ensembles = members.gather_ensembles(
-        {name: one.ensemble for name, one in moved.items() if one.ensemble is not None}
+        {name: one.ensemble for name, one in motions.items() if one.ensemble is not None}
     )
     if ensembles is not None:
         for name, values in ensembles.data_vars.items():

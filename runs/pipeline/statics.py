@@ -19,8 +19,8 @@ from geometry.cylinder import force_name
 from geometry.typography import TO_KILO, TO_MILLI
 from runs.case.schema import Case
 from runs.case.units import System
-from runs.pipeline.at_rest import pressed, tilts
 from runs.pipeline.proportions import of_period, of_tip
+from runs.pipeline.static_results import pressed, tilts
 from runs.report.tables import Table
 
 # Part of the other reactions below which a reaction counts as zero.

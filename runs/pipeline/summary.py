@@ -21,7 +21,7 @@ from dynamics.failure import NumericsError
 from dynamics.trajectory import Pointwise
 from geometry.typography import TO_KILO, TO_PERCENT
 from runs.case.schema import EnsembleTable
-from runs.pipeline.answers import Answers
+from runs.pipeline.design_results import DesignResults
 from runs.pipeline.metrics import Metric
 from runs.pipeline.pads import PressedPad
 from shell_model.stress.history import StressSummary
@@ -293,7 +293,7 @@ class Summary(SummaryTable):
     models: dict[str, ModelSummary]
     failures: dict[str, str]
     ensemble: Ensembles | None = None
-    answers: Answers = Answers({})
+    design: DesignResults = DesignResults({})
     pads: list[PressedPad] = []
     cautions: list[str] = []
     comparisons: Comparisons | None = None

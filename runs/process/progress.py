@@ -8,19 +8,20 @@ from contextlib import contextmanager
 from time import perf_counter
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, TaskID, TextColumn, TimeElapsedColumn
+from rich.progress import Progress as ProgressBars
 
 from runs.process.terminal import printable, say
 
 # Called with the model's name, the stage, and the completed part of the stage.
-Tell = Callable[[str, str, float], None]
+Progress = Callable[[str, str, float], None]
 
 # Least time in s between two lines; shorter stages print nothing.
 EVERY = 5.0
 
 
 @contextmanager
-def display(models: Sequence[str] = ()) -> Iterator[Tell]:
+def display(models: Sequence[str] = ()) -> Iterator[Progress]:
     """Give a function that displays the progress of each stage on stderr.
 
     Args:
@@ -32,15 +33,15 @@ def display(models: Sequence[str] = ()) -> Iterator[Tell]:
         return
     columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
     bars: dict[str, TaskID] = {}
-    with Progress(*columns, console=console) as progress:
+    with ProgressBars(*columns, console=console) as progress_bars:
 
-        def tell(model: str, stage: str, part: float) -> None:
+        def update(model: str, stage: str, part: float) -> None:
             label = f"{model}: {stage}"
             if label not in bars:
-                bars[label] = progress.add_task(label, total=1.0)
-            progress.update(bars[label], completed=part)
+                bars[label] = progress_bars.add_task(label, total=1.0)
+            progress_bars.update(bars[label], completed=part)
 
-        yield tell
+        yield update
 
 
 class Lines:
@@ -59,24 +60,24 @@ class Lines:
         clock: Callable[[], float] = perf_counter,
     ) -> None:
         self._models, self._say, self._clock = list(models), say, clock
-        self._said = clock()
-        self._begun: dict[tuple[str, str], float] = {}
+        self._last_time = clock()
+        self._starts: dict[tuple[str, str], float] = {}
 
     def __call__(self, model: str, stage: str, part: float) -> None:
         """Print the progress of a stage."""
         now = self._clock()
-        passed = now - self._begun.setdefault((model, stage), now)
-        if now - self._said < EVERY:
+        passed = now - self._starts.setdefault((model, stage), now)
+        if now - self._last_time < EVERY:
             return
-        self._said = now
-        how_far = f"{stage} begins"
+        self._last_time = now
+        state = f"{stage} begins"
         if part >= 1.0:
             # Some stages report their end only.
-            how_far = f"{stage} took {passed:.0f} s" if passed else f"{stage} is done"
+            state = f"{stage} took {passed:.0f} s" if passed else f"{stage} is done"
         elif part > 0.0:
             left = passed * (1.0 - part) / part
-            how_far = f"{stage} {100.0 * part:.0f} %, {left:.0f} s left"
+            state = f"{stage} {100.0 * part:.0f} %, {left:.0f} s left"
         place = ""
         if model in self._models:
             place = f" ({self._models.index(model) + 1} of {len(self._models)})"
-        self._say(printable(f"{model}{place}: {how_far}"))
+        self._say(printable(f"{model}{place}: {state}"))

@@ -88,7 +88,7 @@ def render(
         of=results.play.model if results.play else "",
         strength=strength_verdict(results),
         nearness=deviation_note(results),
-        trust=[known.line for known in results.summary.answers.trust],
+        trust=[known.line for known in results.summary.design.quality_notes],
         viewer=viewer,
         charts=packed_charts(charts) if charts else "",
         plotly=packed_plotly() if charts else "",
@@ -150,10 +150,10 @@ def _found_of_models(results: Results) -> Iterator[str]:
                 f"{name}: where the segments touch, the local compliance is within "
                 f"{percent(error, 2)} of that of an infinitely fine mesh"
             )
-    for name, own in results.summary.answers.models.items():
-        if (swing := own.swing) is None:
+    for name, own in results.summary.design.models.items():
+        if (swing := own.residual_vibration) is None:
             continue
-        levels = swing.where_begun, swing.where_ended
+        levels = swing.initial, swing.final
         ends = (number(None if level is None else TO_MILLI * level) for level in levels)
         yield (
             f"{name}: residual vibration of the tip, telescoping at a mean "

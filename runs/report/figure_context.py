@@ -17,8 +17,8 @@ from matplotlib.figure import Figure as Sheet
 from geometry.arrays import Array
 from geometry.typography import listed
 from runs.case.schema import Case
-from runs.pipeline.at_rest import AtRest
 from runs.pipeline.results import Results
+from runs.pipeline.static_results import StaticResult
 from runs.report import theme
 from runs.report.charts import Chart, Curve
 
@@ -85,7 +85,7 @@ class FigureContext:
             for model in results.case.models
             if model.play_free
         }
-        self.answers = results.summary.answers.models
+        self.answers = results.summary.design.models
         self.leading = results.read_first
 
     def of(self, name: str, variable: str) -> Array:
@@ -252,7 +252,7 @@ def of_start(case: Case) -> str:
     return " Places are those of t = 0, and go with their segments." if case.driven else ""
 
 
-def of_rests(case: Case, rests: Iterable[AtRest]) -> str:
+def of_rests(case: Case, rests: Iterable[StaticResult]) -> str:
     """Return a sentence on the extension of the boom at rest; empty without telescoping."""
     times = [f"{time:g}" for time in sorted({rest.time for rest in rests})]
     return f" Extension as at {listed(times)} s." if case.driven and times else ""

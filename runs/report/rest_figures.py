@@ -10,9 +10,9 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.typography import TO_MILLI, signed
-from runs.pipeline.answers import ModelAnswers
-from runs.pipeline.at_rest import AtRest
-from runs.pipeline.moved import Envelope
+from runs.pipeline.design_results import ModelDesignResults
+from runs.pipeline.motion_results import Envelope
+from runs.pipeline.static_results import StaticResult
 from runs.report import formatting, theme
 from runs.report.charts import Chart, Curve
 from runs.report.figure_context import Figure, FigureContext, new_sheet, of_rests, of_start
@@ -48,7 +48,7 @@ class _Line(NamedTuple):
 def at_rest(run: FigureContext) -> list[Figure]:
     """Draw the boom's deflection and section forces at rest, with and without play."""
     found = dict(_read_first(run))
-    farthest = {name: own.farthest_rest for name, own in found.items()}
+    farthest = {name: own.farthest_static for name, own in found.items()}
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     if not rests:
         return []
@@ -58,7 +58,7 @@ def at_rest(run: FigureContext) -> list[Figure]:
         rest
         for name in rests
         if name in run.with_play
-        for rest in found[name].tied
+        for rest in found[name].static_bonded
         if rest.time == rests[name].time
     ]
     if tied and not rests.keys() & set(run.play_free):
@@ -79,7 +79,7 @@ def at_rest(run: FigureContext) -> list[Figure]:
 
 def envelopes(run: FigureContext) -> list[Figure]:
     """Draw the limits of the section forces in motion."""
-    found = {name: own.moved.envelopes for name, own in _read_first(run) if own.moved is not None}
+    found = {name: own.motion.envelopes for name, own in _read_first(run) if own.motion is not None}
     lines = {
         name: {
             what: [
@@ -122,13 +122,13 @@ def mode_shapes(run: FigureContext) -> list[Figure]:
     ]
 
 
-def _read_first(run: FigureContext) -> Iterator[tuple[str, ModelAnswers]]:
+def _read_first(run: FigureContext) -> Iterator[tuple[str, ModelDesignResults]]:
     for name in run.models:
         if name in run.leading and name in run.answers:
             yield name, run.answers[name]
 
 
-def _rest_lines(rest: AtRest, name: str, color: str) -> dict[str, list[_Line]]:
+def _rest_lines(rest: StaticResult, name: str, color: str) -> dict[str, list[_Line]]:
     lines: dict[str, list[_Line]] = {what: [] for what in _PANELS}
     dashes = "--" if color == theme.PLAY_FREE else "-"
     for diagram in rest.diagrams:

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from runs.pipeline.answers import Added, ModelAnswers
-from runs.pipeline.at_rest import AtRest
+from runs.pipeline.design_results import ModelDesignResults, PlayDifference
 from runs.pipeline.metrics import records
-from runs.pipeline.moved import Peak
+from runs.pipeline.motion_results import Peak
 from runs.pipeline.results import Results
+from runs.pipeline.static_results import StaticResult
 from runs.report.figure_context import of_rests
 from runs.report.formatting import NONE, amount, number
 from runs.report.model_tables import metric_columns
@@ -46,11 +46,11 @@ def play_table(results: Results) -> Table | None:
     if found is None:
         return None
     rows = found.numbers
-    added = ["negligible" if hardly(one) else amount(one.added, one.unit) for one in rows]
+    added = ["negligible" if hardly(one) else amount(one.increase, one.unit) for one in rows]
     columns = (
         Column("", [_named(one.what, one.where) for one in rows]),
-        Column("with play", [amount(one.played, one.unit) for one in rows]),
-        Column("without play", [amount(one.tied, one.unit) for one in rows]),
+        Column("with play", [amount(one.with_play, one.unit) for one in rows]),
+        Column("without play", [amount(one.bonded, one.unit) for one in rows]),
         Column("play adds", added),
         Column("", [None if hardly(one) else one.share for one in rows], ".3g", "%"),
     )
@@ -60,7 +60,7 @@ def play_table(results: Results) -> Table | None:
 
 def rest_tables(results: Results) -> list[Table]:
     """Return tilts by play, contact forces and support reactions in the state of rest."""
-    farthest = {name: own.farthest_rest for name, own in results.summary.answers.models.items()}
+    farthest = {name: own.farthest_static for name, own in results.summary.design.models.items()}
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     as_extended = of_rests(results.case, rests.values())
     found = (
@@ -71,7 +71,7 @@ def rest_tables(results: Results) -> list[Table]:
     return [table for table in found if table is not None]
 
 
-def _tilt_table(rests: dict[str, AtRest], as_extended: str) -> Table | None:
+def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table | None:
     tilts = [(name, tilt) for name, rest in rests.items() for tilt in rest.tilts]
     if not tilts:
         return None
@@ -86,7 +86,7 @@ def _tilt_table(rests: dict[str, AtRest], as_extended: str) -> Table | None:
     return Table(title, columns, (note + as_extended,), "tilts")
 
 
-def _pressed_table(rests: dict[str, AtRest], as_extended: str) -> Table | None:
+def _pressed_table(rests: dict[str, StaticResult], as_extended: str) -> Table | None:
     places = dict.fromkeys(pressed.place for rest in rests.values() for pressed in rest.stations)
     if not places:
         return None
@@ -101,11 +101,11 @@ def _pressed_table(rests: dict[str, AtRest], as_extended: str) -> Table | None:
 
 
 def _reaction_table(results: Results) -> Table | None:
-    answers = results.summary.answers
+    answers = results.summary.design
     found = answers.reactions
     if not found:
         return None
-    tied = {(one.segment, one.x): one.force for one in answers.tied_reactions}
+    tied = {(one.segment, one.x): one.force for one in answers.reactions_bonded}
     beside = [tied.get((one.segment, one.x)) for one in found]
     columns = (
         Column("holds", [f"{one.segment} at {one.x:g} m" for one in found]),
@@ -133,7 +133,7 @@ def mode_table(results: Results) -> Table | None:
     """Return the first modes of the boom with closed contacts, of all models side by side."""
     of = {
         name: {(mode.way, mode.number): mode.frequency for mode in own.modes}
-        for name, own in results.summary.answers.models.items()
+        for name, own in results.summary.design.models.items()
         if own.modes
     }
     if not of:
@@ -155,7 +155,7 @@ def peak_table(results: Results) -> Table | None:
     """Return the maxima of the motion beside the values at rest, of the leading models."""
     of = {
         name: {(peak.what, peak.where, peak.unit): peak for peak in own.peaks}
-        for name, own in results.moved.items()
+        for name, own in results.motions.items()
     }
     rows = dict.fromkeys(where for found in of.values() for where in found)
     if not rows:
@@ -171,7 +171,7 @@ def peak_table(results: Results) -> Table | None:
     return Table("Forces and deflections in motion", columns, notes, "peaks")
 
 
-def hardly(one: Added) -> bool:
+def hardly(one: PlayDifference) -> bool:
     """Return whether play adds a negligible part."""
     return one.share is not None and abs(one.share) < HARDLY
 
@@ -271,8 +271,8 @@ def stick_slip_table(results: Results) -> Table | None:
 
 def record_tables(results: Results) -> Iterator[Table]:
     """Yield a table for each result that is one record of numbers per model."""
-    answers = results.summary.answers.models
-    for name, kind in records(ModelAnswers).items():
+    answers = results.summary.design.models
+    for name, kind in records(ModelDesignResults).items():
         found = {m: getattr(own, name) for m, own in answers.items() if getattr(own, name)}
         if found:
             columns = metric_columns(kind, list(found.values()))
@@ -303,7 +303,7 @@ def pad_table(results: Results) -> Table | None:
 def stress_table(results: Results) -> Table | None:
     """Return the maximum stresses of each segment: outer fibres of all models, plates of shells."""
     rows = []
-    for name, own in results.moved.items():
+    for name, own in results.motions.items():
         walls = {wall.segment: wall for wall in sorted(own.walls, key=lambda wall: wall.patch)}
         rows += [(name, fibre, walls.get(fibre.segment)) for fibre in own.fibres]
     if not rows:
@@ -331,7 +331,7 @@ def stress_table(results: Results) -> Table | None:
 
 def life_table(results: Results) -> Table | None:
     """Return rainflow ranges of each segment, of the leading models."""
-    models = results.summary.answers.models
+    models = results.summary.design.models
     rows = [
         (name, life)
         for name, own in models.items()

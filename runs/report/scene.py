@@ -27,7 +27,7 @@ from geometry.telescoping import drives_below
 from geometry.typography import signed
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.pipeline.model_output import BeamOutput, MovedSegment
+from runs.pipeline.model_output import BeamOutput, SegmentMotion
 from runs.report.symbols import Symbol, boom_symbols, edges
 from shell_model.stress.stresses import ShellStress
 
@@ -339,7 +339,7 @@ class _Tube(NamedTuple):
     stress: Array
 
 
-def _tube(boom: Boom, segment: Segment, output: MovedSegment) -> _Tube:
+def _tube(boom: Boom, segment: Segment, output: SegmentMotion) -> _Tube:
     """Return rings (place, corner) of a segment, joined by two triangles per plate and interval."""
     x, read = output.x, output.read
     corners = np.array([_corners(boom, segment, place) for place in x.tolist()])

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 from geometry.arrays import Array
 from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
-from runs.pipeline.answers import Added, ModelAnswers
+from runs.pipeline.design_results import ModelDesignResults, PlayDifference
 from runs.pipeline.model_quality import off_at_rest
-from runs.pipeline.moved import Peak
+from runs.pipeline.motion_results import Peak
 from runs.pipeline.pads import PressedPad
 from runs.pipeline.results import Results
 from runs.report.figure_context import farthest
@@ -27,7 +27,7 @@ NEAR = 0.9
 
 def summary_table(results: Results) -> Table | None:
     """Return the design results of the leading models, the reference's before the others'."""
-    names, answers = results.read_first, results.summary.answers.models
+    names, answers = results.read_first, results.summary.design.models
     if not answers:
         return None
     own = [answers[name] for name in names]
@@ -43,7 +43,9 @@ def summary_table(results: Results) -> Table | None:
     damages = [_life_damage(one) for one in own]
     at_start, at_most, extended = (
         [max((rest.tip for rest in rests), key=abs, default=None) for rests in several]
-        for several in zip(*((one.rests[:1], one.rests[1:], one.drawn) for one in own), strict=True)
+        for several in zip(
+            *((one.static[:1], one.static[1:], one.static_extended) for one in own), strict=True
+        )
     )
     dynamic = [*map(_farthest, own, tips)]
     travel = [farthest(x - x[0]) if x[0] else None for x in tips]
@@ -80,7 +82,7 @@ def summary_table(results: Results) -> Table | None:
 
 def deviation_note(results: Results) -> str:
     """Return the deviation of the other models with play from the reference; else empty."""
-    answers, reference = results.summary.answers.models, results.reference
+    answers, reference = results.summary.design.models, results.reference
     if not answers or reference is None:
         return ""
     loose = [model.name for model in results.ran if not model.play_free and model.name != reference]
@@ -105,18 +107,18 @@ def play_effect(results: Results) -> str:
     found = results.play
     if found is None:
         return ""
-    by_kind: dict[str, list[Added]] = {}
+    by_kind: dict[str, list[PlayDifference]] = {}
     for each in found.numbers:
         by_kind.setdefault(each.what, []).append(each)
-    first = {what: max(several, key=lambda one: one.played) for what, several in by_kind.items()}
+    first = {what: max(several, key=lambda one: one.with_play) for what, several in by_kind.items()}
     told = [(_SAID[what], one) for what, one in first.items() if what in _SAID]
     more = [f"{_more(one)} to {what}" for what, one in told if not hardly(one)]
     same = [what for what, one in told if hardly(one)]
     said = [f"Play adds {listed(more)}."] if more else []
     said += [f"It hardly changes {listed(same)}."] if same else []
     frequency = first.get("first frequency")
-    if frequency is not None and frequency.tied and not hardly(frequency):
-        both = f"{amount(frequency.played, 'Hz')} in place of {amount(frequency.tied, 'Hz')}"
+    if frequency is not None and frequency.bonded and not hardly(frequency):
+        both = f"{amount(frequency.with_play, 'Hz')} in place of {amount(frequency.bonded, 'Hz')}"
         said.append(f"The first frequency is {both}.")
     return " ".join(said)
 
@@ -127,7 +129,7 @@ def strength_verdict(results: Results) -> str:
     The text is empty where neither strengths, allowable pressures nor a fatigue life are known.
     """
     first = results.read_first[0]
-    own = results.summary.answers.models.get(first, ModelAnswers())
+    own = results.summary.design.models.get(first, ModelDesignResults())
     pad = _hardest_pads(results).get(first)
     used: list[tuple[float, str]] = []
     for what, most in (("plates at pads", _walls(own)), ("outer fibres", _fibres(own))):
@@ -167,9 +169,9 @@ _SAID = {
 }
 
 
-def _more(one: Added) -> str:
+def _more(one: PlayDifference) -> str:
     share = "" if one.share is None else f" ({signed(f'{TO_PERCENT * one.share:+.0f}')} %)"
-    return f"{amount(one.added, one.unit)}{share}"
+    return f"{amount(one.increase, one.unit)}{share}"
 
 
 class _Largest(NamedTuple):
@@ -181,13 +183,13 @@ class _Largest(NamedTuple):
     part: float | None
 
 
-def _walls(own: ModelAnswers) -> _Largest | None:
-    walls = own.moved.walls if own.moved else []
+def _walls(own: ModelDesignResults) -> _Largest | None:
+    walls = own.motion.walls if own.motion else []
     return _hardest(_Largest(one.patch, one.segment, one.x, one.utilisation) for one in walls)
 
 
-def _fibres(own: ModelAnswers) -> _Largest | None:
-    fibres = own.moved.fibres if own.moved else []
+def _fibres(own: ModelDesignResults) -> _Largest | None:
+    fibres = own.motion.fibres if own.motion else []
     return _hardest(
         _Largest(abs(one.stress), one.segment, one.x, one.utilisation) for one in fibres
     )
@@ -278,17 +280,17 @@ def _span(values: Iterable[float | None]) -> str:
     return f"{' to '.join(map(number, dict.fromkeys((known[0], known[-1]))))} MPa" if known else ""
 
 
-def _farthest(own: ModelAnswers, tip: Array) -> str:
+def _farthest(own: ModelDesignResults, tip: Array) -> str:
     """Return the maximum tip deflection with its sign, and its ratio to the value at rest."""
     peak = _peak(own, "deflection")
     return _milli(farthest(tip)) + (times(peak) if peak else "")
 
 
-def _swings(own: ModelAnswers) -> str | None:
+def _swings(own: ModelDesignResults) -> str | None:
     """Return the residual vibration of the tip, and that of the boom where drives end."""
-    if (swing := own.swing) is None:
+    if (swing := own.residual_vibration) is None:
         return None
-    begun, ended = _milli(swing.where_begun), _milli(swing.where_ended)
+    begun, ended = _milli(swing.initial), _milli(swing.final)
     return f"{_milli(swing.tip)}\nstanding {begun}\nand {ended}"
 
 
@@ -296,23 +298,23 @@ def _milli(deflection: float | None) -> str:
     return fixed(deflection, 1, TO_MILLI)
 
 
-def _each(own: Sequence[ModelAnswers], what: str) -> list[str | None]:
+def _each(own: Sequence[ModelDesignResults], what: str) -> list[str | None]:
     return [_largest(one, what) for one in own]
 
 
-def _largest(own: ModelAnswers, what: str, at: str = "") -> str | None:
+def _largest(own: ModelDesignResults, what: str, at: str = "") -> str | None:
     """Return the maximum of a kind in kN or mm, with its position."""
     if (peak := _peak(own, what)) is None:
         return None
     return f"{number(SHOWN[peak.unit][1] * peak.largest, 4)}{times(peak)}{at.format(peak.where)}"
 
 
-def _peak(own: ModelAnswers, what: str) -> Peak | None:
-    peaks = [peak for peak in own.moved.peaks if peak.what == what] if own.moved else []
+def _peak(own: ModelDesignResults, what: str) -> Peak | None:
+    peaks = [peak for peak in own.motion.peaks if peak.what == what] if own.motion else []
     return max(peaks, key=lambda one: one.largest, default=None)
 
 
-def _life_damage(own: ModelAnswers) -> float | None:
+def _life_damage(own: ModelDesignResults) -> float | None:
     """Return the largest fatigue damage; None without a detail category."""
     found = [life.life_damage for life in own.life if life.life_damage is not None]
     return max(found, default=None)

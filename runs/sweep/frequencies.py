@@ -23,8 +23,9 @@ from runs.case.build import build_boom
 from runs.case.kinds.model import Joined, Workshop
 from runs.case.schema import Case, Model
 from runs.folder.files import changed_folder, exclusive, whole
-from runs.pipeline.means import Progress, silent
+from runs.pipeline.context import silent
 from runs.pipeline.results import CONVENTIONS
+from runs.process.progress import Progress
 from runs.report.tables import Column, Table
 from runs.sweep.figures import draw_frequencies
 from runs.sweep.points import Plan

@@ -22,7 +22,7 @@ from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT
 from runs.case.build import build_boom
 from runs.case.kinds.model import Workshop
 from runs.case.schema import Case, Model
-from runs.pipeline.answers import ModelAnswers
+from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.metrics import Metric, metrics, records
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
@@ -51,7 +51,7 @@ OUTSTANDING = 0.2
 
 
 # Sources of a model's numbers beside its fields: results that are records, and its summary.
-_DECLARING: list[type] = [*records(ModelAnswers).values(), ModelSummary]
+_DECLARING: list[type] = [*records(ModelDesignResults).values(), ModelSummary]
 
 # Quantities of the boom at rest, of its motion, and of its accuracy.
 QUANTITIES = (
@@ -94,16 +94,15 @@ def measure(results: Results, model: str) -> Measured:
     largest mean of an output interval at any station, since the peak of an impact is too short to
     load a pad. The stress is that of an outer fibre, from section forces. The wall stress is a
     shell's own over a patch. The damage is that of a fatigue life at the governing place. Residual
-    vibration is that of :class:`runs.pipeline.residual_vibration.Swing`; force and slip of elastic
-    drives are those of
-    :class:`dynamics.drive.stick_slip.StickSlip`.
+    vibration is that of :class:`runs.pipeline.residual_vibration.ResidualVibration`; force and slip
+    of elastic drives are those of :class:`dynamics.drive.stick_slip.StickSlip`.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     tip = np.asarray(results.trajectories["tip"].sel(model=model).values, dtype=float)
     summary = results.summary.models[model]
-    own = results.summary.answers.models.get(model, ModelAnswers())
-    declaring = [*(getattr(own, name) for name in records(ModelAnswers)), summary]
-    moved = own.moved
+    own = results.summary.design.models.get(model, ModelDesignResults())
+    declaring = [*(getattr(own, name) for name in records(ModelDesignResults)), summary]
+    moved = own.motion
     peaks = () if moved is None else moved.peaks
     deflection = next((peak for peak in peaks if peak.what == "deflection"), None)
     contacts = (peak.largest for peak in peaks if peak.what == "contact force")
@@ -234,7 +233,7 @@ def comparable_until(
         case: a checked one.
         model: the reference, of the case.
         results: of its run.
-        comm, cache: as of :class:`runs.pipeline.means.Means`.
+        comm, cache: as of :class:`runs.pipeline.context.RunContext`.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     end = float(time[-1])

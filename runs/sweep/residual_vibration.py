@@ -22,8 +22,8 @@ _SAME = 1.0e-2
 
 # Names and line styles of the ends of the extension, at which the same boom is at rest.
 _ENDS = {
-    "swing_where_begun": ("where it begins", ":"),
-    "swing_where_ended": ("where it ends", "--"),
+    "residual_vibration_initial": ("where it begins", ":"),
+    "residual_vibration_final": ("where it ends", "--"),
 }
 
 
@@ -49,14 +49,15 @@ def swings(data: xr.Dataset) -> dict[str, Swings]:
     found = {}
     for name in data["model"].values:
         one = data.sel(model=name)
-        known = np.isfinite(one["swing"].values) & np.isfinite(one["drive_speed"].values)
+        vibration = one["residual_vibration"].values
+        known = np.isfinite(vibration) & np.isfinite(one["drive_speed"].values)
         speed = one["drive_speed"].values[known]
-        if one["swing"].ndim > 1 or np.unique(speed).size < 2:
+        if vibration.ndim > 1 or np.unique(speed).size < 2:
             continue
         order = np.argsort(speed)
         ends = {end: one[end].values[known][order] for end in _ENDS}
         levels = {end: level for end, level in ends.items() if np.isfinite(level).any()}
-        found[str(name)] = Swings(speed[order], one["swing"].values[known][order], levels)
+        found[str(name)] = Swings(speed[order], vibration[known][order], levels)
     return found
 
 

@@ -20,10 +20,11 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.user_files import check_left
 from runs.folder.cache import Cache, key
-from runs.pipeline.means import Means, Progress
+from runs.pipeline.context import RunContext
 from runs.pipeline.run import run_case
 from runs.process import ending
 from runs.process.ending import when_interrupted
+from runs.process.progress import Progress
 from runs.process.workers import end
 from runs.sweep.points import Plan
 from runs.sweep.quantities import Features, Measured, comparable_until, measure
@@ -145,13 +146,13 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
     for model in case.models:
         alone = case.model_copy(update={"models": (model,)})
         try:
-            finished = run_case(alone, "", Means(comm, cache=cache))
+            finished = run_case(alone, "", RunContext(comm, cache=cache))
         except NumericsError as error:
             # The output prefixes it with the file, the point and the model's name.
             failures[model.name] = str(error).removeprefix(": model[1]: ")
             continue
         assert finished is not None
-        finished.answer()
+        finished.evaluate()
         # Failures of design results after a successful motion.
         failures.update(finished.results.summary.failures)
         models[model.name] = measure(finished.results, model.name)

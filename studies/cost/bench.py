@@ -36,7 +36,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.folder.cache import Cache
-from runs.pipeline.means import Means
+from runs.pipeline.context import RunContext
 from runs.pipeline.run import run_case
 from runs.process.terminal import show_notices
 from runs.report import output
@@ -307,9 +307,9 @@ def leaving(models: Sequence[str]) -> Table:
         from mpi4py import MPI
 
         comm = MPI.COMM_SELF
-    run = run_case(case, str(LIFT), Means(comm, cache=Cache.of_user()))
+    run = run_case(case, str(LIFT), RunContext(comm, cache=Cache.of_user()))
     assert run is not None
-    run.answer()
+    run.evaluate()
     rows = []
     with TemporaryDirectory() as folder:
         for what, drawn in (("without snapshots", False), ("with snapshots", True)):

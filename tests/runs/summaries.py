@@ -13,8 +13,8 @@ from rich.console import Console
 from dynamics.trajectory import Trajectory
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.pipeline.answers import Answers
-from runs.pipeline.means import Means
+from runs.pipeline.context import RunContext
+from runs.pipeline.design_results import DesignResults
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
@@ -71,12 +71,12 @@ def printed(show: Callable[..., object], *given: Any, width: int = 160) -> str:
     return console.file.getvalue()
 
 
-def answers_of(case: Case, comm: Intracomm | None = None) -> Answers:
+def answers_of(case: Case, comm: Intracomm | None = None) -> DesignResults:
     """Return the results of a run of a case, as read from a folder."""
-    run = run_case(case, "", Means(comm))
+    run = run_case(case, "", RunContext(comm))
     assert run is not None
-    run.answer()
-    return Summary.model_validate_json(str(run.results.summary)).answers
+    run.evaluate()
+    return Summary.model_validate_json(str(run.results.summary)).design
 
 
 def motion_of(case: Case, number: int = 0) -> Trajectory:

@@ -18,31 +18,31 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import LoadTable
-from runs.pipeline.answers import Answers
-from runs.pipeline.at_rest import (
-    at_rest,
+from runs.pipeline.design_results import DesignResults
+from runs.pipeline.models import build
+from runs.pipeline.static_results import (
     extended_instants,
     extended_positions,
     instants,
     positions,
+    static_result,
 )
-from runs.pipeline.models import build
 from tests.runs.summaries import answers_of
 
 
 @pytest.fixture(scope="module")
-def answers() -> Answers:
+def answers() -> DesignResults:
     """Of the paper's boom by elements, with play."""
     case = change(case_file.load(str(CASES / "coarse.toml")), **{"time.duration": 0.05})
     models = tuple(model for model in case.models if model.name == "timoshenko")
     return answers_of(case.model_copy(update={"models": models}))
 
 
-def test_a_joint_tilts_by_its_play(answers: Answers) -> None:
+def test_a_joint_tilts_by_its_play(answers: DesignResults) -> None:
     """Reference: by hand. Play of 14 mm over 1 m turns by 14 mrad, what lifts the tip, 10 m on, by
     133 mm; contacts of 1e9 N/m are pressed in by 2.2 and 2.8 µm by the forces of the lever rule.
     """
-    (rest,) = answers.models["timoshenko"].rests
+    (rest,) = answers.models["timoshenko"].static
     (tilt,) = rest.tilts
     assert tilt.rotation == pytest.approx(0.014 + 4.956e-6, abs=1e-8)
     assert tilt.tip == pytest.approx(-0.007 - 2.2e-6 + 10.0 * (0.014 + 4.956e-6), abs=1e-7)
@@ -52,19 +52,19 @@ def test_a_joint_tilts_by_its_play(answers: Answers) -> None:
     )
 
 
-def test_play_adds_its_lever_and_no_moment(answers: Answers) -> None:
+def test_play_adds_its_lever_and_no_moment(answers: DesignResults) -> None:
     """Reference: by hand. The boom is statically determinate: its play turns it as a lever does,
     and moments stay what they are without it.
     """
     found = answers.models["timoshenko"]
-    (rest,), (tied,) = found.rests, found.tied
+    (rest,), (tied,) = found.static, found.static_bonded
     # The tied boom's stations bend nothing: what is added is the tilt alone.
     assert rest.tip - tied.tip == pytest.approx(rest.tilts[0].tip, rel=1e-6)
     for one, other in zip(rest.diagrams, tied.diagrams, strict=True):
         np.testing.assert_allclose(one.curves["moment"], other.curves["moment"], atol=0.1)
 
 
-def test_supports_bear_what_the_lever_rule_says(answers: Answers) -> None:
+def test_supports_bear_what_the_lever_rule_says(answers: DesignResults) -> None:
     """Reference: by hand, 831.6 N at 5 m and 550.7 N at 14 m on 0 and 2 m."""
     at_start, at_two = answers.reactions
     assert at_two.force == pytest.approx(-(831.6 * 5.0 + 550.7 * 14.0) / 2.0)
@@ -119,7 +119,7 @@ def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
     found = positions(system, instants(system, case.time.duration))
     assert list(found) == [0.0, 6.0]
     assert list(extended_positions(system, case.time.duration)) == [5.0]
-    rest = at_rest(boom, system, lines, 6.0, found[6.0])
+    rest = static_result(boom, system, lines, 6.0, found[6.0])
     outer = rest.diagrams[0]
     moment = np.interp(2.0, outer.x, outer.curves["moment"])
     assert abs(moment) == pytest.approx(2e3 * 17.0 + 550.7 * 12.0 + 0.5 * 83.16 * 8.0**2, rel=1e-4)

@@ -24,7 +24,7 @@ from runs.case.kinds.model import Built, Workshop
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
 from runs.folder.cache import Cache
-from runs.pipeline.means import Means
+from runs.pipeline.context import RunContext
 from runs.pipeline.models import build
 from runs.pipeline.run import run_case as run_models
 from runs.report.output import write
@@ -150,7 +150,7 @@ def test_runs_answer_as_the_shell(case: Case) -> None:
     case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.02})})
     results = run_case(case, ["shell", "sprung", "fielded"])
     assert results.summary.failures == {}
-    answers = results.summary.answers
+    answers = results.summary.design
     shell, sprung, fielded = (answers.models[name].modes for name in ("shell", "sprung", "fielded"))
     for mode, of_springs, of_fields in zip(shell[:2], sprung[:2], fielded[:2], strict=True):
         assert of_springs.frequency == pytest.approx(mode.frequency, rel=1e-3)
@@ -161,9 +161,9 @@ def test_runs_answer_as_the_shell(case: Case) -> None:
 def test_a_run_leaves_its_card(case: Case, tmp_path: Path) -> None:
     """Reference: non-regression, what the summary tells of the same calibration."""
     alone = case_file.select(case, "", ["sprung"])
-    run = run_models(alone, "", Means(MPI.COMM_SELF))
+    run = run_models(alone, "", RunContext(MPI.COMM_SELF))
     assert run is not None
-    run.answer()
+    run.evaluate()
     write(run, Addition(), tmp_path, None)
     told = json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))
     summary = run.results.summary.models["sprung"].calibration

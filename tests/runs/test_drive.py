@@ -215,8 +215,8 @@ def test_play_adds_at_rest_at_the_same_instants_of_a_boom_that_is_driven(tmp_pat
     path = Path(case_file(tmp_path, "time = 5.0", "start = 0.2083333333333, time = 0.02"))
     text = path.read_text(encoding="utf-8").replace("duration = 7.0", "duration = 0.3")
     path.write_text(text.replace("[[joint]]", f"{load_}\n[[joint]]"), encoding="utf-8")
-    own = run_case(load(str(path)), models=["kantorovich-5"]).summary.answers.models
-    (begun, largest), tied = own["kantorovich-5"].rests, own["kantorovich-5"].tied
+    own = run_case(load(str(path)), models=["kantorovich-5"]).summary.design.models
+    (begun, largest), tied = own["kantorovich-5"].static, own["kantorovich-5"].static_bonded
     assert largest.time == pytest.approx(0.25 / 1.2, abs=1e-9)
     assert [rest.time for rest in tied] == [begun.time, largest.time]
 
@@ -284,15 +284,15 @@ def _check_rests(results: Results) -> None:
     Reference: by hand. With 1 m of overlap play of 14 mm turns by 14 mrad, which lifts the tip,
     10 m on, by 133 mm; the lever rule's forces press contacts of 1e9 N/m in by 2.2 and 2.8 µm.
     """
-    answers, table = results.summary.answers, summary_table(results)
+    answers, table = results.summary.design, summary_table(results)
     own = answers.models["kantorovich-5"]
-    (begun,), (ended,) = own.rests, own.drawn
+    (begun,), (ended,) = own.static, own.static_extended
     assert (begun.time, ended.time) == pytest.approx((0.0, 0.2))
     assert ended.tilts[0].rotation == pytest.approx(0.014 + 4.956e-6, abs=1e-8)
     assert ended.tilts[0].tip == pytest.approx(-0.007 - 2.2e-6 + 10.0 * 0.014004956, abs=1e-7)
     assert [one.force for one in ended.stations] == pytest.approx([-2202.8, 2753.5], rel=1e-4)
-    assert own.moved is not None
-    assert own.moved.peaks[0].at_rest == ended.tip
+    assert own.motion is not None
+    assert own.motion.peaks[0].at_rest == ended.tip
     assert table is not None
     cells = dict(zip(table.columns[0].cells, table.columns[1].cells, strict=True))
     assert cells["Static tip deflection (t = 0), mm"] == f"{1e3 * begun.tip:.1f}"
@@ -312,11 +312,11 @@ def _check_rests(results: Results) -> None:
 
 def _check_swings(results: Results) -> None:
     """Check the residual vibrations. Reference: content of the summary."""
-    answers, (table,) = results.summary.answers, record_tables(results)
-    swing = answers.models["kantorovich-5"].swing
+    answers, (table,) = results.summary.design, record_tables(results)
+    swing = answers.models["kantorovich-5"].residual_vibration
     assert swing is not None
     cells = [column.cells for column in table.columns]
-    own = swing.tip, swing.time, swing.where_begun, swing.where_ended
+    own = swing.tip, swing.time, swing.initial, swing.final
     assert cells == [["kantorovich-5"], *([value] for value in own)]
 
 

@@ -21,7 +21,7 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case, EnsembleTable
-from runs.pipeline.means import Means
+from runs.pipeline.context import RunContext
 from runs.pipeline.members import PEAKS, slow_below, steps_for_peaks
 from runs.pipeline.models import build
 from runs.pipeline.results import Results
@@ -53,9 +53,9 @@ def told() -> list[tuple[str, str, float]]:
 
 @pytest.fixture(scope="module")
 def run(case: Case, told: list[tuple[str, str, float]]) -> Run:
-    finished = run_case(case, "", Means(progress=lambda *what: told.append(what)))
+    finished = run_case(case, "", RunContext(progress=lambda *what: told.append(what)))
     assert finished is not None
-    finished.answer()
+    finished.evaluate()
     return finished
 
 
@@ -139,9 +139,9 @@ def test_a_run_without_ensembles_has_no_file_of_them(case: Case, tmp_path: Path)
     short = case.model_copy(
         update={"ensemble": None, "time": case.time.model_copy(update={"duration": 0.1})}
     )
-    without = run_case(short, "", Means())
+    without = run_case(short, "", RunContext())
     assert without is not None
-    without.answer()
+    without.evaluate()
     write(without, Addition(), tmp_path, tmp_path)
     assert not (tmp_path / "ensembles.nc").exists()
     assert Results.load(tmp_path).ensembles is None

@@ -12,8 +12,8 @@ from dynamics.trajectory import Trajectory
 from protractile.cases import change
 from runs import CASES
 from runs.case.reading import load
-from runs.pipeline.answers import ModelAnswers
-from runs.pipeline.means import Means
+from runs.pipeline.context import RunContext
+from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.run import Run, run_case
 
 
@@ -21,14 +21,14 @@ def short(name: str, model: str, **values: object) -> Run:
     """Return the run of one model, without design results."""
     case = change(load(str(CASES / name)), **values)
     models = tuple(one for one in case.models if one.name == model)
-    run = run_case(case.model_copy(update={"models": models}), "", Means())
+    run = run_case(case.model_copy(update={"models": models}), "", RunContext())
     assert run is not None
     return run
 
 
-def answers(run: Run) -> ModelAnswers:
-    run.answer()
-    (own,) = run.results.summary.answers.models.values()
+def answers(run: Run) -> ModelDesignResults:
+    run.evaluate()
+    (own,) = run.results.summary.design.models.values()
     return own
 
 
@@ -75,7 +75,7 @@ def test_what_rests_without_play_is_told_where_it_cannot_move(
 
     monkeypatch.setattr(AdaptiveStep, "__call__", fail)
     left = answers(run)
-    assert whole.tied_moved is not None
-    assert left.tied_moved is None
-    assert left.tied == whole.tied != []
-    assert left.tied_modes == whole.tied_modes != []
+    assert whole.motion_bonded is not None
+    assert left.motion_bonded is None
+    assert left.static_bonded == whole.static_bonded != []
+    assert left.modes_bonded == whole.modes_bonded != []

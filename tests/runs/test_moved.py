@@ -16,7 +16,7 @@ from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, Load, Material, Segment, Support
 from geometry.profiles import hexagon
 from geometry.section import BoxSection
-from runs.pipeline.answers import ModelAnswers
+from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.section_forces import section_forces
 from runs.pipeline.strength import Fibres, outer_corners
 from tests.runs.case_texts import read_case
@@ -70,7 +70,7 @@ exponent = 1.0
 )
 
 
-def answers(model: str, folder: Path, case: str = CASE) -> ModelAnswers:
+def answers(model: str, folder: Path, case: str = CASE) -> ModelDesignResults:
     return answers_of(read_case(folder, case.format(model=model))).models["one"]
 
 
@@ -80,16 +80,16 @@ def test_a_load_that_comes_suddenly_counts_twice(tmp_path: Path) -> None:
     """
     series = 'kind = "kantorovich"\nterms = [1]\nbase = "complete"'
     found = answers(series, tmp_path)
-    assert found.moved is not None
-    assert {peak.what for peak in found.moved.peaks} == {"deflection", "bending moment"}
-    for peak in found.moved.peaks:
+    assert found.motion is not None
+    assert {peak.what for peak in found.motion.peaks} == {"deflection", "bending moment"}
+    for peak in found.motion.peaks:
         assert peak.factor == pytest.approx(2.0, rel=2e-4)
         assert peak.time * found.modes[0].frequency % 1.0 == pytest.approx(0.5, abs=0.01)
-    (fibre,) = found.moved.fibres
+    (fibre,) = found.motion.fibres
     assert fibre.at_rest is not None
     assert abs(fibre.stress) == pytest.approx(2.0 * fibre.at_rest, rel=2e-4)
-    (envelope,) = found.moved.envelopes
-    np.testing.assert_allclose(envelope.low["deflection"][-1], 2.0 * found.rests[0].tip, rtol=2e-4)
+    (envelope,) = found.motion.envelopes
+    np.testing.assert_allclose(envelope.low["deflection"][-1], 2.0 * found.static[0].tip, rtol=2e-4)
     assert envelope.high["deflection"][-1] == pytest.approx(0.0, abs=1e-12)
 
 
@@ -99,17 +99,17 @@ def test_stress_and_reactions_at_rest_are_those_of_hand(tmp_path: Path) -> None:
     """
     beam = 'kind = "finite-element"\ntheory = "timoshenko"\nelement_length = 0.25'
     found = answers(beam, tmp_path)
-    assert found.moved is not None
-    still = {peak.what: peak.at_rest for peak in found.moved.peaks}
+    assert found.motion is not None
+    still = {peak.what: peak.at_rest for peak in found.motion.peaks}
     assert still["reaction"] == pytest.approx(1e4, rel=1e-6)
     assert still["moment at the support"] == pytest.approx(5e4, rel=1e-3)
     assert still["bending moment"] == pytest.approx(5e4, rel=2e-4)
     box = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
-    (fibre,) = found.moved.fibres
+    (fibre,) = found.motion.fibres
     assert fibre.at_rest == pytest.approx(5e4 * 0.204 / box.second_moment_of_area, rel=2e-4)
     assert (fibre.x, abs(fibre.z)) == (0.0, pytest.approx(0.204))
     assert fibre.utilisation == pytest.approx(abs(fibre.stress) / 3e8)
-    assert found.moved.walls == []
+    assert found.motion.walls == []
 
 
 def test_what_is_borne_sideways_is_told(tmp_path: Path) -> None:
@@ -118,8 +118,8 @@ def test_what_is_borne_sideways_is_told(tmp_path: Path) -> None:
     """
     beam = 'kind = "finite-element"\ntheory = "timoshenko"\nelement_length = 0.25'
     found = answers(beam, tmp_path, SIDEWAYS)
-    assert found.moved is not None
-    wall = {p.what: p.at_rest for p in found.moved.peaks if "arm" in p.where}
+    assert found.motion is not None
+    wall = {p.what: p.at_rest for p in found.motion.peaks if "arm" in p.where}
     assert wall["reaction"] == pytest.approx(1.1e4, rel=1e-6)
     assert wall["lateral reaction"] == pytest.approx(5.5e3, rel=1e-6)
     assert wall["moment at the support"] == pytest.approx(5.55e4, rel=1e-3)

@@ -15,11 +15,11 @@ import xarray as xr
 from runs import CASES
 from runs.case import reading as case_file
 from runs.client import judge
-from runs.pipeline.answers import ModelAnswers
-from runs.pipeline.at_rest import place_names
-from runs.pipeline.means import Means
+from runs.pipeline.context import RunContext
+from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
+from runs.pipeline.static_results import place_names
 from runs.report.output import write, write_csv, write_report
 from runs.report.pages import Addition
 
@@ -33,9 +33,9 @@ def run() -> Run:
     """Return the run of a series over a twentieth of a second."""
     case = case_file.select(case_file.load(str(COARSE)), "", ["kantorovich-4"], None)
     case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.05})})
-    finished = run_case(case, "", Means())
+    finished = run_case(case, "", RunContext())
     assert finished is not None
-    finished.answer()
+    finished.evaluate()
     return finished
 
 
@@ -98,13 +98,13 @@ def test_a_model_that_nothing_answers_for_keeps_its_motion(
 ) -> None:
     """Reference: its trajectory of before; the files and the report are written all the same."""
 
-    def singular(*_: object) -> ModelAnswers:
+    def singular(*_: object) -> ModelDesignResults:
         raise np.linalg.LinAlgError("Singular matrix")
 
     monkeypatch.setattr("runs.pipeline.run.answer_model", singular)
     again = replace(run, results=replace(run.results, summary=run.results.summary.model_copy()))
     again.results.summary.failures = {}
-    again.answer()
+    again.evaluate()
     write(again, Addition(), tmp_path, tmp_path)
     found = Results.load(tmp_path)
     xr.testing.assert_identical(found.trajectories.load(), run.results.trajectories)

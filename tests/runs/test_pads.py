@@ -15,10 +15,10 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.declared import Declared
 from runs.case.schema import Case
-from runs.pipeline.at_rest import positions, pressed
 from runs.pipeline.inferred import print_inferred
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
+from runs.pipeline.static_results import positions, pressed
 from runs.pipeline.summary import Summary
 from runs.report.result_tables import pad_table
 from runs.report.summary_table import summary_table

@@ -9,7 +9,7 @@ import pytest
 
 from runs import CASES
 from runs.case import reading as case_file
-from runs.pipeline.answers import Added, Answers
+from runs.pipeline.design_results import DesignResults, PlayDifference
 from runs.pipeline.model_quality import quality_notes
 from tests.runs.summaries import answers_of, model_summary, summary_of
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
 
-def run_of(names: list[str], comm: MPI.Intracomm | None = None) -> Answers:
+def run_of(names: list[str], comm: MPI.Intracomm | None = None) -> DesignResults:
     """Return results of some models of the paper's boom."""
     case = case_file.load(str(CASES / "coarse.toml"))
     models = tuple(model for model in case.models if model.name in names)
@@ -25,44 +25,44 @@ def run_of(names: list[str], comm: MPI.Intracomm | None = None) -> Answers:
 
 
 @pytest.fixture(scope="module")
-def answers() -> Answers:
+def answers() -> DesignResults:
     """Of a series and elements with play, and of elements without."""
     return run_of(["kantorovich-5", "beam-fe", "beam-fe-tied"])
 
 
-def numbers(found: Answers, model: str) -> dict[tuple[str, str], Added]:
+def numbers(found: DesignResults, model: str) -> dict[tuple[str, str], PlayDifference]:
     """Return the effect of play in a model."""
     (play,) = (one for one in found.play if one.model == model)
     return {(one.what, one.where): one for one in play.numbers}
 
 
-def test_play_adds_its_lever_at_rest(answers: Answers) -> None:
+def test_play_adds_its_lever_at_rest(answers: DesignResults) -> None:
     """Reference: by hand. Play turns the inner segment by 14 mrad and contacts by 5 µrad, which
     lifts the tip by 133 mm and 47 µm: in any model, since the boom is statically determinate.
     """
     assert [play.model for play in answers.play] == ["kantorovich-5", "beam-fe"]
     at_rest = numbers(answers, "beam-fe")["deflection at rest", "tip"]
-    assert at_rest.added == pytest.approx(0.133 + 10.0 * 4.956e-6 - 2.2e-6, abs=1e-7)
-    assert at_rest.share == pytest.approx(at_rest.added / at_rest.tied)
+    assert at_rest.increase == pytest.approx(0.133 + 10.0 * 4.956e-6 - 2.2e-6, abs=1e-7)
+    assert at_rest.share == pytest.approx(at_rest.increase / at_rest.bonded)
     series = numbers(answers, "kantorovich-5")["deflection at rest", "tip"]
-    assert series.added == pytest.approx(0.133, rel=5e-3)
+    assert series.increase == pytest.approx(0.133, rel=5e-3)
 
 
-def test_motions_are_held_against_those_without_play(answers: Answers) -> None:
+def test_motions_are_held_against_those_without_play(answers: DesignResults) -> None:
     """Reference: another model, the case's own tied one of the same elements."""
     own, tied = (answers.models[name] for name in ("beam-fe", "beam-fe-tied"))
-    assert own.tied_moved is not None
-    assert tied.moved is not None
-    assert tied.tied_moved is None
-    for peak, other in zip(own.tied_moved.peaks, tied.moved.peaks, strict=True):
+    assert own.motion_bonded is not None
+    assert tied.motion is not None
+    assert tied.motion_bonded is None
+    for peak, other in zip(own.motion_bonded.peaks, tied.motion.peaks, strict=True):
         assert (peak.what, peak.where) == (other.what, other.where)
         assert peak.largest == pytest.approx(other.largest, rel=1e-6)
     found = numbers(answers, "beam-fe")
     for one in found.values():
-        assert one.played >= 0.0
-    assert own.moved is not None
-    largest = own.moved.peaks[0].largest - tied.moved.peaks[0].largest
-    assert found["deflection", "tip"].added == pytest.approx(largest, rel=1e-6)
+        assert one.with_play >= 0.0
+    assert own.motion is not None
+    largest = own.motion.peaks[0].largest - tied.motion.peaks[0].largest
+    assert found["deflection", "tip"].increase == pytest.approx(largest, rel=1e-6)
     assert ("stress", "inner") in found
 
 
@@ -75,17 +75,17 @@ def test_play_adds_to_a_shell_what_it_adds_to_beams() -> None:
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     found = run_of(["timoshenko", "shell"], mpi.COMM_SELF)
     shell, beam = (numbers(found, name) for name in ("shell", "timoshenko"))
-    assert shell["deflection at rest", "tip"].added == pytest.approx(0.133, rel=2e-3)
-    farther = [one["deflection", "tip"].added for one in (shell, beam)]
+    assert shell["deflection at rest", "tip"].increase == pytest.approx(0.133, rel=2e-3)
+    farther = [one["deflection", "tip"].increase for one in (shell, beam)]
     assert farther[0] == pytest.approx(farther[1], rel=0.2)
-    frequencies = [one["first frequency", "bending in z"].tied for one in (shell, beam)]
+    frequencies = [one["first frequency", "bending in z"].bonded for one in (shell, beam)]
     assert frequencies[0] == pytest.approx(frequencies[1], rel=0.02)
 
 
-def test_models_agree_within_what_is_said(answers: Answers) -> None:
+def test_models_agree_within_what_is_said(answers: DesignResults) -> None:
     """Reference: other numbers of the same run, the tips of both models at rest."""
-    agreement = [known.line for known in answers.trust if known.what == "agreement"]
-    series, beam = (answers.models[name].rests[0].tip for name in ("kantorovich-5", "beam-fe"))
+    agreement = [known.line for known in answers.quality_notes if known.what == "agreement"]
+    series, beam = (answers.models[name].static[0].tip for name in ("kantorovich-5", "beam-fe"))
     off = 100.0 * abs(series / beam - 1.0)
     (line,) = agreement
     assert line.startswith(f"kantorovich-5 is off beam-fe by {off:.2g} % in the tip at rest, ")
@@ -103,7 +103,7 @@ def test_chaos_is_told_of_what_is_chaotic_alone() -> None:
             "calm": model_summary(ensemble=ensemble(None), energy_residual=2e-4),
         }
     )
-    chaotic, regular, energy = quality_notes(summary, Answers({}), 10.0)
+    chaotic, regular, energy = quality_notes(summary, DesignResults({}), 10.0)
     assert [one.what for one in (chaotic, regular, energy)] == ["horizon", "horizon", "energy"]
     assert "from here on: wild 3.20 s." in chaotic.line
     assert regular.line == "The motion of calm can be predicted over all 10 s."
@@ -112,4 +112,4 @@ def test_chaos_is_told_of_what_is_chaotic_alone() -> None:
         "calm."
     )
     none = summary_of({"plain": model_summary()})
-    assert [one.what for one in quality_notes(none, Answers({}), 10.0)] == ["energy"]
+    assert [one.what for one in quality_notes(none, DesignResults({}), 10.0)] == ["energy"]

@@ -10,8 +10,8 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.paper.statements import STATEMENTS
 from runs.paper.verdicts import Judgement, Verdict, decisive, print_verdicts
-from runs.pipeline.answers import Answers, ModelAnswers
-from runs.pipeline.residual_vibration import Swing
+from runs.pipeline.design_results import DesignResults, ModelDesignResults
+from runs.pipeline.residual_vibration import ResidualVibration
 from runs.pipeline.results import Results
 from runs.report.document import print_models
 from tests.runs.summaries import model_summary, printed, summary_of
@@ -77,9 +77,9 @@ def test_every_run_tells_how_near_its_reduction_is() -> None:
 def test_a_boom_that_is_drawn_out_tells_how_its_tip_swings() -> None:
     """Reference: the summary's numbers in mm."""
     case = case_file.load(str(CASES / "drawn-out.toml"))
-    swing = Swing(0.0182, 1.0, 0.8, 0.0181, None)
+    swing = ResidualVibration(0.0182, 1.0, 0.8, 0.0181, None)
     summary = summary_of({"beam": model_summary()})
-    summary.answers = Answers({"beam": ModelAnswers(swing=swing)})
+    summary.design = DesignResults({"beam": ModelDesignResults(residual_vibration=swing)})
     assert printed(print_models, Results(case, xr.Dataset(), summary)).splitlines()[-1] == (
         "beam: residual vibration of the tip, telescoping at a mean 0.8 m/s: 18.2 mm; standing "
         "18.1 and – mm where that begins and ends"

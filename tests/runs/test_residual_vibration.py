@@ -22,7 +22,7 @@ from dynamics.trajectory import Trajectory
 from protractile.cases import run_case
 from runs import CASES
 from runs.case.schema import Case
-from runs.pipeline.residual_vibration import Swing, farthest_from_rest
+from runs.pipeline.residual_vibration import ResidualVibration, farthest_from_rest
 from runs.report import theme
 from runs.sweep.residual_vibration import Swings, describe, draw_swings, fastest_within, swings
 from tests.runs.case_texts import read_case
@@ -47,9 +47,9 @@ def case(folder: Path, drive: str, extension: str = "5.0") -> Case:
     return read_case(folder, text)
 
 
-def swing_of(case: Case) -> Swing | None:
-    answers = run_case(case, models=["kantorovich-5"]).summary.answers
-    return answers.models["kantorovich-5"].swing
+def swing_of(case: Case) -> ResidualVibration | None:
+    answers = run_case(case, models=["kantorovich-5"]).summary.design
+    return answers.models["kantorovich-5"].residual_vibration
 
 
 def lifted(travel: float, time: float) -> GapSystem:
@@ -113,12 +113,12 @@ def test_levels_are_those_of_booms_without_a_drive(tmp_path: Path) -> None:
     drawn = swing_of(case(tmp_path, "drive = { travel = 4.0, time = 0.4 }"))
     assert drawn is not None
     assert drawn.speed == pytest.approx(10.0)
-    for extension, level in (("5.0", drawn.where_begun), ("9.0", drawn.where_ended)):
+    for extension, level in (("5.0", drawn.initial), ("9.0", drawn.final)):
         standing = run_case(case(tmp_path, "", extension), models=["kantorovich-5"])
         data = standing.trajectories.sel(model="kantorovich-5")
         ramp = np.minimum(data["time"].values / 0.2, 1.0)
-        answers = standing.summary.answers
-        first, last = (rest.tip for rest in answers.models["kantorovich-5"].rests)
+        answers = standing.summary.design
+        first, last = (rest.tip for rest in answers.models["kantorovich-5"].static)
         rest = first + ramp * (last - first)
         assert level == pytest.approx(np.abs(data["tip"].values - rest).max(), rel=1e-3)
 
@@ -129,7 +129,7 @@ def test_what_rests_swings_by_nothing(tmp_path: Path) -> None:
     start = drawn.start.model_copy(update={"state": "equilibrium"})
     swing = swing_of(drawn.model_copy(update={"start": start, "loads": ()}))
     assert swing is not None
-    assert (swing.where_begun, swing.where_ended) == (0.0, 0.0)
+    assert (swing.initial, swing.final) == (0.0, 0.0)
     assert swing.tip > 1.0e-3
 
 
@@ -150,10 +150,10 @@ def test_the_fastest_is_where_lines_cross(level: float, fastest: float | None) -
 def swept() -> xr.Dataset:
     """Invented numbers of three points, the last of which was drawn slowest, the second failed."""
     known = {
-        "swing": [0.05, np.nan, 0.02],
+        "residual_vibration": [0.05, np.nan, 0.02],
         "drive_speed": [2.0, np.nan, 1.0],
-        "swing_where_begun": [0.03, np.nan, 0.03],
-        "swing_where_ended": [0.06, np.nan, 0.06],
+        "residual_vibration_initial": [0.03, np.nan, 0.03],
+        "residual_vibration_final": [0.06, np.nan, 0.06],
     }
     variables = {name: (("key", "model"), np.array([v]).T) for name, v in known.items()}
     return xr.Dataset(variables, coords={"key": [1.0, 1.5, 2.0], "model": ["beam"]})
@@ -168,18 +168,18 @@ def test_a_chart_says_how_fast_it_may_be_drawn_out(
         "beam: vibration within that standing where it begins, 30 mm, up to 1.33 m/s",
         "beam: vibration within that standing where it ends, 60 mm, up to 2 m/s, the fastest here",
     ]
-    tight = data.assign(swing_where_begun=0.1 * data["swing_where_begun"])
+    tight = data.assign(residual_vibration_initial=0.1 * data["residual_vibration_initial"])
     assert next(describe("beam", swings(tight)["beam"])) == (
         "beam: vibration above that standing where it begins, 3 mm, at 1 m/s already: 20 mm"
     )
     # Of a speed whose standing boom has no motion the level is not known, and the others count.
     gap = xr.concat([swept(), swept().isel(key=[2]).assign_coords(key=[1.2])], "key")
-    gap["swing_where_ended"][-1], gap["drive_speed"][-1] = np.nan, 3.0
+    gap["residual_vibration_final"][-1], gap["drive_speed"][-1] = np.nan, 3.0
     assert list(describe("beam", swings(gap)["beam"]))[1] == (
         "beam: vibration within that standing where it ends, 60 mm, up to 2 m/s, the fastest known"
     )
     # Booms that are drawn to different places swing about as much as each does there, or less.
-    elsewhere = data.assign(swing_where_begun=data["swing"] + 0.01)
+    elsewhere = data.assign(residual_vibration_initial=data["residual_vibration"] + 0.01)
     assert next(describe("beam", swings(elsewhere)["beam"])) == (
         "beam: vibration within that standing where it begins, 30 to 60 mm, up to 2 m/s, the "
         "fastest here"

@@ -12,7 +12,7 @@ import pytest
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case import reading as case_file
-from runs.pipeline.answers import Added, Answers, PlayAdds
+from runs.pipeline.design_results import DesignResults, PlayDifference, PlayEffect
 from runs.pipeline.pads import PressedPad
 from runs.pipeline.results import Results
 from runs.pipeline.statics import Reaction
@@ -43,11 +43,11 @@ def results() -> Results:
 
 def answering(results: Results, **changes: Any) -> Results:
     """Results whose answers say something else of the run, or by ``own`` of the model with play."""
-    answers = results.summary.answers
+    answers = results.summary.design
     if own := changes.pop("own", None):
         changed = replace(answers.models[PLAYED], **own)
         changes["models"] = answers.models | {PLAYED: changed}
-    summary = results.summary.model_copy(update={"answers": replace(answers, **changes)})
+    summary = results.summary.model_copy(update={"design": replace(answers, **changes)})
     return replace(results, summary=summary)
 
 
@@ -59,8 +59,8 @@ def cells(table: Table | None) -> dict[str, dict[str, str]]:
 
 def test_the_first_look_says_what_the_answers_do(results: Results) -> None:
     """Reference: summary.json, in mm, Hz, s, kN; a swing dies as exp(−2π ζ f t)."""
-    own = results.summary.answers.models[PLAYED]
-    assert own.moved is not None
+    own = results.summary.design.models[PLAYED]
+    assert own.motion is not None
     found = cells(summary_table(results))
     said = {
         asked: row[PLAYED].replace("−", "-").split("\n")[0].split(" ")[0]
@@ -68,13 +68,13 @@ def test_the_first_look_says_what_the_answers_do(results: Results) -> None:
     }
     frequency = own.modes[0].frequency
     assert float(said["Static tip deflection (t = 0), mm"]) == pytest.approx(
-        1e3 * own.rests[0].tip, abs=0.06
+        1e3 * own.static[0].tip, abs=0.06
     )
     assert float(said["First natural frequency, Hz"]) == pytest.approx(frequency, rel=6e-3)
     assert float(said["Natural period, s"]) == pytest.approx(1.0 / frequency, rel=6e-3)
     dying = log(10.0) / (2.0 * pi * 0.02 * frequency)
     assert float(said["Decay time to 10 %, s"]) == pytest.approx(dying, rel=0.06)
-    hardest = max(p.largest for p in own.moved.peaks if p.what == "contact force")
+    hardest = max(p.largest for p in own.motion.peaks if p.what == "contact force")
     assert float(said["Contact force, maximum, kN"]) == pytest.approx(hardest / 1e3, rel=6e-3)
     assert found["Contact force, maximum, kN"][TIED] == "–"
     assert "Fatigue damage (Miner)" not in found
@@ -83,12 +83,12 @@ def test_the_first_look_says_what_the_answers_do(results: Results) -> None:
 def test_play_is_said_in_a_sentence(results: Results) -> None:
     """Reference: by hand, of numbers that are given."""
     numbers = [
-        Added("deflection at rest", "tip", "m", 0.15, 0.10),
-        Added("first frequency", "bending in z", "Hz", 1.5, 2.0),
-        Added("stress", "inner", "Pa", 9e7, 10e7),
-        Added("stress", "outer", "Pa", 12e7, 10e7),
+        PlayDifference("deflection at rest", "tip", "m", 0.15, 0.10),
+        PlayDifference("first frequency", "bending in z", "Hz", 1.5, 2.0),
+        PlayDifference("stress", "inner", "Pa", 9e7, 10e7),
+        PlayDifference("stress", "outer", "Pa", 12e7, 10e7),
     ]
-    told = answering(results, play=[PlayAdds(PLAYED, numbers)])
+    told = answering(results, play=[PlayEffect(PLAYED, numbers)])
     assert play_effect(told) == (
         "Play adds 50 mm (+50 %) to the static tip deflection (maximum load) and 20 MPa "
         "(+20 %) to the maximum bending stress. The first frequency is 1.5 Hz in place of 2 Hz."
@@ -118,12 +118,12 @@ def test_every_table_of_a_rest_says_under_which_loads(results: Results) -> None:
 
 def with_stress(results: Results, stress: float) -> Results:
     """Return results with an outer stress in Pa, of a steel of 355 MPa, in plates a tenth more."""
-    moved = results.summary.answers.models[PLAYED].moved
+    moved = results.summary.design.models[PLAYED].motion
     assert moved is not None
     fibre = replace(moved.fibres[0], stress=-stress, x=2.0, utilisation=stress / 355e6)
     patch = 1.1 * stress
     wall = WallStress("outer", 10.0, patch, 0.5, 3.0 * patch, patch / 355e6)
-    return answering(results, own={"moved": replace(moved, fibres=[fibre], walls=[wall])})
+    return answering(results, own={"motion": replace(moved, fibres=[fibre], walls=[wall])})
 
 
 def test_what_nears_the_yield_strength_stands_out(results: Results) -> None:
@@ -204,13 +204,13 @@ def test_the_tip_travels_from_where_it_is_at_first(results: Results) -> None:
 def test_one_line_says_how_near_models_are(results: Results) -> None:
     """Reference: by hand, a second model whose tip rests a tenth lower."""
     assert deviation_note(results) == ""
-    answers = results.summary.answers
+    answers = results.summary.design
     own = answers.models[PLAYED]
-    other = replace(own, rests=[replace(rest, tip=0.9 * rest.tip) for rest in own.rests])
+    other = replace(own, static=[replace(rest, tip=0.9 * rest.tip) for rest in own.static])
     models = {"kantorovich-4": other, **answers.models}
     summary = results.summary.model_copy(
         update={
-            "answers": replace(answers, models=models),
+            "design": replace(answers, models=models),
             "models": {"kantorovich-4": results.summary.models[PLAYED], **results.summary.models},
         }
     )
@@ -232,9 +232,9 @@ def test_every_answer_has_its_table(results: Results) -> None:
     expected = ["play", "tilts", "pressed", "reactions", "modes", "peaks", "stress"]
     assert titles == [*expected, *(["life"] if COUNTS else [])]
     modes = cells(mode_table(results))
-    own = results.summary.answers
+    own = results.summary.design
     assert own is not None
-    assert own.trust
+    assert own.quality_notes
     first = own.models[TIED].modes[0]
     assert float(modes[f"{first.way} 1"][f"{TIED}\nHz"]) == pytest.approx(first.frequency, rel=1e-3)
     table = stress_table(results)
@@ -244,7 +244,9 @@ def test_every_answer_has_its_table(results: Results) -> None:
 
 def test_a_folder_without_answers_has_no_tables(results: Results) -> None:
     """Reference: a summary of an earlier version."""
-    without = replace(results, summary=results.summary.model_copy(update={"answers": Answers({})}))
+    without = replace(
+        results, summary=results.summary.model_copy(update={"design": DesignResults({})})
+    )
     assert summary_table(without) is None
     assert result_tables(without) == []
     assert play_effect(without) == ""

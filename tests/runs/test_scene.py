@@ -19,7 +19,7 @@ from geometry.section import BoxSection
 from runs import CASES
 from runs.case.build import build_boom
 from runs.case.reading import load
-from runs.pipeline.model_output import BeamOutput, MovedSegment
+from runs.pipeline.model_output import BeamOutput, SegmentMotion
 from runs.report.gallery import change_of_shape
 from runs.report.overlap_pictures import smoothed
 from runs.report.scene import Scene, round_scale
@@ -218,7 +218,7 @@ def bent(boom: Boom) -> BeamOutput:
         x = np.linspace(segment.start, segment.end, 41)
         moment = np.outer(time, segment.bending_stiffness * 0.02 * np.ones(x.size))
         segments.append(
-            MovedSegment(x, {"deflection": np.outer(time, x**2 / 100.0), "moment": moment})
+            SegmentMotion(x, {"deflection": np.outer(time, x**2 / 100.0), "moment": moment})
         )
     return BeamOutput(time, segments)
 
@@ -249,7 +249,7 @@ def test_a_taper_is_drawn_and_stressed_as_it_is_there() -> None:
     steel, clamp = Material(2.1e11, 0.3, 7850.0), Support(0.0, "clamped")
     arm = Segment.of_section("arm", 0.0, 8.0, steel, tail, head_section=head, supports=(clamp,))
     x, one = np.linspace(0.0, 8.0, 5), np.ones((1, 5))
-    moved = MovedSegment(x, {"deflection": 0.0 * one, "moment": 1e3 * one})
+    moved = SegmentMotion(x, {"deflection": 0.0 * one, "moment": 1e3 * one})
     scene, stress = still(Boom((arm,), (), ()), BeamOutput(np.zeros(1), [moved]))
     drawn = scene.drawn(np.zeros_like(scene.points), 1.0, 3.0)
     for place, box in ((0.0, tail), (8.0, head)):

@@ -18,7 +18,7 @@ from dynamics.line import Line
 from geometry.boom import Boom, Load, Material, Segment, Support
 from geometry.compression import Compression
 from geometry.section import BoxSection
-from runs.pipeline.answers import Answers
+from runs.pipeline.design_results import DesignResults
 from runs.pipeline.section_forces import section_forces
 from studies.telescoping_column import END, LAW, LENGTH, STIFFNESS, column
 from tests.runs.case_texts import read_case
@@ -86,7 +86,7 @@ def test_the_shear_force_is_that_of_where_axial_forces_have_come_to() -> None:
 
 
 @pytest.fixture(scope="module")
-def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
+def answers(tmp_path_factory: pytest.TempPathFactory) -> DesignResults:
     return answers_of(read_case(tmp_path_factory.mktemp("arm"), CASE))
 
 
@@ -95,9 +95,9 @@ ALONG, ACROSS = 500.0, 1000.0 * np.cos(np.pi / 6.0)  # N/m
 FORCE = ACROSS * 10.0 * 4.0 / (0.6 * 3.0)
 
 
-def test_a_cylinder_pulls_the_boom_off_its_pin(answers: Answers) -> None:
+def test_a_cylinder_pulls_the_boom_off_its_pin(answers: DesignResults) -> None:
     """Reference: by hand. Its push along the boom, 4/5 of it, goes through the part between."""
-    (rest,) = answers.models["beam"].rests
+    (rest,) = answers.models["beam"].static
     assert rest.cylinders["cylinder_force"] == pytest.approx(FORCE, rel=1e-3)
     (arm,) = rest.diagrams
     for x, normal in (
@@ -108,13 +108,13 @@ def test_a_cylinder_pulls_the_boom_off_its_pin(answers: Answers) -> None:
         assert np.interp(x, arm.x, arm.normal) == pytest.approx(normal, rel=2e-3)
 
 
-def test_the_pin_bears_what_goes_along(answers: Answers) -> None:
+def test_the_pin_bears_what_goes_along(answers: DesignResults) -> None:
     """Reference: by hand, both parts and together, at rest and as the beam stays there."""
     along, across = 10.0 * ALONG - 0.8 * FORCE, 10.0 * ACROSS - 0.6 * FORCE
     pin, lug = answers.reactions
     assert pin.along == pytest.approx(along, rel=1e-3)
     assert lug.along == pytest.approx(0.8 * FORCE, rel=1e-3)
-    moved = answers.models["beam"].moved
+    moved = answers.models["beam"].motion
     assert moved is not None
     borne = {peak.what: peak for peak in moved.peaks if "reaction" in peak.what}
     for what, force in (
@@ -137,15 +137,15 @@ def test_a_pin_at_the_very_end_bears_the_same(tmp_path: Path) -> None:
     """Reference: by hand, of the arm without what is before its pin."""
     text = CASE.replace("span = [0.0, 10.0]", "span = [1.0, 10.0]")
     force = ACROSS * 9.0 * 4.5 / (0.6 * 3.0)
-    moved = answers_of(read_case(tmp_path, text)).models["beam"].moved
+    moved = answers_of(read_case(tmp_path, text)).models["beam"].motion
     assert moved is not None
     (borne,) = (peak for peak in moved.peaks if peak.what == "reaction along the boom")
     assert borne.largest == pytest.approx(0.8 * force - 9.0 * ALONG, rel=2e-3)
 
 
-def test_the_fibre_feels_the_normal_force(answers: Answers) -> None:
+def test_the_fibre_feels_the_normal_force(answers: DesignResults) -> None:
     """Reference: by hand, M z/J + N/A before the lug, where M is q 6²/2."""
-    moved = answers.models["beam"].moved
+    moved = answers.models["beam"].motion
     assert moved is not None
     (fibre,) = moved.fibres
     bent = 0.5 * ACROSS * 6.0**2 * 0.204 / BOX.second_moment_of_area

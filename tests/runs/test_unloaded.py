@@ -66,7 +66,7 @@ def test_a_boom_without_loads_is_run_and_reported(kind: str) -> None:
     assert protractile("check", "case.toml") == 0
     assert protractile("run", "case.toml", "--no-pictures", "--out", "out") == 0
     results = Results.load(Path("out"))
-    assert [rest.tip for rest in results.summary.answers.models["elements"].rests] == [0.0]
+    assert [rest.tip for rest in results.summary.design.models["elements"].static] == [0.0]
     tips = results.trajectories["tip"].values
     assert bool(np.abs(tips).max() > 1e-3) == moves
     assert Path("out/report.html").is_file()

@@ -13,7 +13,7 @@ from mpi4py import MPI
 from runs import CASES
 from runs.case import reading as case_file
 from runs.folder.cache import Cache
-from runs.pipeline.means import Means
+from runs.pipeline.context import RunContext
 from runs.pipeline.run import run_case
 from runs.report.document import render
 from runs.report.figures import draw
@@ -35,10 +35,10 @@ def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
     case = case_file.select(whole, file, mesh_size=mesh_size, members=0)
     short = case.time.model_copy(update={"duration": 0.15})
     # As the command does it: a shell that calibrates beams is reduced once.
-    means = Means(MPI.COMM_SELF, cache=Cache(tmp_path / "cache"))
+    means = RunContext(MPI.COMM_SELF, cache=Cache(tmp_path / "cache"))
     run = run_case(case.model_copy(update={"time": short}), file, means)
     assert run is not None
-    run.answer()
+    run.evaluate()
     results = run.results
     figures = draw(results, tmp_path)
     page = render(results, Addition(), figures, [])

@@ -14,7 +14,7 @@ import pytest
 from runs.case import reading as case_file
 from runs.case.schema import EnsembleTable
 from runs.client import judge
-from runs.pipeline.means import Means
+from runs.pipeline.context import RunContext
 from runs.pipeline.results import read_netcdf
 from runs.pipeline.run import run_case
 from runs.report import output
@@ -51,9 +51,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ensemble = EnsembleTable(members=3, relative=1e-6, seed=1, vary="load")
     time = case.time.model_copy(update={"duration": 2.0})
     case = case.model_copy(update={"time": time, "ensemble": ensemble})
-    finished = run_case(case, "", Means())
+    finished = run_case(case, "", RunContext())
     assert finished is not None
-    finished.answer()
+    finished.evaluate()
     finished.results.summary.models["kantorovich-5"].horizons = {
         "relatives": [1e-12, 1e-9, 1e-6, 1e-3],
         "shares": [0.01, 0.2],

@@ -19,15 +19,21 @@ from geometry.boom import Boom
 from geometry.telescoping import drawn
 from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
-from runs.pipeline.answers import Answers, ModelAnswers, added
-from runs.pipeline.at_rest import AtRest, at_rest, extended_positions, instants, positions
+from runs.pipeline.design_results import DesignResults, ModelDesignResults, play_effects
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.model_quality import quality_notes, reference_of
 from runs.pipeline.models import MotionPlan
-from runs.pipeline.modes import Mode, ModesBeside, matched, modes
-from runs.pipeline.moved import Motions, Moved, gone_through
-from runs.pipeline.residual_vibration import swing
+from runs.pipeline.modes import Mode, ModeComparison, matched, modes
+from runs.pipeline.motion_results import MotionResult, Motions, evaluate_motion
+from runs.pipeline.residual_vibration import residual_vibration
 from runs.pipeline.section_forces import with_cylinders
+from runs.pipeline.static_results import (
+    StaticResult,
+    extended_positions,
+    instants,
+    positions,
+    static_result,
+)
 from runs.pipeline.statics import reactions, statics
 from runs.pipeline.strength import COUNTS, Life, life, wall_stresses
 from runs.pipeline.summary import Summary
@@ -40,27 +46,27 @@ class _Model(NamedTuple):
     system: GapSystem
     lines: Sequence[Line]
 
-    def rests(self, found: Mapping[float, Array]) -> list[AtRest]:
+    def static(self, found: Mapping[float, Array]) -> list[StaticResult]:
         """Return the static states at equilibria (num_modes,) by their time in s."""
-        return [at_rest(*self, time, position) for time, position in found.items()]
+        return [static_result(*self, time, position) for time, position in found.items()]
 
     def modes(self, found: Mapping[float, Array]) -> list[Mode]:
         """Return the first modes at the equilibrium of t = 0."""
         return modes(*self, found[0.0]) if found else []
 
-    def moved(
+    def motion(
         self,
         trajectory: Trajectory,
         found: Mapping[float, Array],
-        rests: Sequence[AtRest],
+        rests: Sequence[StaticResult],
         case: Case,
         model: Model,
-    ) -> tuple[Moved, list[Life]]:
+    ) -> tuple[MotionResult, list[Life]]:
         """Return the largest values of a motion beside those at rest, and the fatigue life."""
         still = np.array([*found.values()]).reshape(-1, self.system.num_modes)
         smooth = model.smooth
         motions = Motions(self.boom, self.lines, trajectory, still, rests, jumps=not smooth)
-        moved, varying = gone_through(motions)
+        moved, varying = evaluate_motion(motions)
         return moved, [life(one, case.life) for one in varying] if COUNTS else []
 
 
@@ -71,7 +77,7 @@ def answer_model(
     built: Built,
     trajectory: Trajectory,
     shell: ShellOutput | None,
-) -> ModelAnswers:
+) -> ModelDesignResults:
     """Return the design results of one model, on the first rank.
 
     Args:
@@ -86,16 +92,16 @@ def answer_model(
     lines = with_cylinders(shown, system, model.lines(boom, built))
     played, times = _Model(shown, system, lines), instants(system, case.time.duration)
     found, farthest = positions(system, times), extended_positions(system, case.time.duration)
-    rests, drawn = played.rests(found), played.rests(farthest)
-    moved, lives = played.moved(trajectory, found | farthest, [*rests, *drawn], case, model)
+    rests, drawn = played.static(found), played.static(farthest)
+    moved, lives = played.motion(trajectory, found | farthest, [*rests, *drawn], case, model)
     walls = [] if shell is None else wall_stresses(shown, shell.stresses)
-    answers = ModelAnswers(
-        rests=rests,
-        drawn=drawn,
+    answers = ModelDesignResults(
+        static=rests,
+        static_extended=drawn,
         modes=played.modes(found),
-        moved=replace(moved, walls=walls),
+        motion=replace(moved, walls=walls),
         life=lives,
-        swing=swing(system, trajectory, case, model),
+        residual_vibration=residual_vibration(system, trajectory, case, model),
     )
     if model.play_free or not boom.joints:
         return answers
@@ -119,30 +125,30 @@ def _tied(boom: Boom, model: Model, played: _Model, found: Mapping[float, Array]
 
 
 def _beside_tied(
-    answers: ModelAnswers,
+    answers: ModelDesignResults,
     tied: _Model,
     found: Mapping[float, Array],
     boom: Boom,
     model: Model,
     case: Case,
-) -> ModelAnswers:
-    rests = tied.rests(found)
+) -> ModelDesignResults:
+    rests = tied.static(found)
     answers = replace(
         answers,
-        tied=[rest for rest in rests if _as_begun(boom, rest.time)],
+        static_bonded=[rest for rest in rests if _as_begun(boom, rest.time)],
         # Their shapes look the same as those of the boom with play.
-        tied_modes=[replace(mode, shapes=[]) for mode in tied.modes(found)],
+        modes_bonded=[replace(mode, shapes=[]) for mode in tied.modes(found)],
     )
     if boom.driven:
         # The boom without play cannot extend.
         return answers
     try:
         motion = MotionPlan.of(tied.system, case, model).trajectory()
-        moved, lives = tied.moved(motion, found, rests, case, model)
+        moved, lives = tied.motion(motion, found, rests, case, model)
     except NUMERICS:
         # The static states remain available.
         return answers
-    return replace(answers, tied_moved=moved, tied_life=lives)
+    return replace(answers, motion_bonded=moved, life_bonded=lives)
 
 
 def _as_begun(boom: Boom, time: float) -> bool:
@@ -151,8 +157,8 @@ def _as_begun(boom: Boom, time: float) -> bool:
 
 
 def answer_run(
-    boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelAnswers]
-) -> Answers:
+    boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelDesignResults]
+) -> DesignResults:
     """Return the design results of all models of a run.
 
     Args:
@@ -163,23 +169,25 @@ def answer_run(
     """
     found = statics(case, boom)
     ran = [model for model in case.models if model.name in models]
-    answers = Answers(
+    answers = DesignResults(
         models=dict(models),
         reactions=[] if found is None else reactions(found.played),
-        tied_reactions=[] if found is None else reactions(found.tied),
+        reactions_bonded=[] if found is None else reactions(found.tied),
         modes=_beside(boom, ran, models),
-        play=added(ran, models) if boom.joints else [],
+        play=play_effects(ran, models) if boom.joints else [],
     )
-    return replace(answers, trust=[*quality_notes(summary, answers, case.time.duration)])
+    return replace(answers, quality_notes=[*quality_notes(summary, answers, case.time.duration)])
 
 
 def _beside(
-    boom: Boom, ran: Sequence[Model], models: Mapping[str, ModelAnswers]
-) -> ModesBeside | None:
+    boom: Boom, ran: Sequence[Model], models: Mapping[str, ModelDesignResults]
+) -> ModeComparison | None:
     with_modes = [model for model in ran if models[model.name].modes]
     reference = reference_of(with_modes)
     others = [m.name for m in with_modes if not m.play_free and m.name != reference]
     if reference is None or not others:
         return None
     own = models[reference].modes
-    return ModesBeside(reference, {name: matched(boom, own, models[name].modes) for name in others})
+    return ModeComparison(
+        reference, {name: matched(boom, own, models[name].modes) for name in others}
+    )

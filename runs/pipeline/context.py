@@ -3,25 +3,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from runs.folder.cache import Cache, Memory
+from runs.process.progress import Progress
 
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-# Called with the model's name, the stage, and the completed part of the stage.
-Progress = Callable[[str, str, float], None]
-
 
 def silent(model: str, stage: str, part: float) -> None:
-    """Ignore the progress, as a :data:`Progress` without display."""
+    """Ignore the progress, as a :data:`runs.process.progress.Progress` without display."""
 
 
 @dataclass(frozen=True, slots=True)
-class Means:
+class RunContext:
     """The context of a run: ranks, folders and progress.
 
     Args:
@@ -29,13 +26,13 @@ class Means:
             without.
         progress: receives the progress of every stage.
         cache: cache of reduced shells.
-        kept: store of completed motions, earlier ones and those of this run.
+        motions: store of completed motions, earlier ones and those of this run.
     """
 
     comm: MPI.Intracomm | None = None
     progress: Progress = silent
     cache: Cache | None = None
-    kept: Cache | Memory | None = None
+    motions: Cache | Memory | None = None
 
     @property
     def first_rank(self) -> bool:

@@ -67,7 +67,7 @@ class Tilt:
 
 
 @dataclass(frozen=True, slots=True)
-class Pressed:
+class StationLoad:
     """A station at rest: its contact force and compression.
 
     Args:
@@ -89,7 +89,7 @@ class Pressed:
 
 
 @dataclass(frozen=True, slots=True)
-class AtRest:
+class StaticResult:
     """A static state of a model of the boom.
 
     Args:
@@ -107,7 +107,7 @@ class AtRest:
     tip_lateral: float | None
     diagrams: list[Diagram]
     tilts: list[Tilt]
-    stations: list[Pressed]
+    stations: list[StationLoad]
     cylinders: dict[str, float]
 
 
@@ -207,9 +207,9 @@ def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]
     return found
 
 
-def at_rest(
+def static_result(
     boom: Boom, system: GapSystem, lines: Sequence[Line], time: float, position: Array
-) -> AtRest:
+) -> StaticResult:
     """Return the static state at an equilibrium.
 
     Args:
@@ -226,7 +226,7 @@ def at_rest(
         name, normal = boom.segments[number].name, curves.pop("normal")
         diagrams.append(Diagram(name, rounded(line.x), normal, curves))
     seen = {name: float(one.row @ position) for name, one in system.observers.items()}
-    return AtRest(
+    return StaticResult(
         time=time,
         tip=seen["tip"],
         tip_lateral=seen.get("tip_lateral"),
@@ -237,7 +237,7 @@ def at_rest(
     )
 
 
-def pressed(boom: Boom, system: GapSystem, position: Array) -> Iterator[Pressed]:
+def pressed(boom: Boom, system: GapSystem, position: Array) -> Iterator[StationLoad]:
     """Yield the stations of joints with play, in z and in y, and the stops, at (num_modes,)."""
     gaps = system.rows @ position
     loose = [joint for joint in boom.joints if not joint.tied]
@@ -251,7 +251,7 @@ def pressed(boom: Boom, system: GapSystem, position: Array) -> Iterator[Pressed]
             sum(one_sided_force(system.laws[row], side, gaps[row]) for row in here)
             for side in SIGNS
         ]
-        yield Pressed(
+        yield StationLoad(
             place=name,
             x=x,
             direction=direction,

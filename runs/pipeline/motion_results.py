@@ -16,8 +16,8 @@ from geometry.axial import on_foot
 from geometry.boom import Boom, Segment
 from geometry.cylinder import forces
 from geometry.section import Direction
-from runs.pipeline.at_rest import AtRest, place_names
 from runs.pipeline.section_forces import rounded, section_forces
+from runs.pipeline.static_results import StaticResult, place_names
 from runs.pipeline.strength import Fibres, FibreStress, Varying, WallStress, largest_stresses
 
 
@@ -69,7 +69,7 @@ class Peak:
 
 
 @dataclass(frozen=True, slots=True)
-class Moved:
+class MotionResult:
     """The extreme values of a model's motion.
 
     Args:
@@ -117,11 +117,11 @@ class Motions:
     lines: Sequence[Line]
     trajectory: Trajectory
     positions: Array
-    rests: Sequence[AtRest]
+    rests: Sequence[StaticResult]
     jumps: bool
 
 
-def gone_through(motions: Motions) -> tuple[Moved, list[Varying]]:
+def evaluate_motion(motions: Motions) -> tuple[MotionResult, list[Varying]]:
     """Return the extreme values of a beam's motion, or of a shell's without its walls.
 
     The second value is the stress of each segment where it varies most.
@@ -143,7 +143,7 @@ def gone_through(motions: Motions) -> tuple[Moved, list[Varying]]:
             largest, most = largest_stresses(segment, found, curves, still, time)
             fibres.append(largest)
             varying.append(most)
-    return Moved(envelopes, peaks, fibres, walls=[]), varying
+    return MotionResult(envelopes, peaks, fibres, walls=[]), varying
 
 
 def _peak(

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Design results of a boom, part of ``summary.json``; SI units."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from runs.case.schema import Model
+from runs.pipeline.modes import Mode, ModeComparison
+from runs.pipeline.motion_results import MotionResult
+from runs.pipeline.residual_vibration import ResidualVibration
+from runs.pipeline.static_results import StaticResult
+from runs.pipeline.statics import Reaction
+from runs.pipeline.strength import Life
+
+
+@dataclass(frozen=True, slots=True)
+class ModelDesignResults:
+    """Design results of one model.
+
+    Args:
+        static: static states under the loads of t = 0, and for variable loads also under the
+            extreme ones; empty without an equilibrium.
+        static_extended: static states at the largest and least extension, under the loads of that
+            time and under the extreme ones at that extension.
+        static_bonded: as ``static``, without play, at the instants with the initial extension.
+        modes: the first modes at rest under the loads of t = 0; empty without an equilibrium.
+        modes_bonded: those of the boom without play, without their shapes.
+        motion: extreme values of the run.
+        motion_bonded: extreme values without play; None for a model without play, and where they
+            cannot be computed. Walls of shells are left out.
+        life: fatigue damage of each segment with a known section, where cycles can be counted.
+        life_bonded: likewise without play.
+        residual_vibration: vibration during the extension; None without extension, for a run that
+            ends before its drives, and without an equilibrium.
+    """
+
+    static: list[StaticResult] = field(default_factory=list)
+    static_extended: list[StaticResult] = field(default_factory=list)
+    static_bonded: list[StaticResult] = field(default_factory=list)
+    modes: list[Mode] = field(default_factory=list)
+    modes_bonded: list[Mode] = field(default_factory=list)
+    motion: MotionResult | None = None
+    motion_bonded: MotionResult | None = None
+    life: list[Life] = field(default_factory=list)
+    life_bonded: list[Life] = field(default_factory=list)
+    residual_vibration: ResidualVibration | None = None
+
+    @property
+    def farthest_static(self) -> StaticResult | None:
+        """The static state with the farthest tip, at any extension; None without any."""
+        return max(
+            [*self.static, *self.static_extended], key=lambda rest: abs(rest.tip), default=None
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class PlayDifference:
+    """The increase of a number by play.
+
+    Args:
+        what: as of :class:`Peak`, or ``deflection at rest``, ``first frequency``, ``stress``.
+        where: the place; empty for the whole boom.
+        unit: SI unit.
+        with_play, bonded: the number with play and without, by its absolute value.
+    """
+
+    what: str
+    where: str
+    unit: str
+    with_play: float
+    bonded: float
+
+    @property
+    def increase(self) -> float:
+        """Increase by play, in the unit."""
+        return self.with_play - self.bonded
+
+    @property
+    def share(self) -> float | None:
+        """Increase as a part of the number without play; None where that is zero."""
+        return self.increase / self.bonded if self.bonded else None
+
+
+@dataclass(frozen=True, slots=True)
+class PlayEffect:
+    """The increases of numbers by play in one model.
+
+    Args:
+        model: name of the model with play.
+        numbers: numbers at rest, of modes and of motions, with and without play.
+    """
+
+    model: str
+    numbers: list[PlayDifference]
+
+
+@dataclass(frozen=True, slots=True)
+class QualityNote:
+    """A note of one line on the accuracy of the results.
+
+    Args:
+        what: ``agreement``, ``horizon``, ``reduction``, ``mesh``, ``energy`` or ``step``.
+        line: the note.
+    """
+
+    what: str
+    line: str
+
+
+@dataclass(frozen=True, slots=True)
+class DesignResults:
+    """Design results of a run.
+
+    Args:
+        models: design results by the model's name.
+        reactions: support reactions of beam elements at rest under the loads of t = 0, as in
+            ``check``; empty without an equilibrium.
+        reactions_bonded: the same without play.
+        modes: modes of all models side by side; None if fewer than two models have any.
+        play: increases by play of each model with play.
+        quality_notes: notes on the accuracy.
+    """
+
+    models: dict[str, ModelDesignResults]
+    reactions: list[Reaction] = field(default_factory=list)
+    reactions_bonded: list[Reaction] = field(default_factory=list)
+    modes: ModeComparison | None = None
+    play: list[PlayEffect] = field(default_factory=list)
+    quality_notes: list[QualityNote] = field(default_factory=list)
+
+
+def play_effects(
+    models: list[Model], answers: Mapping[str, ModelDesignResults]
+) -> list[PlayEffect]:
+    """Return the increases by play of each model with play.
+
+    Args:
+        models: those of the case without failure.
+        answers: design results of each.
+    """
+    return [
+        PlayEffect(model.name, [*_at_rest(own), *_in_motion(own)])
+        for model in models
+        if not model.play_free
+        for own in [answers[model.name]]
+    ]
+
+
+def _at_rest(own: ModelDesignResults) -> Iterator[PlayDifference]:
+    tied = {rest.time: rest for rest in own.static_bonded}
+    both = [(rest, tied[rest.time]) for rest in own.static if rest.time in tied]
+    if both:
+        rest, other = max(both, key=lambda pair: abs(pair[0].tip))
+        yield PlayDifference("deflection at rest", "tip", "m", abs(rest.tip), abs(other.tip))
+    if own.modes and own.modes_bonded:
+        first = own.modes[0]
+        alike = (mode.frequency for mode in own.modes_bonded if mode.way == first.way)
+        yield PlayDifference("first frequency", first.way, "Hz", first.frequency, next(alike, 0.0))
+
+
+def _in_motion(own: ModelDesignResults) -> Iterator[PlayDifference]:
+    if own.motion is None or own.motion_bonded is None:
+        return
+    others = {(peak.what, peak.where): peak.largest for peak in own.motion_bonded.peaks}
+    for peak in own.motion.peaks:
+        if (named := (peak.what, peak.where)) in others:
+            yield PlayDifference(*named, peak.unit, peak.largest, others[named])
+    stresses = {fibre.segment: abs(fibre.stress) for fibre in own.motion_bonded.fibres}
+    for fibre in own.motion.fibres:
+        if fibre.segment in stresses:
+            here = abs(fibre.stress), stresses[fibre.segment]
+            yield PlayDifference("stress", fibre.segment, "Pa", *here)
+    damages = {life.segment: life.life_damage for life in own.life_bonded}
+    for life in own.life:
+        other = damages.get(life.segment)
+        if life.life_damage is not None and other is not None:
+            yield PlayDifference("damage", life.segment, "1", life.life_damage, other)
