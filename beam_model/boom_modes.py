@@ -17,7 +17,7 @@ from beam_model.component import (
     SegmentModel,
     natural_modes,
 )
-from beam_model.telescoping import moving_thrusts
+from beam_model.telescoping import moving_axial_forces
 from dynamics.second_order import buckling_factor, softened
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
@@ -130,16 +130,16 @@ def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
         components = [models[i].components[motion] for i, motion in group]
         first = block_diag(*(component.softening for component in components))
         members = _members(boom, group, components)
-        passing = {number: moving_thrusts(boom, models, members, number) for number in drives}
+        passing = {number: moving_axial_forces(boom, models, members, number) for number in drives}
         if not (first.any() or any(passing.values())):
             continue
         if (_group_modes(tied, group, components).omega2 == 0.0).any():
             return None
         for extensions in stands(boom):
             moving = (
-                thrust.softening(extensions[number])
-                for number, thrusts in passing.items()
-                for thrust in thrusts
+                force.softening(extensions[number])
+                for number, forces in passing.items()
+                for force in forces
             )
             geometric = sum(moving, first)
             moved = {n: places(boom.joints[n], extension) for n, extension in extensions.items()}

@@ -13,8 +13,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from beam_model.component import BeamMember, SegmentModel
-from dynamics.drive.row_table import MovingThrust, RowTable
-from dynamics.drive.travel import Travel
+from dynamics.drive.row_table import MovingAxialForce, RowTable
+from dynamics.drive.travel import HistorySum, Travel
 from dynamics.gap_builder import GapBuilder
 from geometry.arrays import Array
 from geometry.axial import borne, entry
@@ -35,9 +35,9 @@ def travels(
     return [_travel(boom, models, rows_at, members, course) for course in courses(boom)]
 
 
-def moving_thrusts(
+def moving_axial_forces(
     boom: Boom, models: Sequence[SegmentModel], members: Sequence[BeamMember], joint: int
-) -> list[MovingThrust]:
+) -> list[MovingAxialForce]:
     """Return the axial force, if any, that moves along with a telescoping joint.
 
     ``members`` are the segments in any coordinates.
@@ -54,7 +54,7 @@ def moving_thrusts(
 
     nodes = np.concatenate([models[segment].components[plane].breaks for plane in boom.directions])
     breaks = _between(boom, drive.reach, [direction * (nodes - start)])
-    return [MovingThrust(found.force, RowTable.of(rows, breaks))]
+    return [MovingAxialForce(found.force, RowTable.of(rows, breaks))]
 
 
 def _travel(
@@ -71,10 +71,10 @@ def _travel(
 
     table = RowTable.of(rows, _breaks(boom, models, course))
     alone = len(course.joints) == 1
-    pressing = moving_thrusts(boom, models, members, course.joints[0]) if alone else []
-    histories = [drive.history for drive in course.drives]
+    pressing = moving_axial_forces(boom, models, members, course.joints[0]) if alone else []
+    history = HistorySum(tuple(drive.history for drive in course.drives))
     against = borne(boom.segments, boom.joints, course.joints[0]) if alone else 0.0
-    return Travel.of(histories, table, moving, course.suffix, pressing, against)
+    return Travel(history, table, moving, course.suffix, pressing, against)
 
 
 def _breaks(boom: Boom, models: Sequence[SegmentModel], course: Course) -> list[float]:

@@ -155,7 +155,7 @@ class GapSystem:
         if (self.damping < 0.0).any():
             raise ValueError("damping must not be negative")
         for number, travel in enumerate(self.travels):
-            tables = [travel.table, *(thrust.table for thrust in travel.thrusts)]
+            tables = [travel.table, *(force.table for force in travel.axial_forces)]
             if any(table.coefficients.shape[3] != n for table in tables):
                 raise ValueError(f"the rows of travel {number} must have {n} modes")
             if any(not 0 <= row < len(getattr(self, kind)) for kind, row in travel.moving):
@@ -223,8 +223,8 @@ class GapSystem:
         for travel in self.travels:
             way = float(travel.history(np.array(time)))
             rows = travel.table(way)
-            for thrust in travel.thrusts:
-                softening = softening + thrust.softening(way)
+            for force in travel.axial_forces:
+                softening = softening + force.softening(way)
             for (kind, position), row in zip(travel.moving, rows, strict=True):
                 stands[kind][position] = row
         rows, friction_rows, dashpots = stands.values()

@@ -28,15 +28,20 @@ from dynamics.kernels.march import (
     FIRST_CONTACT,
     STEPS,
     TALLY,
-    Course,
     LoopSystem,
+    Schedule,
     State,
     march,
 )
 from dynamics.kernels.modal_flow import Flow, compliance, modal_flow
-from dynamics.kernels.moving_rows import moving_rows, stacked_rows
-from dynamics.kernels.moving_thrusts import add_thrust_forces, thrust_arrays, thrust_energies
 from dynamics.kernels.row_forces import row_laws, row_problem
+from dynamics.kernels.telescoping import (
+    add_axial_energies,
+    add_axial_forces,
+    moving_axial_forces,
+    moving_rows,
+    stack_rows,
+)
 from dynamics.motion import Motion
 from dynamics.trajectory import OF_DRIVES, Output, Trajectory
 
@@ -67,24 +72,22 @@ class Integration:
         """Return the run at t = 0."""
         system, laws = motion.system, motion.system.laws
         n, m, f = system.num_modes, len(laws), len(system.frictions)
-        a, v, rows = motion.position.copy(), motion.velocity.copy(), stacked_rows(system)
-        y, thrusts = (rows * a).sum(axis=1), thrust_arrays(system)
-        thrust, stored = np.zeros(n), np.zeros(thrusts.force.size)
-        ways = np.zeros(len(system.travels))
-        add_thrust_forces(ways, thrusts, a, 1.0, thrust)
-        thrust_energies(ways, thrusts, a, stored)
+        a, v, rows = motion.position.copy(), motion.velocity.copy(), stack_rows(system)
+        y, axial, softening = (rows * a).sum(axis=1), moving_axial_forces(system), np.zeros(n)
+        extensions, stored, driven = np.zeros((3, len(system.travels)))
+        add_axial_forces(extensions, axial, a, 1.0, softening)
+        add_axial_energies(extensions, axial, a, 1.0, stored)
         forces = [float(law.force(gap)) for law, gap in zip(laws, y, strict=False)]
         tally = np.zeros(TALLY)
         limits, gaps = contact_limits(laws), y[:m]
         touching = (gaps > limits["high"]) | (gaps < limits["low"])
         tally[FIRST_CONTACT] = 0.0 if touching.any() else np.nan
-        driven = y.size + stored.size if ways.size else 0
         state = State(
-            a, v, rows, y, np.zeros(y.size), thrust, tally, np.zeros(driven), np.zeros(m),
+            a, v, rows, y, np.zeros(y.size), softening, tally, driven, np.zeros(m),
             np.full(m, np.inf),
         )  # fmt: skip
-        kinds = DRIVEN_ENERGIES if ways.size else ENERGIES
-        columns = (n, n if system.observes_rates else 0, len(kinds), m, m, m, f, driven)
+        kinds = DRIVEN_ENERGIES if driven.size else ENERGIES
+        columns = (n, n if system.observes_rates else 0, len(kinds), m, m, m, f, driven.size)
         output = Output(*(np.zeros((motion.outputs + 1, count)) for count in columns))
         output.states[0], output.gaps[0] = a, y[:m]
         output.velocities[0] = v[: output.velocities.shape[1]]
@@ -99,8 +102,8 @@ class Integration:
         system = self.motion.system
         loads = np.array([x.load for x in system.excitations]).reshape(-1, system.num_modes)
         omega2, load = (np.ascontiguousarray(x) for x in (system.omega2, system.load))
-        moving, thrusts = moving_rows(system), thrust_arrays(system)
-        return LoopSystem(omega2, load, loads, row_laws(system), moving, thrusts)
+        moving, axial = moving_rows(system), moving_axial_forces(system)
+        return LoopSystem(omega2, load, loads, row_laws(system), moving, axial)
 
     @property
     def _flies(self) -> bool:
@@ -141,8 +144,8 @@ class Integration:
         times = step * 2.0**joined * np.arange(first * stretches, last * stretches + 1)
         problem = row_problem(len(state.rows), len(system.frictions))
         if not march(
-            self._system, *self._tables[substeps], state, course(system, times), stretches, joined,
-            problem, output,
+            self._system, *self._tables[substeps], state, step_schedule(system, times), stretches,
+            joined, problem, output,
         ):  # fmt: skip
             raise NumericsError(
                 f"contact and friction forces do not converge even in steps of "
@@ -199,43 +202,38 @@ class Integration:
 
     def _with_drives(self, found: Trajectory) -> Trajectory:
         """Add the results of drives to a trajectory."""
-        system, moving = self.motion.system, self._system.moving.rows
-        at_rows, at_thrusts = np.split(self.output.drives, [len(self.state.rows)], axis=1)
-        of_thrust = self._system.thrusts.place[:, 0]
-        added, told = {}, {}
-        for number, travel in enumerate(system.travels):
+        system, added, stick_slip = self.motion.system, {}, {}
+        for travel, work in zip(system.travels, self.output.drives.T, strict=True):
             if travel.suffix is None:
                 continue
-            rows = moving[moving[:, 1] == number, 0]
-            work = at_rows[:, rows].sum(axis=1) + at_thrusts[:, of_thrust == number].sum(axis=1)
-            way, friction = (
-                travel.history(found.time),
-                axial_friction(system, travel, self.output.means),
-            )
-            rubbed = np.sign(np.diff(way, prepend=way[0])) * friction
-            against = (rubbed + travel.borne) * np.diff(way, prepend=way[0])
-            power = np.diff(work + np.cumsum(against), prepend=0.0)
+            extension = travel.history(found.time)
+            friction = axial_friction(system, travel, self.output.means)
+            moved = np.diff(extension, prepend=extension[0])
+            resisting = np.sign(moved) * friction
+            power = np.diff(work + np.cumsum((resisting + travel.axial_load) * moved), prepend=0.0)
             power[1:] /= np.diff(found.time)
-            for (name, of), values in zip(OF_DRIVES.items(), (way, rubbed, power), strict=True):
-                added[f"{name}{travel.suffix}"] = ("time", values, of)
-            if travel.pulled is not None:
-                followed = follow(travel.pulled, travel.history, found.time, friction)
-                told[f"drive_force{travel.suffix}"] = followed.told
+            values = extension, resisting, power
+            for (name, of), value in zip(OF_DRIVES.items(), values, strict=True):
+                added[f"{name}{travel.suffix}"] = ("time", value, of)
+            if travel.elastic is not None:
+                followed = follow(travel.elastic, travel.history, found.time, friction)
+                stick_slip[f"drive_force{travel.suffix}"] = followed.told
                 for name, of in OF_ELASTIC_DRIVES.items():
                     added[f"{name}{travel.suffix}"] = ("time", getattr(followed, name), of)
-        data = found.data.assign(added).assign_attrs({"stick_slip": told} if told else {})
+        data = found.data.assign(added)
+        data.attrs |= {"stick_slip": stick_slip} if stick_slip else {}
         return Trajectory(data, found.states)
 
 
-def course(system: GapSystem, times: Array) -> Course:
-    """Return loads and travels in steps that end at times (num_steps + 1,) in s."""
-    found = [moments(x.history, times) for x in system.excitations]
-    mean, change = np.array(found).reshape(-1, 2, times.size - 1).transpose(1, 2, 0)
-    ways = np.array([travel.history(times) for travel in system.travels])
-    return Course(mean.copy(), change.copy(), ways.reshape(-1, times.size).T.copy())
+def step_schedule(system: GapSystem, times: Array) -> Schedule:
+    """Return loads and extensions in steps that end at times (num_steps + 1,) in s."""
+    lines = [line_within(x.history, times) for x in system.excitations]
+    mean, change = np.array(lines).reshape(-1, 2, times.size - 1).transpose(1, 2, 0)
+    extensions = np.array([travel.history(times) for travel in system.travels])
+    return Schedule(mean.copy(), change.copy(), extensions.reshape(-1, times.size).T.copy())
 
 
-def moments(history: History, times: Array) -> tuple[Array, Array]:
+def line_within(history: History, times: Array) -> tuple[Array, Array]:
     """Return mean and change (num_steps,) of the straight line that stands for a history in a step.
 
     The line has the integral and the first moment of the history, so that kinks within a step need

@@ -68,7 +68,7 @@ class Output(NamedTuple):
         gaps: of the contacts in m.
         means, peaks: of contact forces within the interval in N.
         frictions: mean friction forces in N.
-        drives: work of drives so far in J at each row and thrust; may have no columns.
+        drives: work of the drive of each travel so far in J.
     """
 
     states: Array

@@ -21,8 +21,8 @@ from typing import NamedTuple
 import numpy as np
 from mpi4py import MPI
 
-from dynamics.drive.row_table import MovingThrust, RowTable
-from dynamics.drive.travel import KINDS, Kind, Travel
+from dynamics.drive.row_table import MovingAxialForce, RowTable
+from dynamics.drive.travel import KINDS, HistorySum, Kind, Travel
 from dynamics.gap_builder import GapBuilder
 from dynamics.gap_system import GapSystem
 from dynamics.reduction import fewer, with_coordinates
@@ -205,12 +205,12 @@ class TelescopingShell:
             pulled[at] = beside[sampled.start]
             if sampled.course is not None:
                 rows = np.concatenate([coordinates.of_rows(self._rows[k]), beside], axis=2)
-                travel = Travel.of(
-                    [drive.history for drive in sampled.course.drives],
+                travel = Travel(
+                    HistorySum(tuple(drive.history for drive in sampled.course.drives)),
                     RowTable.through(sampled.extensions, rows),
                     sampled.moving,
                     sampled.course.suffix,
-                    _moving_thrusts(
+                    _moving_axial_forces(
                         self._boom, self._full, coordinates, sampled.course, int(behind[-1])
                     ),
                     borne(self._boom.segments, self._boom.joints, sampled.course.joints[0]),
@@ -295,9 +295,9 @@ class TelescopingShell:
         )
 
 
-def _moving_thrusts(
+def _moving_axial_forces(
     boom: Boom, full: BoomShell, coordinates: BoomCoordinates, course: Course, behind: int
-) -> list[MovingThrust]:
+) -> list[MovingAxialForce]:
     """Return the axial force, if any, that moves along with a telescoping joint. Collective.
 
     The remaining coordinates, after these, do not move sections.
@@ -323,4 +323,4 @@ def _moving_thrusts(
         rows.append([coordinates.row(reading) for reading in readings])
     beside = np.zeros((len(rows), len(boom.directions), behind))
     table = RowTable.through(extensions, np.concatenate([np.array(rows), beside], axis=2))
-    return [MovingThrust(found.force, table)]
+    return [MovingAxialForce(found.force, table)]

@@ -126,7 +126,7 @@ def _one_way(stiffness: float) -> list[float]:
     told, data = asked.data.attrs["stick_slip"]["drive_force"], asked.data
     gone = PiecewiseLinear(tuple(asked.time), tuple((data["drawn_out"] - data["drive_lag"]).values))
     (travel,) = plan.motion.system.travels
-    along = replace(plan.motion.system, travels=[replace(travel, history=gone, pulled=None)])
+    along = replace(plan.motion.system, travels=[replace(travel, history=gone, elastic=None)])
     felt = _moved(replace(plan, motion=replace(plan.motion, system=along)))
     forces, tips = (
         [run.data[name].values for run in (asked, felt)] for name in ("contact_force", "tip")

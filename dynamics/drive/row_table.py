@@ -41,7 +41,7 @@ _POWERS = 1.0 + np.add.outer(np.arange(3), np.arange(3))
 
 @dataclass(frozen=True, slots=True)
 class RowTable:
-    """Rows over a way s.
+    """Rows over an extension s.
 
     >>> table = RowTable.of(lambda s: np.array([[1.0, s**3]]), [0.0, 1.0, 2.0])
     >>> table(1.5), table.slope(1.5)
@@ -123,11 +123,11 @@ class RowTable:
 
 
 @dataclass(frozen=True)
-class MovingThrust:
+class MovingAxialForce:
     """An axial force that moves with a travel and softens the segment behind it.
 
-    >>> thrust = MovingThrust(2.0, RowTable.of(lambda s: np.array([[3.0 * s]]), [0.0, 1.0]))
-    >>> thrust.softening(0.5)
+    >>> force = MovingAxialForce(2.0, RowTable.of(lambda s: np.array([[3.0 * s]]), [0.0, 1.0]))
+    >>> force.softening(0.5)
     array([[9.]])
 
     Args:

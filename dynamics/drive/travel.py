@@ -16,7 +16,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.drive.row_table import MovingThrust, RowTable
+from dynamics.drive.row_table import MovingAxialForce, RowTable
 from dynamics.drive.stick_slip import ElasticDrive
 from dynamics.excitation import History
 
@@ -124,10 +124,10 @@ class Stroke:
 
     def __call__(self, time: Array) -> Array:
         after = np.clip(np.asarray(time) - self.start, 0.0, self.duration)
-        way = self._begun(after) - self._begun(after - self.duration + self.ramp)
-        return np.asarray(np.sign(self.travel) * self.speed * way)
+        ramps = self._integrate_ramp(after), self._integrate_ramp(after - self.duration + self.ramp)
+        return np.asarray(np.sign(self.travel) * self.speed * (ramps[0] - ramps[1]))
 
-    def _begun(self, after: Array) -> Array:
+    def _integrate_ramp(self, after: Array) -> Array:
         """Return ∫ v dt in s, v being a ramp from 0 to 1 that then stays."""
         if self.ramp == 0.0:
             return np.maximum(after, 0.0)
@@ -136,7 +136,7 @@ class Stroke:
 
 
 @dataclass(frozen=True, slots=True)
-class Together:
+class HistorySum:
     """The sum of several histories: of all joints between a segment and the ground."""
 
     parts: tuple[History, ...]
@@ -173,9 +173,9 @@ class Travel:
         table: (num_moving, num_modes) rows over the extension.
         moving: kind and position of each row in the gap system.
         suffix: of the names of its results; there are none where it is None.
-        thrusts: axial forces that move along.
-        borne: axial load of all moved segments in N, against which the drive works.
-        pulled: the elastic drive; a rigid one where it is None.
+        axial_forces: those that move with the extension.
+        axial_load: of all moved segments in N, against which the drive works.
+        elastic: the elastic drive; a rigid one where it is None.
 
     Raises:
         ValueError: the number of rows of the table differs, or the history does not begin with 0.
@@ -183,11 +183,11 @@ class Travel:
 
     history: History
     table: RowTable
-    moving: tuple[tuple[Kind, int], ...]
+    moving: Sequence[tuple[Kind, int]]
     suffix: str | None = None
-    thrusts: Sequence[MovingThrust] = ()
-    borne: float = 0.0
-    pulled: ElasticDrive | None = None
+    axial_forces: Sequence[MovingAxialForce] = ()
+    axial_load: float = 0.0
+    elastic: ElasticDrive | None = None
 
     def __post_init__(self) -> None:
         rows = self.table.coefficients.shape[2]
@@ -196,20 +196,6 @@ class Travel:
         start = float(self.history(np.zeros(())))
         if abs(start) > 1.0e-9:
             raise ValueError(f"a travel must be 0 at t = 0, got {start:g} m")
-
-    @classmethod
-    def of(
-        cls,
-        histories: Sequence[History],
-        table: RowTable,
-        moving: Sequence[tuple[Kind, int]],
-        suffix: str | None,
-        thrusts: Sequence[MovingThrust] = (),
-        borne: float = 0.0,
-    ) -> Travel:
-        """Return the travel of the sum of several histories."""
-        history = histories[0] if len(histories) == 1 else Together(tuple(histories))
-        return cls(history, table, tuple(moving), suffix, tuple(thrusts), borne)
 
     @property
     def moves(self) -> bool:

@@ -4,7 +4,7 @@
 On a linear flow, the work of a constant force is force times displacement. So the energy of modes
 and contacts changes by exactly the work of loads and drives less the losses of damping, friction
 and dashpots, at any step size. Rows that move read B₀ a₀ at the start and B₁ a₁ at the
-end, and push with their mean B̄ (see :mod:`dynamics.kernels.moving_rows`).
+end, and push with their mean B̄ (see :mod:`dynamics.kernels.telescoping`).
 """
 
 from __future__ import annotations
@@ -17,9 +17,14 @@ from numba import njit
 from dynamics.arrays import Array
 from dynamics.kernels.compiled import LOOP, SUMS, borrowed
 from dynamics.kernels.modal_flow import Flow, compliance, finish_flow, free_flow, modal_energy
-from dynamics.kernels.moving_rows import Moving, move_rows
-from dynamics.kernels.moving_thrusts import Thrusts, add_thrust_forces, thrust_energies
 from dynamics.kernels.row_forces import Laws, Problem, contact_response, solve_rows
+from dynamics.kernels.telescoping import (
+    AxialForces,
+    MovingRows,
+    add_axial_energies,
+    add_axial_forces,
+    move_rows,
+)
 from dynamics.kernels.terms import contact_energy, term_energy, term_force, term_slope
 from dynamics.trajectory import Output
 
@@ -33,7 +38,7 @@ RESOLVED = 0.5
 # Penetration in m beyond which no energy is sought.
 _DEEPEST = 1.0
 
-# Iterations of the forces of moving thrusts, and their change, as a part of them, that ends these.
+# Iterations of the axial forces that move, and their change, as a part of them, that ends these.
 _MOST_ROUNDS, _AGREED = 40, 1.0e-10
 
 
@@ -44,16 +49,15 @@ class LoopSystem(NamedTuple):
         omega2, load: (num_modes,) ω² and the constant load.
         excitations: (num_excitations, num_modes) loads that histories multiply.
         laws: of the rows.
-        moving: rows that move, by travels.
-        thrusts: axial forces whose places move.
+        moving, axial: rows and axial forces that travels move.
     """
 
     omega2: Array
     load: Array
     excitations: Array
     laws: Laws
-    moving: Moving
-    thrusts: Thrusts
+    moving: MovingRows
+    axial: AxialForces
 
 
 class State(NamedTuple):
@@ -64,9 +68,9 @@ class State(NamedTuple):
         rows: (num_rows, num_modes) as they are: contacts, friction rows, dashpots.
         y: (num_rows,) their displacements in m.
         force: (num_rows,) forces of the last step in N.
-        thrust: (num_modes,) forces of moving thrusts in the last step.
+        softening: (num_modes,) K_G a of the axial forces that move, in the last step.
         tally: sums over all steps, by the positions above.
-        driven: (num_rows + num_thrusts,) work of drives at each so far in J.
+        driven: (num_travels,) work of each drive so far in J.
         crest: (num_contacts,) largest force so far in N, and
         resolving: (num_contacts,) the step in s that would resolve the press it belongs to;
             infinite where this one does.
@@ -77,25 +81,25 @@ class State(NamedTuple):
     rows: Array
     y: Array
     force: Array
-    thrust: Array
+    softening: Array
     tally: Array
     driven: Array
     crest: Array
     resolving: Array
 
 
-class Course(NamedTuple):
-    """Loads and travels within the steps of a call.
+class Schedule(NamedTuple):
+    """Loads and extensions within the steps of a call.
 
     Args:
         mean, change: (num_steps, num_excitations) mean of each history within each step, and its
             change from the start to the end of the straight line that has its moments.
-        ways: (num_steps + 1, num_travels) in m at the ends of the steps.
+        extensions: (num_steps + 1, num_travels) in m at the ends of the steps.
     """
 
     mean: Array
     change: Array
-    ways: Array
+    extensions: Array
 
 
 @njit(**SUMS)
@@ -255,7 +259,7 @@ def free_time(system: LoopSystem, flow: Flow, state: State, longest: float) -> f
 
 @njit(**LOOP)
 def march(
-    system: LoopSystem, flow: Flow, compliances: Array, state: State, course: Course,
+    system: LoopSystem, flow: Flow, compliances: Array, state: State, schedule: Schedule,
     stretches: int, joined: int, problem: Problem, output: Output,
 ) -> bool:  # fmt: skip
     """Advance by as many output intervals as ``output`` has; return whether all steps converged.
@@ -269,25 +273,27 @@ def march(
             do not converge is halved.
         compliances: (num_lengths, num_rows, num_rows) C of each, where no row moves.
         state: is changed.
-        course: of the ``stretches`` of each output interval, one after the other.
+        schedule: of the ``stretches`` of each output interval, one after the other.
         joined: j, halvings of a stretch that give the step; 0 where other forces act.
         problem: scratch for the row forces.
         output: is filled.
     """
-    laws, thrusts, moving = (
-        borrowed(system.laws), borrowed(system.thrusts), borrowed(system.moving),
-    )  # fmt: skip
+    laws, axial, moving = borrowed(system.laws), borrowed(system.axial), borrowed(system.moving)
     state, flow, problem = borrowed(state), borrowed(flow), borrowed(problem)
-    a, v, rows, y, force, thrust = state.a, state.v, state.rows, state.y, state.force, state.thrust
-    tally, free, now = state.tally, problem.free, problem.force
+    a, v, rows, y, force, softening = (
+        state.a, state.v, state.rows, state.y, state.force, state.softening,
+    )  # fmt: skip
+    tally, driven, free, now = state.tally, state.driven, problem.free, problem.force
     n, m, contacts, frictions = a.size, y.size, laws.limits.size, laws.friction.shape[1]
-    moves, excited = moving.rows.shape[0] > 0, system.excitations.shape[0] > 0
-    pushed, travels = thrusts.force.size > 0, course.ways.shape[1]
+    moves, excited = moving.number.size > 0, system.excitations.shape[0] > 0
+    softens, travels = axial.force.size > 0, driven.size
     end, load, total, pull = system.load.copy(), system.load.copy(), np.zeros(n), np.zeros(n)
     tilt, y_end = np.zeros(n if excited else 0), np.zeros(m)
-    then, middle = (rows.copy(), rows.copy()) if moves else (rows, rows)
-    way, way_end = np.zeros(travels), np.zeros(travels)
-    stored = np.zeros((4, thrusts.force.size))
+    rows_end, rows_mean = (rows.copy(), rows.copy()) if moves else (rows, rows)
+    travel_of = np.zeros(m, dtype=np.int64)
+    for j in range(moving.number.size):
+        travel_of[moving.number[j]] = moving.spans[j, 0]
+    extension, extension_end, stored = np.zeros((3, travels))
     mean, peak, friction = np.zeros(contacts), np.zeros(contacts), np.zeros(frictions)
     matrix = compliances[0]
     for step in range(output.states.shape[0] * stretches):
@@ -304,34 +310,36 @@ def march(
             part, time = 0.5**depth, flow.time[depth]
             if excited:
                 off = done + 0.5 * part - 0.5
-                _set_loads(system, course.mean[step], course.change[step], off, part, load, tilt)
+                _set_loads(
+                    system, schedule.mean[step], schedule.change[step], off, part, load, tilt
+                )
             for t in range(travels):
-                length = course.ways[step + 1, t] - course.ways[step, t]
-                way[t] = course.ways[step, t] + done * length
-                way_end[t] = way[t] + part * length
+                before, after = schedule.extensions[step : step + 2, t]
+                extension[t] = before + done * (after - before)
+                extension_end[t] = extension[t] + part * (after - before)
             if moves:
-                move_rows(way_end, moving, rows, then, middle)
-                matrix = compliance(then, middle, flow.rise[depth])
+                move_rows(extension_end, moving, rows, rows_end, rows_mean)
+                matrix = compliance(rows_end, rows_mean, flow.rise[depth])
             elif m > 0:
                 matrix = compliances[depth]
             now[:] = force
             converged = False
             for _ in range(_MOST_ROUNDS):
-                total[:] = load + thrust
+                total[:] = load + softening
                 if m > 0:
                     free_flow(a, v, flow, depth, total, tilt, end)
-                    read_rows(then, end, free)
+                    read_rows(rows_end, end, free)
                     if not solve_rows(laws, problem, matrix, y, time):
                         break
-                    _push(middle, now, total)
+                    _push(rows_mean, now, total)
                 free_flow(a, v, flow, depth, total, tilt, end)
-                converged = not pushed
-                if pushed:
+                converged = not softens
+                if softens:
                     pull[:] = 0.0
-                    y_mean = 0.5 * (a + end)
-                    add_thrust_forces(way, thrusts, y_mean, 0.5, pull)
-                    add_thrust_forces(way_end, thrusts, y_mean, 0.5, pull)
-                    converged = _agree(pull, thrust)
+                    a_mean = 0.5 * (a + end)
+                    add_axial_forces(extension, axial, a_mean, 0.5, pull)
+                    add_axial_forces(extension_end, axial, a_mean, 0.5, pull)
+                    converged = _agree(pull, softening)
                 if converged:
                     break
             joins = converged
@@ -359,16 +367,13 @@ def march(
                     tally[DAMPING] += moved
                 if moves and now[j] != 0.0:
                     for i in range(n):
-                        moved -= now[j] * middle[j, i] * (end[i] - a[i])
-                    state.driven[j] += moved
-            if pushed:
-                thrust_energies(way, thrusts, a, stored[0])
-                thrust_energies(way_end, thrusts, a, stored[1])
-                thrust_energies(way, thrusts, end, stored[2])
-                thrust_energies(way_end, thrusts, end, stored[3])
-                for t in range(thrusts.force.size):
-                    rise = stored[1, t] - stored[0, t] + stored[3, t] - stored[2, t]
-                    state.driven[m + t] -= 0.5 * rise
+                        moved -= now[j] * rows_mean[j, i] * (end[i] - a[i])
+                    driven[travel_of[j]] += moved
+            if softens:
+                add_axial_energies(extension, axial, a, 0.5, driven)
+                add_axial_energies(extension_end, axial, a, -0.5, driven)
+                add_axial_energies(extension, axial, end, 0.5, driven)
+                add_axial_energies(extension_end, axial, end, -0.5, driven)
             _note_contacts(state, laws, y_end, free, time)
             _note_peaks(state, laws, matrix, time, y_end, now, free, peak)
             work, lost = finish_flow(a, v, flow, depth, total, tilt, end, load)
@@ -379,7 +384,7 @@ def march(
             y[:] = y_end
             force[:] = now
             if moves:
-                rows[:] = then
+                rows[:] = rows_end
             done += part
             depth = max(depth, joined)
             while depth > joined and done * 2.0 ** (depth - 1) % 1.0 == 0.0:
@@ -392,14 +397,17 @@ def march(
             output.means[interval] = mean
             output.peaks[interval] = peak
             output.frictions[interval] = friction
-            output.drives[interval] = state.driven[: output.drives.shape[1]]
+            output.drives[interval] = driven
             energies = output.energies[interval]
             energies[0], energies[1] = modal_energy(a, v, system.omega2)
-            energies[1] -= stored[3].sum()
+            if softens:
+                stored[:] = 0.0
+                add_axial_energies(extension_end, axial, a, 1.0, stored)
+                energies[1] -= stored.sum()
             energies[2] = contact_energy(y, laws.terms)
             energies[3:7] = tally[WORK : WORK + 4]
             if energies.size > 7:
-                energies[7] = state.driven.sum()
+                energies[7] = driven.sum()
             mean[:] = 0.0
             peak[:] = 0.0
             friction[:] = 0.0

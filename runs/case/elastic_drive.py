@@ -51,7 +51,7 @@ def with_elastic_drives(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
     suffixes = {course.suffix: found.get(course.joints[0]) for course in courses(boom)}
 
     def pulling(travel: Travel) -> Travel:
-        return replace(travel, pulled=None if travel.suffix is None else suffixes[travel.suffix])
+        return replace(travel, elastic=None if travel.suffix is None else suffixes[travel.suffix])
 
     return replace(system, travels=[pulling(travel) for travel in system.travels])
 

@@ -83,7 +83,7 @@ def slippings(case: Case, boom: Boom) -> Iterator[Slipping]:
     if not joints or statics(case, boom) is None:
         return
     system = with_elastic_drives(telescoping_system(with_play_seen(case, boom)), case, boom)
-    travels = (travel for travel in system.travels if travel.pulled is not None)
+    travels = (travel for travel in system.travels if travel.elastic is not None)
     for (number, pulled), travel in zip(joints.items(), travels, strict=True):
         joint = boom.joints[number]
         assert joint.drive is not None

@@ -19,7 +19,7 @@ from beam_model.kantorovich import kantorovich_segments, kantorovich_system
 from beam_model.segment_model import gap_system
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
-from dynamics.drive.travel import SCurve, Stroke, Together
+from dynamics.drive.travel import HistorySum, SCurve, Stroke
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import History, PiecewiseLinear
 from dynamics.gap_system import GapSystem
@@ -77,7 +77,7 @@ def test_three_segments_a_stop_and_dashpots_on_the_way(paper_boom: Boom) -> None
 
     system, there = built((0.0, 0.0), drives).standing(2.0), built((1.0, 2.0), (None, None))
     assert [type(t.history) for t in built((0.0, 0.0), drives).travels] == [
-        SCurve, SCurve, Together,
+        SCurve, SCurve, HistorySum,
     ]  # fmt: skip
     assert tips(system) == pytest.approx(tips(there), rel=1e-8)
     for rows in ("rows", "dashpots"):
@@ -147,7 +147,7 @@ def test_an_integration_of_its_own(paper_boom: Boom, thrust: float) -> None:
     assert errors[1] < 0.4 * errors[0]
     assert float(runs[1].data["drive_work"][-1]) == pytest.approx(work, rel=1e-4)
     # Without the drive, or with a thrust that stays, the tip is elsewhere.
-    without = [replace(travel, thrusts=()) for travel in system.travels] if thrust else ()
+    without = [replace(travel, axial_forces=()) for travel in system.travels] if thrust else ()
     still = FixedStep(2.0e-5)(Motion(replace(system, travels=without), 0.6, 5.0e-3))
     off = np.abs(still.data["tip"].values - tip).max() / np.ptp(tip)
     assert off > (3.0e-4 if thrust else 0.05)
@@ -296,7 +296,7 @@ def test_a_pressed_boom_on_the_way_is_the_boom_built_there(
     assert factors[-1] is not None
     assert 1.5 < factors[-1] < 0.7 * float(factors[0] or 0.0)
     # Without the force that goes along it would rest elsewhere.
-    first = replace(system, travels=[replace(t, thrusts=()) for t in system.travels])
+    first = replace(system, travels=[replace(t, axial_forces=()) for t in system.travels])
     moves = x is None or x > 4.0
     off = abs(tips(first.standing(5.0))[0] / tips(there)[0] - 1.0)
     assert (off > 3e-4) == moves
@@ -347,6 +347,6 @@ def test_the_ledger_and_the_order(paper_boom: Boom) -> None:
         ends = [run.data["tip"].values for run in runs]
         first, then = (np.abs(b - a).max() for a, b in pairwise(ends))
         assert then < 0.35 * first
-        passed = system.travels[0].thrusts[0].softening(4.0)
+        passed = system.travels[0].axial_forces[0].softening(4.0)
         taken = 0.5 * runs[-1].states[-1] @ passed @ runs[-1].states[-1]
         assert taken > 2.0e-4 * float(np.abs(runs[-1].data["work"]).max())

@@ -53,8 +53,8 @@ def runge_kutta(motion: Motion, max_step: float = 1.0e-3) -> Array:
             now, slopes = travel.table(way), travel.table.slope(way)
             for (kind, j), row, slope in zip(travel.moving, now, slopes, strict=True):
                 rows[kind][j], drift[kind][j] = row, speed * (slope @ a)
-            for thrust in travel.thrusts:
-                pull += thrust.softening(way) @ a
+            for force in travel.axial_forces:
+                pull += force.softening(way) @ a
         stacked = np.concatenate([rows[kind] for kind in KINDS])
         speeds = stacked @ v + np.concatenate([drift[kind] for kind in KINDS])
         closing, sliding, dragged = np.split(speeds, parts)

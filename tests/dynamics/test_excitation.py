@@ -16,7 +16,7 @@ from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
-from dynamics.time_step import moments
+from dynamics.time_step import line_within
 from studies.histories import KINKED, OMEGAS, masses, response
 from tests.dynamics.reference import slopes
 
@@ -82,13 +82,13 @@ def test_the_line_that_stands_for_a_history() -> None:
     """Reference: analytic. ∫ and ∫ (t − t_m) of a sine, and of a jump at a quarter of a step."""
     times, w = np.linspace(0.3, 1.1, 5), 2.0 * np.pi * 0.6
     (before, after), h, middle = (times[:-1], times[1:]), 0.2, 0.5 * (times[1:] + times[:-1])
-    mean, change = moments(Sine(0.6), times)
+    mean, change = line_within(Sine(0.6), times)
     integral = (np.cos(w * before) - np.cos(w * after)) / w
     first = (before - middle) * np.cos(w * before) - (after - middle) * np.cos(w * after)
     first = first / w + (np.sin(w * after) - np.sin(w * before)) / w**2
     assert mean == pytest.approx(integral / h, rel=2e-7)
     assert change == pytest.approx(12.0 * first / h**2, rel=2e-5)
-    mean, change = moments(
+    mean, change = line_within(
         PiecewiseLinear((0.05, 0.05 + 1e-12), (0.0, 1.0)), np.array([0.0, 0.2, 0.4])
     )
     assert mean == pytest.approx([0.75, 1.0])

@@ -11,12 +11,16 @@ import pytest
 from scipy.linalg import eigh
 
 from dynamics.contact import PowerContact
-from dynamics.drive.row_table import MovingThrust, RowTable
+from dynamics.drive.row_table import MovingAxialForce, RowTable
 from dynamics.drive.travel import SCurve, Travel
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import PiecewiseLinear
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.kernels.moving_thrusts import add_thrust_forces, thrust_arrays, thrust_energies
+from dynamics.kernels.telescoping import (
+    add_axial_energies,
+    add_axial_forces,
+    moving_axial_forces,
+)
 from dynamics.motion import Motion
 from tests.dynamics.reference import errors_in_the_step, runge_kutta, slopes
 
@@ -31,12 +35,12 @@ def slope(s: float) -> np.ndarray:
     return np.array([[*own, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, *(2.0 * own)]])
 
 
-def thrust() -> MovingThrust:
+def thrust() -> MovingAxialForce:
     def rows(s: float) -> np.ndarray:
         own = np.sin(WAVES * (5.0 + s))
         return np.array([[*own, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, *(2.0 * own)]])
 
-    return MovingThrust(FORCE, RowTable.of(rows, [-1.0, 0.5, 2.0]))
+    return MovingAxialForce(FORCE, RowTable.of(rows, [-1.0, 0.5, 2.0]))
 
 
 def softer(s: float) -> np.ndarray:
@@ -74,7 +78,7 @@ def test_what_is_passed_is_softened(s: float) -> None:
 def test_what_has_passed_nothing_softens_nothing(knots: list[float]) -> None:
     """Reference: analytic, 0 to the last bit, wherever the knots are."""
     table = RowTable.of(lambda s: np.sin(WAVES * (5.0 + s))[None], knots)
-    assert not MovingThrust(FORCE, table).softening(0.0).any()
+    assert not MovingAxialForce(FORCE, table).softening(0.0).any()
 
 
 def test_only_what_is_passed_is_integrated() -> None:
@@ -85,7 +89,7 @@ def test_only_what_is_passed_is_integrated() -> None:
         knots, np.tile(np.diff(knots)[0] * np.eye(4)[1][:, None, None], (2000, 1, 1, modes))
     )
     tracemalloc.start()
-    found = MovingThrust(2.0, table).softening(0.0105)
+    found = MovingAxialForce(2.0, table).softening(0.0105)
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert found == pytest.approx(np.full((modes, modes), 0.021), rel=1e-12)
@@ -96,12 +100,12 @@ def test_only_what_is_passed_is_integrated() -> None:
 def test_the_loop_pushes_as_the_matrix(s: float) -> None:
     """Reference: analytic, K_G a and ½ aᵀ K_G a, which is the sum over both planes."""
     a = np.array([0.3, -0.2, 0.1, 0.5, 0.4, -0.6])
-    force, energies = np.zeros(6), np.zeros(2)
-    thrusts = thrust_arrays(pressed_along(SCurve(2.0, 1.0)))
-    add_thrust_forces(np.array([s]), thrusts, a, 0.5, force)
-    thrust_energies(np.array([s]), thrusts, a, energies)
+    force, energies = np.zeros(6), np.zeros(1)
+    axial = moving_axial_forces(pressed_along(SCurve(2.0, 1.0)))
+    add_axial_forces(np.array([s]), axial, a, 0.5, force)
+    add_axial_energies(np.array([s]), axial, a, 1.0, energies)
     assert force == pytest.approx(0.5 * thrust().softening(s) @ a, rel=1e-12)
-    assert energies.sum() == pytest.approx(0.5 * a @ thrust().softening(s) @ a, rel=1e-12)
+    assert energies[0] == pytest.approx(0.5 * a @ thrust().softening(s) @ a, rel=1e-12)
 
 
 def test_as_it_stands_its_own_modes_are_those_of_the_softer_boom() -> None:
@@ -127,6 +131,6 @@ def test_a_motion_by_an_integration_of_its_own() -> None:
     errors = errors_in_the_step(motion, expected, np.array([1e-3, 5e-4, 2.5e-4]))
     assert slopes(errors) == pytest.approx(2.0, abs=0.2)
     assert errors[-1] < 1e-4
-    plain = replace(motion.system, travels=[replace(drawn.travels[0], thrusts=())])
+    plain = replace(motion.system, travels=[replace(drawn.travels[0], axial_forces=())])
     (off,) = errors_in_the_step(replace(motion, system=plain), expected, np.array([5e-4]))
     assert off > 0.05

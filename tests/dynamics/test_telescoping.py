@@ -14,7 +14,7 @@ import pytest
 from dynamics.arrays import Array
 from dynamics.contact import ContactLaw, PowerContact
 from dynamics.drive.row_table import RowTable
-from dynamics.drive.travel import SCurve, Stroke, Together, Travel
+from dynamics.drive.travel import HistorySum, SCurve, Stroke, Travel
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp
 from dynamics.friction import DryFriction
@@ -185,7 +185,7 @@ def test_the_drive_against_friction() -> None:
         (Stroke(4.0, 1.0, ramp=0.5, start=1.0), 4.0, 1.0),
         (Stroke(4.0, 1.0), 4.0, 1.0),
         (Stroke(-1.0, 2.0, ramp=0.5), -1.0, -2.0),
-        (Together((SCurve(4.0, 5.0), Stroke(1.0, 0.5))), 5.0, 1.947),
+        (HistorySum((SCurve(4.0, 5.0), Stroke(1.0, 0.5))), 5.0, 1.947),
     ],
 )
 def test_histories_of_a_drive(history: History, way: float, speed: float) -> None:
