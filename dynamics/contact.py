@@ -35,10 +35,9 @@ class ContactLaw(ABC):
        bodies begin to touch unless the law is :meth:`behind` a clearance;
     2. ``damping`` d in s/m of Hunt and Crossley (1975), F (1 + d ṗ) at the rate ṗ of the
        penetration, never adhesive;
-    3. :meth:`one_sided` and :meth:`shared`, which give a law of the same class;
-    4. ``str(law)``, the few words by which a table tells it from others.
+    3. ``str(law)``, the few words by which a table tells it from others.
 
-    Force, energy and the compiled loops follow from these.
+    Force, energy, parts of the law and the compiled loops follow from these.
     """
 
     __slots__ = ()
@@ -50,13 +49,16 @@ class ContactLaw(ABC):
     def terms(self) -> tuple[Term, ...]:
         """One-sided powers whose sum is the force, those of one side by rising onset."""
 
-    @abstractmethod
-    def one_sided(self, side: int) -> ContactLaw | None:
+    def one_sided(self, side: int) -> Gap | None:
         """Return the law on the side of this sign alone; None where it never touches."""
+        part = self.behind(0.0)
+        part = replace(part, sides=tuple(one for one in part.sides if one == side))
+        return part if part.terms else None
 
-    @abstractmethod
-    def shared(self, weight: float) -> ContactLaw:
+    def shared(self, weight: float) -> Gap:
         """Return a part of the law by ``weight``, for one of several points that share it."""
+        part = self.behind(0.0)
+        return replace(part, weight=weight * part.weight)
 
     def behind(self, above: float, below: float | None = None) -> Gap:
         """Return the law behind a clearance in m, and behind another one below if it is given."""
@@ -124,7 +126,7 @@ class ContactLaw(ABC):
 
 @dataclass(frozen=True, slots=True)
 class Gap(ContactLaw):
-    """A contact law across a gap: the law of a row that has a clearance.
+    """A contact law across a gap, or a part of it: the law of a row.
 
     >>> law = pt.PowerContact(1e6, exponent=1.0).behind(0.004, 0.010)
     >>> law.force(np.array([0.005, -0.005]))
@@ -134,6 +136,8 @@ class Gap(ContactLaw):
         law: contact law beyond the clearances.
         above, below: the clearances Δ in m where y is positive and where it is negative; negative
             where what touches is pressed in by so much, and then the law is linear.
+        sides: the signs of y where it touches.
+        weight: the part of the law's force.
 
     Raises:
         ValueError: a clearance is not finite, or negative before a law that is not linear.
@@ -142,6 +146,8 @@ class Gap(ContactLaw):
     law: ContactLaw
     above: float
     below: float
+    sides: tuple[int, ...] = (1, -1)
+    weight: float = 1.0
     damping: float = field(init=False)
 
     def __post_init__(self) -> None:
@@ -156,17 +162,12 @@ class Gap(ContactLaw):
 
     @property
     def terms(self) -> tuple[Term, ...]:
+        clearance = {1.0: self.above, -1.0: self.below}
         return tuple(
-            term._replace(onset=(self.above if term.side > 0.0 else self.below) + term.onset)
-            for term in self.law.terms
+            Term(side, self.weight * k, clearance[side] + onset, exponent)
+            for side, k, onset, exponent in self.law.terms
+            if side in self.sides
         )
-
-    def one_sided(self, side: int) -> Gap | None:
-        law = self.law.one_sided(side)
-        return None if law is None else replace(self, law=law)
-
-    def shared(self, weight: float) -> Gap:
-        return replace(self, law=self.law.shared(weight))
 
     def behind(self, above: float, below: float | None = None) -> Gap:
         """Return the law behind clearances that are larger by these lengths in m."""
@@ -178,7 +179,7 @@ class Gap(ContactLaw):
 
     def slope_at(self, force: float) -> float:
         # A small penetration would be lost to round-off beside a clearance.
-        return self.law.slope_at(force)
+        return ContactLaw.slope_at(replace(self, above=0.0, below=0.0), force)
 
     def __str__(self) -> str:
         return str(self.law)
@@ -240,14 +241,6 @@ class PowerContact(ContactLaw):
     def lower(self) -> PowerContact:
         """Return the same law on the side y < 0 alone."""
         return replace(self, stiffness=0.0, stiffness_below=self.below)
-
-    def one_sided(self, side: int) -> PowerContact | None:
-        if (self.stiffness if side > 0 else self.below) == 0.0:
-            return None
-        return self.upper() if side > 0 else self.lower()
-
-    def shared(self, weight: float) -> PowerContact:
-        return replace(self, stiffness=weight * self.stiffness, stiffness_below=weight * self.below)
 
     def __str__(self) -> str:
         below = "" if self.below == self.stiffness else f", {self.below:g} below"

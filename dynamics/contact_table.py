@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -26,7 +26,6 @@ class TableContact(ContactLaw):
         depths: penetrations in m, rising from above 0; the force is zero at zero.
         forces: in N, positive, one for each depth.
         damping: as in :class:`ContactLaw`, in s/m.
-        sides: 1 where the inner segment presses up, −1 where it presses down.
 
     Raises:
         ValueError: no force, or a force that is not positive, or would not be beyond the table.
@@ -35,7 +34,6 @@ class TableContact(ContactLaw):
     depths: tuple[float, ...]
     forces: tuple[float, ...]
     damping: float = 0.0
-    sides: tuple[int, ...] = (1, -1)
 
     def __post_init__(self) -> None:
         if not 0 < len(self.depths) == len(self.forces):
@@ -58,17 +56,11 @@ class TableContact(ContactLaw):
         changes = np.diff([0.0, *self._slopes()]).tolist()
         starts = [0.0, *self.depths[:-1]]
         return tuple(
-            Term(float(side), change, start, 1.0)
-            for side in self.sides
+            Term(side, change, start, 1.0)
+            for side in (1.0, -1.0)
             for change, start in zip(changes, starts, strict=True)
             if change != 0.0
         )
-
-    def one_sided(self, side: int) -> TableContact | None:
-        return replace(self, sides=(side,)) if side in self.sides else None
-
-    def shared(self, weight: float) -> TableContact:
-        return replace(self, forces=tuple(weight * force for force in self.forces))
 
     def __str__(self) -> str:
         return f"table to {1e-3 * self.forces[-1]:g} kN at {1e3 * self.depths[-1]:g} mm"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """User-defined contact law, a rubber stop F = k p + c p³, and a mass that hits it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,12 +23,6 @@ class RubberStop(pt.ContactLaw):
     def terms(self) -> tuple[Term, ...]:
         powers = (self.linear, 1.0), (self.cubic, 3.0)
         return tuple(Term(1.0, k, 0.0, n) for k, n in powers)
-
-    def one_sided(self, side: int) -> "RubberStop | None":
-        return self if side > 0 else None
-
-    def shared(self, weight: float) -> "RubberStop":
-        return replace(self, linear=weight * self.linear, cubic=weight * self.cubic)
 
 
 def strike(law: pt.ContactLaw, speed: float) -> pt.Trajectory:

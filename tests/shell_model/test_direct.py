@@ -266,9 +266,8 @@ def test_forces_of_a_step_obey_their_laws_to_round_off(exponent: float) -> None:
         noise = 1.0e-12 * np.abs(compliance).max() * np.abs(force).sum() + 1.0e-15
         for reading, one, pushed in zip(read[:4], laws, force[:4], strict=True):
             # By the reading that the force belongs to, as a stiff law multiplies round-off.
-            k = max(one.law.stiffness, one.law.below)
+            side, k, _, _ = one.terms[0]
             depth = (abs(pushed) / k) ** (1.0 / exponent)
-            side = 1.0 if one.law.stiffness else -1.0
             if pushed:
                 assert side * reading - one.onset(side) == pytest.approx(depth, abs=noise)
             else:
