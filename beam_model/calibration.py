@@ -3,8 +3,14 @@
 
 With the effective E J and G A_s of a segment, the shear-flexible beam responds to static probes far
 from their places as the shell does; likewise G J_t. They include shear lag, Poisson's effect and
-folds. The additional local compliance of loaded places is the residual compliance
-(:mod:`dynamics.reduction`).
+folds. The additional local compliance of loaded places is the residual compliance.
+
+With B the rows of contacts, friction and dashpots and C = B Ω⁻² Bᵀ over the
+elastic modes, the residual compliance of a coarse model beside a fine one is D = C_fine − C_coarse
+(MacNeal 1971). Both have the same rigid motions, so forces that no support carries are carried by
+inertia alike, and D is the local compliance alone. Its positive part D = Σ g gᵀ is a set
+of massless springs. Each is a coordinate with the rows ω_s g and a frequency ω_s well above the
+motion.
 """
 
 from __future__ import annotations
@@ -20,7 +26,7 @@ from beam_model.component import Component, SegmentModel, natural_modes
 from beam_model.finite_element import finite_element_segment
 from beam_model.segment_model import AT_PADS, gap_system
 from dynamics.gap_system import GapSystem
-from dynamics.reduction import residual_compliance, with_springs
+from dynamics.reduction import resisting_rows, with_coordinates
 from geometry.arrays import Array
 from geometry.boom import Boom, Segment
 from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
@@ -28,6 +34,10 @@ from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeRespons
 # Weight of the logarithm of a factor beside relative errors of responses. It determines a
 # stiffness without influence, and changes no other.
 _PRIOR = 1.0e-4
+# ω_s/2π in Hz: the vibration of a boom is slower by a factor of ten and more.
+SPRING_FREQUENCY = 400.0
+# A pattern of forces is rigid if its compliance is below this fraction of that of others.
+_NOTHING = 1.0e-3
 # Minimum elements of a segment; shear-flexible ones are exact at their nodes in statics.
 _ELEMENTS = 20
 
@@ -54,7 +64,7 @@ class Calibration:
     Args:
         segments: their stiffness.
         residual: (num_resisting, num_resisting) in m/N what contact rows, friction rows and
-            dashpots deflect beyond the beam, see :mod:`dynamics.reduction`.
+            dashpots deflect beyond the beam.
     """
 
     segments: Sequence[Stiffness]
@@ -88,6 +98,39 @@ def calibrate(
     beam = gap_system(stiff, segments(stiff), AT_PADS)
     residual = residual_compliance(beam, shell)
     return with_springs(beam, residual), Calibration(found, residual)
+
+
+def elastic_compliance(system: GapSystem) -> Array:
+    """Return B Ω⁻² Bᵀ (num_resisting, num_resisting) in m/N of contacts, friction, dashpots."""
+    elastic = system.omega2 > 0.0
+    rows = resisting_rows(system)[:, elastic]
+    return np.asarray(rows / system.omega2[elastic] @ rows.T)
+
+
+def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
+    """Return D (num_resisting, num_resisting) in m/N, which may be indefinite.
+
+    Raises:
+        ValueError: the numbers of rows differ.
+    """
+    if resisting_rows(coarse).shape[0] != resisting_rows(fine).shape[0]:
+        raise ValueError("both models must have the same contact rows, friction rows and dashpots")
+    return elastic_compliance(fine) - elastic_compliance(coarse)
+
+
+def with_springs(system: GapSystem, residual: Array) -> GapSystem:
+    """Return the system with springs: the positive part of a residual compliance.
+
+    The residual is (num_resisting, num_resisting) in m/N.
+    """
+    sizes = np.sqrt(np.abs(np.diag(residual)))
+    sizes[sizes == 0.0] = 1.0
+    # Normalised, since friction rows, pads and dashpots differ by orders of magnitude.
+    amounts, patterns = np.linalg.eigh(residual / np.outer(sizes, sizes))
+    kept = amounts > _NOTHING * max(amounts.max(initial=0.0), 0.0)
+    spring = 2.0 * np.pi * SPRING_FREQUENCY
+    rows = spring * sizes[:, None] * patterns[:, kept] * np.sqrt(amounts[kept])
+    return with_coordinates(system, np.full(rows.shape[1], spring**2), rows)
 
 
 def stiffened(boom: Boom, stiffness: Sequence[Stiffness]) -> Boom:

@@ -35,29 +35,6 @@ class History(Protocol):
         """Return the value at each time in s, any shape."""
 
 
-# Evenly spaced times at least, times in a period of the fastest history, and times at most.
-_TIMES, _OF_SWING, _MOST_TIMES = 2001, 100, 1_000_001
-# Fraction of the duration below which two times are the same.
-_SAME_TIME = 1.0e-9
-
-
-def followed(histories: Sequence[History], duration: float) -> Array:
-    """Return rising times (num_times,) in s from 0 to ``duration`` that resolve all histories.
-
-    >>> from dynamics.excitation import followed
-    >>> 0.01 in followed([pt.Ramp(0.01)], 1000.0)
-    True
-    """
-    found = [kink for history in histories for kink in history.kinks if 0.0 < kink <= duration]
-    kinks = np.unique(np.array(found))
-    swings = max((history.fastest for history in histories), default=0.0) * duration / (2.0 * np.pi)
-    number = int(np.clip(np.ceil(_OF_SWING * swings) + 1.0, _TIMES, _MOST_TIMES))
-    even = np.linspace(0.0, duration, number)
-    nearest = np.clip(np.rint(kinks / even[1]), 1, number - 2).astype(np.int64)
-    same = np.abs(even[nearest] - kinks) <= _SAME_TIME * duration
-    return np.union1d(np.delete(even, nearest[same]), kinks)
-
-
 @dataclass(frozen=True, slots=True)
 class Step:
     """Constant 1 from t = 0 on.

@@ -1,18 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Gap systems derived from others: in fewer coordinates, with residual springs, without play.
+"""Gap systems derived from others: in fewer coordinates, in more, without play.
 
 **Condensed.** Some modes stay unchanged: a few as the slowest, the others as those whose inertia
 responds most to loads. Under a load b a mode deflects by b²/ω², its inertia by b²/ω⁴. Of the rest,
 the motions that forces excite are kept. They match ``MOMENTS`` derivatives at rest, so that statics
 is exact and the inertia of local deformation is accurate to the first orders (MacNeal 1971; Rubin
 1975, whose residual modes are the first block).
-
-**With springs.** With B the rows of contacts, friction and dashpots and C = B Ω⁻² Bᵀ over the
-elastic modes, the residual compliance of a coarse model beside a fine one is D = C_fine − C_coarse
-(MacNeal 1971). Both have the same rigid motions, so forces that no support carries are carried by
-inertia alike, and D is the local compliance alone. Its positive part D = Σ g gᵀ is a set
-of massless springs. Each is a coordinate with the rows ω_s g and a frequency ω_s well above the
-motion.
 
 **Bonded.** Contacts that press at rest are held where they touch without play; at stations where
 none does, all contacts are held. Under pressure they still deform, as with play: the wall of a
@@ -38,11 +31,6 @@ _OF_ALL = 1.0 / 3.0
 _SLOWEST = 1.0 / 8.0
 # A load vector with a remainder below this fraction of its size is in the space already.
 _DEPENDENT = 1.0e-6
-# ω_s/2π in Hz: the vibration of a boom is slower by a factor of ten and more.
-SPRING_FREQUENCY = 400.0
-
-# A pattern of forces is rigid if its compliance is below this fraction of that of others.
-_NOTHING = 1.0e-3
 # Fraction of the least ω² of the segments: motions below it are rigid.
 _RIGID = 1.0e-6
 
@@ -123,39 +111,6 @@ def _independent(block: Array) -> Array:
     return np.asarray(basis[:, values > _DEPENDENT * values.max(initial=0.0)])
 
 
-def elastic_compliance(system: GapSystem) -> Array:
-    """Return B Ω⁻² Bᵀ (num_resisting, num_resisting) in m/N of contacts, friction, dashpots."""
-    elastic = system.omega2 > 0.0
-    rows = _resisting(system)[:, elastic]
-    return np.asarray(rows / system.omega2[elastic] @ rows.T)
-
-
-def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
-    """Return D (num_resisting, num_resisting) in m/N, which may be indefinite.
-
-    Raises:
-        ValueError: the numbers of rows differ.
-    """
-    if _resisting(coarse).shape[0] != _resisting(fine).shape[0]:
-        raise ValueError("both models must touch, rub and drag in the same places")
-    return elastic_compliance(fine) - elastic_compliance(coarse)
-
-
-def with_springs(system: GapSystem, residual: Array) -> GapSystem:
-    """Return the system with springs: the positive part of a residual compliance.
-
-    The residual is (num_resisting, num_resisting) in m/N.
-    """
-    sizes = np.sqrt(np.abs(np.diag(residual)))
-    sizes[sizes == 0.0] = 1.0
-    # Normalised, since friction rows, pads and dashpots differ by orders of magnitude.
-    amounts, patterns = np.linalg.eigh(residual / np.outer(sizes, sizes))
-    kept = amounts > _NOTHING * max(amounts.max(initial=0.0), 0.0)
-    spring = 2.0 * np.pi * SPRING_FREQUENCY
-    rows = spring * sizes[:, None] * patterns[:, kept] * np.sqrt(amounts[kept])
-    return with_coordinates(system, np.full(rows.shape[1], spring**2), rows)
-
-
 def with_coordinates(system: GapSystem, omega2: Array, rows: Array) -> GapSystem:
     """Return the system with coordinates added that only contacts, friction and dashpots move.
 
@@ -179,7 +134,8 @@ def with_coordinates(system: GapSystem, omega2: Array, rows: Array) -> GapSystem
     )
 
 
-def _resisting(system: GapSystem) -> Array:
+def resisting_rows(system: GapSystem) -> Array:
+    """Return rows (num_resisting, num_modes) of contacts, friction and dashpots."""
     return np.vstack([system.rows, system.friction_rows, system.dashpots])
 
 

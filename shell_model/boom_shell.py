@@ -11,7 +11,6 @@ import numpy as np
 from mpi4py import MPI
 
 from dynamics.gap_builder import GapBuilder, Observed
-from dynamics.stages import Stages
 from geometry.arrays import Array
 from geometry.axial import pin_moments
 from geometry.boom import Boom, BoomError, Direction
@@ -29,6 +28,7 @@ from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.cross_section import Outline, Reading, Row
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from shell_model.stages import Stages
 
 
 @dataclass(frozen=True, slots=True)

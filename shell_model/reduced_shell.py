@@ -13,7 +13,6 @@ from mpi4py import MPI
 
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
-from dynamics.stages import Stages
 from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.plating import PlatedMesh
@@ -30,6 +29,7 @@ from shell_model.contact.rows import ties
 from shell_model.contact.surface import without_stiff_modes
 from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.segment import ReducedSegment, reduce_segment
+from shell_model.stages import Stages
 from shell_model.stress.fields import gather_fields
 from shell_model.telescoping import MOMENTS, TelescopingShell
 

@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated
 
 import numpy as np
 from pydantic import Field
 
+from dynamics.arrays import Array
 from dynamics.drive.travel import SCurve, Stroke
-from dynamics.excitation import History, PiecewiseLinear, followed
+from dynamics.excitation import History, PiecewiseLinear
 from geometry.boom import BoomError
 from geometry.joint import Carrier, Drive
 from runs.case.limits import (
@@ -26,6 +28,11 @@ from runs.case.places import PlaceTable
 
 # Least duration in s and least travel in m: a shorter time is an input error.
 _SHORTEST, _NOWHERE = 1.0e-6, 1.0e-9
+
+# Evenly spaced times at least, times in a period of the fastest history, and times at most.
+_TIMES, _OF_SWING, _MOST_TIMES = 2001, 100, 1_000_001
+# Fraction of the duration below which two times are the same.
+_SAME_TIME = 1.0e-9
 
 # Kinds of drive histories, by their keys.
 _WAYS = ("time", "speed", "table")
@@ -156,8 +163,25 @@ class DriveTable(CaseTable):
 
 def fastest(drive: Drive) -> float:
     """Return the largest speed of a drive in m/s."""
-    times = followed([drive.history], max(drive.history.kinks))
+    times = resolving_times([drive.history], max(drive.history.kinks))
     return float(np.abs(np.diff(drive.history(times)) / np.diff(times)).max())
+
+
+def resolving_times(histories: Sequence[History], duration: float) -> Array:
+    """Return rising times (num_times,) in s from 0 to ``duration`` that resolve all histories.
+
+    >>> from runs.case.drive import resolving_times
+    >>> 0.01 in resolving_times([pt.Ramp(0.01)], 1000.0)
+    True
+    """
+    found = [kink for history in histories for kink in history.kinks if 0.0 < kink <= duration]
+    kinks = np.unique(np.array(found))
+    swings = max((history.fastest for history in histories), default=0.0) * duration / (2.0 * np.pi)
+    number = int(np.clip(np.ceil(_OF_SWING * swings) + 1.0, _TIMES, _MOST_TIMES))
+    even = np.linspace(0.0, duration, number)
+    nearest = np.clip(np.rint(kinks / even[1]), 1, number - 2).astype(np.int64)
+    same = np.abs(even[nearest] - kinks) <= _SAME_TIME * duration
+    return np.union1d(np.delete(even, nearest[same]), kinks)
 
 
 def _said(key: str) -> str:

@@ -9,11 +9,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from dynamics.predictability.low_pass import slow_peaks
 from geometry.arrays import Array, Mask
 from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.kinds.model import of_kind
 from runs.case.schema import Case, Model
+from runs.pipeline.low_pass import slow_peaks
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary
 

@@ -18,10 +18,10 @@ from dynamics.integrator import FixedStep, Integrator
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import Vary
 from dynamics.predictability.horizon import SHARES, horizons_of, measure_horizons
-from dynamics.predictability.low_pass import CUTOFF_SHARE, SlowPeaks, slow_peaks
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs.case.schema import TimeTable
+from runs.pipeline.low_pass import CUTOFF_SHARE, SlowPeaks, slow_peaks
 from runs.pipeline.summary import (
     CommonPeaks,
     EnsembleSummary,

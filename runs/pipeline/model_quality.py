@@ -13,13 +13,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from dynamics.predictability.comparison import Distributions, PeakDifferences, compare
 from dynamics.trajectory import Pointwise
 from geometry.axial import entry
 from geometry.boom import Boom
 from geometry.typography import TO_PERCENT, listed
 from runs.case.actions import series_notes
 from runs.case.schema import Case, Model
+from runs.pipeline.comparison import Distributions, PeakDifferences, compare
 from runs.pipeline.design_results import DesignResults, ModelDesignResults, QualityNote
 from runs.pipeline.drives import lag_cautions, slip_cautions, slippings
 from runs.pipeline.proportions import of_buckling, of_period, of_tip, slips

@@ -15,8 +15,6 @@ from beam_model.calibration import Calibration, Stiffness
 from dynamics.failure import NUMERICS, NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.predictability.ensemble import integrate_ensemble
-from dynamics.predictability.low_pass import SlowPeaks
-from dynamics.stages import Stages
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Segment
 from runs.case import toml
@@ -25,6 +23,7 @@ from runs.case.schema import Case, Model
 from runs.folder.cache import key
 from runs.pipeline import members
 from runs.pipeline.context import RunContext
+from runs.pipeline.low_pass import SlowPeaks
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.proportions import static_tip
@@ -35,6 +34,7 @@ from runs.pipeline.summary import (
     ModelSummary,
     StationSpring,
 )
+from shell_model.stages import Stages
 
 # Wall of the outer segment by the direction and the sign of the inner one's force.
 _WALLS = {("z", 1): "top", ("z", -1): "bottom", ("y", 1): "right", ("y", -1): "left"}

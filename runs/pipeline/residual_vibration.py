@@ -15,12 +15,12 @@ import numpy as np
 
 from dynamics.drive.travel import Travel
 from dynamics.equilibrium import rest_at
-from dynamics.excitation import followed
 from dynamics.failure import NUMERICS, NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array, Indices
 from geometry.typography import TO_MILLI
+from runs.case.drive import resolving_times
 from runs.case.schema import Case, Model
 from runs.pipeline.metrics import Metric, Record
 from runs.pipeline.models import MotionPlan
@@ -121,7 +121,7 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
     """
     time = trajectory.time
     changes = [x.history for x in system.excitations] + [x.history for x in system.travels]
-    times = followed(changes, float(time[-1]))
+    times = resolving_times(changes, float(time[-1]))
     values = np.array([change(times) for change in changes]).reshape(len(changes), times.size)
     passed = _passed(values)
     steps = _rest_steps(values, passed)
@@ -165,7 +165,7 @@ def _speed(travel: Travel) -> float:
     """Return the mean speed in m/s while a drive moves; 0 for a sum of several travels."""
     if travel.suffix is None:
         return 0.0
-    times = followed([travel.history], max(travel.history.kinks))
+    times = resolving_times([travel.history], max(travel.history.kinks))
     ways = np.abs(np.diff(travel.history(times)))
     return float(ways.sum() / np.diff(times)[ways > 0.0].sum())
 

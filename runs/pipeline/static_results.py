@@ -16,7 +16,7 @@ import numpy as np
 
 from dynamics.drive.travel import Travel
 from dynamics.equilibrium import rest_at
-from dynamics.excitation import Excitation, followed
+from dynamics.excitation import Excitation
 from dynamics.failure import NUMERICS
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
@@ -24,6 +24,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.cylinder import forces
 from geometry.telescoping import drawn, places
+from runs.case.drive import resolving_times
 from runs.pipeline.pads import SIGNS, most_on_pad, one_sided_force
 from runs.pipeline.section_forces import rounded, section_forces
 
@@ -158,7 +159,7 @@ def _over_time(
 ) -> tuple[Array, Array]:
     """Return times in s that resolve all histories, and values (num_changes, num_times) of some."""
     loads, ways = ([change.history for change in of] for of in (system.excitations, system.travels))
-    times = followed([*loads, *ways], duration)
+    times = resolving_times([*loads, *ways], duration)
     values = np.array([change.history(times) for change in changes])
     return times, values.reshape(-1, times.size)
 

@@ -62,7 +62,7 @@ class FirstPeak(NamedTuple):
 
 
 class CommonPeaks(Measured):
-    """Of :class:`dynamics.predictability.low_pass.SlowPeaks`, in s and m."""
+    """Of :class:`runs.pipeline.low_pass.SlowPeaks`, in s and m."""
 
     time: Numbers
     time_spread: Numbers
@@ -224,7 +224,7 @@ class ModelSummary(SummaryTable):
 
 
 class PeaksLevel(Measured):
-    """Of :class:`dynamics.predictability.comparison.PeakDifferences`, in s and m."""
+    """Of :class:`runs.pipeline.comparison.PeakDifferences`, in s and m."""
 
     time: Numbers
     time_spread: Numbers
@@ -234,7 +234,7 @@ class PeaksLevel(Measured):
 
 
 class DistributionsLevel(Measured):
-    """Of :class:`dynamics.predictability.comparison.Distributions`, in s and m."""
+    """Of :class:`runs.pipeline.comparison.Distributions`, in s and m."""
 
     since: Known
     range: list[Known]

@@ -12,7 +12,7 @@ import pytest
 
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
-from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine, Step, followed
+from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine, Step
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
@@ -41,15 +41,6 @@ def test_histories_by_hand() -> None:
     assert [h.fastest for h in (Step(), Ramp(2.0), Sine(0.5), table)] == [0.0, 0.0, np.pi, 0.0]
     assert list(Ramp(2.0).kinks) == [0.0, 2.0]
     assert list(table.kinks) == [0.0, 1.0, 2.0]
-
-
-def test_what_is_followed_has_both_ends() -> None:
-    """Reference: analytic; kinks too near to an end to tell a slope from are beside it."""
-    kinks = (1.0e-9, 2.5 + 1.0e-9, 5.0 - 1.0e-9)
-    times = followed([PiecewiseLinear(kinks, (0.0, 1.0, 0.0))], 5.0)
-    assert times[[0, 1, -2, -1]].tolist() == [0.0, kinks[0], kinks[2], 5.0]
-    assert kinks[1] in times
-    assert 2.5 not in times
 
 
 def test_a_step_is_a_load(one_mass: OneMass) -> None:

@@ -13,8 +13,8 @@ pytest.importorskip("dolfinx", reason="a shell calibrates them")
 
 from mpi4py import MPI
 
+from beam_model.calibration import elastic_compliance
 from dynamics.gap_system import GapSystem
-from dynamics.reduction import elastic_compliance
 from geometry.arrays import Array
 from protractile.cases import run_case
 from runs.case import reading as case_file

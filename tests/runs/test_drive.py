@@ -15,10 +15,12 @@ from matplotlib.patches import Polygon
 from rich.console import Console
 
 from dynamics.equilibrium import equilibrium
+from dynamics.excitation import PiecewiseLinear
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
 from runs.case.declared import Declared
+from runs.case.drive import resolving_times
 from runs.case.elastic_drive import elastic_drives
 from runs.case.messages import BadInput
 from runs.case.reading import load
@@ -390,3 +392,12 @@ def test_a_drawing_shows_where_a_segment_is_drawn_to() -> None:
     assert (x.min(), x.max()) == pytest.approx((9.0, 19.0))
     assert sheet.axes[1].get_xlim()[1] > 19.0
     assert "drawn to" in [text.get_text() for text in sheet.legends[0].get_texts()]
+
+
+def test_resolving_times_have_both_ends() -> None:
+    """Reference: analytic; kinks very near to an even time replace it."""
+    kinks = (1.0e-9, 2.5 + 1.0e-9, 5.0 - 1.0e-9)
+    times = resolving_times([PiecewiseLinear(kinks, (0.0, 1.0, 0.0))], 5.0)
+    assert times[[0, 1, -2, -1]].tolist() == [0.0, kinks[0], kinks[2], 5.0]
+    assert kinks[1] in times
+    assert 2.5 not in times

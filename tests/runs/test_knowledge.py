@@ -8,10 +8,10 @@ from typing import Any
 
 import xarray as xr
 
-from dynamics.predictability.comparison import Distributions, PeakDifferences
 from dynamics.trajectory import Pointwise
 from runs import CASES
 from runs.case import reading as case_file
+from runs.pipeline.comparison import Distributions, PeakDifferences
 from runs.pipeline.results import Results
 from runs.report.document import render
 from runs.report.model_tables import law_table, model_table, step_table

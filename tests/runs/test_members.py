@@ -16,12 +16,12 @@ from matplotlib.figure import Figure as Sheet
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
-from dynamics.predictability.low_pass import SlowPeaks, slow_peaks
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case, EnsembleTable
 from runs.pipeline.context import RunContext
+from runs.pipeline.low_pass import SlowPeaks, slow_peaks
 from runs.pipeline.members import PEAKS, slow_below, steps_for_peaks
 from runs.pipeline.models import build
 from runs.pipeline.results import Results

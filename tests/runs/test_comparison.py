@@ -9,15 +9,15 @@ import xarray as xr
 from scipy.stats import norm
 
 from dynamics.motion import Motion
-from dynamics.predictability.comparison import (
+from dynamics.predictability.ensemble import integrate_ensemble
+from dynamics.trajectory import Pointwise
+from runs.pipeline.comparison import (
     Comparison,
     Distributions,
     PeakDifferences,
     compare,
 )
-from dynamics.predictability.ensemble import integrate_ensemble
-from dynamics.predictability.low_pass import SlowPeaks
-from dynamics.trajectory import Pointwise
+from runs.pipeline.low_pass import SlowPeaks
 from tests.dynamics.two_stops import CHAOTIC
 
 TIME = np.arange(10_001) * 1e-3

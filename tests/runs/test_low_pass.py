@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from dynamics.predictability.low_pass import SlowPeaks, slow, slow_peaks
+from runs.pipeline.low_pass import SlowPeaks, slow, slow_peaks
 
 TIME = np.arange(10_001) * 1e-3
 CUTOFF = 1.7

@@ -12,8 +12,8 @@ from scipy.stats import ks_2samp
 
 from dynamics.arrays import Array, Mask
 from dynamics.predictability.horizon import SHARES, horizons_of
-from dynamics.predictability.low_pass import SlowPeaks
 from dynamics.trajectory import Pointwise
+from runs.pipeline.low_pass import SlowPeaks
 
 
 @dataclass(frozen=True, slots=True)
