@@ -280,12 +280,12 @@ def frequencies(
 def check(case: CaseFile, picture: Picture = None) -> int:
     """Check a case file, and print what follows from it."""
     from runs.case.reading import declared
-    from runs.pipeline.inferred import print_inferred
+    from runs.check import print_check
 
     found = declared(case)
     if picture is not None:
         import_module("runs.report.boom_drawing").save_drawing(found.case, case, picture)
-    print_inferred(found, Terminal())
+    print_check(found, Terminal())
     return 0
 
 

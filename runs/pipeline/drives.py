@@ -20,7 +20,7 @@ from runs.case.elastic_drive import elastic_drives, with_elastic_drives
 from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.static_results import extended_positions, instants, positions
-from runs.pipeline.statics import statics, with_play_seen
+from runs.pipeline.statics import boom_with_play, statics
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -82,7 +82,7 @@ def slippings(case: Case, boom: Boom) -> Iterator[Slipping]:
     joints = elastic_drives(case, boom)
     if not joints or statics(case, boom) is None:
         return
-    system = with_elastic_drives(telescoping_system(with_play_seen(case, boom)), case, boom)
+    system = with_elastic_drives(telescoping_system(boom_with_play(case, boom)), case, boom)
     travels = (travel for travel in system.travels if travel.elastic is not None)
     for (number, pulled), travel in zip(joints.items(), travels, strict=True):
         joint = boom.joints[number]

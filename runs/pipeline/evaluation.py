@@ -171,8 +171,8 @@ def answer_run(
     ran = [model for model in case.models if model.name in models]
     answers = DesignResults(
         models=dict(models),
-        reactions=[] if found is None else reactions(found.played),
-        reactions_bonded=[] if found is None else reactions(found.tied),
+        reactions=[] if found is None else reactions(found.with_play),
+        reactions_bonded=[] if found is None else reactions(found.bonded),
         modes=_beside(boom, ran, models),
         play=play_effects(ran, models) if boom.joints else [],
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Statics of a boom as beam elements: masses, deflection at rest, reactions."""
+"""Static states of a boom as beam elements with and without play, and their reactions."""
 
 from __future__ import annotations
 
@@ -8,25 +8,17 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from rich.console import Console
 
 from beam_model.statics import Elements, StaticState, net_reactions, static_state
-from dynamics.damping import pressed_modes
 from dynamics.failure import NUMERICS
 from geometry.axial import on_foot
 from geometry.boom import Boom
 from geometry.cylinder import force_name
-from geometry.typography import TO_KILO, TO_MILLI
 from runs.case.schema import Case
-from runs.case.units import System
-from runs.pipeline.proportions import of_period, of_tip
-from runs.pipeline.static_results import pressed, tilts
-from runs.report.tables import Table
+from runs.pipeline.static_results import pressed
 
 # Part of the other reactions below which a reaction counts as zero.
 ROUND_OFF = 1.0e-9
-# Moment in N·m below which a moment counts as zero.
-_NO_MOMENT = 1.0e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +48,8 @@ class Statics(NamedTuple):
     Both are without play if no model of the case has any.
     """
 
-    played: StaticState
-    tied: StaticState
+    with_play: StaticState
+    bonded: StaticState
 
 
 def statics(case: Case, boom: Boom) -> Statics | None:
@@ -66,15 +58,15 @@ def statics(case: Case, boom: Boom) -> Statics | None:
     try:
         with np.errstate(all="ignore"):
             elements = Elements(boom)
-            tied = static_state(boom.play_free, elements)
+            bonded = static_state(boom.play_free, elements)
             if not with_play:
-                return Statics(tied, tied)
-            return Statics(static_state(with_play_seen(case, boom), elements), tied)
+                return Statics(bonded, bonded)
+            return Statics(static_state(boom_with_play(case, boom), elements), bonded)
     except NUMERICS:
         return None
 
 
-def with_play_seen(case: Case, boom: Boom) -> Boom:
+def boom_with_play(case: Case, boom: Boom) -> Boom:
     """Return the boom of the first model with play."""
     with_play = next((model for model in case.models if not model.play_free), case.models[0])
     return with_play.joined(boom).boom
@@ -83,7 +75,9 @@ def with_play_seen(case: Case, boom: Boom) -> Boom:
 def reactions(state: StaticState) -> list[Reaction]:
     """Return the support reactions."""
     between = _between_segments(state.boom)
-    return [one for place, one in _held(state).items() if place not in between]
+    return [
+        one for place, one in contact_and_support_reactions(state).items() if place not in between
+    ]
 
 
 def _between_segments(boom: Boom) -> set[tuple[int, float]]:
@@ -91,7 +85,7 @@ def _between_segments(boom: Boom) -> set[tuple[int, float]]:
     return {(joint.inner, x) for joint in boom.joints for x in joint.stations}
 
 
-def _held(state: StaticState) -> dict[tuple[int, float], Reaction]:
+def contact_and_support_reactions(state: StaticState) -> dict[tuple[int, float], Reaction]:
     """Return the reactions of ground and joints by segment and x in m, without round-off."""
     boom, depths, along = state.boom, _depths(state), _along(state)
     places = _between_segments(boom)
@@ -148,99 +142,3 @@ def _depths(state: StaticState) -> dict[tuple[int, float], float]:
 def cylinder_force(state: StaticState, number: int) -> float:
     """Return the force of a cylinder's spring in N; the first cylinder has number 1."""
     return float(state.system.observers[force_name(number)].row @ state.position)
-
-
-def print_statics(case: Case, boom: Boom, console: Console) -> None:
-    """Print the masses and the static state of the boom."""
-    _masses(boom, case.system).show(console)
-    found = statics(case, boom)
-    if found is None:
-        console.print("No rest under the loads of t = 0 is found.")
-        return
-    played, tied = found
-    _reactions(played, case.system).show(console)
-    if boom.cylinders:
-        _cylinders(played, case.system).show(console)
-    hertz = [
-        float(pressed_modes(state.system, state.position)[0][0]) / (2.0 * np.pi) for state in found
-    ]
-    lines = [
-        f"At rest the tip is at {played.tip * TO_MILLI:.4g} mm, without play at "
-        f"{tied.tip * TO_MILLI:.4g} mm; the first frequency is {hertz[0]:.4g} Hz with the "
-        f"joints pressed, {hertz[1]:.4g} Hz without play."
-    ]
-    lines += [
-        f"Play turns {tilt.inner!r} by {tilt.rotation * TO_MILLI:.4g} mrad in {tilt.outer!r}, "
-        f"which moves the tip by {tilt.tip * TO_MILLI:.4g} mm."
-        for tilt in tilts(played.boom, played.system, played.position)
-    ]
-    model = "as beam elements"
-    for line in (*lines, *of_tip(model, played.tip, boom), *of_period(model, hertz[0], case)):
-        console.print(line, markup=False, highlight=False)
-
-
-def _masses(boom: Boom, system: System) -> Table:
-    """Return the table of masses of each segment with its attachments, and their sum."""
-    kg, m = system.label("kg"), system.label("m")
-    rows = []
-
-    def mass(value: float) -> str:
-        return f"{system.of(value, 'kg'):.4g}"
-
-    def place(value: float) -> str:
-        return f"{system.of(value, 'm'):.5g}"
-
-    whole, moment = 0.0, 0.0
-    for segment in boom.segments:
-        own, here = segment.mass_per_length * segment.length, segment.mass
-        middle = own * segment.mass_middle
-        middle += sum(point.mass * point.x for point in segment.carried)
-        rows.append((segment.name, mass(own), mass(here - own), place(middle / here)))
-        whole, moment = whole + here, moment + middle
-    rows.append(("all", mass(whole), "", place(moment / whole)))
-    return Table.of_rows(
-        "", "", ("mass", f"segment ({kg})", f"on it ({kg})", f"middle ({m})"), rows
-    )
-
-
-def _reactions(state: StaticState, system: System) -> Table:
-    """Return the table of support reactions and contact compressions."""
-    held = list(_held(state).values())
-    pushed = any(one.along for one in held)
-    along = ["along (kN)"] if pushed else []
-    x = f"x ({system.label('m')})"
-    rows = []
-    for one in held:
-        row = (
-            one.segment,
-            f"{system.of(one.x, 'm'):g}",
-            f"{one.force * TO_KILO:.4g}",
-            *([f"{one.along * TO_KILO:.4g}" if one.along else ""] if pushed else []),
-            f"{one.moment * TO_KILO:.4g}" if abs(one.moment) > _NO_MOMENT else "",
-            "" if one.depth is None else f"{one.depth * TO_MILLI:.3g}",
-        )
-        rows.append(row)
-    return Table.of_rows(
-        "",
-        "",
-        ("holds at rest", x, "force (kN)", *along, "moment (kN m)", "pressed in (mm)"),
-        rows,
-    )
-
-
-def _cylinders(state: StaticState, system: System) -> Table:
-    """Return the table of cylinder axes and forces; a pair side by side counts together."""
-    lengths = [f"{name} ({system.label('m')})" for name in ("x", "length", "arm")]
-    rows = []
-    for number, cylinder in enumerate(state.boom.cylinders, start=1):
-        segment = state.boom.segments[cylinder.segment]
-        arm = None if segment.foot is None else cylinder.arm(segment.foot)
-        row = (
-            segment.name,
-            f"{system.of(cylinder.x, 'm'):g}",
-            f"{system.of(cylinder.length, 'm'):.5g}",
-            "" if arm is None else f"{system.of(arm, 'm'):.5g}",
-            f"{cylinder_force(state, number) * TO_KILO:.4g}",
-        )
-        rows.append(row)
-    return Table.of_rows("", "", ("cylinder of", *lengths, "force (kN)"), rows)

@@ -213,7 +213,10 @@ class Table:
 
     def show(self, console: Console) -> None:
         """Print the table."""
-        grid = Grid(title=Text(self.title), title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+        if self.title:
+            # The title of a grid would be broken at the width of its columns.
+            console.print(Text(self.title, style="italic"))
+        grid = Grid(box=SIMPLE_HEAD, pad_edge=False)
         for i, heading in enumerate(self.headings):
             # Small numbers stay on one line: 1 × 10⁻¹².
             whole = i == 0 or ("\n" in heading and any(" × 10" in row[i] for row in self.rows))

@@ -23,7 +23,7 @@ from runs.pipeline import estimates
 from runs.process.terminal import LONGEST
 
 # What commands import when they are given, which each process would do by itself.
-for name in ("pipeline.inferred", "pipeline.run", "report.output", "paper.rules", "sweep.run"):
+for name in ("check", "pipeline.run", "report.output", "paper.rules", "sweep.run"):
     import_module(f"runs.{name}")
 for name in ("optimize", "signal"):
     import_module(f"scipy.{name}")

@@ -14,7 +14,7 @@ from runs.case.build import build_boom
 from runs.case.declared import Declared
 from runs.case.schema import Case
 from runs.case.toml import dumps
-from runs.pipeline.inferred import print_inferred
+from runs.check import print_check
 from tests.runs.case_texts import STEEL, box, joint, read_case
 from tests.runs.summaries import printed
 
@@ -99,11 +99,15 @@ def test_every_model_stands_on_its_cylinder(case: Case) -> None:
 
 
 def test_check_tells_the_cylinder_and_how_far_its_dashpot_damps(case: Case) -> None:
-    """Reference: analytic, the arm of its line about the pin, and the moment of the weights."""
-    told = printed(print_inferred, Declared(case), width=200)
+    """Reference: analytic, the arm of its line about the pin, the moment of the weights, and
+    the component along the boom between pin and lug."""
+    told = printed(print_check, Declared(case), width=200)
     row = next(line for line in told.split("cylinder of")[1].splitlines() if "base" in line)
     _, x, length, arm, force = row.split()
     assert x == "3"
     assert [float(length), float(arm)] == pytest.approx([np.hypot(1.8, 1.9), ARM], rel=1e-3)
     assert float(force) == pytest.approx(1e-3 * turning(build_boom(case)) / ARM, rel=1e-3)
     assert len([line for line in told.splitlines() if " % at " in line]) == 4
+    along = 1e-3 * turning(build_boom(case)) / ARM * 1.8 / np.hypot(1.8, 1.9)
+    row = next(line for line in told.split("axial forces")[1].splitlines() if "base" in line)
+    assert float(row.split()[1].replace("−", "-")) == pytest.approx(-along, rel=1e-3)

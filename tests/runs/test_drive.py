@@ -24,8 +24,8 @@ from runs.case.drive import resolving_times
 from runs.case.elastic_drive import elastic_drives
 from runs.case.messages import BadInput
 from runs.case.reading import load
+from runs.check import print_check
 from runs.pipeline.drives import drive_lines
-from runs.pipeline.inferred import print_inferred
 from runs.pipeline.models import build
 from runs.pipeline.results import Results
 from runs.report import theme
@@ -366,7 +366,7 @@ def test_a_check_tells_what_a_drive_does() -> None:
     """Reference: the case, and analytic: an S-curve is twice as fast as it is in the mean."""
     case = load(str(CASES / "drawn-out.toml"))
     shown = StringIO()
-    print_inferred(Declared(case), Console(file=shown, width=200))
+    print_check(Declared(case), Console(file=shown, width=200))
     assert (
         "A drive draws 'inner' 4 m out of 'outer' from 0 to 5 s, at 1.6 m/s at most; 1 m of "
         "overlap are left.\n"

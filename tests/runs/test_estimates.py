@@ -18,8 +18,8 @@ from runs.case.build import build_boom
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import Shell
 from runs.case.messages import BadInput
+from runs.check import print_check
 from runs.pipeline.estimates import Cost, of_run, of_sweep, refuse_large
-from runs.pipeline.inferred import print_inferred
 from runs.sweep import points as sweep_points
 from tests.runs.coarse_case import COARSE
 from tests.runs.summaries import printed
@@ -161,7 +161,7 @@ def test_a_check_of_short_elements_is_soon_done(name: str) -> None:
             edited += "\n[damping]\nmass = 0.1\n"
         Path("case.toml").write_text(edited, encoding="utf-8")
         begin = process_time()
-        told.append(printed(print_inferred, case_file.declared("case.toml"), width=200))
+        told.append(printed(print_check, case_file.declared("case.toml"), width=200))
     assert process_time() - begin < 20.0
     numbers = [[float(x) for x in re.findall(r"([\d.]+) (?:%|Hz)", text)] for text in told]
     assert len(numbers[0]) > 10

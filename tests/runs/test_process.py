@@ -58,7 +58,7 @@ def test_letters_that_the_terminal_lacks_are_spelled_out() -> None:
     answer = in_a_shell("check", PYTHONIOENCODING="ascii")
     assert (answer.returncode, answer.stderr) == (0, "")
     assert "The paper's boom, coarse and short" in answer.stdout
-    assert "J (m\\u2074)" in answer.stdout
+    assert "m\\u2074" in answer.stdout
 
 
 @given(st.text(st.characters(), max_size=2000))

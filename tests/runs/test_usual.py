@@ -14,7 +14,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.declared import Declared
 from runs.case.messages import BadInput
-from runs.pipeline.inferred import print_inferred
+from runs.check import print_check
 from runs.pipeline.proportions import slips
 from tests.runs.case_texts import STEEL, box, joint
 
@@ -187,13 +187,13 @@ def test_a_run_shorter_than_a_swing_is_told(
     monkeypatch.chdir(tmp_path)
     shown = io.StringIO()
     declared = case_file.declared(written(tmp_path, "duration = 3.0", "duration = 0.2"))
-    print_inferred(declared, Console(file=shown, width=200))
+    print_check(declared, Console(file=shown, width=200))
     line = (
         "caution: time.duration: the run of 0.2 s is shorter than one swing as beam elements, "
         "0.553 s; usual are three swings at least"
     )
     assert line in shown.getvalue().splitlines()
-    (frequency,) = re.findall(r"the first frequency is ([0-9.]+) Hz with", shown.getvalue())
+    (frequency,) = re.findall(r"joints pressed, as beam elements: ([0-9.]+) Hz", shown.getvalue())
     assert 1.0 / float(frequency) == pytest.approx(0.553, rel=1e-3)
 
 
@@ -258,5 +258,5 @@ def test_booms_have_none(tmp_path: Path, text: str) -> None:
     path = tmp_path / "case.toml"
     path.write_text(text, encoding="utf-8")
     shown = io.StringIO()
-    print_inferred(Declared(case_file.load(str(path))), Console(file=shown, width=200))
+    print_check(Declared(case_file.load(str(path))), Console(file=shown, width=200))
     assert "caution" not in shown.getvalue()

@@ -1,0 +1,371 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The output of ``check``: tables and sentences of the data that follow from a case file.
+
+Numbers of shells are those of beams: a shell would have to be computed first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from itertools import zip_longest
+
+import numpy as np
+from rich.console import Console
+
+from beam_model.statics import StaticState
+from dynamics.damping import pressed_modes, pressed_ratios
+from dynamics.failure import NUMERICS
+from dynamics.motion import rest_of
+from geometry.axial import carried, passed_over
+from geometry.boom import Boom, Direction, Joint
+from geometry.fit import room
+from geometry.typography import TO_MILLI
+from runs.case import actions
+from runs.case.declared import Declared
+from runs.case.kinds.model import ModelTable
+from runs.case.schema import Case, Model
+from runs.case.units import System
+from runs.pipeline.drives import drive_lines, slip_cautions, slip_lines, slippings
+from runs.pipeline.estimates import Preview, of_preview
+from runs.pipeline.proportions import of_buckling, of_period, of_tip, slips
+from runs.pipeline.static_results import tilts
+from runs.pipeline.statics import (
+    Statics,
+    contact_and_support_reactions,
+    cylinder_force,
+    statics,
+)
+from runs.report.formatting import number
+from runs.report.tables import Cell, Column, Table
+
+# Number of modes whose damping is shown.
+SHOWN_MODES = 3
+
+# Distance from a jump of the force, as a part of the segment.
+_BESIDE = 1.0e-9
+
+# A damping ratio below this counts as zero, as does a moment in N·m.
+_ROUND_OFF, _NO_MOMENT = 1.0e-12, 1.0e-3
+
+_BEAMS = "as beam elements"
+
+
+def print_check(declared: Declared, console: Console) -> None:
+    """Print the tables of a checked case, and its static state in sentences at the end."""
+    case, boom, preview = declared.case, declared.boom, Preview(declared)
+    found = statics(case, boom)
+    print_lines = partial(console.print, markup=False, highlight=False)
+    tables = [
+        _segments(case, boom),
+        _stiffeners(boom, case.system),
+        _joints(case, boom),
+        _models(case, boom),
+        _masses(boom, case.system),
+        axial_forces(boom, found),
+        *([_buckling(declared)] if boom.compressed else []),
+        _damping_ratios(preview),
+        *([_reactions(found.with_play, case.system)] if found else []),
+        *([_cylinders(found.with_play, case.system)] if found else []),
+    ]
+    print_lines(case.title)
+    for table in tables:
+        if table.rows:
+            table.show(console)
+    drives = list(slippings(case, boom))
+    lines = [*drive_lines(boom, case.system), *slip_lines(drives, case.system)]
+    lines += [*_static_lines(case, boom, found)]
+    if boom.compressed:
+        for model in case.models:
+            lines += of_buckling(_beam_name(model), _critical_factor(declared, model))
+    lines += [*actions.series_notes(case), *slips(case, boom), *slip_cautions(drives, case.system)]
+    for line in (*lines, f"A run may take {of_preview(preview)}."):
+        print_lines(line)
+
+
+def _of(system: System, title: str, si: str, values: Sequence[float], form: str = ".4g") -> Column:
+    """Return a column of values in an SI unit, in the units of the case."""
+    return Column(f"{title}\n{system.label(si)}", [system.of(one, si) for one in values], form)
+
+
+def _spans(system: System, ends: Sequence[tuple[float, float]]) -> Column:
+    texts = [[f"{system.of(x, 'm'):g}" for x in dict.fromkeys(both)] for both in ends]
+    return Column(f"x\n{system.label('m')}", ["–".join(text) for text in texts])
+
+
+def _beam_name(model: Model) -> str:
+    return f"{model.name}, {_BEAMS}" if model.needs_shell else model.name
+
+
+def _segments(case: Case, boom: Boom) -> Table:
+    column, segments, boxes = partial(_of, case.system), boom.segments, []
+    for given, segment in zip(case.segments, segments, strict=True):
+        box = "unknown" if segment.section is None else str(segment.section)
+        if segment.head_section is not None:
+            box += f" to {segment.head_section}"
+        inferred = given.section is None and segment.section is not None
+        boxes.append(f"{box}, inferred" if inferred else box)
+    columns = [
+        Column("segment", [one.name for one in segments]),
+        _spans(case.system, [one.ends for one in segments]),
+        column("mass", "kg/m", [one.mass_per_length for one in segments]),
+        column("I_y", "m^4", [one.second_moment_of_area for one in segments]),
+        column("rotary inertia", "kg m", [one.rotary_inertia for one in segments], ".3g"),
+        Column("section\nmm", boxes),
+    ]
+    return Table("Segments", columns)
+
+
+def _stiffeners(boom: Boom, system: System) -> Table:
+    """Return the table of stiffeners of segments with known plates; others have no shell."""
+    rows: list[tuple[str, str, tuple[float, float], float, float]] = []
+    for segment in boom.segments:
+        if segment.section is None:
+            continue
+        for one in segment.collars:
+            area = segment.mean_perimeter(one) * (one.end - one.start)
+            rows.append(("collar", segment.name, (one.start, one.end), one.thickness, area))
+        for plate in segment.diaphragms:
+            area, ends = segment.section_at(plate.x).enclosed_area, (plate.x, plate.x)
+            rows.append(("diaphragm", segment.name, ends, plate.thickness, area))
+    density = {one.name: one.material.density for one in boom.segments}
+    columns = [
+        Column("stiffener", [row[0] for row in rows]),
+        Column("segment", [row[1] for row in rows]),
+        _spans(system, [row[2] for row in rows]),
+        Column("thickness", [row[3] for row in rows], ".3g", "mm"),
+        _of(system, "mass", "kg", [density[row[1]] * row[3] * row[4] for row in rows], ".3g"),
+    ]
+    return Table("Stiffeners", columns)
+
+
+def _joints(case: Case, boom: Boom) -> Table:
+    system, m = case.system, case.system.label("m")
+    lengths = f"overlap\n{m}", f"stations\n{m}"
+    rows = []
+    for joint in boom.joints:
+        outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
+        free = "unknown"
+        if outer.section is not None and inner.section is not None:
+            height, width = room(joint, outer, inner)
+            free = f"{1e3 * height:.1f} high\n{1e3 * width:.1f} wide"
+        row = (
+            f"{inner.name} in {outer.name}",
+            f"{system.of(min(outer.end, inner.end) - max(outer.start, inner.start), 'm'):g}",
+            ", ".join(f"{system.of(x, 'm'):g}" for x in joint.stations),
+            "bonded" if joint.tied else ", ".join(_clearances(joint)),
+            free,
+            _friction(joint),
+        )
+        rows.append(row)
+    headings = ("joint", *lengths, "clearance\nmm", "free space\nmm", "friction")
+    return Table.of_rows("", "Joints", headings, rows)
+
+
+def _clearances(joint: Joint) -> Iterator[str]:
+    """Yield the clearances of a joint in mm, along z, and in space along y."""
+    sides: Mapping[Direction, tuple[str, str]] = {"z": ("above", "below"), "y": ("right", "left")}
+    for direction, names in sides.items():
+        if direction == "y" and joint.lateral_play is None:
+            return
+        both = [1e3 * clearance for clearance in joint.clearances(direction)]
+        parts = [f"{one:g} {name}" for one, name in zip(both, names, strict=True)]
+        alike = f"± {both[0]:g}" + (" to the sides" if direction == "y" else "")
+        yield alike if both[0] == both[1] else ", ".join(parts)
+
+
+def _friction(joint: Joint) -> str:
+    if joint.friction == 0.0:
+        return "none"
+    forces = ", ".join(f"{force:g}" for force in joint.normal_forces)
+    return f"{joint.friction:g}, pressed by {f'{forces} N' if forces else 'the contacts'}"
+
+
+def _models(case: Case, boom: Boom) -> Table:
+    rows = []
+    for model in case.models:
+        laws = {str(joint.contact) for joint in model.joined(boom).boom.joints}
+        contact = "bonded" if model.play_free else "; ".join(sorted(laws))
+        rows.append((model.name, model.kind, model.describe(), contact))
+    headings = ("model", "kind", "description", "contact (k in N/mⁿ)")
+    return Table.of_rows("", "Models", headings, rows)
+
+
+def _masses(boom: Boom, system: System) -> Table:
+    """Return the table of masses of each segment with its attachments, and their sum."""
+    segments = boom.segments
+    own = [one.mass_per_length * one.length for one in segments]
+    masses = [one.mass for one in segments]
+    moments = [
+        mass * segment.mass_middle + sum(point.mass * point.x for point in segment.carried)
+        for mass, segment in zip(own, segments, strict=True)
+    ]
+    whole, moment = sum(masses), sum(moments)
+    centres = [one / mass for one, mass in zip(moments, masses, strict=True)]
+    attached = [mass - part for mass, part in zip(masses, own, strict=True)]
+    columns = [
+        Column("segment", [*(one.name for one in segments), "all"]),
+        _of(system, "own mass", "kg", [*own, sum(own)]),
+        _of(system, "attached mass", "kg", [*attached, whole - sum(own)]),
+        _of(system, "centre of mass x", "m", [*centres, moment / whole]),
+    ]
+    return Table("Masses", columns)
+
+
+def axial_forces(boom: Boom, found: Statics | None) -> Table:
+    """Return the table of the extreme axial force of each segment, pressing positive.
+
+    Args:
+        boom: that of a case.
+        found: its static states, whose cylinders push the boom along; None without an equilibrium.
+    """
+    if not boom.compressed and not boom.cylinders:
+        return Table("", [])
+    state = found.with_play if found else None
+    extremes = [_extreme_axial_force(boom, i, state) for i in range(len(boom.segments))]
+    columns = [
+        Column("segment", [one.name for one in boom.segments]),
+        Column("axial force", [force for force, _ in extremes], ".4g", "kN"),
+        Column("over the area", [stress for _, stress in extremes], ".4g", "MPa"),
+    ]
+    note = "At any extension; cylinders push as at rest under the loads of t = 0."
+    notes = [note] if boom.cylinders else []
+    return Table("Extreme axial forces, compression positive", columns, notes)
+
+
+def _extreme_axial_force(
+    boom: Boom, number: int, state: StaticState | None
+) -> tuple[float, float | None]:
+    """Return the extreme axial force of a segment in N and stress in Pa, over all extensions."""
+    segment = boom.segments[number]
+    cylinders = [
+        (cylinder, cylinder_force(state, k))
+        for k, cylinder in enumerate(boom.cylinders, start=1)
+        if cylinder.segment == number and state is not None
+    ]
+    jumps = {*segment.compression.places, *passed_over(boom.segments, boom.joints, number)}
+    if cylinders and segment.foot is not None:
+        jumps |= {segment.foot.x, *(cylinder.x for cylinder, _ in cylinders)}
+    ends = [x + side * _BESIDE * segment.length for x in jumps for side in (-1.0, 1.0)]
+    x = np.unique(np.clip([*ends, segment.start, segment.end], segment.start, segment.end))
+    times = [joint.drive.times for joint in boom.joints if joint.drive is not None]
+    time = np.unique(np.concatenate([np.zeros(1), *times]))
+    forces = carried(boom.segments, boom.joints, number, x, time)
+    for cylinder, force in cylinders:
+        forces = forces - force * cylinder.pull(x, segment.foot)
+    largest = float(forces.flat[np.abs(forces).argmax()])
+    if segment.section is None:
+        return largest, None
+    stresses = forces / [segment.section_at(at).area for at in x]
+    return largest, float(stresses.flat[np.abs(stresses).argmax()])
+
+
+def _critical_factor(declared: Declared, model: Model) -> float | None:
+    return model.coarsened(declared.boom).critical_factor(declared.joined(model))
+
+
+def _buckling(declared: Declared) -> Table:
+    """Return the table of the buckling factor of each model."""
+    models = declared.case.models
+    factors = [_critical_factor(declared, model) for model in models]
+    columns = [
+        Column("model", [_beam_name(model) for model in models]),
+        Column("buckling factor", factors, ".4g"),
+        Column("part of the critical forces", [f and 1.0 / f for f in factors], ".3g", "%"),
+    ]
+    return Table("Buckling under the axial forces, joints pressed", columns)
+
+
+def _damping_ratios(preview: Preview) -> Table:
+    """Return the total damping ratios of the first modes of each model, with closed contacts."""
+    case, boom = preview.declared.case, preview.declared.boom
+    given = [*case.damping.model_dump().values(), *(s.viscous_damping for s in boom.segments)]
+    given += [joint.dashpot for joint in boom.joints]
+    given += [cylinder.dashpot for cylinder in boom.cylinders]
+    given += [support.dashpot for segment in boom.segments for support in segment.supports]
+    rows: list[tuple[str, ...]] = []
+    for model in case.models if any(given) else ():
+        beam = model.stand_in(boom).beam if model.needs_shell else model.coarsened(boom)
+        # Some booms have fewer modes.
+        cells = zip_longest(range(SHOWN_MODES), _ratios(preview, model, beam), fillvalue="")
+        rows.append((_beam_name(model), *(cell for _, cell in [*cells][:SHOWN_MODES])))
+    headings = ("model", *(f"mode {number}" for number in range(1, SHOWN_MODES + 1)))
+    return Table.of_rows("", "Damping ratios, joints pressed", headings, rows)
+
+
+def _ratios(preview: Preview, model: Model, beam: ModelTable) -> list[str]:
+    try:
+        with np.errstate(all="ignore"):
+            motion = preview.motion(model, beam)
+            rest = rest_of(motion.system, preview.declared.case.start.at_rest, motion.position)
+            found = pressed_ratios(motion.system, rest)
+    except NUMERICS:
+        return ["cannot be computed"]
+    # The dashpot between open stations leaves only round-off.
+    both = (
+        (hertz, ratio if ratio > _ROUND_OFF else 0.0) for hertz, ratio in zip(*found, strict=True)
+    )
+    return [f"{100.0 * ratio:.3g} % at {hertz:.3g} Hz" for hertz, ratio in both]
+
+
+def _reactions(state: StaticState, system: System) -> Table:
+    """Return the table of support and contact reactions and contact compressions."""
+    held = list(contact_and_support_reactions(state).values())
+    moments: list[Cell] = [one.moment if abs(one.moment) > _NO_MOMENT else "" for one in held]
+    along: list[Cell] = [one.along or "" for one in held]
+    depths: list[Cell] = ["" if one.depth is None else one.depth for one in held]
+    columns = [
+        Column("segment", [one.segment for one in held]),
+        Column(f"x\n{system.label('m')}", [f"{system.of(one.x, 'm'):g}" for one in held]),
+        Column("force", [one.force for one in held], ".4g", "kN"),
+        *([Column("axial force", along, ".4g", "kN")] if any(along) else []),
+        Column("moment", moments, ".4g", "kN m"),
+        Column("compression", depths, ".3g", "mm"),
+    ]
+    known = all(segment.section is not None for segment in state.boom.segments)
+    theory = "Timoshenko" if known else "Euler-Bernoulli"
+    notes = [f"Of the boom as {theory} beam elements, exact in statics; no model of the case."]
+    return Table("Reactions of supports and contacts at rest, t = 0", columns, notes)
+
+
+def _cylinders(state: StaticState, system: System) -> Table:
+    """Return the table of cylinder axes and forces; a pair side by side counts together."""
+    cylinders, segments = state.boom.cylinders, state.boom.segments
+    arms: list[Cell] = []
+    for cylinder in cylinders:
+        foot = segments[cylinder.segment].foot
+        arms.append("" if foot is None else system.of(cylinder.arm(foot), "m"))
+    columns = [
+        Column("cylinder of", [segments[one.segment].name for one in cylinders]),
+        Column(f"x\n{system.label('m')}", [f"{system.of(one.x, 'm'):g}" for one in cylinders]),
+        _of(system, "length", "m", [one.length for one in cylinders], ".5g"),
+        Column(f"lever arm\n{system.label('m')}", arms, ".5g"),
+        Column("force", [cylinder_force(state, 1 + i) for i in range(len(cylinders))], ".4g", "kN"),
+    ]
+    return Table("Cylinders at rest, t = 0", columns)
+
+
+def _static_lines(case: Case, boom: Boom, found: Statics | None) -> Iterator[str]:
+    """Yield the static tip deflection, the first frequency, the tilts by play, and cautions."""
+    if found is None:
+        yield "No rest under the loads of t = 0 is found."
+        return
+    state, bonded = found
+    hertz, bonded_hertz = (
+        float(pressed_modes(one.system, one.position)[0][0]) / (2.0 * np.pi) for one in found
+    )
+    yield (
+        f"Static tip deflection (t = 0), {_BEAMS}: {number(TO_MILLI * state.tip, 4)} mm; without "
+        f"play {number(TO_MILLI * bonded.tip, 4)} mm."
+    )
+    yield (
+        f"First natural frequency, joints pressed, {_BEAMS}: {number(hertz, 4)} Hz; without "
+        f"play {number(bonded_hertz, 4)} Hz."
+    )
+    for tilt in tilts(state.boom, state.system, state.position):
+        yield (
+            f"Play rotates {tilt.inner!r} by {number(TO_MILLI * tilt.rotation, 4)} mrad in "
+            f"{tilt.outer!r}, which moves the tip by {number(TO_MILLI * tilt.tip, 4)} mm."
+        )
+    yield from of_tip(_BEAMS, state.tip, boom)
+    yield from of_period(_BEAMS, hertz, case)
