@@ -18,7 +18,6 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
@@ -43,8 +42,6 @@ SHARP = 30.0
 
 # Vertical angle of view in degrees: enough perspective for a box.
 VIEW_ANGLE = 12.0
-
-OUTLINED = [withStroke(linewidth=5, foreground="white")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,7 +190,11 @@ class Sheet:
         """Draw a vertical arrow from (2,) pixels, down by negative lengths, with a label."""
         x, y = (float(pixel) for pixel in foot)
         shaft = {"width": 8, "headwidth": 24, "headlength": 22, "color": theme.FORCE}
-        letters: dict[str, Any] = {"color": theme.FORCE, "path_effects": OUTLINED, "va": "center"}
+        letters: dict[str, Any] = {
+            "color": theme.FORCE,
+            "path_effects": theme.OUTLINED,
+            "va": "center",
+        }
         mark = self.picture.annotate
         self.pass_by(
             # Matplotlib omits an arrow whose tip is beyond the picture.
@@ -205,8 +206,8 @@ class Sheet:
         """Draw a ring around a place, in pixels, with a label."""
         look: dict[str, Any] = {"ms": 26, "mfc": "none", "mec": theme.INK, "mew": 3}
         self.pass_by(
-            *self.picture.plot([x], [y], "o", path_effects=OUTLINED, **look),
-            self.picture.annotate(text, (x + 24.0, y - 30.0), size=18, path_effects=OUTLINED),
+            *self.picture.plot([x], [y], "o", path_effects=theme.OUTLINED, **look),
+            self.picture.annotate(text, (x + 24.0, y - 30.0), size=18, path_effects=theme.OUTLINED),
         )
 
     def image(self) -> Image.Image:

@@ -47,8 +47,9 @@ MOST_TICKS = 6
 # Contours need at least this number of values along an axis.
 LEAST_FOR_CONTOURS = 4
 
-# Levels of distances: below the first, between two, beyond the last.
-_SHADES = ("#2e7d32", "#a5c882", "#f2c14e", "#b23a2e")
+# Shades below, between and beyond the levels of distances, darker for larger ones: their lightness
+# alone tells them apart.
+_SHADES = ("#fff3c4", "#f6b26b", "#b8577a", "#3b1f5c")
 # Limits of distances in percent, beyond which their values are not distinguished.
 _MOST, _LEAST = 100.0, 0.01
 # Alignment of text at the first and the last place along an axis.
@@ -184,7 +185,7 @@ def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
                     axes.axhline(level, color=theme.INK, linewidth=0.8, linestyle=":")
                 axes.set_yscale("log")
                 axes.set_yticks(LEVELS, [f"{level:g}" for level in LEVELS])
-            title = f"Distance from {reference} over {_quantity(keys[0])}"
+            title = f"Deviation from {reference} over {_quantity(keys[0])}"
             _finish(sheet, title, folder / "sweep-distances.png")
 
 
@@ -285,15 +286,17 @@ def _distance_maps(
             off = quantity.factor * part[quantity.name].sel(model=name).transpose(y, x)
             shade = _shade(axes, off)
             if quantity.name == TIP_OFF:
-                _say_until_when(axes, part[UNTIL].transpose(y, x), float(data[UNTIL].max()))
+                _write_ends(axes, part[UNTIL].transpose(y, x), float(data[UNTIL].max()))
             axes.label_outer()
         where = ", ".join(f"{_quantity(key)} {part[key].item():g}" for key in before)
         column[0].set_title("\n".join(filter(None, [where, column[0].get_title(loc="left")])))
     sheet.colorbar(shade, ax=grid, label=f"{quantity.title} (%)", aspect=40)
     if quantity.name == TIP_OFF and data[UNTIL].min() < data[UNTIL].max():
-        until = f"compared until {data[UNTIL].max():g} s, or until where seconds stand"
+        until = (
+            f"in the maps: time up to which tips are compared; elsewhere {data[UNTIL].max():g} s"
+        )
         sheet.supxlabel(until, x=0.02, ha="left", fontsize=9.0)
-    title = f"Distance from {reference}: {quantity.title}"
+    title = f"{quantity.title[0].upper()}{quantity.title[1:]} from {reference}"
     _finish(sheet, title, folder / _name(quantity))
 
 
@@ -304,20 +307,22 @@ def _shade(axes: Axes, off: xr.DataArray) -> ContourSet:
     levels = [0.0, *LEVELS, _MOST]
     shade = axes.contourf(x, y, np.clip(off, 0.0, _MOST), levels=levels, colors=_SHADES)
     if least < LEVELS[-1] and most > LEVELS[0]:
-        lines = axes.contour(x, y, off, levels=LEVELS, colors="black")
-        axes.clabel(lines, fmt="%g %%", fontsize=9.0)
+        lines = axes.contour(x, y, off, levels=LEVELS, colors=theme.INK)
+        for label in axes.clabel(lines, fmt="%g %%", fontsize=9.0):
+            label.set_path_effects(theme.OUTLINED)
     name = off["model"].item()
     axes.set(title=f"{name}: {least:.2g} to {most:.2g} %", facecolor=theme.RULE)
     return shade
 
 
-def _say_until_when(axes: Axes, until: xr.DataArray, longest: float) -> None:
+def _write_ends(axes: Axes, until: xr.DataArray, longest: float) -> None:
     """Write the time up to which tips are compared, where it is shorter than elsewhere."""
     y, x = (until[dim].values for dim in until.dims)
     for row, column in np.argwhere(until.values < longest):
         text = f"{until.values[row, column]:.1f} s"
         ha, va = _inwards(column, x.size, _SIDES), _inwards(row, y.size, _ENDS)
-        axes.text(x[column], y[row], text, fontsize=7.0, ha=ha, va=va)
+        halo: dict[str, Any] = {"fontsize": 7.0, "path_effects": theme.OUTLINED}
+        axes.text(x[column], y[row], text, ha=ha, va=va, **halo)
 
 
 def _inwards(place: int, count: int, outer: tuple[_Word, _Word]) -> _Word | Literal["center"]:

@@ -73,11 +73,11 @@ QUANTITIES = (
 TIP_OFF = "tip_off"
 # Each as a part of the reference's.
 DISTANCES = (
-    Metric("first_peak_off", "1", "first peak off", TO_PERCENT, "%"),
-    Metric("slow_period_off", "1", "slow period off", TO_PERCENT, "%"),
-    Metric("pad_force_off", "1", "pad force off", TO_PERCENT, "%"),
-    Metric("stress_off", "1", "stress off", TO_PERCENT, "%"),
-    Metric(TIP_OFF, "1", "tip off", TO_PERCENT, "%"),
+    Metric("first_peak_off", "1", "first peak deviation", TO_PERCENT, "%"),
+    Metric("slow_period_off", "1", "slow period deviation", TO_PERCENT, "%"),
+    Metric("pad_force_off", "1", "pad force deviation", TO_PERCENT, "%"),
+    Metric("stress_off", "1", "stress deviation", TO_PERCENT, "%"),
+    Metric(TIP_OFF, "1", "tip deviation", TO_PERCENT, "%"),
 )
 # Times in s up to which tips are compared: of a point, and of all its models.
 UNTIL = "compared_until"
