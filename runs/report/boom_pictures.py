@@ -106,7 +106,7 @@ class BoomView:
         for symbol in shown:
             (x,) = symbol.places
             around = self.rest.points if symbol.stands else places
-            place = _at(scene, around, symbol.segment, x, symbol.z(scene.boom, x))
+            place, _ = scene.at(around, symbol.segment, x, symbol.z(scene.boom, x))
             place[2] += (1.0 if symbol.edge == "top" else -1.0) * self.scale * symbol.clearance
             sign = marker_style(symbol.path, symbol.color, SIGN)
             sheet.pass_by(*axes.plot(*self.camera.project(place), clip_on=False, **sign))
@@ -114,7 +114,7 @@ class BoomView:
         for cylinder in cylinders:
             side = 0 if cylinder.direction[1] > 0.0 else 1
             edge = scene.edges(cylinder.segment, cylinder.x)[side]
-            lug = _at(scene, places, cylinder.segment, cylinder.x, edge)
+            lug, _ = scene.at(places, cylinder.segment, cylinder.x, edge)
             start = self.camera.project(lug)
             rod = np.array([start, start - CYLINDER * np.array(cylinder.direction)])
             black: dict[str, Any] = {"color": theme.INK, "clip_on": False}
@@ -182,13 +182,3 @@ def draw_boom(
                 f"{f'; symbols: {symbols}' if symbols else ''}{pace}",
             )
             yield sheet.image()
-
-
-def _at(scene: Scene, places: Array, segment: int, x: float, z: float) -> Array:
-    """Return the place (3,) of a point in a section's plane of symmetry, from displayed points."""
-    mine = (scene.owner == segment) & (np.abs(scene.points[:, 0] - x) < SAME_PLACE)
-    low, high = scene.edges(segment, x)
-    section = places[mine]
-    bottom, top = section[section[:, 2].argmin()], section[section[:, 2].argmax()]
-    place = bottom + (z - low) / (high - low) * (top - bottom)
-    return np.array([place[0], section[:, 1].mean(), place[2]])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Interactive curves over time (zoom, hover, hide) beside their static pictures.
+"""Interactive curves over time (zoom, hover, hide) beside their static pictures, by plotly.
 
 A page carries plotly.js once, compressed, and the numbers of each chart as 32-bit floats: seven
 digits of the values in the netCDF file.
@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import base64
 import gzip
-import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
@@ -19,10 +18,15 @@ from typing import Any
 import numpy as np
 
 from geometry.arrays import Array
+from runs.report import theme
 
 # A curve with more samples is reduced to the minimum and maximum of each of half as many intervals:
 # more than a screen has columns.
 MOST = 12_000
+# Heights in pixels of a panel, and of the legend and the axis below all panels.
+PANEL, BELOW = 150, 314
+# Part of the height between panels.
+GAP = 0.14
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,36 +80,88 @@ class Chart:
         return self.time.size > MOST
 
     @property
-    def data(self) -> dict[str, Any]:
-        """Content of the chart for the script of the page."""
-        return {
-            "time": _packed(self.time, "<f8"),
-            "heading": self.heading,
-            "along": self.along,
-            "panels": list(self.panels),
-            "window": self.window,
-            "curves": [self._curve(curve) for curve in self.curves],
+    def figure(self) -> Any:
+        """Figure of plotly; curves without an abscissa have ``layout.meta.x``."""
+        from plotly.graph_objects import Figure
+
+        count = len(self.panels)
+        layout: dict[str, Any] = {
+            "template": "none",
+            "meta": {"x": self.time},
+            "font": {"family": "system-ui, sans-serif", "size": 13, "color": theme.INK},
+            "hovermode": "x unified",
+            "height": BELOW + PANEL * count,
+            "margin": {"l": 62, "r": 12, "t": 26, "b": 120},
+            "legend": {"orientation": "h", "yref": "container", "y": 0.01, "yanchor": "bottom"},
+            "xaxis": {
+                "title": {"text": self.along, "standoff": 8},
+                "anchor": _axis("y", count - 1),
+                "hoverformat": ".5g",
+                "gridcolor": theme.RULE,
+                "range": self.window or self.time[[0, -1]],
+            },
+        }
+        for number, title in enumerate(self.panels):
+            top = 1.0 - number / count
+            layout[_axis("yaxis", number)] = {
+                "title": {"text": self.heading, "standoff": 6},
+                "domain": [
+                    max(top - (1.0 - GAP * (number < count - 1)) / count, 0.0),
+                    top - GAP / count * (number > 0),
+                ],
+                "exponentformat": "none",
+                "gridcolor": theme.RULE,
+            }
+            layout.setdefault("annotations", []).append(
+                {"text": f"<b>{title}</b>", "xref": "paper", "x": 0, "xanchor": "left",
+                 "yref": f"{_axis('y', number)} domain", "y": 1, "yanchor": "bottom",
+                 "showarrow": False}
+            )  # fmt: skip
+        named: set[str] = set()
+        traces = []
+        for curve in self.curves:
+            traces += [*self._traces(curve, curve.name not in named)]
+            named.add(curve.name)
+        return Figure(traces, layout)
+
+    def _traces(self, curve: Curve, named: bool) -> Iterator[dict[str, Any]]:
+        """Yield the limits of the curve's band, and its line, in the legend where it is named."""
+        common: dict[str, Any] = {
+            "type": "scatter",
+            "mode": "lines",
+            "yaxis": _axis("y", curve.panel),
+            "legendgroup": curve.name,
+            "visible": True if curve.shown else "legendonly",
+        }
+        values = curve.values
+        if curve.at is not None:
+            common["x"] = curve.at
+        elif self.thinned:
+            kept = extremes(values, MOST // 2)
+            common["x"], values = self.time[kept], values[kept]
+        for fill, limit in zip(("none", "tonexty"), curve.band or (), strict=False):
+            if self.thinned:
+                break
+            yield common | {
+                "y": limit.astype(np.float32),
+                "line": {"width": 0},
+                "fill": fill,
+                "fillcolor": f"{curve.color}33",
+                "hoverinfo": "skip",
+                "showlegend": False,
+            }
+        yield common | {
+            "y": values.astype(np.float32),
+            "name": curve.name,
+            "showlegend": named,
+            "line": {"color": curve.color, "dash": curve.dashes, "width": 1.8, "simplify": False},
+            "hovertemplate": f"%{{y:.5g}}<extra>{curve.name}</extra>",
         }
 
-    def _curve(self, curve: Curve) -> dict[str, Any]:
-        found: dict[str, Any] = {
-            "name": curve.name,
-            "color": curve.color,
-            "dashes": curve.dashes,
-            "shown": curve.shown,
-            "panel": curve.panel,
-        }
-        if curve.at is not None:
-            found["time"] = _packed(curve.at, "<f8")
-        elif self.thinned:
-            kept = extremes(curve.values, MOST // 2)
-            return found | {
-                "time": _packed(self.time[kept], "<f8"),
-                "values": _packed(curve.values[kept], "<f4"),
-            }
-        if curve.band is not None:
-            found |= {"low": _packed(curve.band[0], "<f4"), "high": _packed(curve.band[1], "<f4")}
-        return found | {"values": _packed(curve.values, "<f4")}
+
+def _axis(name: str, panel: int) -> str:
+    """Return plotly's name of the axis of a panel: ``y``, ``y2`` and so forth."""
+    return f"{name}{panel + 1 if panel else ''}"
 
 
 def extremes(values: Array, stretches: int) -> np.ndarray[Any, np.dtype[np.intp]]:
@@ -122,8 +178,9 @@ def extremes(values: Array, stretches: int) -> np.ndarray[Any, np.dtype[np.intp]
 
 def packed_charts(charts: Mapping[str, Chart]) -> str:
     """Return all charts of a page by the names of their figures, as JSON escaped for HTML."""
-    text = json.dumps({name: chart.data for name, chart in charts.items()}, allow_nan=False)
-    return text.replace("<", "\\u003c")
+    from plotly.io.json import to_json_plotly
+
+    return str(to_json_plotly({name: chart.figure.to_dict() for name, chart in charts.items()}))
 
 
 @cache
@@ -131,8 +188,9 @@ def packed_plotly() -> str:
     """Return plotly.js from its wheel, compressed, in base 64."""
     from plotly.offline import get_plotlyjs
 
-    return base64.b64encode(gzip.compress(get_plotlyjs().encode(), 9, mtime=0)).decode("ascii")
+    return compressed(get_plotlyjs())
 
 
-def _packed(values: Array, form: str) -> str:
-    return base64.b64encode(np.asarray(values).astype(form).tobytes()).decode("ascii")
+def compressed(text: str) -> str:
+    """Return a text compressed by gzip, in base 64."""
+    return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode("ascii")

@@ -144,7 +144,9 @@ class Scene:
         return [side, above]
 
     @classmethod
-    def of_beam(cls, boom: Boom, output: BeamOutput, motion: xr.Dataset) -> tuple[Scene, Array]:
+    def of_beam(
+        cls, case: Case, boom: Boom, output: BeamOutput, motion: xr.Dataset
+    ) -> tuple[Scene, Array]:
         """Return a beam as tubes along its axis, with bending stresses in Pa.
 
         Sections stay plane and keep their shape: a point at (y, z) moves along x by −z w′ − y v′,
@@ -152,6 +154,7 @@ class Scene:
         of the plates.
 
         Args:
+            case: of the run.
             boom: of the model.
             output: of its motion.
             motion: its trajectories.
@@ -166,7 +169,7 @@ class Scene:
         frames = np.eye(output.time.size)
         scene = cls(
             boom=boom,
-            symbols=[],
+            symbols=list(boom_symbols(case, boom)),
             points=np.concatenate([tube.points for tube in tubes]),
             triangles=np.concatenate(numbered).astype(np.int32),
             segment=np.repeat(
@@ -257,6 +260,25 @@ class Scene:
         return np.asarray(
             moved - np.stack([along - turn * z, np.zeros_like(x), up + turn * x], axis=1)
         )
+
+    def at(self, places: Array, segment: int, x: float, z: float) -> tuple[Array, int]:
+        """Return the displayed place (3,) of a point in a section's plane of symmetry, in m.
+
+        The section is that at the mesh line next to x in m, whose lowest point is returned, too.
+
+        Args:
+            places: (num_points, 3) displayed places of the points in m.
+            segment: its number.
+            x, z: of the point in m.
+        """
+        mine = np.flatnonzero(self.owner == segment)
+        off = np.abs(self.points[mine, 0] - x)
+        mine = mine[off <= off.min() + SAME_PLACE]
+        section, (low, high) = places[mine], self.edges(segment, x)
+        bottom, top = section[section[:, 2].argmin()], section[section[:, 2].argmax()]
+        place = bottom + (z - low) / (high - low) * (top - bottom)
+        place[1] = section[:, 1].mean()
+        return place, int(mine[section[:, 2].argmin()])
 
     def edges(self, segment: int, x: float) -> tuple[float, float]:
         """Return the lowest and highest z in m of a segment's section at x in m."""

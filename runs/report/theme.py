@@ -9,7 +9,7 @@ from typing import Any
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
-from matplotlib.patheffects import withStroke
+from matplotlib.patheffects import AbstractPathEffect, withStroke
 
 # A telephone shows a figure about half as wide as drawn: 11 pt stay readable.
 WIDTH = 5.4
@@ -29,7 +29,7 @@ PALETTE = ("#0072b2", "#d55e00", "#009e73", "#111111", "#b0568c", "#6a3fd0", "#8
 # Colours of two segments and their contact force, safe for the colour-blind.
 OUTER, INNER, FORCE = "#56b4e9", "#e69f00", "#b03000"
 # Outline of letters above a picture.
-OUTLINED = [withStroke(linewidth=3, foreground="white")]
+OUTLINED: list[AbstractPathEffect] = [withStroke(linewidth=3, foreground="white")]
 # Colour maps of deflections and of stresses, light at zero.
 DEFLECTION, STRESS = "viridis_r", "cividis_r"
 

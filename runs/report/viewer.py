@@ -7,13 +7,15 @@ A page stores displacements as a few shapes of 16-bit numbers, and stresses as 8
 from __future__ import annotations
 
 import base64
-import gzip
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
+from matplotlib import colormaps
+from matplotlib.colors import to_hex
 from scipy.spatial.transform import Rotation
 
 from geometry.arrays import Array
@@ -22,8 +24,8 @@ from geometry.typography import TO_MEGA
 from runs.pipeline.model_output import frames
 from runs.pipeline.model_quality import leading
 from runs.pipeline.run import Run
-from runs.report.charts import packed_plotly
-from runs.report.overlap_pictures import StressScale
+from runs.report import theme
+from runs.report.charts import compressed, packed_plotly
 from runs.report.pages import page
 from runs.report.scene import SECTION_DRAWN, Scene, means_around
 
@@ -33,12 +35,17 @@ VIEWER = "viewer.html"
 LEFT = 2.0e-3
 # Limit of a page's mesh; finer meshes need dedicated programs.
 MOST_POINTS = 60_000
+# Largest part of the stresses, in percent, that the colour scale resolves.
+PERCENTILE = 99.0
+# Size of a symbol as a part of the boom's length, a smaller one's as a part of it, and the margin
+# around the boom.
+SYMBOL, SMALL, MARGIN = 0.03, 0.6, 0.02
 # Largest numbers of 16 and of 8 bits.
 _SHORT, _BYTE = 32767, 255
 
 
-class Shown(NamedTuple):
-    """Content of a page.
+class View(NamedTuple):
+    """Boom and stresses of a page.
 
     Args:
         model: of the motion.
@@ -46,7 +53,6 @@ class Shown(NamedTuple):
         time: (num_frames,) in s.
         stress: (num_frames, num_points) in MPa.
         quantity: name of the stress, with its unit.
-        end: of the colour scale, which also colours stresses above it.
     """
 
     model: str
@@ -54,7 +60,22 @@ class Shown(NamedTuple):
     time: Array
     stress: Array
     quantity: str
-    end: float
+
+    @property
+    def end(self) -> float:
+        """End of the colour scale in MPa, for larger stresses too: peaks would use most of it."""
+        return float(np.percentile(self.stress, PERCENTILE)) or 1.0
+
+    @classmethod
+    def of_shell(cls, model: str, scene: Scene, time: Array) -> View:
+        """Return the von Mises stresses of plates: larger of both faces, means around points."""
+        stress = scene.stress
+        assert stress is not None
+        means = [
+            means_around(scene.triangles, stress.areas, found.largest())
+            for found in stress.instants(time.tolist())
+        ]
+        return cls(model, scene, time, TO_MEGA * np.array(means), "von Mises stress (MPa)")
 
 
 def viewer(run: Run) -> str | None:
@@ -62,23 +83,21 @@ def viewer(run: Run) -> str | None:
 
     Return None without plotly, and for a mesh that is too fine for a page.
     """
-    shown = _shown(run) if find_spec("plotly") else None
-    if shown is None:
+    view = _view(run) if find_spec("plotly") else None
+    if view is None:
         return None
     case = run.results.case
-    angle = 0.0 if case.gravity is None else case.gravity.angle
-    numbers = packed(shown, angle)
-    content = json.dumps(numbers, default=_typed)
+    content = packed(view, 0.0 if case.gravity is None else case.gravity.angle)
     return page(
         "viewer.html",
         title=case.title,
-        surface=numbers,
+        view=content,
         plotly=packed_plotly(),
-        content=base64.b64encode(gzip.compress(content.encode(), 6, mtime=0)).decode("ascii"),
+        content=compressed(json.dumps(content, default=_typed)),
     )
 
 
-def _shown(run: Run) -> Shown | None:
+def _view(run: Run) -> View | None:
     """Return the first shell in motion, or the leading beam; None for finer meshes."""
     results = run.results
     for name, shell in run.shells.items():
@@ -86,66 +105,162 @@ def _shown(run: Run) -> Shown | None:
             return None
         motion = results.trajectories.sel(model=name)
         scene = Scene.views(shell.fields, motion, results.case)[0]
-        known = np.asarray(shell.fields["time"].values, dtype=float)
-        return of_shell(name, scene, known[frames(known.size)])
+        times = np.asarray(shell.fields["time"].values, dtype=float)
+        return View.of_shell(name, scene, times[frames(times.size)])
     first = leading(results.case, list(run.beams))
     with_play = [m.name for m in results.ran if m.name in first and not m.play_free]
     name = [*first, *with_play][-1]
-    beam = run.beams[name]
-    scene, stress = Scene.of_beam(results.boom, beam, results.trajectories.sel(model=name))
-    return of_beam(name, scene, beam.time, stress)
+    beam, motion = run.beams[name], results.trajectories.sel(model=name)
+    scene, stress = Scene.of_beam(results.case, results.boom, beam, motion)
+    return View(name, scene, beam.time, TO_MEGA * stress, "bending stress (MPa)")
 
 
-def of_shell(model: str, scene: Scene, time: Array) -> Shown:
-    """Return the von Mises stresses of the plates: larger of both faces, means around points."""
-    stress = scene.stress
-    assert stress is not None
-    means = [
-        means_around(scene.triangles, stress.areas, found.largest())
-        for found in stress.instants(time.tolist())
-    ]
-    end = StressScale.of(stress, time.tolist()).end * TO_MEGA
-    return Shown(model, scene, time, TO_MEGA * np.array(means), "von Mises stress (MPa)", end)
-
-
-def of_beam(model: str, scene: Scene, time: Array, stress: Array) -> Shown:
-    """Return the bending stresses of :meth:`Scene.of_beam`."""
-    shown = TO_MEGA * stress
-    return Shown(model, scene, time, shown, "bending stress (MPa)", float(shown.max()))
-
-
-def packed(shown: Shown, angle: float) -> dict[str, Any]:
+def packed(view: View, angle: float) -> dict[str, Any]:
     """Return the numbers of a page, for a boom at an angle in degrees about y."""
-    scene = shown.scene
-    scale = scene.fitting_scale(shown.time.tolist())
+    scene = view.scene
+    scale = scene.fitting_scale(view.time.tolist())
     rest = scene.drawn(np.zeros_like(scene.points), scale)
-    moved = [
-        scene.drawn(each, scale) - rest + scale * each * [0.0, 1.0, 0.0]
-        for each in scene.displacements(shown.time.tolist())
-    ]
-    parts, flat = few_shapes(np.array(moved).reshape(shown.time.size, -1))
-    ways = extensions(scene, shown.time)
+    moved = np.array(
+        [
+            scene.drawn(each, scale) - rest + scale * each * [0.0, 1.0, 0.0]
+            for each in scene.displacements(view.time.tolist())
+        ]
+    )
+    parts, flat = few_shapes(moved.reshape(view.time.size, -1))
+    ways = extensions(scene, view.time)
     # Drives move segments along x by true distances, not magnified.
     along = [own[None, :, None] * [1.0, 0.0, 0.0] for own, _ in ways.values()]
     parts = np.column_stack([parts, *(way for _, way in ways.values())])
     rise = Rotation.from_euler("y", -angle, degrees=True).as_matrix().T
     shapes = np.concatenate([flat.reshape(len(flat), -1, 3), *along]) @ rise
     size = np.abs(shapes).max(axis=(1, 2)) + 1.0e-300
-    end = shown.end or 1.0
+    lines = symbol_lines(scene, rest, rise, angle, scale)
+    points = rest @ rise
+    places = points + np.tensordot(parts, shapes, axes=1)
+    still = [line.offset + points[line.anchor] * (line.anchor >= 0)[:, None] for line in lines]
+    everything = np.concatenate([places.reshape(-1, 3), *still])
     return {
-        "model": shown.model,
-        "quantity": shown.quantity,
+        "model": view.model,
         "magnified": scale,
         "enlarged": SECTION_DRAWN,
-        "end": end,
-        "time": shown.time.tolist(),
+        "end": view.end,
+        "time": view.time.tolist(),
         "drawn": {name: way.tolist() for name, (_, way) in ways.items()},
         "parts": (parts * size / _SHORT).tolist(),
-        "points": (rest @ rise).astype("<f4"),
-        "triangles": scene.triangles.astype(np.uint32),
+        "points": points.astype("<f4"),
         "shapes": np.round(shapes / size[:, None, None] * _SHORT).astype("<i2"),
-        "colors": np.round(np.minimum(shown.stress / end, 1.0) * _BYTE).astype(np.uint8),
+        "colors": np.round(np.minimum(view.stress / view.end, 1.0) * _BYTE).astype(np.uint8),
+        "lines": [
+            {"anchor": line.anchor.astype("<i4"), "offset": line.offset.astype("<f4")}
+            for line in lines
+        ],
+        "figure": _figure(
+            view, lines, np.array([np.nanmin(everything, axis=0), np.nanmax(everything, axis=0)])
+        ),
     }
+
+
+class Lines(NamedTuple):
+    """Lines of one look: vertices (num_vertices, 3) in m from mesh points, which they follow.
+
+    The points are -1 for vertices that stay, and at gaps, where the vertices are NaN.
+    """
+
+    color: str
+    width: float
+    anchor: npt.NDArray[np.int64]
+    offset: Array
+
+
+def symbol_lines(scene: Scene, rest: Array, rise: Array, angle: float, scale: float) -> list[Lines]:
+    """Return the symbols of supports and loads, and the cylinders.
+
+    Args:
+        scene: with the boom.
+        rest: (num_points, 3) displayed places of the undeformed boom, in m.
+        rise: (3, 3) rotation of places by the boom's angle.
+        angle: of the boom in degrees.
+        scale: of displacements and play.
+    """
+    found: dict[tuple[str, float], list[tuple[Array, Array]]] = {}
+    gap = np.full((1, 3), np.nan)
+    for symbol in scene.symbols:
+        size = SYMBOL * scene.boom.length * (1.0 if len(symbol.places) == 1 else SMALL)
+        for x in symbol.places:
+            place, near = scene.at(rest, symbol.segment, x, symbol.z(scene.boom, x))
+            place[2] += (1.0 if symbol.edge == "top" else -1.0) * scale * symbol.clearance
+            fixed = np.zeros(3) if symbol.stands else rest[near]
+            for outline in symbol.turned(angle).to_polygons(closed_only=False):
+                corners = np.insert(size * np.asarray(outline), 1, 0.0, axis=1)
+                offset = np.concatenate([corners + (place - fixed) @ rise, gap])
+                anchor = np.full(len(offset), -1 if symbol.stands else near)
+                found.setdefault((symbol.color, 3.0), []).append((anchor, offset))
+    for cylinder in scene.boom.cylinders:
+        edge = scene.edges(cylinder.segment, cylinder.x)[0 if cylinder.direction[1] > 0.0 else 1]
+        place, near = scene.at(rest, cylinder.segment, cylinder.x, edge)
+        down = np.subtract(cylinder.ground, (cylinder.x, -cylinder.depth))
+        ends = np.array([place - rest[near], place + np.insert(down, 1, 0.0)]) @ rise
+        anchor = np.array([near, -1, -1])
+        found.setdefault((theme.INK, 8.0), []).append((anchor, np.concatenate([ends, gap])))
+    return [
+        Lines(*look, *(np.concatenate(parts) for parts in zip(*several, strict=True)))
+        for look, several in found.items()
+    ]
+
+
+def _figure(view: View, lines: Sequence[Lines], reach: Array) -> dict[str, Any]:
+    """Return plotly's traces and layout; ``reach`` (2, 3) are the ends of all places in m."""
+    from plotly.graph_objects import Figure
+
+    colors = colormaps[theme.STRESS](np.linspace(0.0, 1.0, 9))
+    boom = {
+        "type": "mesh3d",
+        **dict(zip("ijk", view.scene.triangles.T.astype(np.uint32), strict=True)),
+        "cmin": 0.0,
+        "cmax": view.end,
+        "colorscale": [[i / 8.0, to_hex(color)] for i, color in enumerate(colors)],
+        "colorbar": {"title": {"text": view.quantity, "side": "right"}, "thickness": 14},
+        "flatshading": True,
+        "lighting": {"ambient": 0.75, "diffuse": 0.4, "specular": 0.05},
+        "hovertemplate": "%{intensity:.3g}<extra></extra>",
+    }
+    wires = [
+        {
+            "type": "scatter3d",
+            "mode": "lines",
+            "line": {"color": line.color, "width": line.width},
+            "hoverinfo": "skip",
+            "showlegend": False,
+        }
+        for line in lines
+    ]
+    reach = reach + MARGIN * np.ptp(reach) * np.array([[-1.0], [1.0]])
+    sizes = np.ptp(reach, axis=0)
+    axes = {
+        f"{name}axis": {
+            "title": {"text": heading},
+            "range": ends.tolist(),
+            "nticks": max(2, round(8 * size / sizes.max())),
+            "showbackground": False,
+            "gridcolor": theme.RULE,
+            "zeroline": False,
+        }
+        for name, heading, ends, size in zip(
+            "xyz", ("x (m)", "", "z (m)"), reach.T, sizes, strict=True
+        )
+    }
+    layout = {
+        "template": "none",
+        "margin": dict.fromkeys("lrtb", 0),
+        "uirevision": "stays",
+        "scene": axes
+        | {
+            "aspectmode": "manual",
+            "aspectratio": dict(zip("xyz", (sizes / sizes.max()).tolist(), strict=True)),
+            "dragmode": "orbit",
+        },
+    }
+    return dict(Figure([boom, *wires], layout).to_dict())
 
 
 def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:

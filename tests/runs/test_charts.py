@@ -16,8 +16,8 @@ from runs.pipeline.model_quality import leading
 from runs.report.charts import MOST, Chart, Curve, extremes, packed_charts, packed_plotly
 
 
-def unpacked(text: str, form: str) -> np.ndarray:
-    return np.frombuffer(base64.b64decode(text), form)
+def unpacked(packed: dict[str, str]) -> np.ndarray:
+    return np.frombuffer(base64.b64decode(packed["bdata"]), f"<{packed['dtype']}")
 
 
 def test_numbers_come_as_they_are() -> None:
@@ -27,10 +27,25 @@ def test_numbers_come_as_they_are() -> None:
     text = packed_charts({"tip": Chart(time, "mm", [Curve("</script>", values, "#000000")])})
     assert "<" not in text
     chart = json.loads(text)["tip"]
-    (curve,) = chart["curves"]
+    (curve,) = chart["data"]
     assert curve["name"] == "</script>"
-    np.testing.assert_array_equal(unpacked(chart["time"], "<f8"), time)
-    np.testing.assert_allclose(unpacked(curve["values"], "<f4"), values, rtol=2.0**-24)
+    np.testing.assert_array_equal(unpacked(chart["layout"]["meta"]["x"]), time)
+    np.testing.assert_allclose(unpacked(curve["y"]), values, rtol=2.0**-24)
+
+
+def test_panels_share_their_abscissa_and_fill_the_height() -> None:
+    """Reference (analytic): two panels, each with its own ordinate, the band before its curve."""
+    time, values = np.linspace(0.0, 1.0, 3), np.array([1.0, 2.0, 3.0])
+    limits = values - 1.0, values + 1.0
+    curves = [Curve("a", values, "#000000", band=limits), Curve("a", values, "#000000", panel=1)]
+    figure = Chart(time, "mm", curves, ["up", "down"]).figure
+    assert [trace.yaxis for trace in figure.data] == ["y", "y", "y", "y2"]
+    np.testing.assert_array_equal([trace.y for trace in figure.data[:2]], limits)
+    assert [trace.showlegend for trace in figure.data] == [False, False, True, False]
+    (low, high), (bottom, top) = figure.layout.yaxis.domain, figure.layout.yaxis2.domain
+    assert (bottom, high) == (0.0, 1.0)
+    assert low - top == pytest.approx(0.14)
+    assert [note.text for note in figure.layout.annotations] == ["<b>up</b>", "<b>down</b>"]
 
 
 def test_what_is_left_out_cannot_be_seen() -> None:
@@ -48,11 +63,10 @@ def test_long_runs_are_thinned_to_their_own_samples() -> None:
     time = np.linspace(0.0, 10.0, 3 * MOST)
     chart = Chart(time, "mm", [Curve("a", np.sin(50.0 * time), "#000000")])
     assert chart.thinned
-    (curve,) = chart.data["curves"]
-    kept = unpacked(curve["time"], "<f8")
-    assert kept.size <= MOST + 2
-    assert np.isin(kept, time).all()
-    np.testing.assert_allclose(unpacked(curve["values"], "<f4"), np.sin(50.0 * kept), atol=1e-7)
+    (curve,) = chart.figure.data
+    assert curve.x.size <= MOST + 2
+    assert np.isin(curve.x, time).all()
+    np.testing.assert_allclose(curve.y, np.sin(50.0 * curve.x), atol=1e-7)
 
 
 def test_the_library_comes_whole() -> None:

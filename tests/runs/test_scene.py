@@ -26,6 +26,7 @@ from runs.report.scene import Scene, round_scale
 from runs.report.snapshots import where_pressed
 from tests.runs.moving_segments import (
     BOOM,
+    CASE,
     CLEARANCE,
     INNER,
     OUTER,
@@ -207,7 +208,7 @@ def test_smoothed_stresses_keep_to_their_walls(shell: Scene) -> None:
 
 def still(boom: Boom, output: BeamOutput) -> tuple[Scene, np.ndarray]:
     """Return a beam's scene without trajectories."""
-    return Scene.of_beam(boom, output, xr.Dataset(coords={"time": output.time}))
+    return Scene.of_beam(CASE, boom, output, xr.Dataset(coords={"time": output.time}))
 
 
 def bent(boom: Boom) -> BeamOutput:
