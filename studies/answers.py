@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Study of design results against the lever rule, exact beams, and published cycles."""
+"""Study of design results against the lever rule and exact beams."""
 
 from __future__ import annotations
 
@@ -23,7 +23,6 @@ from runs.pipeline.modes import modes
 from runs.pipeline.motion_results import Motions, evaluate_motion
 from runs.pipeline.run import run_case
 from runs.pipeline.static_results import Diagram, positions, static_result
-from runs.pipeline.strength import counted, endurance
 from studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
 from studies.study import Held, Proof, Tell, titled
 
@@ -37,12 +36,6 @@ ALONG_OUTER, ALONG_INNER = 5.5, 14.0
 # N/m on a cantilever.
 LOAD = -100.0
 
-# ASTM E1049-85, figure 6, and how many cycles its table has of each range.
-ASTM = (-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0)
-CYCLES = {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
-# EN 1993-1-9, 7.1: cycles of the category 71 at ranges in MPa, by its formulas.
-CURVE = {71.0: 2.0e6, 71.0 * 0.4 ** (1.0 / 3.0): 5.0e6, 71.0 * 0.4 ** (1.0 / 3.0) * 0.05**0.2: 1e8}
-
 # Elements of half a metre have moments with errors up to q h²/12, here 1.7 N m.
 CLOSE, OF_PIECES, EXACT = 1.0e-3, 5.0e-3, 1.0e-6
 LEVERS: Held = ("analytic", "lever rule", EXACT)
@@ -50,7 +43,7 @@ LEVERS: Held = ("analytic", "lever rule", EXACT)
 
 @titled("answers", "What a designer asks")
 def study(tell: Tell) -> Iterator[Proof]:
-    """Compare the paper's boom at rest, a cantilever in motion, and cycle counts by hand."""
+    """Compare the paper's boom at rest and a cantilever in motion."""
     tell("the paper's boom at rest")
     answers = answered()
     for name in MODELS:
@@ -60,7 +53,6 @@ def study(tell: Tell) -> Iterator[Proof]:
         yield Proof(what, 1e-3 * held.force, 1e-3 * force, "kN", *LEVERS)
     tell("a cantilever")
     yield from _cantilever()
-    yield from _cycles()
 
 
 def answered() -> DesignResults:
@@ -153,16 +145,3 @@ def swung(boom: Boom, segments: list[SegmentModel]) -> ModelDesignResults:
     motions = Motions(boom, along, motion, rest[None], told, jumps=False)
     moved, _ = evaluate_motion(motions)
     return ModelDesignResults(static=told, modes=modes(boom, system, along, rest), motion=moved)
-
-
-def _cycles() -> Iterator[Proof]:
-    found = counted(ASTM)
-    counts = dict(zip(found.sizes.tolist(), found.counts.tolist(), strict=True))
-    for size, expected in CYCLES.items():
-        what = f"rainflow cycles of the range {size:g}"
-        source = "ASTM E1049-85, figure 6"
-        yield Proof(what, counts.get(size, 0.0), expected, "", "external", source, EXACT)
-    for size, cycles in CURVE.items():
-        found_cycles = float(endurance(np.array([1e6 * size * (1.0 + 1e-12)]), 71e6)[0])
-        what = f"cycles of {size:.4g} MPa, detail category 71"
-        yield Proof(what, found_cycles, cycles, "", "external", "EN 1993-1-9, 7.1", EXACT)

@@ -15,15 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from dynamics.contact import PowerContact
-from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrator import AdaptiveStep
-from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Segment, Support
 from geometry.section import BoxSection
 from shell_model.contact.wall_rows import gauss
-from shell_model.reduction.krylov import KrylovOptions, reduce_class
 from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, SymmetryClass
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.cross_section import Outline, Row
@@ -37,25 +32,14 @@ from studies.reference_models.solid import assemble_solid, mesh_quarter
 # Distances in m of the mid-lines, which are the same for all wall thicknesses.
 OUTER = (0.40, 0.30)
 INNER = (0.31, 0.21)
-# Position in m of the outer box's end, where the impact occurs.
-HEAD = 2.0
-TAIL, TIP = 1.5, 3.5
+# Positions in m of the outer box's end, and of both ends of the inner one.
+HEAD, TAIL, TIP = 2.0, 1.5, 3.5
 
 # Pads of 0.1 m in the inner box's corners at its tail, pressed along three lines (Simpson's rule).
 PAD_WIDTH = 0.06
 PADDED = {TAIL: 1.0 / 6.0, TAIL + 0.05: 4.0 / 6.0, TAIL + 0.1: 1.0 / 6.0}
 
-# The impact: the inner box moves up as a whole and meets the head's webs across the play.
-SPEED = 1.0  # m/s
-CLEARANCE = 2.0e-3  # m
-# Of the contact, over the thickness of the walls, in N/m²: as stiff as the boxes are themselves.
-CONTACT = 1.0e10
-AFTER = 1.0e-2  # s
-OUTPUT_STEP = 1.0e-5  # s
-
 FREQUENCY = "frequency"
-# Up to the frequencies of an impact of some milliseconds.
-KRYLOV = KrylovOptions(shifts=(20.0, 800.0), moments=5)
 
 
 class Probe(NamedTuple):
@@ -88,7 +72,6 @@ PROBES: tuple[Sequence[Probe], Sequence[Probe]] = (
         Probe("head twist", TWISTING, {HEAD: 1.0}, Outline.twist),
     ),
     (
-        Probe("struck", ALONG_Z, {HEAD: 1.0}, partial(Outline.wall_deflection, direction="z")),
         Probe("tip", ALONG_Z, {TIP: 1.0}, partial(Outline.wall_deflection, direction="z")),
         Probe("tip twist", TWISTING, {TIP: 1.0}, Outline.twist),
         Probe("tail squeeze", BREATHING, {TAIL: 1.0}, Outline.distortion),
@@ -131,27 +114,6 @@ class Quarter:
         moved = {what: float(row @ inverse(row)) for what, row in self.rows.items()}
         solve.destroy()
         return {FREQUENCY: float(np.sqrt(omega2.max()) / (2.0 * np.pi)), **moved}
-
-
-@dataclass(frozen=True, slots=True)
-class Blow:
-    """Impact of the inner box on the outer one."""
-
-    time: Array  #: (num_times,) in s
-    force: Array  #: (num_times,) at the contact in N
-    tip: Array  #: (num_times,) rise of the inner box's tip in m
-    #: Worst error of both boxes, of the responses at the contact and at the tip.
-    reduction_error: float
-
-    @property
-    def told(self) -> dict[tuple[str, str], float]:
-        """Values of the impact by quantity and unit."""
-        return {
-            ("largest force", "kN"): 1.0e-3 * float(self.force.max()),
-            ("impulse", "N·s"): float(self.force.sum() * OUTPUT_STEP),
-            ("time in contact", "ms"): 1.0e3 * float(np.count_nonzero(self.force) * OUTPUT_STEP),
-            ("tip at the end", "mm"): 1.0e3 * float(self.tip[-1]),
-        }
 
 
 def pair(wall: float) -> tuple[Segment, Segment]:
@@ -211,45 +173,6 @@ def solid_parts(
         )
         for family, model in models.items()
     }
-
-
-def blow(outer: Quarter, inner: Quarter, wall: float) -> Blow:
-    """Return the impact of the inner box against the head of the outer one.
-
-    Args:
-        outer, inner: their symmetry classes along z.
-        wall: thickness in m, which determines the contact's stiffness.
-    """
-    coordinates = []
-    for part, struck_at in ((outer, "head"), (inner, "struck")):
-        push = part.rows[struck_at][:, None]
-        read = np.column_stack(list(part.rows.values()))
-        coordinates.append(reduce_class(part.model, push, read, KRYLOV, lambda done: None))
-    head, struck = coordinates[0].shapes, coordinates[1].shapes
-    up = np.zeros((len(struck), 1))
-    up[inner.model.node_dofs[:, 2]] = SPEED
-    velocity = np.concatenate(
-        [np.zeros(head.shape[1]), struck.T @ times(inner.model.mass, up)[:, 0]]
-    )
-    still = np.zeros(head.shape[1])
-    system = GapSystem(
-        omega2=np.concatenate([part.omega2 for part in coordinates]),
-        load=np.zeros(velocity.size),
-        rows=np.concatenate([-outer.rows["head"] @ head, inner.rows["struck"] @ struck])[None],
-        laws=[PowerContact(CONTACT * wall, 1.0).upper().behind(CLEARANCE)],
-        station_of_row=np.array([0]),
-        stations=[HEAD],
-        observers={"tip": Observer(np.concatenate([still, inner.rows["tip"] @ struck]))},
-    )
-    motion = AdaptiveStep()(
-        Motion(system, CLEARANCE / SPEED + AFTER, OUTPUT_STEP, velocity=velocity)
-    )
-    return Blow(
-        motion.time,
-        np.asarray(motion.data["contact_force"].values[:, 0]),
-        np.asarray(motion.data["tip"].values),
-        max(max(part.compliance_error, part.reading_error) for part in coordinates),
-    )
 
 
 def box(

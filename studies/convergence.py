@@ -143,7 +143,6 @@ STUDIES = (
     "surface_contact",
     "stiffeners",
     "damping",
-    "refinement",
     "model_ladder",
     "histories",
     "stick_slip",

@@ -172,19 +172,6 @@ def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterato
         what = f"energy residual of the {run.how} shell, {on}"
         conserved: Held = ("analytic", "conservation of energy", bound)
         yield Proof(what, run.energy_residual, 0.0, "", *conserved)
-    times = np.linspace(0.0, sizes.duration, reduced.tip.size).tolist()
-    yield Plot(
-        f"{name}-tips",
-        f"The reduced shell moves as the unreduced one does, {where}",
-        "time (s)",
-        "tip (mm)",
-        {
-            f"{run.how}, {run.unknowns} unknowns": (times, (1.0e3 * run.tip).tolist())
-            for run in (reduced, direct[-1])
-        },
-        "Tip of the paper's boom with friction, by two integrators: one curve hides the other.",
-        logarithmic=False,
-    )
     yield Plot(
         f"{name}-steps",
         f"Finer steps close in on the reduced shell, {where}",

@@ -11,11 +11,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from runs.case import reading as case_file
-from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.report.tables import Table
-from studies.motions import CASE, friction_case, gap_system, model_of, trajectories
-from studies.pads import flexibility_table
+from studies.motions import CASE, friction_case, trajectories
 from studies.study import Tell, titled
 
 # From the paper's series to the shell: change, and model with it.
@@ -76,10 +74,6 @@ def rungs(case: Case) -> Table:
 
 @titled("model-ladder", "From the paper's series to the shell")
 def study(tell: Tell) -> Iterator[Table]:
-    """Run the ladder, and compare the compliance of the shell's stations with a beam's."""
-    case = friction_case()
+    """Run the ladder."""
     tell("the models from the series to the shell")
-    yield rungs(case)
-    tell("flexibility of the stations")
-    shell = gap_system(case, build_boom(case), model_of(case, "shell"))
-    yield flexibility_table([("the shell's stations", case, shell)])
+    yield rungs(friction_case())

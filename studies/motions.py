@@ -20,7 +20,6 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
-from geometry.arrays import Array
 from geometry.boom import Boom
 from runs import CASES
 from runs.case import reading as case_file
@@ -121,8 +120,3 @@ def without_friction(system: GapSystem) -> GapSystem:
 def move(system: GapSystem, duration: float, step: float = STEP) -> Trajectory:
     """Return the motion from rest with a duration and a step in s."""
     return FixedStep(step)(Motion(system, duration, OUTPUT_STEP))
-
-
-def compliance(system: GapSystem, rows: Array) -> Array:
-    """Return the diagonal (num_rows,) of B (Ω² + σ)⁻¹ Bᵀ in m/N, at σ = (2π · ``SLOW``)²."""
-    return np.asarray((rows**2 / (system.omega2 + (2.0 * np.pi * SLOW) ** 2)).sum(axis=1))

@@ -1,22 +1,17 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Effect of the size of a slide pad on the flexibility of the stations."""
+"""Booms with slide pads, and the resultant of a pressed pad."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator
 
 import numpy as np
 
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
-from geometry.boom import Boom
-from geometry.contact_places import pads
 from runs.case.build import build_boom
 from runs.case.contact import PadTable
 from runs.case.schema import Case
-from runs.report.tables import Cell, Table
-from studies.motions import SLOW, compliance, gap_system, model_of
 from studies.study import Proof
 
 
@@ -25,50 +20,6 @@ def with_pads(case: Case, length: float, width: float) -> Case:
     pad = PadTable.model_validate({"length": length, "width": width})
     joints = tuple(joint.model_copy(update={"pad": pad}) for joint in case.joints)
     return case.model_copy(update={"joints": joints})
-
-
-def flexibility_table(contacts: Sequence[tuple[str, Case, GapSystem]]) -> Table:
-    """Return a table of the flexibility of stations beyond that of Timoshenko's beam.
-
-    Args:
-        contacts: names, cases (with the model ``timoshenko``, in the plane and with friction), and
-            shells that touch at the stations.
-    """
-    rows: list[Sequence[Cell]] = []
-    for name, case, system in contacts:
-        beam = gap_system(case, _middles(build_boom(case)), model_of(case, "timoshenko"))
-        rigid = compliance(beam, beam.rows)
-        together = compliance(system, system.friction_rows) - rigid
-        alone = compliance(system, upper_rows(system)) - rigid
-        rows.append((name, *together, *(alone - together)))
-    stations = contacts[0][2].stations
-    columns = {
-        "contact": "", **{f"both flanges together\nat {x:g} m (m/N)": ".3g" for x in stations},
-        **{f"one flange more\nat {x:g} m (m/N)": ".3g" for x in stations},
-    }  # fmt: skip
-    return Table.of_rows(
-        "flexibility",
-        "Flexibility of the stations beyond Timoshenko's beam",
-        columns,
-        rows,
-        (
-            f"Read at σ = (2π · {SLOW:g} Hz)², with every segment free of the others.",
-            "A pad at the end of the overlap has its middle half its length inside, and there the "
-            "beam is read too.",
-        ),
-    )
-
-
-def _middles(boom: Boom) -> Boom:
-    """Return the boom with its stations in the middles of their pads."""
-    places = {
-        pad.x: pad.x if pad.patch is None else 0.5 * (pad.patch.start + pad.patch.end)
-        for pad in pads(boom)
-    }
-    joints = tuple(
-        replace(joint, stations=tuple(places[x] for x in joint.stations)) for joint in boom.joints
-    )
-    return replace(boom, joints=joints)
 
 
 def upper_rows(system: GapSystem) -> Array:

@@ -16,16 +16,13 @@ from typing import Literal, NamedTuple, TypeVar
 import numpy as np
 
 from geometry.section import BoxSection
-from runs.report.tables import Cell, Table
+from runs.report.tables import Table
 from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, SymmetryClass
 from shell_model.segment.solver import quadratic_form
 from studies.box_pair import (
     FREQUENCY,
     PROBES,
-    SPEED,
-    Blow,
     Quarter,
-    blow,
     box,
     pair,
     shell_parts,
@@ -99,7 +96,6 @@ class Comparison:
     #: Of each quantity.
     shell: Mapping[Measured, Refined]
     solid: Mapping[Measured, Refined]
-    blows: tuple[Blow, Blow]  #: of the shell and of the solid, on the finest mesh but one
 
     @property
     def walls(self) -> str:
@@ -135,9 +131,9 @@ def compare(sizes: Sizes, tell: Callable[[str], None]) -> list[Comparison]:
         def solids(number: int, splits: int) -> Mapping[SymmetryClass, Quarter]:
             return solid_parts(boxes[number], PROBES[number], sizes.along, sizes.around, splits)
 
-        shell, of_shell = _refined(wall, "shell", sizes.triangles, shells)
-        solid, of_solid = _refined(wall, "solid", sizes.splits, solids)
-        return Comparison(wall, shell, solid, (of_shell, of_solid))
+        shell = _refined(wall, "shell", sizes.triangles, shells)
+        solid = _refined(wall, "solid", sizes.splits, solids)
+        return Comparison(wall, shell, solid)
 
     return [compared(wall) for wall in sizes.walls]
 
@@ -150,27 +146,23 @@ def _refined(
     model: str,
     sizes: Sequence[_Size],
     parts_of: Callable[[int, _Size], Mapping[SymmetryClass, Quarter]],
-) -> tuple[dict[Measured, Refined], Blow]:
-    """Return every quantity on every mesh, and the impact on the finest but one."""
-    answers = []
-    for size in sizes:
-        outer, inner = parts_of(0, size), parts_of(1, size)
-        answers.append(measure([outer, inner]))
-        if size == sizes[-2]:
-            struck = blow(outer[ALONG_Z], inner[ALONG_Z], wall)
+) -> dict[Measured, Refined]:
+    """Return every quantity on every mesh."""
+    values = [
+        [
+            {family: part.measure() for family, part in parts_of(number, size).items()}
+            for number in (0, 1)
+        ]
+        for size in sizes
+    ]
     halvings = [2.0**i for i in reversed(range(len(sizes)))]
     where = f"{1.0e3 * wall:g} mm, {model}"
     return {
-        what: Refined(f"{where}: {what.what}", what.unit, halvings, [what.of(a) for a in answers])
+        what: Refined(
+            f"{where}: {what.what}", what.unit, halvings, [what.of(one) for one in values]
+        )
         for what in EVERY
-    }, struck
-
-
-def measure(
-    parts: Sequence[Mapping[SymmetryClass, Quarter]],
-) -> list[dict[SymmetryClass, dict[str, float]]]:
-    """Return the quantities of both segments."""
-    return [{family: part.measure() for family, part in of.items()} for of in parts]
+    }
 
 
 def order(comparisons: Sequence[Comparison], what: Measured) -> float:
@@ -240,8 +232,6 @@ def _solid(family: SymmetryClass) -> SolidFamily:
 
 # Errors for which the table gives the wall thickness.
 LIMITS = (0.01, 0.02, 0.05)
-# Permitted error of an impact, which is on finite meshes.
-ALLOWED_OF_A_BLOW = 0.02
 
 NOTES = (
     "Two boxes of 2 m, mid-lines 0.40 m x 0.30 m and 0.31 m x 0.21 m, walls t, b the width of the "
@@ -253,7 +243,6 @@ NOTES = (
     "of the order (t/h)²; and its walls bend from mid-line to mid-line, those of the solid from "
     "corner to corner, which is of the order t/b.",
 )
-SIZES_NOTE = "On the coarsest of the three meshes, which refine the edges around the section."
 
 
 def error_table(comparisons: Sequence[Comparison]) -> Table:
@@ -286,52 +275,6 @@ def refinements(comparisons: Sequence[Comparison]) -> Table:
     return refined_table("solid-index", "Both models on ever finer meshes", found, "edges × {:g}")
 
 
-def other_sizes(sizes: Sizes) -> Table:
-    """Return a table of the effects of the solid's edges along x and its layers."""
-    smallest, largest = sizes.along
-    variants = (sizes.along, 2), ((0.5 * smallest, 0.5 * largest), 2), (sizes.along, 4)
-    rows: list[Sequence[Cell]] = []
-    for wall in (sizes.walls[0], sizes.walls[-1]):
-        base, *others = (
-            measure(
-                [
-                    solid_parts(box, probes, along, sizes.around, sizes.splits[0], layers)
-                    for box, probes in zip(pair(wall), PROBES, strict=True)
-                ]
-            )
-            for along, layers in variants
-        )
-        rows += [
-            (
-                f"{1.0e3 * wall:g} mm: {what.what}",
-                *(100.0 * (what.of(finer) / what.of(base) - 1.0) for finer in others),
-            )
-            for what in EVERY
-        ]
-    columns = {"walls": "", "edges along x\nhalved (%)": ".2f", "four layers\nfor two (%)": ".2f"}
-    title = "What further refinement changes of the solid"
-    return Table.of_rows("solid-sizes", title, columns, rows, (SIZES_NOTE,))
-
-
-def blow_table(comparisons: Sequence[Comparison]) -> Table:
-    """Return a table of one impact of the inner box on the outer one."""
-    worst = max(struck.reduction_error for one in comparisons for struck in one.blows)
-    return Table.of_rows(
-        "solid-blow",
-        "One blow of the inner box against the outer one's head",
-        {"walls": "", "shell": ".5g", "solid": ".5g", "difference (%)": ".2f"},
-        [
-            (f"{one.walls}: {what} ({unit})", shell, solid, 100.0 * (shell / solid - 1.0))
-            for one in comparisons
-            for what, unit, shell, solid in _blows(one)
-        ],
-        (
-            f"The inner box rises at {SPEED:g} m/s and hits the head from within. Middle meshes; "
-            f"the reductions err by {worst:.1e} at most.",
-        ),
-    )
-
-
 def shell_proofs(thinnest: Comparison) -> Iterator[Proof]:
     """Return the proofs of the shell of the thinnest walls against the solid."""
     walls, source = f"walls of {thinnest.walls}", "elasticity in space"
@@ -339,9 +282,6 @@ def shell_proofs(thinnest: Comparison) -> Iterator[Proof]:
         shell, solid = thinnest.shell[of].settled, thinnest.solid[of].settled
         held: Held = ("other code", source, of.allowed)
         yield Proof(f"{of.what}, {walls}", shell, solid, of.unit, *held)
-    held = ("other code", source, ALLOWED_OF_A_BLOW)
-    for what, unit, shell, solid in _blows(thinnest):
-        yield Proof(f"blow, {what}, {walls}", shell, solid, unit, *held)
 
 
 @titled("solid", "Shells against solids")
@@ -354,29 +294,8 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     yield from shell_proofs(comparisons[0])
     yield error_table(comparisons)
     yield refinements(comparisons)
-    yield other_sizes(sizes)
-    yield blow_table(comparisons)
     yield _error_plot("frequencies", FREQUENCIES, comparisons)
     yield _error_plot("compliances", COMPLIANCES, comparisons)
-    thickest = comparisons[-1]
-    yield Plot(
-        "solid-blow",
-        f"A blow of boxes with walls of {thickest.walls}",
-        "time (ms)",
-        "contact force (kN)",
-        {
-            name: ((1.0e3 * struck.time).tolist(), (1.0e-3 * struck.force).tolist())
-            for name, struck in zip(("shell", "solid"), thickest.blows, strict=True)
-        },
-        "The inner box hits the outer one's head; the force of the thickest walls.",
-        logarithmic=False,
-    )
-
-
-def _blows(one: Comparison) -> list[tuple[str, str, float, float]]:
-    """Return quantities of an impact, units, and values of the shell and of the solid."""
-    shell, solid = (struck.told for struck in one.blows)
-    return [(what, unit, shell[what, unit], solid[what, unit]) for what, unit in shell]
 
 
 def _error_plot(what: str, measured: Sequence[Measured], comparisons: Sequence[Comparison]) -> Plot:

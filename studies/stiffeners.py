@@ -214,30 +214,6 @@ def table(found: Sequence[Variant], stations: Sequence[float], sizes: Sizes) -> 
     )
 
 
-def sums(
-    outer: Sequence[Variant], inner: Sequence[Variant], stations: Sequence[float], sizes: Sizes
-) -> Table:
-    """Return the compliance of both segments of a joint together, for some pairs of variants."""
-    head, tail, closed = outer[-1], inner[len(sizes.collars)], inner[-2]
-    return Table.of_rows(
-        "stiffened-stations",
-        "Flexibility of a contact, both segments together",
-        {"with": "", **{f"at {x:g} m (nm/N)": ".2f" for x in stations}},
-        [
-            (what, *(one.together + one.one_more + other.together + other.one_more))
-            for what, one, other in (
-                ("nothing", outer[0], inner[0]),
-                ("a collar at the head", head, inner[0]),
-                ("a collar at the tail", outer[0], tail),
-                ("collars at both", head, tail),
-                ("a diaphragm in the tail", outer[0], closed),
-                ("collars at both and the diaphragm", head, inner[-1]),
-            )
-        ],
-        ("Of one flange of each, with the thickest stiffeners of the table above.",),
-    )
-
-
 def proofs(boom: Boom, sizes: Sizes) -> Iterator[Proof]:
     """Check stiffeners that are simple enough for a formula."""
     inner = boom.segments[1]
@@ -268,13 +244,11 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     sizes = sizes or Sizes()
     boom = build_boom(friction_case())
     stations = boom.joints[0].stations
-    outer: list[Variant] = []
-    inner: list[Variant] = []
-    for variants, found in zip(stiffened(boom, sizes), (outer, inner), strict=True):
+    found = []
+    for variants in stiffened(boom, sizes):
         for what, segment in variants.items():
             tell(f"{segment.name}: {what}")
             found.append(measure(segment, what, stations, sizes))
-    yield table([*outer, *inner], stations, sizes)
-    yield sums(outer, inner, stations, sizes)
+    yield table(found, stations, sizes)
     tell("a diaphragm in pure shear, and rings")
     yield from proofs(boom, sizes)

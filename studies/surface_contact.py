@@ -28,7 +28,7 @@ from studies.motions import (
     shell_of,
     without_friction,
 )
-from studies.pads import flexibility_table, pad_proofs, rigid_motion, with_pads
+from studies.pads import pad_proofs, rigid_motion, with_pads
 from studies.study import Piece, Plot, Proof, Tell, titled
 
 # Depth of the approaches of the proofs beyond the play, in m.
@@ -120,7 +120,6 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     )
     tell("first peaks")
     yield _peaks([*stations, *surfaces.values(), *softer], notes, sizes)
-    yield flexibility_table(stations)
     yield from _proofs(case, default.system)
     yield from pad_proofs(case, sizes.pads[0], padded.system)
     time = (OUTPUT_STEP * np.arange(len(tips[lines.name]))).tolist()

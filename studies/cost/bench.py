@@ -7,7 +7,6 @@ of the machine affects all of them.
 
 from __future__ import annotations
 
-import math
 import os
 import platform
 from collections.abc import Callable, Sequence
@@ -16,16 +15,13 @@ from dataclasses import asdict, dataclass
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
-from resource import RUSAGE_CHILDREN, RUSAGE_SELF, getrusage
 from statistics import median
-from tempfile import TemporaryDirectory
-from time import perf_counter, process_time
+from time import process_time
 from typing import Any, NamedTuple
 
 import numpy as np
 from rich.console import Console
 
-from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep, Integrator
 from dynamics.motion import Motion
@@ -35,12 +31,7 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.folder.cache import Cache
-from runs.pipeline.context import RunContext
-from runs.pipeline.run import run_case
 from runs.process.terminal import show_notices
-from runs.report import output
-from runs.report.pages import Addition
 from runs.report.tables import Table, wide_console
 from studies.cost import scaling
 from studies.cost.generic_solvers import (
@@ -54,7 +45,7 @@ from studies.cost.telescoping import MODELS, telescoping
 from studies.cost.timing import NOISE, by_turns, leave
 from studies.motions import OUTPUT_STEP, friction_case, gap_system, model_of
 
-PAPER, LIFT = CASES / "paper.toml", CASES / "lift.toml"
+PAPER = CASES / "paper.toml"
 OUT = Path("runs/out/bench")
 
 # Goal: wall s of the ensemble of series.
@@ -77,8 +68,8 @@ COMPILED = "compiled"
 # Relative change of the members' loads.
 CHANGE = 1.0e-9
 
-# The step whose cost is measured by modes and rows, and that of an ensemble, in s.
-STEP, MEMBERS_STEP = 1.0e-5, 1.0e-4
+# The step of an ensemble in s.
+MEMBERS_STEP = 1.0e-4
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,14 +88,8 @@ class Sizes:
     most: int = 3  #: repetitions of short runs
     #: Wall seconds of all repetitions of one run, beyond which there are no more.
     budget: float = 6.0
-    #: The table of the cost of a step.
-    modes: Sequence[int] = (5, 20, 80, 200)
-    rows: Sequence[int] = (2, 4, 16)
-    updates: int = 5_000_000  #: of one mode by one step, that are timed for an entry of it
     members: int = 256  #: of the ensemble of series
     shell_members: int = 32  #: of the ensemble of shells, 0 for none
-    #: Models of a run with timed output.
-    left: Sequence[str] = ("series", "timoshenko", "shell")
     telescoping: Sequence[str] = MODELS  #: models that telescope
 
 
@@ -217,48 +202,6 @@ def compare(case: Case, sizes: Sizes) -> Table:
     )
 
 
-def pressed_system(num_modes: int, num_rows: int) -> GapSystem:
-    """Return an artificial system with all rows always in contact, which has the dearest steps.
-
-    Two rigid modes, the others 20 Hz apart up to a few kHz as those of a shell; 1000 kg, stops
-    of 1e7 N/m without clearance at places along a bar, 10 kN.
-    """
-    order = np.arange(num_modes)
-    place = (np.arange(num_rows) + 0.5) / num_rows
-    rows = np.cos(np.pi * np.outer(place, order)) * np.sqrt(2.0 / 1000.0)
-    return GapSystem(
-        omega2=(2.0 * np.pi * 20.0 * np.maximum(order - 1, 0)) ** 2,
-        load=1.0e4 * rows[0],
-        rows=rows,
-        laws=[PowerContact(1.0e7, 1.0)] * num_rows,
-        station_of_row=np.arange(num_rows),
-        stations=place.tolist(),
-        observers={},
-    )
-
-
-def steps(sizes: Sizes) -> Table:
-    """Measure the cost of a step by modes and rows."""
-    kinds = [(n, m) for n in sizes.modes for m in sizes.rows]
-    made = {n: 10 * math.ceil(sizes.updates / (10 * n)) for n in sizes.modes}
-    runs = [
-        partial(
-            FixedStep(STEP), Motion(pressed_system(n, m), STEP * made[n], STEP * made[n] / 10.0)
-        )
-        for n, m in kinds
-    ]
-    seconds = dict(zip(kinds, by_turns(runs, sizes.most, sizes.budget), strict=True))
-    return Table.of_rows(
-        "steps",
-        "ns per step while every row presses",
-        {"modes": ".0f", **{f"{m} rows": "" for m in sizes.rows}},
-        [
-            (n, *([1e9 * part / made[n] for part in seconds[n, m]] for m in sizes.rows))
-            for n in sizes.modes
-        ],
-    )
-
-
 def ensembles(case: Case, sizes: Sizes) -> Table:
     """Measure the cost of ensembles by threads."""
     cores = len(os.sched_getaffinity(0))
@@ -294,54 +237,13 @@ def ensembles(case: Case, sizes: Sizes) -> Table:
     )
 
 
-def leaving(models: Sequence[str]) -> Table:
-    """Measure wall and processor time of the output after the motion, with and without snapshots.
-
-    Args:
-        models: of the lift; its shell is left out where there is no FEniCSx.
-    """
-    asked = [name for name in models if name != "shell" or find_spec("dolfinx")]
-    case = case_file.select(case_file.load(str(LIFT)), str(LIFT), asked)
-    comm = None
-    if "shell" in asked:
-        from mpi4py import MPI
-
-        comm = MPI.COMM_SELF
-    run = run_case(case, str(LIFT), RunContext(comm, cache=Cache.of_user()))
-    assert run is not None
-    run.evaluate()
-    rows = []
-    with TemporaryDirectory() as folder:
-        for what, drawn in (("without snapshots", False), ("with snapshots", True)):
-            out = Path(folder) / what
-            out.mkdir()
-            begin, spent = perf_counter(), _processor_time()
-            output.write(run, Addition(), out, drawn)
-            rows.append((what, perf_counter() - begin, _processor_time() - spent))
-    return Table.of_rows(
-        "leaving",
-        f"Leaving a run of the lift: {', '.join(asked)}",
-        {"what": "", "wall s": ".1f", "processor s": ".1f"},
-        rows,
-        ("Snapshots are drawn by a process beside the one that does all else.",),
-    )
-
-
-def _processor_time() -> float:
-    """Return the processor time of this process and of those that it has ended, in s."""
-    used = getrusage(RUSAGE_SELF), getrusage(RUSAGE_CHILDREN)
-    return sum(each.ru_utime + each.ru_stime for each in used)
-
-
 def bench(sizes: Sizes, folder: Path, console: Console) -> None:
     """Measure, print, and write ``bench.json`` and ``bench.md``."""
     case = case_file.load(str(PAPER))
     parts: list[Callable[[], Table]] = [
         partial(errors, sizes),
         partial(compare, case, sizes),
-        partial(steps, sizes),
         partial(ensembles, case, sizes),
-        partial(leaving, sizes.left),
         partial(telescoping, sizes.telescoping, sizes.duration),
     ]
     machine = {"cores": len(os.sched_getaffinity(0)), "python": platform.python_version()}

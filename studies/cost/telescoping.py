@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Cost of telescoping during the motion: ``python -m studies.cost.telescoping``.
+"""Cost of telescoping during the motion.
 
-Models may be named behind it. The paper's boom extends by 4 m during the motion; the same boom
-with the same pads at a fixed extension is the reference.
+The paper's boom extends by 4 m during the motion; the same boom with the same pads at a fixed
+extension is the reference.
 """
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from time import process_time
@@ -19,8 +18,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
-from runs.process.terminal import show_notices
-from runs.report.tables import Table, wide_console
+from runs.report.tables import Table
 from studies.motions import OUTPUT_STEP, gap_system, model_of, move
 
 CASE = CASES / "drawn-out.toml"
@@ -107,8 +105,3 @@ def _cost(case: Case, name: str) -> Cost:
     begin = process_time()
     move(system, case.time.duration)
     return Cost(system.num_modes, built, process_time() - begin)
-
-
-if __name__ == "__main__":
-    show_notices()
-    telescoping(sys.argv[1:] or MODELS).show(wide_console())

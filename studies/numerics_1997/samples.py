@@ -14,7 +14,6 @@ from itertools import product
 
 import numpy as np
 
-from dynamics.contact import PowerContact
 from dynamics.energy import ENERGIES
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
@@ -27,7 +26,6 @@ from runs.paper.rules import CONFORMITY, DIVERGENCE
 from runs.paper.run_query import peaks_apart
 from runs.pipeline.members import slow_below
 from runs.pipeline.models import MotionPlan
-from studies.interpretations import LITERAL
 from studies.motions import gap_system, model_of, side_by_side
 from studies.numerics_1997.schemes import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
 
@@ -207,13 +205,6 @@ class Example:
             for one, accurate in zip(samples, members, strict=True)
             for series in [accurate.models[: len(SERIES)]]
         ]
-
-    def as_printed(self, how: Numerics) -> list[ModelRun]:
-        """Return the elements with linear contacts of the stiffness as printed."""
-        system, put_in = self.systems[ELEMENTS], self.accurate[0].elements.put_in
-        laws = [PowerContact(LITERAL, 1.0).behind(0.5 * law.play) for law in system.laws]
-        tasks = [(lowest(replace(system, laws=laws), few), put_in, 1.0) for few in MODES]
-        return side_by_side(lambda one: _move(how, self.case.time.duration, *one), tasks)
 
     def tip_error(self, run: ModelRun) -> float:
         """Return the largest distance of the elements' tip from the accurate one, by its range."""

@@ -26,7 +26,6 @@ from studies.numerics_1997.samples import (
     PAPER_STEP,
     SERIES,
     Example,
-    ModelRun,
     Numerics,
     Sample,
     all_numerics,
@@ -104,8 +103,6 @@ class Survey:
     frictional: Mapping[Numerics, Sequence[Sample]]
     #: By the general solver in the steps that the paper allows the series, in s.
     reached: Mapping[Way, float]
-    #: Elements without and with friction whose contacts are as stiff as printed.
-    printed: Mapping[Numerics, Sequence[Sequence[ModelRun]]]
 
     @classmethod
     def of(cls, tell: Callable[[str], None]) -> Survey:
@@ -119,10 +116,7 @@ class Survey:
         of_free = {how: without.samples(how) for how in all_numerics()}
         tell("with friction")
         of_rubbed = {how: with_friction.samples(how) for how in all_numerics()}
-        tell("with the stiffness as printed")
-        examples = without, with_friction
-        printed = {how: [one.as_printed(how) for one in examples] for how in all_numerics()}
-        return cls(without, with_friction, of_free, of_rubbed, reached, printed)
+        return cls(without, with_friction, of_free, of_rubbed, reached)
 
     @cached_property
     def outcomes(self) -> dict[str, Outcome]:

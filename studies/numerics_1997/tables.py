@@ -13,7 +13,6 @@ from geometry.typography import TO_PERCENT
 from runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
 from runs.report.formatting import NONE, number
 from runs.report.tables import Cell, Table
-from studies.interpretations import LITERAL
 from studies.numerics_1997.samples import MEMBERS, MODES, PAPER_STEP, SERIES, ModelRun, Numerics
 from studies.numerics_1997.schemes import NEWMARK, WILSON, proofs
 from studies.numerics_1997.survey import (
@@ -42,7 +41,7 @@ def study(tell: Tell) -> Iterator[Piece]:
 
 def tables(survey: Survey) -> list[Table]:
     """Return all tables of a survey."""
-    made = outcome_table, free_table, frictional_table, printed_table, reach_table
+    made = outcome_table, free_table, frictional_table, reach_table
     return [table(survey) for table in made]
 
 
@@ -119,23 +118,6 @@ def frictional_table(survey: Survey) -> Table:
     }  # fmt: skip
     return Table.of_rows(
         "numerics-1997-friction", "With friction: the tip by numerics of 1997", columns, rows
-    )
-
-
-def printed_table(survey: Survey) -> Table:
-    """Return the table of lost elements, with contacts as soft as printed."""
-    gained, ends = "elements gain more than\nwas put in at (s), ", "energy at the end\n(%), "
-    headings = [part + which for which in ("free", "friction") for part in (gained, ends)]
-    rows: list[Sequence[Cell]] = [
-        (str(how), *(cell for runs in both for cell in _energies(runs)))
-        for how, both in survey.printed.items()
-    ]
-    return Table.of_rows(
-        "numerics-1997-printed",
-        f"With contacts of {number(LITERAL)} N/m, as the print has them",
-        {"numerics": "", **dict.fromkeys(headings, "")},
-        rows,
-        (f"With {', '.join(map(str, MODES))} modes, one run each.",),
     )
 
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.polynomial import legendre
 from scipy.spatial.transform import Rotation
 
 from geometry.arrays import Array, Indices
@@ -226,21 +224,14 @@ class SupportedPlate:
         return np.asarray(np.sort(omega.ravel())[:count] / (2.0 * np.pi))
 
 
-Edges = Literal["simply supported", "clamped"]
-
-# Polynomials of each field along each side: eight more change the compliance by 1e-3 at most.
-DEGREES = 20
-
-
 @dataclass(frozen=True, slots=True)
 class PressedPlate:
-    """Plate of steel on [0, length] × [0, width], pressed across.
+    """Plate of steel on [0, length] × [0, width] on hard simple supports, pressed across.
 
     Args:
         length, width: in m.
         thickness: in m.
         start, end: (x, y) in m of the patch's corners.
-        edges: all four; simple supports are hard ones, which keep the direction of an edge.
     """
 
     length: float
@@ -248,7 +239,6 @@ class PressedPlate:
     thickness: float
     start: tuple[float, float]
     end: tuple[float, float]
-    edges: Edges
 
     def shell(self, size: float) -> float:
         """Return the mean deflection of the patch by the shell under a spread unit force, in m/N.
@@ -266,45 +256,12 @@ class PressedPlate:
         held = hold(shell.node_dofs[:, [X, Y]])
         for axis, side in ((X, self.length), (Y, self.width)):
             for edge in (0.0, side):
-                turned = [X, Y] if self.edges == "clamped" else [axis]
-                held |= shell.hold_at(axis, edge, [Z], turned)
+                held |= shell.hold_at(axis, edge, [Z], [axis])
         held |= hold(shell.rotation_dofs[:, Z])
         return float(load @ shell.solve(held, load))
 
-    def theory(self) -> float:
-        """Return the same of the plate of Reissner and Mindlin, by Ritz's method (1909).
-
-        Deflection and slopes are polynomials that satisfy the supports.
-        """
-        nu, (plate, shear) = STEEL.poissons_ratio, rigidities(self.thickness)
-        (x, along), (y, over) = (_gauss(0.0, side) for side in (self.length, self.width))
-        free = self.edges == "simply supported"
-        deflection = _Field.of(self, x, y, (False, False))
-        slope_x, slope_y = (_Field.of(self, x, y, ends) for ends in ((free, False), (False, free)))
-        none = np.zeros_like(deflection.values)
-        curved_x = np.concatenate([none, slope_x.along_x, none])
-        curved_y = np.concatenate([none, none, slope_y.along_y])
-        twisted = np.concatenate([none, slope_x.along_y, slope_y.along_x])
-        sheared_x = np.concatenate([deflection.along_x, -slope_x.values, none])
-        sheared_y = np.concatenate([deflection.along_y, none, -slope_y.values])
-        weights = np.outer(along, over).ravel()
-        stiffness = sum(
-            modulus * (one * weights) @ other.T
-            for modulus, one, other in (
-                (plate, curved_x, curved_x + nu * curved_y),
-                (plate, curved_y, curved_y + nu * curved_x),
-                (0.5 * (1.0 - nu) * plate, twisted, twisted),
-                (shear, sheared_x, sheared_x),
-                (shear, sheared_y, sheared_y),
-            )
-        )
-        (x, along), (y, over) = map(_gauss, self.start, self.end)
-        pressed = _Field.of(self, x, y, (False, False)).values @ np.outer(along, over).ravel()
-        load = np.concatenate([pressed, np.zeros(2 * pressed.size)]) / (along.sum() * over.sum())
-        return float(load @ np.linalg.solve(stiffness, load))
-
-    def navier(self, terms: int = 400) -> float:
-        """Return the same on simple supports, as a double series of sines (Navier 1823).
+    def theory(self, terms: int = 400) -> float:
+        """Return the same as a double series of sines (Navier 1823).
 
         It includes the shear of Reissner and Mindlin, whose plate bends alike between such
         supports.
@@ -323,42 +280,5 @@ class PressedPlate:
         return float((given * np.outer(*means) ** 2).sum())
 
 
-class _Field(NamedTuple):
-    """Products of polynomials and their slopes, (num_functions, num_points) each."""
-
-    values: Array
-    along_x: Array
-    along_y: Array
-
-    @classmethod
-    def of(cls, plate: PressedPlate, x: Array, y: Array, free: tuple[bool, bool]) -> _Field:
-        """Create the field at places (num_x,) and (num_y,); zero at the fixed ends of a side."""
-        (f, df), (g, dg) = (
-            _polynomials(places, side, ends)
-            for places, side, ends in zip((x, y), (plate.length, plate.width), free, strict=True)
-        )
-        return cls(np.kron(f, g), np.kron(df, g), np.kron(f, dg))
-
-
-def flange(edges: Edges) -> PressedPlate:
-    """Return nearly the outer flange of the paper's boom, under a pad beside its web."""
-    return PressedPlate(0.6, 0.3, 6.64e-3, (0.25, 0.025), (0.35, 0.075), edges)
-
-
-def _polynomials(places: Array, side: float, free: bool) -> tuple[Array, Array]:
-    """Return values and slopes (num_polynomials, num_places) of Legendre's polynomials.
-
-    If the ends are fixed, they are differences of these that vanish at both ends.
-    """
-    ones = np.eye(DEGREES + 2)
-    coefficients = ones[:-2] if free else ones[2:] - ones[:-2]
-    at = 2.0 * places / side - 1.0
-    slopes = legendre.legder(coefficients, axis=1)
-    return legendre.legval(at, coefficients.T), 2.0 / side * legendre.legval(at, slopes.T)
-
-
-def _gauss(start: float, end: float) -> tuple[Array, Array]:
-    """Return places and weights of Gauss's rule, exact for products of the polynomials."""
-    nodes, weights = legendre.leggauss(DEGREES + 2)
-    half = 0.5 * (end - start)
-    return start + half * (nodes + 1.0), half * weights
+# Nearly the outer flange of the paper's boom, under a pad beside its web.
+FLANGE = PressedPlate(0.6, 0.3, 6.64e-3, (0.25, 0.025), (0.35, 0.075))

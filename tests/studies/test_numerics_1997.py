@@ -148,11 +148,9 @@ def survey(samples: Sequence[Sample], reached: float) -> Survey:
     case = case_file.load(str(WITHOUT)), case_file.load(str(WITH))
     examples = [Example(one, {}, CUTOFF, [sample(swing(), swing(), swing())]) for one in case]
     found = dict.fromkeys(all_numerics(), samples)
-    elements = [one.elements for one in samples]
     ways = product(METHODS, TOLERANCES, SERIES, (False, True))
     far = dict.fromkeys(ways, reached)
-    printed = {how: [elements, elements] for how in found}
-    return Survey(*examples, found, found, far, printed)
+    return Survey(*examples, found, found, far)
 
 
 def test_outcomes_follow_from_the_runs() -> None:
@@ -174,4 +172,4 @@ def test_outcomes_follow_from_the_runs() -> None:
 def test_every_table_has_a_row_for_each_of_its_numerics() -> None:
     """Reference: 4 statements; 18 numerics, in the first two after the accurate run; 2 solvers."""
     made = tables(survey([sample(swing(), swing(), swing())], 2.0))
-    assert [len(table.rows) for table in made] == [4, 19, 19, 18, 2 * len(TOLERANCES)]
+    assert [len(table.rows) for table in made] == [4, 19, 19, 2 * len(TOLERANCES)]

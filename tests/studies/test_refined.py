@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Order, limit and index of three grids."""
+"""Order, limit and index of three grids; closed forms and models of other studies."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 
+import numpy as np
 import pytest
+from scipy.integrate import quad
 
+from dynamics.excitation import PiecewiseLinear
+from studies.histories import response
+from studies.model_ladder import LADDER
+from studies.motions import friction_case
 from studies.refined import Reference, Refined, refined_table
 
 
@@ -68,3 +74,21 @@ def test_the_finest_is_held_against_its_reference() -> None:
     first, second = refined_table("t", "T", [short, long], "h = {:g}").data
     assert (first["quantity"], first["h = 4"], first["h = 2"]) == ("p (m)", None, 1.2)
     assert (second["h = 4"], second["order"]) == (1.4, pytest.approx(1.0))
+
+
+def test_the_ladder_has_all_models_of_its_case() -> None:
+    assert [name for _, name in LADDER] == [model.name for model in friction_case().models]
+
+
+@pytest.mark.parametrize("omega", [0.0, 3.0])
+def test_the_closed_form_is_duhamel_s_integral(omega: float) -> None:
+    """Reference: other code, scipy's quadrature of ∫ g(s) sin(ω (t − s))/ω ds."""
+    table = PiecewiseLinear((0.2, 0.5, 1.1), (0.4, -1.0, 2.0))
+    (found,) = response(omega, table, np.array([1.7]))
+    expected, _ = quad(
+        lambda s: float(table(np.array(s))) * (1.7 - s) * np.sinc(omega * (1.7 - s) / np.pi),
+        0.0,
+        1.7,
+        points=[0.2, 0.5, 1.1],
+    )
+    assert found == pytest.approx(expected, rel=1e-10)

@@ -8,7 +8,6 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="the study needs DOLFINx")
 
-from studies.box_pair import Blow
 from studies.refined import Refined
 from studies.solid import (
     COMPLIANCES,
@@ -32,15 +31,12 @@ TINY = Sizes(
 
 def comparison(wall: float, error: float) -> Comparison:
     """One in which every quantity has the same error."""
-    time = 1.0e-3 * np.arange(4)
-    still = Blow(time, np.array([0.0, 1.0, 2.0, 0.0]), time, 0.0)
     return Comparison(
         wall,
         *(
             {what: Refined(what.what, what.unit, [4.0, 2.0, 1.0], [value] * 3) for what in EVERY}
             for value in (1.0 + error, 1.0)
         ),
-        (still, still),
     )
 
 
@@ -61,8 +57,7 @@ def test_order_and_passed_limits_are_those_of_a_power_law() -> None:
 def test_thick_walls_have_stiffer_corners_than_a_shell() -> None:
     """Reference: other code, elasticity in space.
 
-    Every frequency of the shell is lower and every compliance higher than the solid's; a blow
-    differs by less.
+    Every frequency of the shell is lower and every compliance higher than the solid's.
     """
     told: list[str] = []
     (found,) = compare(TINY, told.append)
@@ -73,13 +68,6 @@ def test_thick_walls_have_stiffer_corners_than_a_shell() -> None:
         assert found.error(compliance) > 0.02
     assert found.error(COMPLIANCES[0]) == pytest.approx(0.027, abs=0.006)
     assert found.slenderness(COMPLIANCES[0]) == pytest.approx(0.04 / 0.30)
-    shell, solid = found.blows
-    peak, impulse = ("largest force", "kN"), ("impulse", "N·s")
-    assert shell.told[peak] == pytest.approx(solid.told[peak], rel=0.02)
-    assert shell.told[impulse] == pytest.approx(solid.told[impulse], rel=0.01)
-    # The inner box keeps some of its rise: m v = 650 N·s is its momentum.
-    assert 0.8 * 653.0 < solid.told[impulse] < 1.5 * 653.0
-    assert max(shell.reduction_error, solid.reduction_error) < 1.0e-6
 
 
 @pytest.mark.slow
@@ -100,5 +88,4 @@ def test_tables_and_proofs_have_every_quantity() -> None:
     assert len(refinements(found).data) == 4 * len(EVERY)
     proofs = list(shell_proofs(found[0]))
     assert all(proof.holds for proof in proofs)
-    assert [proof.error for proof in proofs[:8]] == pytest.approx([0.004] * 8)
-    assert proofs[9].what == "blow, largest force, walls of 5 mm"
+    assert [proof.error for proof in proofs] == pytest.approx([0.004] * len(EVERY))
