@@ -31,7 +31,7 @@ READY := .venv/ready-$(RELEASE)
 SPHINX := .venv/sphinx-$(RELEASE)
 endif
 
-.PHONY: help verify snapshots gallery bench convergence validity other-codes test fuzz torture quick lint docs matrix clean distclean debian-packages
+.PHONY: help verify snapshots gallery bench convergence validation validity other-codes test fuzz torture quick lint docs matrix clean distclean debian-packages
 .DELETE_ON_ERROR:
 
 help: ## list these targets
@@ -53,6 +53,9 @@ bench: $(READY) ## what integrators and reductions cost, into runs/out/bench
 
 convergence: $(READY) ## what proves the models: benchmarks, refinements, other codes; into runs/out/convergence
 	$(BIN)/python -m studies.convergence
+
+validation: $(READY) ## measurements and other programs beside this one; part of `make convergence`
+	$(BIN)/python -m studies.convergence validation
 
 validity: $(READY) ## where a beam may stand for the shell, over friction, play and load, into runs/out/validity
 	$(BIN)/protractile sweep runs/cases/beam-or-shell.toml --against shell --large \

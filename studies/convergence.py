@@ -154,6 +154,7 @@ STUDIES = (
     "sections",
     "taper",
     "answers",
+    "validation",
 )
 
 

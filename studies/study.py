@@ -13,9 +13,9 @@ from runs.report.tables import Plain, Table
 # Callback with the next step of a study.
 Tell = Callable[[str], None]
 
-# Kind of reference: a formula, a published value, another code or another theory of
+# Kind of reference: a measurement, a formula, a published value, another code or another theory of
 # this project, or its own earlier value.
-Kind = Literal["analytic", "external", "other code", "non-regression"]
+Kind = Literal["measured", "analytic", "external", "other code", "non-regression"]
 # Last fields of a proof, which several may share: kind, source, and permitted error.
 Held = tuple[Kind, str, float]
 

@@ -1,0 +1,360 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Study of measurements, published benchmarks and other programs: ``docs/validation.md``.
+
+Rows that cannot be computed stand in a table of their own, each with the reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import NamedTuple, cast
+
+import numpy as np
+from scipy.optimize import brentq, least_squares
+
+from beam_model.finite_element import finite_element_system
+from dynamics.contact import Gap, PowerContact
+from dynamics.excitation import Excitation, Sine
+from dynamics.friction import DryFriction
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrator import FixedStep
+from dynamics.motion import Motion
+from geometry.arrays import Array
+from geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
+from geometry.section import BoxSection
+from runs.report.tables import Table
+from shell_model.segment.forms import DRILLING_OF_CURVED
+from studies.reference_models.benchmarks import X, Y, Z, grid
+from studies.reference_models.lone_segment import natural_frequencies
+from studies.reference_models.static_shell import StaticShell, hold
+from studies.study import Kind, Piece, Proof, Tell, titled
+
+# DROPBEAR: the beam in m and kg, and what it is assumed to carry at its free end in kg.
+BEAM_LENGTH, BEAM_WIDTH, BEAM_THICKNESS = 0.501, 0.051, 0.00666
+BEAM_STEEL = Material(2.0e11, 0.3, 7850.0)
+ACCELEROMETERS = 0.06
+# Means of the transducer in V at six roller positions, and the measured first frequencies in Hz.
+VOLTS = np.array([1.23, 1.65, 2.08, 2.50, 2.94, 3.37])
+MEASURED = np.array([26.4, 28.15, 30.8, 33.9, 37.5, 41.95])
+DROPBEAR = "DROPBEAR data set 8, Vereen et al. 2023"
+
+# The boom lift of MathWorks: length, height, width and wall of its boxes in feet, from base to fly.
+FOOT = 0.3048
+BOXES = (
+    (16.7, 1.055, 0.825, 0.02082), (15.7, 0.8745, 0.6585, 0.02802), (14.69, 0.757, 0.5335, 0.02109),
+)  # fmt: skip
+ALUMINIUM = Material(70.0e9, 0.33, 2700.0)
+# Parts of the fly that are retracted, and the first frequencies of its chart in Hz.
+RETRACTED, CHART = (0.05, 0.35), (0.89, 1.40)
+# Factor of the stiffness of rigid pieces, and how far these grip their neighbours in m.
+RIGID, GRIP = 30.0, 0.1
+BOOM_LIFT = "Simscape boom lift, MathWorks 2023"
+
+# NAFEMS R0015: a square of 10 m, and its material.
+SIDE, NAFEMS_STEEL = 10.0, Material(200.0e9, 0.3, 8000.0)
+
+
+class Skipped(NamedTuple):
+    """Comparison that is not computed."""
+
+    what: str
+    given: str  #: by the open description
+    missing: str  #: or why it is not computed
+    contact: str  #: whom to ask
+
+
+SKIPPED = (
+    Skipped(
+        "Code_Aster SDND120",
+        "1 Hz at 0.66 m/s² across a device with two stiffnesses, a threshold and C v^0.2",
+        "no such law here; the value that it tests is the imposed displacement",
+        "–",
+    ),
+    Skipped(
+        "Code_Aster SDND123",
+        "two masses, a stop with play, 0.25791 Hz at an energy of 1.19768",
+        "a regularised law; the measure of energy is not defined in its file",
+        "Code_Aster's forum",
+    ),
+    Skipped(
+        "Code_Aster SDND125",
+        "three masses that chatter under 60 N at 2 Hz",
+        "its one value is its own earlier one, with a contact damping that the code chooses",
+        "Code_Aster's forum",
+    ),
+    Skipped(
+        "Siconos, impacting beam",
+        "scheme and data of its tutorial",
+        "no package on PyPI; `tests/dynamics/test_impacting_beam.py` repeats its scheme",
+        "–",
+    ),
+    Skipped(
+        "Exudyn, telescoped beams",
+        "its beams and its contact by penalty",
+        "not among the programs of `make other-codes` yet",
+        "–",
+    ),
+    Skipped(
+        "Hong et al. 2019, the beam of DROPBEAR with a mass at its end",
+        "pin at 50 to 200 mm, a fifth of the beam's mass, spectra as figures",
+        "the measured frequencies as numbers",
+        "A. Downey, University of South Carolina",
+    ),
+    Skipped(
+        "Monjaraz-Tec, Gross and Krack 2022, two cantilevers with frictional impacts",
+        "method, natural frequencies and damping, amplitudes over frequency as figures",
+        "drawing of the contact, time histories as numbers",
+        "M. Krack, University of Stuttgart",
+    ),
+    Skipped(
+        "Abraham, Sivaloganathan and Rees, tip deflection against overlap",
+        "sections, lengths, tip loads and deflections of a boom in a laboratory",
+        "play, place and stiffness of the wear pads",
+        "S. Sivaloganathan, UAE University",
+    ),
+    Skipped(
+        "Fragassa, Minak and Pavlovic 2020, strains of a fire truck's boom",
+        "strains at gauges under static and dynamic loads",
+        "plates, pads, histories of the loads",
+        "C. Fragassa, University of Bologna",
+    ),
+    Skipped(
+        "Savković et al. 2014, contact zone of the crane TD-6/8",
+        "sections at the contact, stresses along lines",
+        "length of the boom, places of the gauges",
+        "M. Savković, University of Kragujevac",
+    ),
+)
+
+
+@titled("validation", "Measurements, published benchmarks and other programs")
+def study(tell: Tell) -> Iterator[Piece]:
+    """Compute all rows, the measured ones first, and list what is skipped."""
+    for what, rows in (
+        ("a measured beam on a moving roller", moving_roller),
+        ("a boom lift", boom_lift),
+        ("Code_Aster's friction and impact", code_aster),
+        ("NAFEMS' plates", nafems),
+    ):
+        tell(what)
+        yield from rows()
+    yield Table.of_rows(
+        "validation-skipped",
+        "Not computed",
+        ("what", "given", "missing, or the reason", "whom to ask"),
+        SKIPPED,
+    )
+
+
+def moving_roller() -> Iterator[Proof]:
+    """Compare first frequencies over roller positions, x = offset + scale · voltage fitted."""
+
+    def frequencies(parameters: Array) -> Array:
+        return np.array([roller_frequency(x) for x in parameters[0] + parameters[1] * VOLTS])
+
+    fit = least_squares(
+        lambda parameters: frequencies(parameters) / MEASURED - 1.0,
+        [-0.02, 0.06],
+        bounds=([-0.06, 0.02], [0.05, 0.09]),
+    )
+    offset, scale = fit.x
+    for volt, value, reference in zip(VOLTS, frequencies(fit.x), MEASURED, strict=True):
+        what = f"first frequency, roller at {1e3 * (offset + scale * volt):.0f} mm"
+        yield Proof(what, value, reference, "Hz", "measured", DROPBEAR, 0.02)
+
+
+def roller_frequency(x: float) -> float:
+    """Return the first frequency in Hz of the clamped beam with a roller at x in m."""
+    steel, area = BEAM_STEEL, BEAM_WIDTH * BEAM_THICKNESS
+    second = BEAM_WIDTH * BEAM_THICKNESS**3 / 12.0
+    beam = Segment(
+        "beam", 0.0, BEAM_LENGTH, steel, steel.density * area, second, steel.density * second,
+        supports=(Support(0.0, "clamped"), Support(x)),
+        masses=(PointMass(BEAM_LENGTH, ACCELEROMETERS),),
+    )  # fmt: skip
+    return float(finite_element_system(Boom((beam,), ()), 0.05).frequencies[0])
+
+
+def boom_lift() -> Iterator[Proof]:
+    """Compare the frequency at most retraction, with a tip mass fitted at the least."""
+    mass = brentq(lambda mass: lift_frequency(RETRACTED[0], mass) - CHART[0], 10.0, 2000.0)
+    what = f"first frequency, {100 * RETRACTED[1]:g} % retracted, {mass:.0f} kg at the tip"
+    value = lift_frequency(RETRACTED[1], mass)
+    yield Proof(what, value, CHART[1], "Hz", "other code", BOOM_LIFT, 0.05)
+
+
+def lift_frequency(retracted: float, mass: float) -> float:
+    """Return the first frequency in Hz of three boxes that are rigid where they overlap.
+
+    Args:
+        retracted: length of both overlaps over that of the fly.
+        mass: at the tip in kg.
+    """
+    boxes = [
+        (FOOT * length, BoxSection(*(FOOT * (size - wall) for size in sizes), *[FOOT * wall] * 2))
+        for length, *sizes, wall in BOXES
+    ]
+    lap, far = retracted * boxes[-1][0], len(boxes) - 1
+    # Length, section, and sections together, of a flexible piece and of the rigid one behind it.
+    pieces: list[tuple[float, float, float]] = []
+    for number, (length, box) in enumerate(boxes):
+        area = box.area
+        free = length - lap * (1 if number in (0, far) else 2)
+        pieces.append((free, box.second_moment_of_area, area))
+        if number < far:
+            pieces.append(
+                (lap, RIGID * box.second_moment_of_area, area + boxes[number + 1][1].area)
+            )
+    ends = np.cumsum([0.0, *(length for length, _, _ in pieces)])
+    segments = []
+    for number, (_, second, area) in enumerate(pieces):
+        # Rigid pieces grip their neighbours.
+        start, end = ends[number] - GRIP * (number % 2), ends[number + 1] + GRIP * (number % 2)
+        tip = number == len(pieces) - 1
+        segments.append(
+            Segment(
+                f"piece {number}", float(start), float(end), ALUMINIUM, ALUMINIUM.density * area,
+                second, 0.0, supports=() if number else (Support(0.0, "clamped"),),
+                masses=(PointMass(float(end), mass),) if tip else (),
+            )
+        )  # fmt: skip
+    joints = [
+        Joint(number, number + 1, (inner.start, outer.end), 0.0, tied=True)
+        for number, (outer, inner) in enumerate(pairwise(segments))
+    ]
+    boom = Boom(tuple(segments), tuple(joints))
+    return float(finite_element_system(boom, 0.25, rotary_inertia=False).frequencies[0])
+
+
+class Oscillators(NamedTuple):
+    """Masses on springs to a base that accelerates, in its frame."""
+
+    mass: float  #: of each in kg
+    stiffness: float  #: of each in N/m
+    accelerations: Sequence[float]  #: amplitudes of their bases in m/s²
+    frequency: float  #: of the bases in Hz
+    damping_ratio: float = 0.0
+
+    def system(self, friction: float = 0.0, laws: Sequence[Gap] = ()) -> GapSystem:
+        """Return the masses with friction in N on the first, and laws on its approach.
+
+        With a second mass the approach is that of both.
+        """
+        n = len(self.accelerations)
+        scale = 1.0 / np.sqrt(self.mass)
+        omega2 = np.full(n, self.stiffness / self.mass)
+        push = -np.sqrt(self.mass) * np.asarray(self.accelerations)
+        row = scale * np.array([1.0, -1.0][:n])
+        rubs = [DryFriction(1.0, 0, friction)] if friction else []
+        return GapSystem(
+            omega2=omega2,
+            load=np.zeros(n),
+            rows=np.tile(row, (len(laws), 1)).reshape(len(laws), n),
+            laws=list(laws),
+            station_of_row=np.zeros(len(laws), dtype=np.int64),
+            stations=[0.0],
+            observers={f"x{i}": Observer(scale * one) for i, one in enumerate(np.eye(n))},
+            excitations=[Excitation(push, Sine(self.frequency))],
+            damping=2.0 * self.damping_ratio * np.sqrt(omega2),
+            frictions=rubs,
+            friction_rows=np.tile(scale * np.eye(n)[0], (len(rubs), 1)).reshape(len(rubs), n),
+        )
+
+
+def code_aster() -> Iterator[Proof]:
+    """Compute SDND100, 102 and 104 of Code_Aster's manual of validation V5.01."""
+    yield from released_slider()
+    yield impact_pair()
+    yield from rubbing_mass()
+
+
+def released_slider() -> Iterator[Proof]:
+    """Compare the turning points of 1 kg on 1e4 N/m under 1 N of friction (SDND100)."""
+    slider = Oscillators(1.0, 1.0e4, [0.0], 1.0).system(friction=1.0)
+    half = np.pi / 100.0
+    run = FixedStep(half / 1000.0)(Motion(slider, 4.0 * half, half, position=np.array([0.85e-3])))
+    for turn, value in enumerate(run.data["x0"].values[1:], start=1):
+        reference = (-1.0) ** turn * (0.85 - 0.2 * turn)
+        what = f"SDND100, turning point {turn} of a slider"
+        source = "r₀ − 2 n μN/k, Code_Aster V5.01.100"
+        yield Proof(what, 1e3 * float(value), reference, "mm", "analytic", source, 1.0e-4)
+
+
+def impact_pair() -> Proof:
+    """Compare one oscillator against a wall with two that collide (SDND102)."""
+    wall, pair = PowerContact(5.76e7, 1.0), PowerContact(2.88e7, 1.0)
+    one = Oscillators(25.0, 98696.0, [1.0], 10.0, 0.07).system(laws=[wall.upper().behind(5.0e-4)])
+    both = Oscillators(25.0, 98696.0, [1.0, -1.0], 10.0, 0.07).system(
+        laws=[pair.upper().behind(1.0e-3)]
+    )
+    runs = [FixedStep(1.0e-5)(Motion(system, 1.0, 1.0e-3)).data for system in (one, both)]
+    single, mutual = (run["x0"].values for run in runs)
+    value = float(np.abs(single - mutual).max() / np.ptp(single))
+    what = "SDND102, one of two colliding oscillators off one against a wall, part of range"
+    return Proof(what, value, 0.0, "", "analytic", "symmetry, Code_Aster V5.01.102", 1.0e-6)
+
+
+def rubbing_mass() -> Iterator[Proof]:
+    """Compare the mean power of wear from 4 to 12 s of 1 kg on a shaken plane (SDND104).
+
+    It is the normal force, 10 N with μ = 0.1, times the speed of sliding.
+    """
+    for amplitude, reference in ((15.0, 15.2671), (1.5, 0.409062), (1.01, 2.26164e-4), (0.99, 0.0)):
+        system = Oscillators(1.0, 0.0, [amplitude], 1.0).system(friction=1.0)
+        loss = FixedStep(1.0e-4)(Motion(system, 12.0, 0.01)).data["friction_loss"].values
+        wear = float(loss[-1] - loss[400]) / 8.0 / 0.1
+        what = f"SDND104, power of wear at {amplitude:g} m/s²"
+        source = "stick and slip in turn, Code_Aster V5.01.104"
+        yield Proof(what, wear, reference, "W", "external", source, 5.0e-3)
+
+
+def nafems() -> Iterator[Proof]:
+    """Compute FV12, FV32 and FV52 of NAFEMS R0015 by the shell.
+
+    FV52's reference is of 4 × 4 × 1 bricks, within 2 %, which are held at their lower edges.
+    """
+    for name, values, kind, source, references, allowed in (
+        ("FV12, free thin plate", free_plate(), "external", "NAFEMS R0015, closed form",
+         (1.622, 2.360, 2.922, 4.233, 4.233, 7.416), 0.01),
+        ("FV32, tapered membrane", tapered_membrane(), "external", "NAFEMS R0015",
+         (44.623, 130.03, 162.70, 246.05, 379.90, 391.44), 0.01),
+        ("FV52, thick plate", thick_plate(), "other code", "NAFEMS, Code_Aster V2.03.502",
+         (44.762, 110.52, 110.52, 169.08, 193.93), 0.05),
+    ):  # fmt: skip
+        for mode, (value, reference) in enumerate(zip(values, references, strict=True), start=1):
+            what = f"{name}, elastic mode {mode}"
+            yield Proof(what, float(value), reference, "Hz", cast(Kind, kind), source, allowed)
+
+
+def free_plate(edges: int = 32) -> Array:
+    """Return six elastic frequencies in Hz of a free plate of 0.05 m that moves across alone."""
+    shell = _plate(edges, 0.05)
+    held = hold(shell.node_dofs[:, [X, Y]]) | hold(shell.rotation_dofs[:, [Z]])
+    return natural_frequencies(shell.held(held), 9)[3:]
+
+
+def tapered_membrane(edges: int = 32) -> Array:
+    """Return six frequencies in Hz of a membrane 5 m wide where it is held, and 1 m at its end."""
+    shell = _plate(edges, 0.05, (5.0, 1.0))
+    held = hold(shell.node_dofs[:, [Z]]) | hold(shell.rotation_dofs[:, [X, Y]])
+    return natural_frequencies(shell.held(held | shell.hold_at(X, 0.0, [X, Y])), 6)
+
+
+def thick_plate(edges: int = 32) -> Array:
+    """Return five elastic frequencies in Hz of a plate of 1 m that is held across at its edges."""
+    shell = _plate(edges, 1.0)
+    held: dict[int, float] = {}
+    for axis, place in ((X, 0.0), (X, SIDE), (Y, -0.5 * SIDE), (Y, 0.5 * SIDE)):
+        held |= shell.hold_at(axis, place, [Z])
+    return natural_frequencies(shell.held(held), 8)[3:]
+
+
+def _plate(edges: int, thickness: float, widths: tuple[float, float] = (SIDE, SIDE)) -> StaticShell:
+    """Return a plate on [0, SIDE], whose width goes from the first to the last one."""
+
+    def surface(x: Array, y: Array) -> Array:
+        width = widths[0] + (widths[1] - widths[0]) * x
+        return np.stack([SIDE * x, width * (y - 0.5), np.zeros_like(x)], axis=1)
+
+    return StaticShell(*grid(surface, edges, edges), thickness, NAFEMS_STEEL, DRILLING_OF_CURVED)

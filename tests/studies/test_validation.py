@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Cheap rows of the validation, its page, and the template of a measured boom."""
+
+from __future__ import annotations
+
+import csv
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from studies import validation
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize("rows", [validation.released_slider, validation.rubbing_mass])
+def test_friction_is_that_of_code_aster(rows: object) -> None:
+    """Reference: analytic and external, Code_Aster V5.01.100 and 104; steps leave 3e-5."""
+    proofs = list(rows())  # type: ignore[operator]
+    assert [proof.what for proof in proofs if proof.error > 1.0e-4] == []
+
+
+def test_the_roller_stiffens_the_beam_as_measured() -> None:
+    """Reference: measured, DROPBEAR; without the roller, analytic, 1.8751² and Rayleigh's tip
+    mass of 0.2427 times the beam's, good to 1 %.
+    """
+    proofs = list(validation.moving_roller())
+    assert len(proofs) == 6
+    assert max(proof.error for proof in proofs) < 0.012
+    area = validation.BEAM_WIDTH * validation.BEAM_THICKNESS
+    mass = validation.BEAM_STEEL.density * area * validation.BEAM_LENGTH
+    bending = validation.BEAM_STEEL.youngs_modulus * area * validation.BEAM_THICKNESS**2 / 12.0
+    stiffness = 3.0 * bending / validation.BEAM_LENGTH**3
+    free = np.sqrt(stiffness / (0.2427 * mass + validation.ACCELEROMETERS)) / (2.0 * np.pi)
+    assert validation.roller_frequency(1.0e-3) == pytest.approx(free, rel=0.02)
+
+
+def test_a_heavier_tip_slows_the_boom_lift() -> None:
+    """Reference: external, 1.40 Hz of MathWorks' chart, and statics: a mass that dominates."""
+    (proof,) = validation.boom_lift()
+    assert proof.error < 0.02
+    light, heavy = (validation.lift_frequency(0.05, mass) for mass in (4.0e3, 16.0e3))
+    assert light / heavy == pytest.approx(2.0, rel=0.01)
+
+
+def test_colliding_oscillators_are_mirror_images() -> None:
+    """Reference: analytic; the wall must be met for it to mean something."""
+    proof = validation.impact_pair()
+    assert proof.value < 1.0e-9
+    pair = validation.Oscillators(25.0, 98696.0, [1.0], 10.0, 0.07).system()
+    assert pair.damping == pytest.approx(2.0 * 0.07 * np.sqrt(98696.0 / 25.0))
+
+
+def test_a_coarse_membrane_is_near_nafems() -> None:
+    """Reference: external, NAFEMS FV32, 44.623 and 130.03 Hz."""
+    found = validation.tapered_membrane(8)[:2]
+    assert found == pytest.approx([44.623, 130.03], rel=2.0e-3)
+
+
+def test_the_page_has_every_skipped_row() -> None:
+    page = (ROOT / "docs" / "validation.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (?!what|:--)(.*) \|$", page, re.M)
+    assert [" | ".join(row) for row in validation.SKIPPED] == rows[-len(validation.SKIPPED) :]
+    assert {row.split(" | ")[5] for row in rows[: -len(validation.SKIPPED)]} == {"✓"}
+
+
+def test_the_template_is_a_case_with_a_table() -> None:
+    case = case_file.load(str(ROOT / "examples" / "measured-boom.toml"))
+    assert build_boom(case).joints[0].play == 0.003
+    with (ROOT / "examples" / "measured-boom.csv").open(encoding="utf-8") as file:
+        header, *rows = csv.reader(file)
+    assert header[0] == "time (s)"
+    assert {len(row) for row in rows} == {len(header)}
