@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Any
@@ -42,6 +44,16 @@ def find_folder() -> TemporaryDirectory[str] | None:
         config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"] = folder.name
         return folder
     return None
+
+
+@contextmanager
+def one_compiles() -> Iterator[None]:
+    """Wait while another process compiles: it leaves in the cache what this one needs, too."""
+    with open(__file__, encoding="utf-8") as source:
+        # Without locks, as on some network disks, each process compiles for itself.
+        with suppress(OSError):
+            fcntl.flock(source, fcntl.LOCK_EX)
+        yield
 
 
 @intrinsic

@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass
 from itertools import combinations, pairwise
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from geometry.arrays import Array, Mask
 from runs.case.kinds.kantorovich import Kantorovich
@@ -399,7 +399,7 @@ def _above(value: float, threshold: float, doubt: float) -> Judgement:
 
 def _mean(values: Array) -> tuple[float, float]:
     """Return the mean of the members, and half its Student's confidence interval."""
-    quantile = student.ppf(0.5 + 0.5 * CONFIDENCE, values.size - 1)
+    quantile = stdtrit(values.size - 1, 0.5 + 0.5 * CONFIDENCE)
     return float(values.mean()), float(quantile * values.std(ddof=1) / np.sqrt(values.size))
 
 

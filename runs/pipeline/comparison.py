@@ -8,7 +8,6 @@ from typing import ClassVar
 
 import numpy as np
 import xarray as xr
-from scipy.stats import ks_2samp
 
 from dynamics.arrays import Array, Mask
 from dynamics.predictability.horizon import SHARES, horizons_of
@@ -89,6 +88,9 @@ class Distributions:
 
         They count from ``since`` on, NaN where a model stays predictable.
         """
+        # Not at the top: most runs have no ensemble, and the import takes half a second.
+        from scipy.stats import ks_2samp
+
         both = [members[:, time >= since].ravel() for members in (one, other)]
         if both[0].size == 0:
             none = (np.nan, np.nan)

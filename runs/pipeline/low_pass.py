@@ -6,7 +6,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import butter, find_peaks, sosfiltfilt
 
 from dynamics.arrays import Array
 
@@ -44,6 +43,9 @@ def slow(signal: Array, output_step: float, cutoff: float) -> Array:
             f"the signal must be longer than the period of the cut-off, {1.0 / cutoff:g} s, got "
             f"{(times - 1) * output_step:g} s"
         )
+    # Not at the top: only ensembles are filtered, and the import takes half a second.
+    from scipy.signal import butter, sosfiltfilt
+
     sections = butter(ORDER, cutoff, fs=1.0 / output_step, output="sos")
     return np.asarray(sosfiltfilt(sections, signal, axis=-1, padlen=period))
 
@@ -53,6 +55,8 @@ def slow_peaks(signal: Array, time: Array, cutoff: float) -> tuple[Array, Array]
 
     The signal (num_times,) is at evenly spaced times.
     """
+    from scipy.signal import find_peaks
+
     filtered = slow(signal, float(time[1] - time[0]), cutoff)
     at, _ = find_peaks(filtered, prominence=PROMINENCE * np.ptp(filtered))
     return time[at], filtered[at]

@@ -98,7 +98,10 @@ class MotionPlan:
 
     def warm(self) -> None:
         """Compile the time loop by one output, so that a wall time is the motion's own."""
-        self.integrator(replace(self.motion, duration=self.motion.output_step))
+        from dynamics.kernels.compiled import one_compiles
+
+        with one_compiles():
+            self.integrator(replace(self.motion, duration=self.motion.output_step))
 
     def trajectory(self, progress: Callable[[float], None] | None = None) -> Trajectory:
         """Return the motion."""

@@ -177,14 +177,13 @@ class Sheet:
         self._passing += artists
 
     def write(self, heading: str, explanation: str) -> None:
-        """Write the lines above the picture."""
+        """Write the lines above the picture: a heading, and an explanation of all images."""
         centred: dict[str, Any] = {"ha": "center", "va": "top"}
-        # The longest of three lines exceeds the sheet's width unless they are smaller.
-        size = 17 if explanation.count("\n") > 1 else 19
-        self.pass_by(
-            self.figure.text(0.5, 0.98, heading, size=26, weight="bold", **centred),
-            self.figure.text(0.5, 0.925, explanation, size=size, **centred),
-        )
+        self.pass_by(self.figure.text(0.5, 0.98, heading, size=26, weight="bold", **centred))
+        if self._still is None:
+            # The longest of three lines exceeds the sheet's width unless they are smaller.
+            size = 17 if explanation.count("\n") > 1 else 19
+            self.figure.text(0.5, 0.925, explanation, size=size, **centred)
 
     def arrow(self, foot: Array, length: float, text: str) -> None:
         """Draw a vertical arrow from (2,) pixels, down by negative lengths, with a label."""

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.signal import find_peaks
 
 from dynamics.failure import NumericsError
 from dynamics.predictability.ensemble import EnsembleMember, Vary, run_members
@@ -201,6 +200,9 @@ def slow_period(time: Array, tip: Array) -> float:
         return float("nan")
     off = tip - tip[0]
     side = np.sign(off[np.abs(off).argmax()])
+    # Not at the top: the import takes half a second.
+    from scipy.signal import find_peaks
+
     peaks, _ = find_peaks(side * tip, prominence=OUTSTANDING * np.ptp(tip))
     return float(np.diff(time[peaks]).mean()) if peaks.size > 1 else float("nan")
 

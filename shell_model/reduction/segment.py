@@ -94,16 +94,20 @@ def reduce_segment(
             lambda part: tell((done + part) / len(mine)),
         )
 
-    parts = []
-    shapes = []
-    for symmetry_class, (root, own) in zip(
-        symmetry_classes, shared(comm, jobs, reduce_one), strict=True
-    ):
-        shapes.append(symmetry.expand(None if own is None else own.shapes, symmetry_class, root))
-        parts.append(comm.bcast(None if own is None else own._replace(shapes=np.empty(0)), root))
+    found = list(shared(comm, jobs, reduce_one))
+    parts = [
+        comm.bcast(None if own is None else own._replace(shapes=np.empty(0)), root)
+        for root, own in found
+    ]
     omega2 = np.concatenate([part.omega2 for part in parts])
     right = np.concatenate([part.right for part in parts])
     order = np.argsort(omega2, kind="stable")
+    # The shapes of a class go to their places at once: a second block of all is large.
+    shapes = np.empty((len(inputs), omega2.size), order="F")
+    places = np.split(np.argsort(order), np.cumsum([part.omega2.size for part in parts])[:-1])
+    for symmetry_class, (root, own), columns in zip(symmetry_classes, found, places, strict=True):
+        on_cell = None if own is None else own.shapes
+        shapes[:, columns] = symmetry.expand(on_cell, symmetry_class, root)
     tell(1.0)
     # Up to this frequency all are accurate.
     right = right[order]
@@ -111,7 +115,7 @@ def reduce_segment(
     limit = np.sqrt(omega2[order][first_wrong - 1]) / (2.0 * np.pi) if first_wrong else 0.0
     return ReducedSegment(
         omega2=omega2[order],
-        shapes=np.hstack(shapes)[:, order],
+        shapes=shapes,
         compliance_error=max(part.compliance_error for part in parts),
         reading_error=max(part.reading_error for part in parts),
         lost_compliance=np.sum([part.lost_compliance for part in parts], axis=0),

@@ -17,13 +17,13 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
-from scipy.sparse import csr_array
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array, Indices
 from geometry.boom import Segment
 from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT, Direction
+from shell_model import compat
 from shell_model.reduction.mirror import (
     Rows,
     SymmetryClass,
@@ -54,24 +54,6 @@ _Found = TypeVar("_Found")
 _NO_PART = 1.0e-9
 
 
-class _Compact(Matrices):
-    """Matrices of one rank without the zeros in the pattern of their forms.
-
-    Motions of a plane wall in its plane and across it do not couple, nor do the masses of different
-    components. Factors would store these zeros too.
-    """
-
-    def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
-        full = super()._assembled(form, diagonal, attached)
-        first, columns, values = full.getValuesCSR()
-        rows = csr_array((values, columns, first), shape=full.getSize())
-        full.destroy()
-        rows.eliminate_zeros()
-        return PETSc.Mat().createAIJ(
-            rows.shape, csr=(rows.indptr, rows.indices, rows.data), comm=self._comm
-        )
-
-
 @dataclass(frozen=True)
 class SymmetryCell:
     """Part of a segment, a quarter or half, whose mirror images are the rest.
@@ -88,6 +70,11 @@ class SymmetryCell:
     mirrors: Sequence[Direction]
     mesh: PlatedMesh
 
+    @property
+    def copies(self) -> float:
+        """Number of parts that make the segment."""
+        return 2.0 ** len(self.mirrors)
+
     @cached_property
     def plates(self) -> Plates:
         """Plates of the part, on this rank alone."""
@@ -103,8 +90,63 @@ class SymmetryCell:
         """Component of each row, and the mirrors in which the row lies."""
         return rows_of(self.nodes)
 
+    @cached_property
+    def _matrices(self) -> dict[Any, _FreeMatrix]:
+        """Matrices of the plates without supports, by their forms, as far as they are assembled."""
+        return {}
+
+    def matrix(self, form: Any) -> _FreeMatrix:
+        """Return the matrix of the whole segment's plates without supports, for all classes."""
+        if form not in self._matrices:
+            whole = compat.assemble_matrix(form, [], 0.0)
+            first, columns, values = whole.getValuesCSR()
+            whole.destroy()
+            rows = np.repeat(np.arange(first.size - 1, dtype=columns.dtype), np.diff(first))
+            kept = (values != 0.0) | (rows == columns)
+            self._matrices[form] = _FreeMatrix(
+                rows[kept], columns[kept], self.copies * values[kept]
+            )
+        return self._matrices[form]
+
     def __reduce__(self) -> tuple[type[SymmetryCell], tuple[Any, ...]]:
         return SymmetryCell, (self.segment, self.mirrors, self.mesh)
+
+
+class _FreeMatrix(NamedTuple):
+    """Entries of a matrix: (num_entries,) each, those of a row together, with its diagonal."""
+
+    row: Indices
+    column: Indices
+    value: Array
+
+
+class _ClassMatrices(Matrices):
+    """Matrices of a symmetry class on one rank, those of its cell with the class's supports.
+
+    They have none of the zeros in the pattern of their forms: motions of a plane wall in its plane
+    and across it do not couple, nor do the masses of different components. Factors would store
+    these zeros too.
+    """
+
+    def __init__(
+        self, cell: SymmetryCell, holds: list[Any], springs: Attached, masses: Attached
+    ) -> None:
+        super().__init__(MPI.COMM_SELF, cell.plates, holds, springs, masses)
+        self._cell = cell
+
+    def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
+        row, column, value = self._cell.matrix(form)
+        free = free_rows(self.plates.space, self._holds)
+        value = np.where(
+            free[row], value, np.where(row == column, self._cell.copies * diagonal, 0.0)
+        )
+        kept = (value != 0.0) & (free[column] | (row == column))
+        first = np.cumsum([0, *np.bincount(row[kept], minlength=free.size)], dtype=row.dtype)
+        matrix = PETSc.Mat().createAIJ(
+            (free.size, free.size), csr=(first, column[kept], value[kept]), comm=self._comm
+        )
+        attached.add_to(self._comm, matrix)
+        return matrix
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,9 +179,7 @@ class Job:
         (nodes, node_dofs), (rotation_nodes, rotation_dofs) = part.nodes
         return Shell(
             comm=MPI.COMM_SELF,
-            matrices=_Compact(
-                MPI.COMM_SELF, plates, holds, self.springs, self.masses, 2.0 ** len(mirrors)
-            ),
+            matrices=_ClassMatrices(part, holds, self.springs, self.masses),
             free=free_rows(plates.space, holds),
             springs=self.springs,
             nodes=nodes,
@@ -244,8 +284,12 @@ class SymmetryReduction:
         unfolded = np.empty((self._row.size, count), order="F")
         for column in range(count):
             # One after another, so that no rank holds the whole block.
-            send = None if shapes is None else (shapes[every, column], sizes)
-            comm.Scatterv(send, unfolded[:, column], root)
+            whole = None if shapes is None else shapes[every, column]
+            if comm.size == 1:
+                # Open MPI takes ten times as long to send a column to its own process.
+                unfolded[:, column] = whole
+            else:
+                comm.Scatterv(None if whole is None else (whole, sizes), unfolded[:, column], root)
             unfolded[:, column] *= signs
         return unfolded
 

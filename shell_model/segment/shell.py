@@ -52,7 +52,6 @@ class Matrices:
         plates: their forms.
         holds: Dirichlet conditions.
         springs, masses: attached ones.
-        copies: number of the plates.
     """
 
     def __init__(
@@ -62,9 +61,8 @@ class Matrices:
         holds: list[Any],
         springs: Attached,
         masses: Attached,
-        copies: float = 1.0,
     ) -> None:
-        self._comm, self.plates, self._holds, self._copies = comm, plates, holds, copies
+        self._comm, self.plates, self._holds = comm, plates, holds
         self._springs, self._masses = springs, masses
 
     @cached_property
@@ -84,7 +82,6 @@ class Matrices:
 
     def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
         matrix = compat.assemble_matrix(form, self._holds, diagonal)
-        matrix.scale(self._copies)
         attached.add_to(self._comm, matrix)
         return matrix
 
