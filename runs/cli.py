@@ -120,7 +120,6 @@ def run(
     from runs.pipeline.context import RunContext
     from runs.pipeline.run import run_case
     from runs.report import output
-    from runs.report.document import say_what_failed
     from runs.sweep.run import launched_world
 
     if not large:
@@ -148,7 +147,7 @@ def run(
             report_progress("report", "pictures and figures", 1.0)
         print(printable(str(folder / output.REPORT)))
         status = _show({case: finished.results}, {case: judged})
-        return say_what_failed(case, finished.results) or status
+        return _report_failed_models(case, finished.results) or status
 
 
 @app.command()
@@ -458,17 +457,29 @@ def _check_temporary_folder(file: str) -> None:
 
 
 def _show(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
-    """Print the tables of runs, by their file, and what is amiss; the exit status."""
+    """Print models and numerics, verdicts, and last the results of runs; return the exit status."""
     from runs.client import show
-    from runs.report.document import print_models
+    from runs.report.terminal_tables import print_models, print_results
 
     console = Terminal()
     for results in runs.values():
         print_models(results, console)
-        skipped = results.summary.snapshots.skipped
-        if skipped is not None:
-            print(f"no snapshots: {skipped}")
-    return show(judged, console)
+    status = show(judged, console)
+    for results in runs.values():
+        print_results(results, console)
+    return status
+
+
+def _report_failed_models(file: str, results: Results) -> int:
+    """Print a line for all models that failed; return the exit status."""
+    failures = results.summary.failures
+    if not failures:
+        return 0
+    numbers = {model.name: i for i, model in enumerate(results.case.models, start=1)}
+    first, *others = (f"model[{numbers[name]}]" for name in failures)
+    too = f"{', '.join(others)} failed, too; first " if others else ""
+    say(message(f"{shown(file)}: {too}{first}: {next(iter(failures.values()))}"))
+    return 3
 
 
 def _show_failures(plan: Plan, outcomes: Sequence[Outcome]) -> int:

@@ -8,9 +8,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Literal
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table as Grid
 from rich.text import Text
 
 from runs.case.schema import Case
@@ -128,7 +126,7 @@ def show(judged: Mapping[str, Addition], console: Console) -> int:
 
 
 def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> None:
-    """Print one table of verdicts: for each statement that of the first run that decides it.
+    """Print a paragraph for each statement: the verdict of the first run that decides it.
 
     Args:
         runs: the verdicts by the name of their case; nothing is printed if there are none.
@@ -137,26 +135,19 @@ def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> N
     judging = [name for name, verdicts in runs.items() if verdicts]
     if not judging:
         return
-    table = Grid(title="Statements of the paper", title_justify="left", box=SIMPLE_HEAD)
-    table.add_column("id")
-    table.add_column("verdict")
-    table.add_column("measured", justify="right")
-    table.add_column("threshold", justify="right")
-    table.add_column("statement", ratio=1)
+    console.print(Text("Statements of the paper", style="italic"))
     for name, verdict in decisive(runs):
         demanded = " (demanded)" if verdict.demanded else ""
-        unit = f" ({verdict.unit})" if verdict.unit else ""
-        table.add_row(
-            verdict.id,
-            Text.assemble(
-                (f"{verdict.verdict}{demanded}", _STYLES[verdict.verdict]),
-                (f"\nin {name}" if len(judging) > 1 else "", "dim"),
-            ),
-            number(verdict.measured),
-            number(verdict.threshold),
-            Text.assemble(verdict.statement, (unit, "dim")),
+        text = Text.assemble(
+            f"\n{verdict.id} ",
+            (f"{verdict.verdict}{demanded}", _STYLES[verdict.verdict]),
+            f" in {name}" if len(judging) > 1 else "",
         )
-    console.print(table)
+        if verdict.measured is not None:
+            measured, limit = verdict.with_unit(verdict.measured), number(verdict.threshold)
+            text.append(f": {measured} measured, threshold {limit}")
+        text.append(f"\n{verdict.statement}")
+        console.print(text)
 
 
 def decisive(runs: Mapping[str, Sequence[Verdict]]) -> list[tuple[str, Verdict]]:

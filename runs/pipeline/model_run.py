@@ -115,6 +115,8 @@ def run_model(
         if motion is None:
             moving = Stages(stages.tell)
             motion = _move(built, model, case, cutoff, executor, moving)
+            # The first model of a process compiles the time loop for all.
+            begin += moving.seconds["compilation"]
             if store is not None:
                 store.remember(name, motion)
     summary, reduced = motion.summary, built.shell
@@ -147,7 +149,8 @@ def _move(
     """Integrate a model; measure its step error, its ensemble and its horizons."""
     plan, table = MotionPlan.of(built.system, case, model), case.ensemble
     motion, system = plan.motion, plan.motion.system
-    plan.warm()
+    with stages.stage("compilation"):
+        plan.warm()
     with stages.stage("motion") as told:
         trajectory = plan.trajectory(told)
     summary = _summary(model, system, trajectory, built.num_dofs)

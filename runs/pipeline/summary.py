@@ -163,8 +163,8 @@ class CalibrationCard(SummaryTable):
 class ModelSummary(SummaryTable):
     """What one model has found: ``frequencies`` in Hz, ``seconds`` of wall time by the stage.
 
-    ``wall_time`` in s is what has passed, be it for compiling loops, while a stage whose results
-    earlier runs have kept has the seconds that it took then.
+    ``wall_time`` in s is what has passed without the compilation of the time loop, while a stage
+    whose results earlier runs have kept has the seconds that it took then.
     ``first_peak`` by the place; ``peak_contact_force`` in N is a mean over a step where
     ``resolving_step`` names the step in s that would resolve the blow; ``step_error`` is the change
     of the tip by the time step, as a part of its range;

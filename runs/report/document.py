@@ -3,37 +3,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib.util import find_spec
 from itertools import chain
 
-from rich.console import Console
-
-from geometry.typography import TO_MILLI
 from runs.case import toml
 from runs.pipeline.results import Results
-from runs.process.terminal import message, say, shown
 from runs.report import theme
 from runs.report.charts import packed_charts, packed_plotly
 from runs.report.figure_context import Figure
 from runs.report.formatting import number, percent
-from runs.report.model_tables import model_table, model_tables
+from runs.report.model_tables import model_tables
 from runs.report.pages import Addition, page
 from runs.report.predictability import comparison_tables, predictability_tables
 from runs.report.result_tables import result_tables
-from runs.report.summary_table import deviation_note, play_effect, strength_verdict, summary_table
-from runs.report.tables import Column, Table
-
-# Columns of the models' table for the terminal → their headings there.
-SHOWN = {
-    "model": "model",
-    "degrees of freedom": "dofs",
-    "first contact\ns": "first contact s",
-    "first tip peak\ns": "first tip peak s",
-    "mm": "mm",
-    "energy residual\nof the work": "energy\nresidual",
-    "wall time\ns": "wall s",
-}
+from runs.report.summary_table import (
+    deviation_note,
+    play_effect,
+    summary_table,
+    utilisation_verdict,
+)
+from runs.report.tables import Table
 
 # Kinds of pictures in the order of their numbers.
 PARTS = "case", "motion", "rest", "snapshots", "knowledge", "numerics"
@@ -86,7 +76,7 @@ def render(
         colors={name: strokes[name].color for name in names},
         adds=play_effect(results),
         of=results.play.model if results.play else "",
-        strength=strength_verdict(results),
+        strength=utilisation_verdict(results),
         nearness=deviation_note(results),
         trust=[known.line for known in results.summary.design.quality_notes],
         viewer=viewer,
@@ -125,50 +115,3 @@ def _costs(results: Results) -> Mapping[str, str]:
             parts.append(f"local compliance {percent(error, 2)} off an infinitely fine mesh's")
         costs[name] = ", ".join(parts)
     return costs
-
-
-def print_models(results: Results, console: Console) -> None:
-    """Print the table of a run's models, the accuracy of shells, and cautions."""
-    found = {column.heading: column.text for column in model_table(results).columns}
-    columns = [Column(SHOWN[one], found[one]) for one in found if one in SHOWN]
-    Table(results.case.title, columns).show(console)
-    for line in (*_found_of_models(results), *results.summary.cautions):
-        console.print(line, markup=False, highlight=False)
-
-
-def _found_of_models(results: Results) -> Iterator[str]:
-    """Yield the accuracy of shells and the residual vibration of tips during telescoping."""
-    for name, model in results.summary.models.items():
-        if errors := model.reduction_errors:
-            yield (
-                f"{name}: {model.modes} coordinates answer as the full shell does, contacts "
-                f"within {number(errors['contact_compliance'], 1)}, tip and head within "
-                f"{number(errors['readings'], 1)}"
-            )
-        if (error := model.mesh_error) is not None:
-            yield (
-                f"{name}: where the segments touch, the local compliance is within "
-                f"{percent(error, 2)} of that of an infinitely fine mesh"
-            )
-    for name, own in results.summary.design.models.items():
-        if (swing := own.residual_vibration) is None:
-            continue
-        levels = swing.initial, swing.final
-        ends = (number(None if level is None else TO_MILLI * level) for level in levels)
-        yield (
-            f"{name}: residual vibration of the tip, telescoping at a mean "
-            f"{number(swing.speed)} m/s: {number(TO_MILLI * swing.tip)} mm; standing "
-            f"{' and '.join(ends)} mm where that begins and ends"
-        )
-
-
-def say_what_failed(file: str, results: Results) -> int:
-    """Print a line for all models that failed; return the exit status."""
-    numbers = {model.name: i for i, model in enumerate(results.case.models, start=1)}
-    failures = results.summary.failures
-    if not failures:
-        return 0
-    first, *others = (f"model[{numbers[name]}]" for name in failures)
-    too = f"{', '.join(others)} failed, too; first " if others else ""
-    say(message(f"{shown(file)}: {too}{first}: {next(iter(failures.values()))}"))
-    return 3

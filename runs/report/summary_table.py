@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import log, pi
-from typing import NamedTuple
 
 from geometry.arrays import Array
 from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
@@ -14,6 +13,7 @@ from runs.pipeline.model_quality import off_at_rest
 from runs.pipeline.motion_results import Peak
 from runs.pipeline.pads import PressedPad
 from runs.pipeline.results import Results
+from runs.pipeline.utilisation import Utilisation, utilisations
 from runs.report.figure_context import farthest
 from runs.report.formatting import NONE, SHOWN, amount, fixed, number, percent
 from runs.report.result_tables import hardly, times
@@ -36,11 +36,12 @@ def summary_table(results: Results) -> Table | None:
     # By modal damping, of a vibration without other dissipation.
     decay = 2.0 * pi * results.case.damping.modal / log(1.0 / TENTH)
     decay_times = [1.0 / (decay * f) if f and decay else None for f in hertz]
-    walls, fibres = [_walls(one) for one in own], [_fibres(one) for one in own]
-    hardest = _hardest_pads(results)
+    used = [utilisations(results, name) for name in names]
+    walls, fibres = ([one.get(part) for one in used] for part in ("plate", "outer fibre"))
+    hardest = governing_pads(results)
     pads = {name: _pad(pad) for name, pad in hardest.items()}
     stations = [None if hardest else _largest(one, "contact force", at="\nat {} m") for one in own]
-    damages = [_life_damage(one) for one in own]
+    damages = [one["detail"].load if "detail" in one else None for one in used]
     at_start, at_most, extended = (
         [max((rest.tip for rest in rests), key=abs, default=None) for rests in several]
         for several in zip(
@@ -74,7 +75,7 @@ def summary_table(results: Results) -> Table | None:
     rows = {title: cells for title, cells in rows.items() if any(cell != NONE for cell in cells)}
     columns = [Column("", list(rows))]
     columns += [Column(name, [cells[i] for cells in rows.values()]) for i, name in enumerate(names)]
-    strong = [_stress(one) for one in (*walls, *fibres) if one and (one.part or 0.0) >= NEAR]
+    strong = [_stress(one) for one in (*walls, *fibres) if one and (one.value or 0.0) >= NEAR]
     strong += [pads[name] for name, pad in hardest.items() if (pad.utilisation or 0.0) >= NEAR]
     strong += [number(damage) for damage in damages if (damage or 0.0) >= NEAR]
     return Table("The answers", columns, [" ".join(_notes(results, rows))], "answers", strong)
@@ -123,34 +124,18 @@ def play_effect(results: Results) -> str:
     return " ".join(said)
 
 
-def strength_verdict(results: Results) -> str:
-    """Return the utilisation of steel and pads in the leading model, or an empty text.
+def utilisation_verdict(results: Results) -> str:
+    """Return the utilisations of the leading model, the governing one first, or an empty text.
 
     The text is empty where neither strengths, allowable pressures nor a fatigue life are known.
     """
     first = results.read_first[0]
-    own = results.summary.design.models.get(first, ModelDesignResults())
-    pad = _hardest_pads(results).get(first)
-    used: list[tuple[float, str]] = []
-    for what, most in (("plates at pads", _walls(own)), ("outer fibres", _fibres(own))):
-        if most is not None and most.part is not None:
-            bears = f"{percent(most.part)} of their yield strength ({_place(most)})"
-            used.append((most.part, f"{what} bear {bears}"))
-    if pad is not None and pad.utilisation is not None:
-        bears = f"{percent(pad.utilisation)} of their allowable pressure"
-        used.append((pad.utilisation, f"pads bear {bears}"))
-    if (damage := _life_damage(own)) is not None:
-        used.append((damage, f"{percent(damage)} of a life is used"))
-    if not used:
+    known = [one for one in utilisations(results, first).values() if one.value is not None]
+    if not known:
         return ""
-    used.sort(reverse=True)
-    unknown = _not_given(results, first)
-    if used[0][0] > 1.0:
-        result = "Not strong enough"
-    else:
-        result = "Of what is known all is" if unknown else "All is"
-        result += " strong enough without a safety factor"
-    return f"{result}: {listed(phrase for _, phrase in used)}.{unknown}"
+    known.sort(key=lambda one: one.value or 0.0, reverse=True)
+    used = "; ".join(map(str, known))
+    return f"Utilisation {used}; without a safety factor.{_not_given(results, first)}"
 
 
 def _not_given(results: Results, model: str) -> str:
@@ -174,33 +159,7 @@ def _more(one: PlayDifference) -> str:
     return f"{amount(one.increase, one.unit)}{share}"
 
 
-class _Largest(NamedTuple):
-    """A stress in Pa at x in m of a segment, with its utilisation of the yield strength."""
-
-    stress: float
-    segment: str
-    x: float
-    part: float | None
-
-
-def _walls(own: ModelDesignResults) -> _Largest | None:
-    walls = own.motion.walls if own.motion else []
-    return _hardest(_Largest(one.patch, one.segment, one.x, one.utilisation) for one in walls)
-
-
-def _fibres(own: ModelDesignResults) -> _Largest | None:
-    fibres = own.motion.fibres if own.motion else []
-    return _hardest(
-        _Largest(abs(one.stress), one.segment, one.x, one.utilisation) for one in fibres
-    )
-
-
-def _hardest(found: Iterable[_Largest]) -> _Largest | None:
-    """Return the stress of the highest utilisation, else the largest stress."""
-    return max(found, key=lambda one: (one.part or 0.0, one.stress), default=None)
-
-
-def _hardest_pads(results: Results) -> dict[str, PressedPad]:
+def governing_pads(results: Results) -> dict[str, PressedPad]:
     """Return each model's pad of the highest utilisation, else of the largest pressure."""
     pads = results.summary.pads[::-1]
     pads = sorted(pads, key=lambda pad: (pad.utilisation or 0.0, pad.pressure))
@@ -217,8 +176,9 @@ def _pad(pad: PressedPad) -> str:
 _FACES = {"above": "top", "below": "bottom", "left": "left", "right": "right"}
 
 
-def _stress(largest: _Largest) -> str:
-    return f"{number(TO_MEGA * largest.stress)}{_used(largest.part, 'yield')}\n{_place(largest)}"
+def _stress(most: Utilisation) -> str:
+    stress = number(TO_MEGA * most.load)
+    return f"{stress}{_used(most.value, 'yield')}\n{most.segment}, {most.x:.1f} m"
 
 
 def _used(part: float | None, borne: str) -> str:
@@ -226,10 +186,6 @@ def _used(part: float | None, borne: str) -> str:
     if part is None:
         return ""
     return f", {percent(part)}" + (f"\nbeyond {borne}" if part > 1.0 else "")
-
-
-def _place(largest: _Largest) -> str:
-    return f"{largest.segment}, {largest.x:.1f} m"
 
 
 def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]:
@@ -282,7 +238,7 @@ def _span(values: Iterable[float | None]) -> str:
 
 def _farthest(own: ModelDesignResults, tip: Array) -> str:
     """Return the maximum tip deflection with its sign, and its ratio to the value at rest."""
-    peak = _peak(own, "deflection")
+    peak = largest_peak(own, "deflection")
     return _milli(farthest(tip)) + (times(peak) if peak else "")
 
 
@@ -304,17 +260,11 @@ def _each(own: Sequence[ModelDesignResults], what: str) -> list[str | None]:
 
 def _largest(own: ModelDesignResults, what: str, at: str = "") -> str | None:
     """Return the maximum of a kind in kN or mm, with its position."""
-    if (peak := _peak(own, what)) is None:
+    if (peak := largest_peak(own, what)) is None:
         return None
     return f"{number(SHOWN[peak.unit][1] * peak.largest, 4)}{times(peak)}{at.format(peak.where)}"
 
 
-def _peak(own: ModelDesignResults, what: str) -> Peak | None:
+def largest_peak(own: ModelDesignResults, what: str) -> Peak | None:
     peaks = [peak for peak in own.motion.peaks if peak.what == what] if own.motion else []
     return max(peaks, key=lambda one: one.largest, default=None)
-
-
-def _life_damage(own: ModelDesignResults) -> float | None:
-    """Return the largest fatigue damage; None without a detail category."""
-    found = [life.life_damage for life in own.life if life.life_damage is not None]
-    return max(found, default=None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""One table of verdicts over several runs."""
+"""Verdicts over several runs, and models, in the terminal."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from runs.paper.verdicts import Judgement, Verdict, decisive, print_verdicts
 from runs.pipeline.design_results import DesignResults, ModelDesignResults
 from runs.pipeline.residual_vibration import ResidualVibration
 from runs.pipeline.results import Results
-from runs.report.document import print_models
+from runs.report.terminal_tables import print_models
 from tests.runs.summaries import model_summary, printed, summary_of
 
 
@@ -46,41 +46,44 @@ def test_the_first_run_that_decides_is_heard(statement: str, name: str, verdict:
 
 
 def test_names_the_case_of_each_verdict_where_there_are_several() -> None:
-    lines = [line.split() for line in printed(print_verdicts, RUNS).splitlines() if line.strip()]
-    for statement, verdict, name in (
-        ("S7", "contradicted", "paper-friction"),
-        ("S1", "reproduced", "paper"),
-    ):
-        at = next(i for i, words in enumerate(lines) if words[0] == statement)
-        assert lines[at][1:4] == [verdict, "–", "–"]
-        assert lines[at + 1][:2] == ["in", name]
+    """Each statement is a paragraph that needs no column of its own."""
+    paragraphs = printed(print_verdicts, RUNS, width=80).split("\n\n")[1:]
+    heads = [paragraph.splitlines()[0] for paragraph in paragraphs]
+    assert heads[0] == "S1 reproduced in paper"
+    assert heads[6] == "S7 contradicted in paper-friction"
     assert "in paper" not in printed(print_verdicts, {"paper": RUNS["paper"]})
+
+
+def test_a_verdict_shows_number_and_threshold() -> None:
+    verdict = Verdict("S4", "It grows.", 1.25, 0.5, "%", "reproduced", "", demanded=True)
+    assert printed(print_verdicts, {"paper": [verdict]}).splitlines()[2:] == [
+        "S4 reproduced (demanded): 1.25 % measured, threshold 0.5",
+        "It grows.",
+    ]
 
 
 def test_runs_that_are_not_judged_show_no_table() -> None:
     assert printed(print_verdicts, {"boom": []}) == ""
 
 
-def test_every_run_tells_how_near_its_reduction_is() -> None:
+def test_every_run_shows_the_errors_of_its_reduction() -> None:
     errors = {"contact_compliance": 2.3e-9, "readings": 8.1e-7, "frequency_limit_in_hz": 84.6}
     shell = model_summary(modes=110, reduction_errors=errors, mesh_error=0.0083)
     case = case_file.load(str(CASES / "paper.toml"))
     results = Results(case, xr.Dataset(), summary_of({"shell": shell}))
-    assert printed(print_models, results).splitlines()[-2:] == [
-        "shell: 110 coordinates answer as the full shell does, contacts within 2 × 10⁻⁹, tip and "
-        "head within 8 × 10⁻⁷",
-        "shell: where the segments touch, the local compliance is within 0.83 % of that of an "
-        "infinitely fine mesh",
-    ]
+    assert printed(print_models, results).splitlines()[-1] == (
+        "shell: 110 coordinates; error of the local compliance at contacts 2 × 10⁻⁹, of tip and "
+        "head 8 × 10⁻⁷, of the mesh at contacts 0.83 %"
+    )
 
 
-def test_a_boom_that_is_drawn_out_tells_how_its_tip_swings() -> None:
+def test_a_boom_that_telescopes_shows_its_residual_vibration() -> None:
     """Reference: the summary's numbers in mm."""
     case = case_file.load(str(CASES / "drawn-out.toml"))
-    swing = ResidualVibration(0.0182, 1.0, 0.8, 0.0181, None)
+    vibration = ResidualVibration(0.0182, 1.0, 0.8, 0.0181, None)
     summary = summary_of({"beam": model_summary()})
-    summary.design = DesignResults({"beam": ModelDesignResults(residual_vibration=swing)})
+    summary.design = DesignResults({"beam": ModelDesignResults(residual_vibration=vibration)})
     assert printed(print_models, Results(case, xr.Dataset(), summary)).splitlines()[-1] == (
-        "beam: residual vibration of the tip, telescoping at a mean 0.8 m/s: 18.2 mm; standing "
-        "18.1 and – mm where that begins and ends"
+        "beam: residual vibration of the tip 18.2 mm, telescoping at a mean 0.8 m/s; 18.1 and – mm "
+        "at the initial and final extension without telescoping"
     )

@@ -27,9 +27,10 @@ from runs.paper.verdicts import Verdict, addition, print_verdicts
 from runs.pipeline.model_quality import cautions, stress_cautions
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Snapshots, Summary
-from runs.report.document import print_models, render
+from runs.report.document import render
 from runs.report.figure_context import Figure
 from runs.report.pages import Addition
+from runs.report.terminal_tables import print_models
 from tests.runs.summaries import changed, model_summary, printed, summary_of
 
 COARSE = CASES / "coarse.toml"
@@ -242,7 +243,7 @@ def test_terminal_shows_both_tables(results: Results) -> None:
         assert line.split()[1] == str(model.degrees_of_freedom)
     for verdict in judge(results):
         (line,) = [line for line in text.splitlines() if line.split()[:1] == [verdict.id]]
-        assert line.split()[1] == verdict.verdict
+        assert line.split()[1].rstrip(":") == verdict.verdict
 
 
 def test_terminal_keeps_names_whole_at_80_columns(results: Results) -> None:

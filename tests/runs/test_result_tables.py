@@ -27,10 +27,12 @@ from runs.report.result_tables import (
 from runs.report.summary_table import (
     deviation_note,
     play_effect,
-    strength_verdict,
     summary_table,
+    utilisation_verdict,
 )
 from runs.report.tables import Table
+from runs.report.terminal_tables import print_results
+from tests.runs.summaries import printed
 
 PLAYED, TIED = "kantorovich-5", "beam-fe-tied"
 
@@ -147,43 +149,47 @@ def test_what_nears_the_yield_strength_stands_out(results: Results) -> None:
     assert set(beyond.strong) == {found[fibre][PLAYED], found[wall][PLAYED]}
 
 
-def test_a_sentence_tells_whether_it_is_strong_enough(results: Results) -> None:
+def test_the_verdict_names_the_governing_utilisation_first(results: Results) -> None:
     """Reference: by hand, as above; without a yield strength nothing is told."""
-    assert strength_verdict(results) == ""
-    assert strength_verdict(with_stress(results, 300e6)) == (
-        "Of what is known all is strong enough without a safety factor: plates at pads "
-        "bear 93 % of their yield strength (outer, 10.0 m) and outer fibres bear 84.5 % of their "
-        "yield strength (outer, 2.0 m). No yield strength is given of outer and inner."
+    assert utilisation_verdict(results) == ""
+    assert utilisation_verdict(with_stress(results, 340e6)) == (
+        "Utilisation 1.05 at plate, outer segment, x = 10 m: exceeds yield; 0.958 at outer fibre, "
+        "outer segment, x = 2 m: below yield; without a safety factor. No yield strength is given "
+        "of outer and inner."
     )
-    assert strength_verdict(with_stress(results, 340e6)).startswith("Not strong enough: ")
 
 
-def test_pads_of_unknown_strength_are_not_strong_enough(results: Results) -> None:
+def test_the_verdict_names_pads_of_unknown_strength(results: Results) -> None:
     """Reference: by hand, a pad without an allowable pressure, and one that nothing presses."""
     of = {"model": PLAYED, "outer": "outer", "inner": "inner", "x": 10.0, "side": "below"}
     pad = PressedPad(**of, force=2.7e3, pressure=27e6, utilisation=None)
     steel = change(results.case, **{"material.yield_strength": 355e6})
     told = with_stress(replace(results, case=steel), 300e6)
-    for pads, start, end in (
-        ([pad], "Of what is known all is ", "No allowable pressure is given of pads of inner."),
+    unpressed, known = replace(pad, force=0.0, pressure=0.0), replace(pad, utilisation=1.35)
+    for one, start, end in (
+        (pad, "Utilisation 0.93 at plate", "No allowable pressure is given of pads of inner."),
+        (unpressed, "Utilisation 0.93 at plate", "without a safety factor."),
         (
-            [replace(pad, force=0.0, pressure=0.0)],
-            "All is ",
-            "yield strength (outer, 2.0 m).",
+            known,
+            "Utilisation 1.35 at pad, inner segment, x = 10 m: exceeds the allowable pressure",
+            "without a safety factor.",
         ),
     ):
-        found = replace(told, summary=told.summary.model_copy(update={"pads": pads}))
-        assert strength_verdict(found).startswith(f"{start}strong enough without a safety factor")
-        assert strength_verdict(found).endswith(end)
+        found = replace(told, summary=told.summary.model_copy(update={"pads": [one]}))
+        assert utilisation_verdict(found).startswith(start)
+        assert utilisation_verdict(found).endswith(end)
 
 
-def test_a_life_that_is_used_up_is_not_strong_enough(results: Results) -> None:
+def test_a_fatigue_life_that_is_used_up_exceeds_it(results: Results) -> None:
     """Reference: by hand, a damage of 3.2."""
     life = Life("inner", 10.0, 0.0, 0.2, 4.0, 9e7, 8e7, [9e7], [4.0], 1.6e-4, 3.2)
     told = answering(results, own={"life": [life]})
-    assert strength_verdict(told) == (
-        "Not strong enough: 320 % of a life is used. No yield strength is given of outer and inner."
+    assert utilisation_verdict(told) == (
+        "Utilisation 3.2 at detail, inner segment, x = 10 m: exceeds the fatigue life; without a "
+        "safety factor. No yield strength is given of outer and inner."
     )
+    terminal = printed(print_results, told, width=250).splitlines()
+    assert terminal[-1].startswith(f"{PLAYED}: utilisation 3.2 at detail, inner segment")
     table = summary_table(told)
     assert table is not None
     assert list(table.strong) == ["3.2"]

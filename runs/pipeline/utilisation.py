@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Utilisation of strengths by the motion of a model: steel, slide pads, fatigue details."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, NamedTuple
+
+from geometry.typography import signed
+
+if TYPE_CHECKING:
+    from runs.pipeline.results import Results
+
+# Part of the boom → limit of its load.
+LIMITS: Mapping[str, str] = {
+    "plate": "yield",
+    "outer fibre": "yield",
+    "pad": "the allowable pressure",
+    "detail": "the fatigue life",
+}
+
+
+class Utilisation(NamedTuple):
+    """The largest load on a kind of part, against its strength.
+
+    Args:
+        part: kind of the part, of :data:`LIMITS`; plates are those of shells near pads.
+        segment: its segment.
+        x: in m.
+        load: stress or pressure in Pa; damage of a detail.
+        value: utilisation; None where the strength is not given.
+    """
+
+    part: str
+    segment: str
+    x: float
+    load: float
+    value: float | None
+
+    def __str__(self) -> str:
+        """Return value, place and verdict; only with a value."""
+        assert self.value is not None
+        verdict = "exceeds" if self.value > 1.0 else "below"
+        return (
+            f"{signed(f'{self.value:.3g}')} at {self.part}, {self.segment} segment, "
+            f"x = {self.x:.4g} m: {verdict} {LIMITS[self.part]}"
+        )
+
+
+def utilisations(results: Results, model: str) -> dict[str, Utilisation]:
+    """Return the governing utilisation of each kind of part in a model, else the largest load."""
+    found: dict[str, Utilisation] = {}
+    for one in _loads(results, model):
+        other = found.setdefault(one.part, one)
+        if (one.value or 0.0, one.load) > (other.value or 0.0, other.load):
+            found[one.part] = one
+    return found
+
+
+def _loads(results: Results, model: str) -> Iterator[Utilisation]:
+    own = results.summary.design.models.get(model)
+    if own is None:
+        return
+    if own.motion is not None:
+        for wall in own.motion.walls:
+            yield Utilisation("plate", wall.segment, wall.x, wall.patch, wall.utilisation)
+        for fibre in own.motion.fibres:
+            stress = abs(fibre.stress)
+            yield Utilisation("outer fibre", fibre.segment, fibre.x, stress, fibre.utilisation)
+    for pad in results.summary.pads:
+        if pad.model == model:
+            yield Utilisation("pad", pad.inner, pad.x, pad.pressure, pad.utilisation)
+    for life in own.life:
+        if (damage := life.life_damage) is not None:
+            yield Utilisation("detail", life.segment, life.x, damage, damage)

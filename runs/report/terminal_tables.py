@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Output of a run in the terminal: models and numerics, then the results."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rich.console import Console
+
+from geometry.typography import TO_MILLI
+from runs.pipeline.results import Results
+from runs.pipeline.utilisation import utilisations
+from runs.report.figure_context import farthest
+from runs.report.formatting import number, percent
+from runs.report.model_tables import model_table
+from runs.report.summary_table import (
+    governing_pads,
+    largest_peak,
+    play_effect,
+    utilisation_verdict,
+)
+from runs.report.tables import Cell, Column, Table
+
+# Columns of the models' table for the terminal → their headings there.
+SHOWN = {
+    "model": "model",
+    "degrees of freedom": "dofs",
+    "first contact\ns": "first contact\ns",
+    "first tip peak\ns": "first tip peak\ns",
+    "mm": "mm",
+    "energy residual\nof the work": "energy\nresidual",
+    "wall time\ns": "wall time\ns",
+}
+
+
+def print_models(results: Results, console: Console) -> None:
+    """Print the table of a run's models, the accuracy of shells, and cautions."""
+    found = {column.heading: column.text for column in model_table(results).columns}
+    columns = [Column(SHOWN[one], found[one]) for one in found if one in SHOWN]
+    Table(f"Models: {results.case.title}", columns).show(console)
+    skipped = results.summary.snapshots.skipped
+    missing = [] if skipped is None else [f"no snapshots: {skipped}"]
+    for line in (*_model_notes(results), *missing, *results.summary.cautions):
+        console.print(line, markup=False, highlight=False)
+
+
+def print_results(results: Results, console: Console) -> None:
+    """Print the governing design results of each model, the verdict of the leading one last."""
+    if not results.summary.design.models:
+        return
+    result_table(results).show(console)
+    for line in filter(None, (play_effect(results), utilisation_verdict(results))):
+        text = f"{results.read_first[0]}: {line[0].lower()}{line[1:]}"
+        console.print(text, markup=False, highlight=False)
+
+
+def result_table(results: Results) -> Table:
+    """Return the governing design results, a row for each model."""
+    designs, pads = results.summary.design.models, governing_pads(results)
+    names = [name for name in results.summary.models if name in designs]
+    static = [[state.tip for state in designs[name].static] for name in names]
+    highest = [max(tips, key=abs, default=None) for tips in static]
+    peaks = [largest_peak(designs[name], "deflection") for name in names]
+    modes = [designs[name].modes for name in names]
+    forces: list[Cell] = [pads[name].force if name in pads else None for name in names]
+    if not pads:
+        contacts = [largest_peak(designs[name], "contact force") for name in names]
+        forces = [one.largest if one else None for one in contacts]
+    used = [[one.value or 0.0 for one in utilisations(results, n).values()] for n in names]
+    tips = [farthest(results.trajectories["tip"].sel(model=name).values) for name in names]
+    columns = [
+        Column("model", names),
+        Column("static tip\nt = 0", [tip[0] if tip else None for tip in static], ".1f", "mm"),
+        Column("static tip\nmax. load", highest, ".1f", "mm"),
+        Column("dynamic\ntip", tips, ".1f", "mm"),
+        Column("factor\nφ", [one.factor if one else None for one in peaks], ".3g"),
+        Column("first\nmode", [m[0].frequency if m else None for m in modes], ".3g", "Hz"),
+        Column("pad\nforce" if pads else "contact\nforce", forces, ".3g", "kN"),
+        Column("utilis-\nation", [max(several, default=0.0) or None for several in used], ".3g"),
+    ]
+    columns = [one for one in columns if any(cell is not None for cell in one.cells)]
+    return Table(f"Results: {results.case.title}", columns)
+
+
+def _model_notes(results: Results) -> Iterator[str]:
+    """Yield the accuracy of shells and the residual vibration of tips during telescoping."""
+    for name, model in results.summary.models.items():
+        if errors := model.reduction_errors:
+            yield (
+                f"{name}: {model.modes} coordinates; error of the local compliance at contacts "
+                f"{number(errors['contact_compliance'], 1)}, of tip and head "
+                f"{number(errors['readings'], 1)}, of the mesh at contacts "
+                f"{'unknown' if model.mesh_error is None else percent(model.mesh_error, 2)}"
+            )
+    for name, own in results.summary.design.models.items():
+        if (vibration := own.residual_vibration) is None:
+            continue
+        levels = vibration.initial, vibration.final
+        ends = (number(None if level is None else TO_MILLI * level) for level in levels)
+        yield (
+            f"{name}: residual vibration of the tip {number(TO_MILLI * vibration.tip)} mm, "
+            f"telescoping at a mean {number(vibration.speed)} m/s; {' and '.join(ends)} mm at the "
+            "initial and final extension without telescoping"
+        )
