@@ -19,12 +19,12 @@ from dynamics.damping import pressed_modes
 from dynamics.gap_system import GapSystem
 from dynamics.reduction import condensed
 from geometry.arrays import Array
-from runs.case.kinds.finite_element import FIELDS, BeamElements
+from runs.case.kinds.finite_element import BeamElements
 from runs.case.schema import Case, Model
 from runs.report.tables import Cell, Table
 from studies.motions import all_built, friction_case, model_of, shell_of, side_by_side
 from studies.pads import with_pads
-from studies.study import Held, Piece, Plot, Proof, Tell, titled
+from studies.study import Held, Piece, Proof, Tell, titled
 from studies.working_load import Moved, Point, at_point
 
 # Permitted errors of the tip, as parts of its range, of first peaks, and of frequencies.
@@ -208,30 +208,6 @@ def point_table(compared: Compared) -> Table:
     )
 
 
-def plot(compared: Sequence[Compared]) -> Plot:
-    """Plot the worst error over the coordinates of a segment."""
-    curves = {}
-    for one in compared:
-        worst = {
-            name: (system.num_modes / 2.0, 100.0 * float(one.off(name).max()))
-            for name, system in one.systems.items()
-        }
-        for name in (PLAIN, SPRUNG):
-            size, off = worst[name]
-            curves[f"{one.where}: {name}"] = [size], [off]
-        sizes, offs = zip(*sorted(worst[name] for name in worst if "fields" in name), strict=True)
-        curves[f"{one.where}: section fields"] = list(sizes), list(offs)
-    return Plot(
-        "calibrated-beams",
-        "Springs bring a beam within 2 % of its shell, fields of the section within 1 %",
-        "coordinates of each segment",
-        "tip off the shell's, worst of all points (% of its range)",
-        curves,
-        f"Single marks: beams as they are, and with springs. Lines: the shell in fewer of its own "
-        f"coordinates, of which a beam with section fields has {FIELDS}.",
-    )
-
-
 @titled("calibrated-beams", "Beams that a shell calibrates")
 def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Study the paper's boom with friction, near its webs and with pads."""
@@ -248,4 +224,3 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     for one in compared:
         yield point_table(one)
         yield from one.proofs()
-    yield plot(compared)

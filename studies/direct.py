@@ -24,7 +24,7 @@ from runs.pipeline.models import MotionPlan
 from runs.report.tables import Table
 from studies.motions import STEP, friction_case, gap_system, lasting, loaded, shell_of
 from studies.pads import with_pads
-from studies.study import Held, Piece, Plot, Proof, Tell, titled
+from studies.study import Held, Piece, Proof, Tell, titled
 
 # Permitted error of the tip, as a part of its range.
 ALLOWED = 0.005
@@ -172,18 +172,6 @@ def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterato
         what = f"energy residual of the {run.how} shell, {on}"
         conserved: Held = ("analytic", "conservation of energy", bound)
         yield Proof(what, run.energy_residual, 0.0, "", *conserved)
-    yield Plot(
-        f"{name}-steps",
-        f"Finer steps close in on the reduced shell, {where}",
-        "step of the direct integration (s)",
-        "tip difference (part of range)",
-        {
-            "from the reduced shell": (steps, off[2:]),
-            "from the one with more coordinates": (steps, off_larger[2:]),
-        },
-        f"The largest over {sizes.duration:g} s. Where the curves part, it is the reduction: "
-        f"more coordinates change the tip by {100.0 * off[1]:.2g} % of its range.",
-    )
 
 
 @titled("direct", "The reduction against the full order")

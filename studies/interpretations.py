@@ -162,10 +162,7 @@ class JudgedInterpretation:
 def study(tell: Tell) -> Iterator[Table]:
     """Run and judge all interpretations."""
     tell(f"{len(ALL)} interpretations, {MEMBERS} runs each")
-    judged = survey(ALL)
-    table = verdict_table(judged)
-    yield replace(table, notes=(*table.notes, *conclude(judged)))
-    yield number_table(judged)
+    yield finding_table(survey(ALL))
 
 
 def survey(
@@ -307,62 +304,40 @@ def conclude(judged: Sequence[JudgedInterpretation]) -> list[str]:
     return sentences
 
 
-def verdict_table(judged: Sequence[JudgedInterpretation]) -> Table:
-    """Return a row for each interpretation with its verdict on each statement."""
-    return Table.of_rows(
-        "interpretations",
-        "Interpretations of the data, and the statements on them",
-        ("play mm, stiffness, base, n", *JUDGED, "excluded"),
-        [
-            (
-                str(entry.interpretation),
-                *(MARKS[entry.findings[key].verdict] for key in JUDGED),
-                " ".join(entry.excluded_by) or "–",
-            )
-            for entry in judged
-        ],
-        (
-            "✓ reproduced, ✗ contradicted, ? undecided. S2 and S3 are decided where all of the "
-            f"runs with loads changed by up to {CHANGE:g} agree. S3 here: the models with play "
-            f"are more than {100.0 * DIVERGENCE:g} % apart at some time from "
-            f"{STRATIFIED_FROM:g} s on. S4 without the shell.",
-        ),
-    )
-
-
-def number_table(judged: Sequence[JudgedInterpretation]) -> Table:
-    """Return a row for each interpretation with the numbers of its verdicts."""
+def finding_table(judged: Sequence[JudgedInterpretation]) -> Table:
+    """Return a row for each interpretation: its verdict on each statement, with the numbers."""
 
     def cell(finding: Finding) -> str:
         ends = (min(finding.measured), max(finding.measured)) if finding.measured else ()
-        return "…".join(dict.fromkeys(number(end, 2) for end in ends))
+        numbers = "…".join(dict.fromkeys(number(end, 2) for end in ends))
+        return f"{MARKS[finding.verdict]} {numbers}".strip()
 
     return Table.of_rows(
-        "interpretations-measured",
-        "Measured",
-        (
-            "play mm, stiffness, base, n",
-            "k\nN/mⁿ",
-            *JUDGED,
-            "first tip peaks\nmm",
-            "energy residual",
-        ),
+        "interpretations",
+        "Interpretations of the data, and the statements on them",
+        ("play mm, stiffness, base, n", "k\nN/mⁿ", *JUDGED, "excluded\nby", "first tip peaks\nmm",
+         "energy residual"),
         [
             (
                 str(entry.interpretation),
                 number(entry.interpretation.contact_stiffness),
                 *(cell(entry.findings[key]) for key in JUDGED),
+                " ".join(entry.excluded_by) or "–",
                 ", ".join(f"{1e3 * entry.peaks[name]:.0f}" for name in MODELS),
                 number(entry.energy_residual, 1),
             )
             for entry in judged
         ],
         (
-            "S1, S2, S3: parts of the range, S2 and S3 from the smallest to the largest of all "
-            "runs. S4: the smallest rise of the first tip peak from model to model. S5, S6: "
+            "✓ reproduced, ✗ contradicted, ? undecided. S1, S2, S3: parts of the range, S2 and S3 "
+            f"from the smallest to the largest of runs with loads changed by up to {CHANGE:g}, "
+            "decided where all agree; S3 says here that the models with play are more than "
+            f"{100.0 * DIVERGENCE:g} % apart at some time from {STRATIFIED_FROM:g} s on. S4: the "
+            "smallest rise of the first tip peak from model to model, without the shell. S5, S6: "
             "ratios. S9: by how much the first tip peak of one exponent exceeds that of another.",
             f"The peaks are those of {', '.join(MODELS)}.",
             f"The restored stiffness of n = 1 and 3/2 has the tangent of the quadratic law at "
             f"{PAD_FORCE / 1e3:g} kN; the literal one is {number(LITERAL)} for every n.",
+            *conclude(judged),
         ),
-    )
+    )  # fmt: skip

@@ -31,7 +31,7 @@ from studies.box_pair import (
 from studies.reference_models.lone_segment import natural_frequencies
 from studies.reference_models.solid import SolidFamily, assemble_solid, mesh_quarter
 from studies.refined import Refined, refined_table
-from studies.study import Held, Piece, Plot, Proof, Tell, titled
+from studies.study import Held, Piece, Proof, Tell, titled
 
 # Permitted error of the thinnest walls; on a line at a free end, between the corners, a shell is
 # least accurate.
@@ -57,7 +57,6 @@ class Measured(NamedTuple):
     """Quantity of the pair."""
 
     what: str  #: quantity
-    label: str  #: in figures
     unit: str  #: of the values
     segment: Literal[0, 1]  #: 0 for the outer box, 1 for the inner one
     family: SymmetryClass  #: of the motions
@@ -70,20 +69,19 @@ class Measured(NamedTuple):
 
 
 FREQUENCIES = (
-    Measured("free inner box, lowest frequency along z", "inner, along z", "Hz", 1, ALONG_Z),
-    Measured("free inner box, lowest of twisting", "inner, twisting", "Hz", 1, TWISTING),
-    Measured("free inner box, lowest of breathing", "inner, breathing", "Hz", 1, BREATHING),
-    Measured("held outer box, lowest frequency along z", "outer, along z", "Hz", 0, ALONG_Z),
-    Measured("held outer box, lowest of twisting", "outer, twisting", "Hz", 0, TWISTING),
+    Measured("free inner box, lowest frequency along z", "Hz", 1, ALONG_Z),
+    Measured("free inner box, lowest of twisting", "Hz", 1, TWISTING),
+    Measured("free inner box, lowest of breathing", "Hz", 1, BREATHING),
+    Measured("held outer box, lowest frequency along z", "Hz", 0, ALONG_Z),
+    Measured("held outer box, lowest of twisting", "Hz", 0, TWISTING),
 )
 COMPLIANCES = (
-    Measured("held outer box, deflection of its head", "head up", "m/N", 0, ALONG_Z, "head"),
-    Measured("held outer box, twist of its head", "head twisted", "rad/(N·m)", 0, TWISTING,
-             "head twist"),
-    Measured("free inner box, squeeze of its tail", "tail squeezed", "m/N", 1, BREATHING,
-             "tail squeeze", ALLOWED_OF_A_SQUEEZE),
-    Measured("free inner box, squeeze of its tail by pads", "pads squeezed", "m/N", 1, BREATHING,
-             "pad squeeze", ALLOWED_OF_A_SQUEEZE),
+    Measured("held outer box, deflection of its head", "m/N", 0, ALONG_Z, "head"),
+    Measured("held outer box, twist of its head", "rad/(N·m)", 0, TWISTING, "head twist"),
+    Measured("free inner box, squeeze of its tail", "m/N", 1, BREATHING, "tail squeeze",
+             ALLOWED_OF_A_SQUEEZE),
+    Measured("free inner box, squeeze of its tail by pads", "m/N", 1, BREATHING, "pad squeeze",
+             ALLOWED_OF_A_SQUEEZE),
 )  # fmt: skip
 EVERY = FREQUENCIES + COMPLIANCES
 
@@ -105,11 +103,6 @@ class Comparison:
     def error(self, what: Measured) -> float:
         """Return the error of the shell, relative to the solid."""
         return self.shell[what].settled / self.solid[what].settled - 1.0
-
-    def uncertainty(self, measured: Sequence[Measured]) -> float:
-        """Return the largest grid convergence index of both models' finest meshes, if any."""
-        indices = [model[what].index for what in measured for model in (self.shell, self.solid)]
-        return max((index for index in indices if math.isfinite(index)), default=math.nan)
 
     def slenderness(self, what: Measured) -> float:
         """Return wall thickness over the width of the box."""
@@ -294,22 +287,3 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     yield from shell_proofs(comparisons[0])
     yield error_table(comparisons)
     yield refinements(comparisons)
-    yield _error_plot("frequencies", FREQUENCIES, comparisons)
-    yield _error_plot("compliances", COMPLIANCES, comparisons)
-
-
-def _error_plot(what: str, measured: Sequence[Measured], comparisons: Sequence[Comparison]) -> Plot:
-    walls = [1.0e3 * one.wall for one in comparisons]
-    curves = {
-        of.label: (walls, [100.0 * abs(one.error(of)) for one in comparisons]) for of in measured
-    }
-    curves["refinement's own"] = walls, [100.0 * one.uncertainty(measured) for one in comparisons]
-    return Plot(
-        f"solid-{what}",
-        f"Thicker walls, worse shells: {what}",
-        "wall thickness (mm)",
-        "error of the shell (%)",
-        curves,
-        f"Distance of the shell's {what} from those of a solid of the same walls, both at the "
-        "limit of their refinement; and the largest grid convergence index of both models.",
-    )

@@ -25,7 +25,7 @@ from shell_model.stress.stresses import ShellStress, wall_forces
 from studies.motions import friction_case, model_of
 from studies.reference_models.lone_segment import at_rest, shell_alone
 from studies.refined import Refined, refined_table
-from studies.study import Held, Piece, Plot, Proof, Tell, titled
+from studies.study import Held, Piece, Proof, Tell, titled
 
 INNER = 1
 
@@ -200,12 +200,3 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     title = "Von Mises stress where the inner segment is pressed"
     yield refined_table("stress", title, list(near.values()), "{:g} m", (NOTE,))
     yield from proofs(pressed[sizes.meshes.index(sizes.default)], reduced, near, sizes)
-    yield Plot(
-        "stress",
-        "At a line of contact the mesh makes the stress; over a patch it settles",
-        "mesh size (m)",
-        "von Mises stress (MPa)",
-        {one.what: (one.sizes, one.values) for one in near.values()},
-        "The inner segment of the paper's boom rests on its contacts. Largest von Mises stress of "
-        "a triangle within 0.25 m of each, and of the mean over half a wall.",
-    )

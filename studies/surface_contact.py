@@ -20,7 +20,6 @@ from runs.case.schema import Case
 from runs.report.formatting import number
 from runs.report.tables import Table
 from studies.motions import (
-    OUTPUT_STEP,
     friction_case,
     gap_system,
     model_of,
@@ -29,7 +28,7 @@ from studies.motions import (
     without_friction,
 )
 from studies.pads import pad_proofs, rigid_motion, with_pads
-from studies.study import Piece, Plot, Proof, Tell, titled
+from studies.study import Piece, Proof, Tell, titled
 
 # Depth of the approaches of the proofs beyond the play, in m.
 DEPTH = 1.0e-3
@@ -122,17 +121,6 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     yield _peaks([*stations, *surfaces.values(), *softer], notes, sizes)
     yield from _proofs(case, default.system)
     yield from pad_proofs(case, sizes.pads[0], padded.system)
-    time = (OUTPUT_STEP * np.arange(len(tips[lines.name]))).tolist()
-    yield Plot(
-        "surface-contact",
-        "Contact over the whole overlap is softer than from web to web",
-        "time (s)",
-        "tip (mm)",
-        {name: (time, (1.0e3 * tip).tolist()) for name, tip in tips.items()},
-        "The tip of the paper's boom with friction, touching at its stations near the webs and "
-        "over the whole overlap.",
-        logarithmic=False,
-    )
 
 
 def _upper_stiffness(system: GapSystem) -> float:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Study of measurements, published benchmarks and other programs: ``docs/validation.md``.
+"""Study of measurements, published benchmarks and other programs.
 
-Rows that cannot be computed stand in a table of their own, each with the reason.
+``docs/validation.md`` has its rows, and what cannot be computed, with the reasons.
 """
 
 from __future__ import annotations
@@ -23,7 +23,6 @@ from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
 from geometry.section import BoxSection
-from runs.report.tables import Table
 from shell_model.segment.forms import DRILLING_OF_CURVED
 from studies.reference_models.benchmarks import X, Y, Z, grid
 from studies.reference_models.lone_segment import natural_frequencies
@@ -55,82 +54,9 @@ BOOM_LIFT = "Simscape boom lift, MathWorks 2023"
 SIDE, NAFEMS_STEEL = 10.0, Material(200.0e9, 0.3, 8000.0)
 
 
-class Skipped(NamedTuple):
-    """Comparison that is not computed."""
-
-    what: str
-    given: str  #: by the open description
-    missing: str  #: or why it is not computed
-    contact: str  #: whom to ask
-
-
-SKIPPED = (
-    Skipped(
-        "Code_Aster SDND120",
-        "1 Hz at 0.66 m/s² across a device with two stiffnesses, a threshold and C v^0.2",
-        "no such law here; the value that it tests is the imposed displacement",
-        "–",
-    ),
-    Skipped(
-        "Code_Aster SDND123",
-        "two masses, a stop with play, 0.25791 Hz at an energy of 1.19768",
-        "a regularised law; the measure of energy is not defined in its file",
-        "Code_Aster's forum",
-    ),
-    Skipped(
-        "Code_Aster SDND125",
-        "three masses that chatter under 60 N at 2 Hz",
-        "its one value is its own earlier one, with a contact damping that the code chooses",
-        "Code_Aster's forum",
-    ),
-    Skipped(
-        "Siconos, impacting beam",
-        "scheme and data of its tutorial",
-        "no package on PyPI; `tests/dynamics/test_impacting_beam.py` repeats its scheme",
-        "–",
-    ),
-    Skipped(
-        "Exudyn, telescoped beams",
-        "its beams and its contact by penalty",
-        "not among the programs of `make other-codes` yet",
-        "–",
-    ),
-    Skipped(
-        "Hong et al. 2019, the beam of DROPBEAR with a mass at its end",
-        "pin at 50 to 200 mm, a fifth of the beam's mass, spectra as figures",
-        "the measured frequencies as numbers",
-        "A. Downey, University of South Carolina",
-    ),
-    Skipped(
-        "Monjaraz-Tec, Gross and Krack 2022, two cantilevers with frictional impacts",
-        "method, natural frequencies and damping, amplitudes over frequency as figures",
-        "drawing of the contact, time histories as numbers",
-        "M. Krack, University of Stuttgart",
-    ),
-    Skipped(
-        "Abraham, Sivaloganathan and Rees, tip deflection against overlap",
-        "sections, lengths, tip loads and deflections of a boom in a laboratory",
-        "play, place and stiffness of the wear pads",
-        "S. Sivaloganathan, UAE University",
-    ),
-    Skipped(
-        "Fragassa, Minak and Pavlovic 2020, strains of a fire truck's boom",
-        "strains at gauges under static and dynamic loads",
-        "plates, pads, histories of the loads",
-        "C. Fragassa, University of Bologna",
-    ),
-    Skipped(
-        "Savković et al. 2014, contact zone of the crane TD-6/8",
-        "sections at the contact, stresses along lines",
-        "length of the boom, places of the gauges",
-        "M. Savković, University of Kragujevac",
-    ),
-)
-
-
 @titled("validation", "Measurements, published benchmarks and other programs")
 def study(tell: Tell) -> Iterator[Piece]:
-    """Compute all rows, the measured ones first, and list what is skipped."""
+    """Compute all rows, the measured ones first."""
     for what, rows in (
         ("a measured beam on a moving roller", moving_roller),
         ("a boom lift", boom_lift),
@@ -139,12 +65,6 @@ def study(tell: Tell) -> Iterator[Piece]:
     ):
         tell(what)
         yield from rows()
-    yield Table.of_rows(
-        "validation-skipped",
-        "Not computed",
-        ("what", "given", "missing, or the reason", "whom to ask"),
-        SKIPPED,
-    )
 
 
 def moving_roller() -> Iterator[Proof]:

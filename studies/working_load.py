@@ -25,7 +25,6 @@ from runs.report.tables import Cell, Table
 from studies.mesh import peak_heights
 from studies.motions import finer, friction_case, gap_system, move, shell_of, side_by_side
 from studies.pads import with_pads
-from studies.refined import Refined, refined_table
 from studies.study import Piece, Proof, Tell, titled
 
 # Permitted errors of the first peak, and of the tip as a part of its range.
@@ -154,19 +153,6 @@ class Contact:
             found.append(Proof(name, value, 0.0, "", "other code", source, allowed))
         return found
 
-    def hardest(self, sizes: Sizes) -> list[Refined]:
-        """Return peaks and pad forces at the largest play and load."""
-        meshes = self.moved[max(self.moved, key=lambda p: (p.load, p.play))]
-        return [
-            Refined(f"{self.touch.where}: {what} {i}", unit, sizes.meshes, values.tolist())
-            for what, unit, each in (
-                ("tip peak", "mm", 1e3 * np.array([moved.peaks for moved in meshes])),
-                ("pad force", "kN", 1e-3 * np.array([moved.forces for moved in meshes])),
-            )
-            for i, values in enumerate(each.T, start=1)
-            if np.isfinite(values).all()
-        ]
-
 
 def at_point(system: GapSystem, point: Point) -> GapSystem:
     """Return the system with another play and load in the same coordinates."""
@@ -263,11 +249,6 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
         tell(touch.where)
         contacts.append(measure(touch, sizes))
     yield summary_table(contacts, sizes)
-    hardest = []
     for contact in contacts:
         yield point_table(contact)
         yield from contact.proofs
-        hardest += contact.hardest(sizes)
-    title = "Where refinement leads, at the largest play and load"
-    note = "Order, Richardson's limit and the grid convergence index as for the paper's load."
-    yield refined_table("working-load-limits", title, hardest, "edges × {:g}", (note,))

@@ -171,9 +171,12 @@ def test_the_contact_has_no_stress_of_its_own_and_a_patch_has() -> None:
     assert all(proof.holds for proof in found.proofs)
     beam = next(proof for proof in found.proofs if "top at 14 m" in proof.what)
     assert beam.error < 2.0e-3
-    near = {what: values for what, (_, values) in found.plots[0].curves.items()}
+    near = {
+        row["quantity"]: [row[f"{size:g} m"] for size in STRESS.meshes]
+        for row in found.data["stress"]
+    }
     for x in (9, 10):
-        triangle, patch = near[f"largest triangle at {x} m"], near[f"largest patch at {x} m"]
+        triangle, patch = (near[f"largest {what} at {x} m (MPa)"] for what in ("triangle", "patch"))
         assert 1.2 < triangle[2] / triangle[1] < 1.7
         assert patch[2] == pytest.approx(patch[1], rel=0.03)
 
