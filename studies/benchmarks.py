@@ -19,7 +19,7 @@ from studies.reference_models.benchmarks import PUBLISHED, SHEAR_RIGID
 from studies.reference_models.plates import OBLIQUE, Patch, SupportedPlate, constant_strains
 from studies.reference_models.prismatic import ANGLE, BOX, PlainBox
 from studies.refined import Reference, Refined, error_plot, refined_table
-from studies.study import Held, Piece, Proof, Tell, titled
+from studies.study import Criterion, Piece, Progress, Proof, define_study
 
 # Thickness of the plates that vibrate, over their longer side.
 THIN, THICK = 0.001, 0.1
@@ -116,17 +116,17 @@ def torsion(sizes: Sizes) -> Iterator[Refined]:
 def exactness(box: PlainBox, sizes: Sizes) -> Iterator[Proof]:
     """Check what is exact up to round-off: patches under constant strain, and a rotated box."""
     patch = Patch.of()
-    held: Held = ("analytic", "the field that is held on its edges", 1.0e-11)
+    criterion: Criterion = ("analytic", "the field that is held on its edges", 1.0e-11)
     for state in constant_strains():
         what = f"patch under constant {state.name} strain, oblique: largest error"
-        yield Proof(what, patch.error(state), 0.0, "", *held)
+        yield Proof(what, patch.error(state), 0.0, "", *criterion)
     straight, turned = (
         box.free_frequencies(sizes.box, sizes.frequencies, turn=turn) for turn in (None, OBLIQUE)
     )
     worst = int(np.abs(turned / straight - 1.0).argmax())
     what = f"box turned in space: frequency {worst + 1}, which changes most"
-    held = ("analytic", "the same box along x", 1.0e-8)
-    yield Proof(what, float(turned[worst]), float(straight[worst]), "Hz", *held)
+    criterion = ("analytic", "the same box along x", 1.0e-8)
+    yield Proof(what, float(turned[worst]), float(straight[worst]), "Hz", *criterion)
 
 
 def drilling(box: PlainBox, y: float, sizes: Sizes) -> Iterator[Table | Proof]:
@@ -157,36 +157,36 @@ def drilling(box: PlainBox, y: float, sizes: Sizes) -> Iterator[Table | Proof]:
         ]
         first, last = (scientific(tie) for tie in ties[[0, -1]])
         spread = float((np.ptp(values, axis=0) / np.abs(values[0])).max())
-        held: Held = ("non-regression", f"the default tie, {scientific(default)}", 1.0e-3)
+        criterion: Criterion = ("non-regression", f"the default tie, {scientific(default)}", 1.0e-3)
         what = f"{what}: spread over drilling ties from {first} to {last}"
-        yield Proof(what, spread, 0.0, "", *held)
+        yield Proof(what, spread, 0.0, "", *criterion)
     columns = {"what": "", "tie / (G t)": ".1g", "largest change from the default (%)": ".4f"}
-    title = "What the drilling tie changes"
+    title = "Effect of the drilling tie"
     yield Table.of_rows("drilling", title, columns, rows, (DRILLING_NOTE,))
 
 
-@titled("benchmarks", "The shell element")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+@define_study("benchmarks", "The shell element")
+def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Run benchmarks, patches, plates, torsion, a rotated box, and the drilling tie."""
     sizes = sizes or Sizes()
     outer, inner = (segment.section for segment in build_boom(friction_case()).segments)
     assert outer is not None
     assert inner is not None
     box = PlainBox(outer, 10.0)
-    tell("published benchmarks")
+    progress("published benchmarks")
     known = published(sizes)
-    tell("plates and torsion")
+    progress("plates and torsion")
     vibrating = plates(sizes)
     found = [*known, *vibrating, *torsion(sizes)]
     yield from (one.proof for one in found)
-    tell("pinched cylinder with shear")
+    progress("pinched cylinder with shear")
     dents = [benchmarks.pinched_cylinder(n) for n in sizes.cylinder]
     sheared = Refined("pinched cylinder with shear", "", known[1].sizes, dents)
     title = "The shell against published and analytic values"
     yield refined_table("benchmarks", title, [*found, sheared], "edges × {:g}", NOTES)
-    tell("patches and a turned box")
+    progress("patches and a turned box")
     yield from exactness(box, sizes)
-    tell("drilling ties")
+    progress("drilling ties")
     yield from drilling(box, 0.5 * inner.size("y"), sizes)
     x = "length of an edge over the finest one's"
     title = "Flat facets close in on the published values"

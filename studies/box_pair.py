@@ -25,8 +25,8 @@ from shell_model.segment.cross_section import Outline, Row
 from shell_model.segment.shell import Shell
 from shell_model.segment.solver import ShiftedSolver, times
 from studies.motions import SLOW
-from studies.reference_models.lone_segment import shell_alone
 from studies.reference_models.plates import STEEL
+from studies.reference_models.single_segment import shell_alone
 from studies.reference_models.solid import assemble_solid, mesh_quarter
 
 # Distances in m of the mid-lines, which are the same for all wall thicknesses.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Accuracy of a beam that is calibrated by a shell, relative to that shell.
+"""Accuracy of a beam that is calibrated_beam by a shell, relative to that shell.
 
 The paper's boom with friction over plays and loads up to ten times the paper's, near webs and with
 pads: textbook beams, the beam with springs, the beam with the fields of its section, and between
@@ -22,10 +22,10 @@ from geometry.arrays import Array
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.schema import Case, Model
 from runs.report.tables import Cell, Table
-from studies.motions import all_built, friction_case, model_of, shell_of, side_by_side
+from studies.motions import build_all, friction_case, model_of, run_parallel, shell_of
 from studies.pads import with_pads
-from studies.study import Held, Piece, Proof, Tell, titled
-from studies.working_load import Moved, Point, at_point
+from studies.study import Criterion, Piece, Progress, Proof, define_study
+from studies.working_load import Point, PointMotion, set_point
 
 # Permitted errors of the tip, as parts of its range, of first peaks, and of frequencies.
 SPRINGS, FIELDED, PEAK, FREQUENCY = 0.025, 0.01, 0.003, 0.001
@@ -50,51 +50,52 @@ class Sizes:
 
 def move_all(
     systems: Mapping[str, GapSystem], points: Sequence[Point], duration: float
-) -> dict[str, list[Moved]]:
+) -> dict[str, list[PointMotion]]:
     """Return each system's motions of a duration in s at all points."""
     return {
-        name: side_by_side(
-            partial(Moved.of, duration=duration), (at_point(system, point) for point in points)
+        name: run_parallel(
+            partial(PointMotion.of, duration=duration),
+            (set_point(system, point) for point in points),
         )
         for name, system in systems.items()
     }
 
 
-def tips_off(moved: Sequence[Moved], shell: Sequence[Moved]) -> Array:
+def tip_errors(moved: Sequence[PointMotion], shell: Sequence[PointMotion]) -> Array:
     """Return the tip's largest distance (num_points,) as a part of the shell's range."""
-    return np.array([one.tip_off(other) for one, other in zip(moved, shell, strict=True)])
+    return np.array([one.tip_error(other) for one, other in zip(moved, shell, strict=True)])
 
 
-def peaks_off(moved: Sequence[Moved], shell: Sequence[Moved]) -> Array:
+def peak_errors(moved: Sequence[PointMotion], shell: Sequence[PointMotion]) -> Array:
     """Return relative errors (num_points,) of the first peaks; NaN without one."""
-    return np.array([one.peaks_off(other)[0] for one, other in zip(moved, shell, strict=True)])
+    return np.array([one.peak_errors(other)[0] for one, other in zip(moved, shell, strict=True)])
 
 
 @dataclass(frozen=True, slots=True)
-class Compared:
+class ModelComparison:
     """All models of one type of contact."""
 
     where: str  #: segments touch
     points: Sequence[Point]  #: of all motions
     #: By the name of the model, the shell's first.
     systems: Mapping[str, GapSystem]
-    moved: Mapping[str, Sequence[Moved]]
+    moved: Mapping[str, Sequence[PointMotion]]
     seconds: tuple[float, float]  #: of its reduction, and of the calibration
 
     def off(self, name: str) -> Array:
         """Return the errors (num_points,) of the tip."""
-        return tips_off(self.moved[name], self.moved[SHELL])
+        return tip_errors(self.moved[name], self.moved[SHELL])
 
-    def peaks_off(self, name: str) -> float:
+    def peak_errors(self, name: str) -> float:
         """Return the worst error of all points that have a first peak."""
-        return float(np.nanmax(peaks_off(self.moved[name], self.moved[SHELL])))
+        return float(np.nanmax(peak_errors(self.moved[name], self.moved[SHELL])))
 
     def frequencies_off(self, name: str, count: int) -> float:
         """Return the worst relative error of the first frequencies with closed joints."""
         # At rest without play all contacts are closed.
         point = self.points[0]._replace(play=0.0)
         pressed = [
-            pressed_modes(at_point(self.systems[one], point))[0][:count] for one in (SHELL, name)
+            pressed_modes(set_point(self.systems[one], point))[0][:count] for one in (SHELL, name)
         ]
         return float(np.abs(pressed[1] / pressed[0] - 1.0).max())
 
@@ -112,7 +113,7 @@ class Compared:
                 100.0 * off.max(),
                 100.0 * float(np.median(off)),
                 str(self.points[int(off.argmax())]),
-                100.0 * self.peaks_off(name),
+                100.0 * self.peak_errors(name),
                 100.0 * self.frequencies_off(name, OF_SPRINGS),
                 seconds[name] / seconds[PLAIN],
             )
@@ -128,19 +129,19 @@ class Compared:
             for what, value, bar in (
                 (f"tip, part of its range, worst of {len(self.points)} points ({point})",
                  float(off.max()), allowed),
-                ("first tip peak, worst of all", self.peaks_off(name), PEAK),
+                ("first tip peak, worst of all", self.peak_errors(name), PEAK),
                 (f"first {count} frequencies, joints pressed", self.frequencies_off(name, count),
                  FREQUENCY),
             ):  # fmt: skip
-                held: Held = ("other code", "the shell that calibrates it", bar)
-                yield Proof(f"beam {name}, {self.where}: {what}", value, 0.0, "", *held)
+                criterion: Criterion = ("other code", "the shell that calibrates it", bar)
+                yield Proof(f"beam {name}, {self.where}: {what}", value, 0.0, "", *criterion)
 
 
-def calibrated(case: Case, model: Model, fields: bool) -> Model:
-    """Return a beam calibrated by a shell of the case, with its contact."""
+def calibrated_beam(case: Case, model: Model, fields: bool) -> Model:
+    """Return a beam calibrated_beam by a shell of the case, with its contact."""
     return BeamElements.model_validate(
         {
-            "name": "calibrated",
+            "name": "calibrated_beam",
             "kind": "finite-element",
             "calibrated_by": model.model_dump(exclude_none=True),
             "section_fields": fields,
@@ -149,17 +150,17 @@ def calibrated(case: Case, model: Model, fields: bool) -> Model:
     )
 
 
-def measure(case: Case, where: str, sizes: Sizes) -> Compared:
+def measure(case: Case, where: str, sizes: Sizes) -> ModelComparison:
     """Run all models at all points."""
     shell = shell_of(case).model_copy(update={"mesh_size": sizes.mesh_size})
     models = {
         SHELL: shell,
         EULER: model_of(case, "beam-fe-rotary"),
         PLAIN: model_of(case, "timoshenko"),
-        SPRUNG: calibrated(case, shell, fields=False),
-        WITH_FIELDS: calibrated(case, shell, fields=True),
+        SPRUNG: calibrated_beam(case, shell, fields=False),
+        WITH_FIELDS: calibrated_beam(case, shell, fields=True),
     }
-    built = all_built(case, models)
+    built = build_all(case, models)
     systems = {name: one.system for name, one in built.items()}
     for count in sizes.coordinates:
         fewer, _ = condensed(systems[SHELL], count * len(case.segments))
@@ -168,10 +169,10 @@ def measure(case: Case, where: str, sizes: Sizes) -> Compared:
     moved = move_all(systems, points, sizes.duration)
     reduction = built[SHELL].seconds["reduction"]
     calibration = built[SHELL].seconds["unit responses"] + built[SPRUNG].seconds["calibration"]
-    return Compared(where, points, systems, moved, (reduction, calibration))
+    return ModelComparison(where, points, systems, moved, (reduction, calibration))
 
 
-def summary_table(compared: Sequence[Compared], sizes: Sizes) -> Table:
+def summary_table(compared: Sequence[ModelComparison], sizes: Sizes) -> Table:
     """Return a table with a row for every model and type of contact."""
     columns = {
         "contact": "", "model": "", "coordinates": ".0f", "tip, worst\n(% of range)": ".2f",
@@ -179,7 +180,7 @@ def summary_table(compared: Sequence[Compared], sizes: Sizes) -> Table:
         f"first {OF_SPRINGS} frequencies,\npressed (%)": ".3f", "time over\nTimoshenko's": ".2f",
     }  # fmt: skip
     return Table.of_rows(
-        "calibrated-beams",
+        "calibrated_beam-beams",
         "Beams against the shell that calibrates them",
         columns,
         [row for one in compared for row in one.rows()],
@@ -196,20 +197,20 @@ def summary_table(compared: Sequence[Compared], sizes: Sizes) -> Table:
     )
 
 
-def point_table(compared: Compared) -> Table:
+def point_table(compared: ModelComparison) -> Table:
     """Return a table of every point of one type of contact, a column for each model."""
     names = [name for name in compared.moved if name != SHELL]
     rows = zip(map(str, compared.points), *(100.0 * compared.off(n) for n in names), strict=True)
     return Table.of_rows(
-        f"calibrated-beams-{compared.where.split()[0]}",
+        f"calibrated_beam-beams-{compared.where.split()[0]}",
         f"The tip off the shell's, {compared.where} (% of its range)",
         {"point": "", **dict.fromkeys(names, ".2f")},
         [tuple(row) for row in rows],
     )
 
 
-@titled("calibrated-beams", "Beams that a shell calibrates")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+@define_study("calibrated_beam-beams", "Beams that a shell calibrates")
+def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Study the paper's boom with friction, near its webs and with pads."""
     sizes = sizes or Sizes()
     case = friction_case()
@@ -218,7 +219,7 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
         ("near webs", case),
         ("with pads of {:g} x {:g} m".format(*sizes.pad), with_pads(case, *sizes.pad)),
     ):
-        tell(where)
+        progress(where)
         compared.append(measure(touching, where, sizes))
     yield summary_table(compared, sizes)
     for one in compared:

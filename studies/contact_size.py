@@ -19,10 +19,10 @@ from geometry.arrays import Array
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.report.tables import Table
-from studies.motions import finer, friction_case, gap_system, move, shell_of
+from studies.motions import friction_case, gap_system, move, scale_mesh, shell_of
 from studies.pads import with_pads
 from studies.refined import Refined, refined_table
-from studies.study import Held, Piece, Proof, Tell, titled
+from studies.study import Criterion, Piece, Progress, Proof, define_study
 
 # Permitted errors of the local compliance and of a pressed wall.
 ALLOWED = 0.01
@@ -72,14 +72,14 @@ def contacts_of(case: Case, sizes: Sizes) -> list[Contact]:
     ]
 
 
-def squeezed(contact: Contact, part: float) -> Array:
+def station_compliances(contact: Contact, part: float) -> Array:
     """Return the local compliance (num_stations,) in m/N with edges a multiple of the default."""
     from shell_model.boom_shell import assemble_segments
     from shell_model.contact.local_compliance import full_compliance, local_compliance
     from shell_model.contact.rows import ShellContacts
 
     boom = build_boom(contact.case)
-    model = finer(shell_of(contact.case), part)
+    model = scale_mesh(shell_of(contact.case), part)
     options = model.options()
     shells = assemble_segments(boom, options, MPI.COMM_SELF)
     seen = model.joined(boom).boom
@@ -91,7 +91,7 @@ def squeezed(contact: Contact, part: float) -> Array:
     return np.asarray(local[first])
 
 
-def supported(case: Case, parts: Sequence[float]) -> list[float]:
+def support_compliance(case: Case, parts: Sequence[float]) -> list[float]:
     """Return the local compliance of the outer segment at its last support in m/N for each mesh.
 
     An elastic support pulls the walls there, and halves of its force push the same walls back on
@@ -112,7 +112,7 @@ def supported(case: Case, parts: Sequence[float]) -> list[float]:
     x = max(support.x for support in supports)
     there, found = None, []
     for part in parts:
-        options = finer(shell_of(case), part).options()
+        options = scale_mesh(shell_of(case), part).options()
         held = replace(boom, segments=(elastic, *boom.segments[1:]))
         shell, *_ = assemble_segments(held, options, MPI.COMM_SELF)
         lines = np.unique(shell.nodes[:, 0])
@@ -128,7 +128,7 @@ def supported(case: Case, parts: Sequence[float]) -> list[float]:
 
 def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
     """Return the tip's first peak in m under each load, on the default mesh."""
-    model = finer(shell_of(contact.case), sizes.default)
+    model = scale_mesh(shell_of(contact.case), sizes.default)
     system = gap_system(contact.case, build_boom(contact.case), model)
     loaded = (replace(system, load=load * system.load) for load in sizes.loads)
     return [move(one, sizes.peak).first_peak()[1] for one in loaded]
@@ -138,35 +138,43 @@ def plate_proofs(sizes: Sizes) -> Iterator[Proof]:
     """Check a wall under a patch beside its edge."""
     from studies.reference_models.plates import FLANGE
 
-    held: Held = ("analytic", "Navier 1823, with the shear of Reissner and Mindlin", ALLOWED)
+    criterion: Criterion = (
+        "analytic",
+        "Navier 1823, with the shear of Reissner and Mindlin",
+        ALLOWED,
+    )
     for size in sizes.plate:
         what = f"simply supported plate under a patch beside its edge, mesh of {1e3 * size:g} mm"
-        yield Proof(what, NANO * FLANGE.shell(size), NANO * FLANGE.theory(), UNIT, *held)
+        yield Proof(what, NANO * FLANGE.shell(size), NANO * FLANGE.theory(), UNIT, *criterion)
 
 
-@titled("contact-size", "What walls give way where segments touch")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+@define_study("contact-size", "Local compliance at contacts")
+def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Study corners and pads of several sizes, a support, and a plate."""
     sizes = sizes or Sizes()
     default = sizes.meshes.index(sizes.default)
-    held: Held = ("other code", f"edges {1.0 / sizes.meshes[-1]:g} times as short", ALLOWED)
-    tell("plates")
+    criterion: Criterion = (
+        "other code",
+        f"edges {1.0 / sizes.meshes[-1]:g} times as short",
+        ALLOWED,
+    )
+    progress("plates")
     yield from plate_proofs(sizes)
-    tell("support")
-    values = [NANO * value for value in supported(friction_case(), sizes.meshes)]
+    progress("support")
+    values = [NANO * value for value in support_compliance(friction_case(), sizes.meshes)]
     what = "local compliance, elastic support, at 2 m"
-    yield Proof(what, values[default], values[-1], UNIT, *held)
+    yield Proof(what, values[default], values[-1], UNIT, *criterion)
     stations = [x for x, _ in build_boom(friction_case()).stations]
     rows, found = [], [Refined("elastic support, 2 m", UNIT, sizes.meshes, values)]
     for contact in contacts_of(friction_case(), sizes):
-        tell(contact.name)
-        local = NANO * np.array([squeezed(contact, part) for part in sizes.meshes])
+        progress(contact.name)
+        local = NANO * np.array([station_compliances(contact, part) for part in sizes.meshes])
         peaks = [1.0e3 * peak for peak in first_peaks(contact, sizes)]
         rows.append((contact.name, contact.length, contact.width, *local[default], *peaks))
         for x, values in zip(stations, local.T.tolist(), strict=True):
             found.append(Refined(f"{contact.name}, {x:g} m", UNIT, sizes.meshes, values))
             what = f"local compliance, {contact.name}, at {x:g} m"
-            yield Proof(what, values[default], values[-1], UNIT, *held)
+            yield Proof(what, values[default], values[-1], UNIT, *criterion)
     columns = {
         "pressed": "", "along the boom\n(m)": ".3g", "across\n(m)": ".3g",
         **{f"local compliance\nat {x:g} m ({UNIT})": ".2f" for x in stations},
@@ -174,7 +182,7 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     }  # fmt: skip
     yield Table.of_rows(
         "contact-size",
-        "What the size of a contact means",
+        "Effect of the size of a contact",
         columns,
         rows,
         (

@@ -127,7 +127,7 @@ def _row(proof: Proof) -> tuple[str, ...]:
 
 
 OUT = Path("runs/out/convergence")
-TITLE = "What proves the models"
+TITLE = "Verification and validation"
 
 # Modules of studies in the order of the report.
 STUDIES = (
@@ -153,7 +153,7 @@ STUDIES = (
     "telescoping_column",
     "sections",
     "taper",
-    "answers",
+    "design_results",
     "validation",
 )
 

@@ -21,7 +21,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.report.tables import Table
 from studies.motions import gap_system, model_of, without_friction
-from studies.study import Held, Piece, Proof, Tell, titled
+from studies.study import Criterion, Piece, Progress, Proof, define_study
 
 # Booms, and their cases.
 BOOMS = {
@@ -87,14 +87,14 @@ class PressedBoom:
         return float(decrement / np.hypot(2.0 * np.pi, decrement)), run.energy_residual
 
 
-@titled("damping", "Damping ratios asked for and measured")
-def study(tell: Tell) -> Iterator[Piece]:
+@define_study("damping", "Damping ratios, requested and measured")
+def study(progress: Progress) -> Iterator[Piece]:
     """Measure every boom and model at every ratio."""
     rows, residuals = [], []
-    held: Held = ("analytic", "logarithmic decrement 2πζ/√(1 − ζ²)", 0.05)
+    criterion: Criterion = ("analytic", "logarithmic decrement 2πζ/√(1 − ζ²)", 0.05)
     for (boom, file), model in product(BOOMS.items(), MODELS):
         name = f"{boom}, {model}"
-        tell(name)
+        progress(name)
         pressed = PressedBoom.of(_system(file, model))
         farthest = f"damping ratio of {name}: the mode of the first {MODES} that is farthest off"
         for ratio in RATIOS:
@@ -102,12 +102,12 @@ def study(tell: Tell) -> Iterator[Piece]:
             residuals.append(float(swings[:, 1].max()))
             worst = 100.0 * float(swings[np.abs(swings[:, 0] - ratio).argmax(), 0])
             rows.append((name, 100.0 * ratio, *(100.0 * swings[:, 0])))
-            yield Proof(farthest, worst, 100.0 * ratio, "%", *held)
+            yield Proof(farthest, worst, 100.0 * ratio, "%", *criterion)
     residual = "energy residual of these swings, the largest"
-    held = ("analytic", "conservation of energy", 1.0e-4)
-    yield Proof(residual, max(residuals), 0.0, "", *held)
+    criterion = ("analytic", "conservation of energy", 1.0e-4)
+    yield Proof(residual, max(residuals), 0.0, "", *criterion)
     modes = {f"mode {mode}\n%": ".4g" for mode in range(1, MODES + 1)}
-    columns = {"boom": "", "asked\n%": ".3g", **modes}
+    columns = {"boom": "", "requested\n%": ".3g", **modes}
     yield Table.of_rows("damping", "Damping ratios of pressed booms", columns, rows, (NOTE,))
 
 

@@ -22,9 +22,9 @@ from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.pipeline.models import MotionPlan
 from runs.report.tables import Table
-from studies.motions import STEP, friction_case, gap_system, lasting, loaded, shell_of
+from studies.motions import STEP, friction_case, gap_system, scale_loads, set_duration, shell_of
 from studies.pads import with_pads
-from studies.study import Held, Piece, Proof, Tell, titled
+from studies.study import Criterion, Piece, Progress, Proof, define_study
 
 # Permitted error of the tip, as a part of its range.
 ALLOWED = 0.005
@@ -68,21 +68,21 @@ class Run:
     seconds: float  #: wall time of the motion
 
 
-def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, tell: Tell) -> list[Run]:
+def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, progress: Progress) -> list[Run]:
     """Return motions of the shell reduced, with more coordinates, then unreduced by falling steps.
 
     Args:
         case: in the plane, with prescribed normal forces and a model ``shell``.
         steps: those of the unreduced one in s.
         sizes: parameters of the study.
-        tell: reports the progress.
+        progress: reports the progress.
     """
     from shell_model.boom_shell import ShellOptions, assemble_boom
     from shell_model.reduced_shell import reduce_boom
     from shell_model.reduction.krylov import KrylovOptions
     from studies.reference_models.unreduced import integrate_directly
 
-    case = lasting(case, sizes.duration)
+    case = set_duration(case, sizes.duration)
     boom, output_step = build_boom(case), case.time.output_step
     model = shell_of(case).model_copy(update={"mesh_size": sizes.mesh, "contact_tolerance": "any"})
     seen = model.joined(boom).boom
@@ -93,7 +93,7 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, tell: Tell) -> lis
     def impulse(forces: Array) -> float:
         return float(np.abs(forces).sum()) * output_step
 
-    tell("the reduced shell")
+    progress("the reduced shell")
     larger = reduce_boom(seen, finer, MPI.COMM_SELF).system
     found = []
     for how, system in (
@@ -110,7 +110,7 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, tell: Tell) -> lis
         found.append(Run(how, system.num_modes, taken, tip, pushed, residual, seconds))
     full = assemble_boom(seen, options, MPI.COMM_SELF)
     for step in steps:
-        tell(f"the unreduced shell, step {step:g} s")
+        progress(f"the unreduced shell, step {step:g} s")
         start = perf_counter()
         direct = integrate_directly(full, sizes.duration, step, output_step)
         seconds = perf_counter() - start
@@ -165,22 +165,22 @@ def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterato
         ),
     )  # fmt: skip
     on = f"{where}, mesh of {sizes.mesh:g} m, {sizes.duration:g} s"
-    method: Held = ("other code", METHOD, ALLOWED)
+    method: Criterion = ("other code", METHOD, ALLOWED)
     tips = f"tip of the reduced shell off the unreduced one, part of its range, {on}"
     yield Proof(tips, off[-1], 0.0, "", *method, order)
     for run, bound in ((reduced, ENERGY_BOUND), (direct[-1], LOSS_BOUND)):
         what = f"energy residual of the {run.how} shell, {on}"
-        conserved: Held = ("analytic", "conservation of energy", bound)
+        conserved: Criterion = ("analytic", "conservation of energy", bound)
         yield Proof(what, run.energy_residual, 0.0, "", *conserved)
 
 
-@titled("direct", "The reduction against the full order")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+@define_study("direct", "The reduction against the full order")
+def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Study the paper's boom with friction, all its degrees of freedom against few coordinates."""
     sizes = sizes or Sizes()
     case = friction_case()
-    runs = runs_of(case, sizes.steps, sizes, tell)
+    runs = runs_of(case, sizes.steps, sizes, progress)
     yield from compare(runs, "direct-webs", "near webs", sizes)
     hard = f"pads of {PAD[0]:g} m x {PAD[1]:g} m, load x {LOAD:g}"
-    runs = runs_of(loaded(with_pads(case, *PAD), LOAD), sizes.hard_steps, sizes, tell)
+    runs = runs_of(scale_loads(with_pads(case, *PAD), LOAD), sizes.hard_steps, sizes, progress)
     yield from compare(runs, "direct-pads", hard, sizes)

@@ -12,7 +12,7 @@ from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
-from studies.study import Held, Proof, Tell, titled
+from studies.study import Criterion, Progress, Proof, define_study
 
 # Distance of outputs, steps, and duration in s. A step is a tenth of the shortest 1/ω below.
 OUTPUT_STEP, STEP = 0.02, 2.0e-5
@@ -24,7 +24,7 @@ BOOM = 19.0
 # Force in N.
 FORCE = 10.0
 
-DUHAMEL: Held = ("analytic", "Duhamel's integral of each line", 1.0e-8)
+DUHAMEL: Criterion = ("analytic", "Duhamel's integral of each line", 1.0e-8)
 
 _MANY = np.linspace(0.011, 2.9, 1500)
 KINKED: Mapping[str, Ramp | PiecewiseLinear] = {
@@ -77,17 +77,19 @@ def masses(history: Ramp | Sine | PiecewiseLinear) -> GapSystem:
     )
 
 
-@titled("histories", f"Loads in time, steps of {STEP:g} s")
-def study(tell: Tell) -> Iterator[Proof]:
+@define_study("histories", f"Loads with histories, steps of {STEP:g} s")
+def study(progress: Progress) -> Iterator[Proof]:
     """Compare vibrations after kinked histories, and largest errors, with closed forms."""
     for what, history in KINKED.items():
-        tell(what)
+        progress(what)
         run = FixedStep(STEP)(Motion(masses(history), DURATION, OUTPUT_STEP))
         found = {omega: run.data[f"{omega:g}"].values for omega in OMEGAS}
-        asked = {omega: response(omega, history, run.time) for omega in OMEGAS}
+        expected = {omega: response(omega, history, run.time) for omega in OMEGAS}
         after = run.time > history.kinks[-1]
-        measured, exact = (FORCE * 1.0e3 * 0.5 * np.ptp(way[BOOM][after]) for way in (found, asked))
-        worst = max(np.abs(found[w] - asked[w]).max() / np.ptp(asked[w]) for w in OMEGAS)
+        measured, exact = (
+            FORCE * 1.0e3 * 0.5 * np.ptp(way[BOOM][after]) for way in (found, expected)
+        )
+        worst = max(np.abs(found[w] - expected[w]).max() / np.ptp(expected[w]) for w in OMEGAS)
         swing = f"{what}: swing left at {BOOM / (2.0 * np.pi):.2g} Hz"
         largest = f"{what}: largest error, 0 to {OMEGAS[-1] / (2.0 * np.pi):.0f} Hz, part of range"
         yield Proof(swing, measured, exact, "mm", *DUHAMEL)

@@ -33,7 +33,7 @@ from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
 from runs.report.formatting import number
 from runs.report.tables import Table
-from studies.study import Tell, titled
+from studies.study import Progress, define_study
 
 PAPER = CASES / "paper.toml"
 SERIES = ("kantorovich-4", "kantorovich-5")
@@ -158,10 +158,10 @@ class JudgedInterpretation:
         return [key for key, finding in self.findings.items() if finding.verdict == "contradicted"]
 
 
-@titled("interpretations", "Interpretations of the paper's data")
-def study(tell: Tell) -> Iterator[Table]:
+@define_study("interpretations", "Interpretations of the paper's data")
+def study(progress: Progress) -> Iterator[Table]:
     """Run and judge all interpretations."""
-    tell(f"{len(ALL)} interpretations, {MEMBERS} runs each")
+    progress(f"{len(ALL)} interpretations, {MEMBERS} runs each")
     yield finding_table(survey(ALL))
 
 

@@ -13,9 +13,9 @@ from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from runs.case.build import build_boom
 from runs.pipeline.models import MotionPlan
-from studies.motions import finer, friction_case, gap_system, lasting, shell_of
+from studies.motions import friction_case, gap_system, scale_mesh, set_duration, shell_of
 from studies.refined import Refined, error_plot, refined_table
-from studies.study import Piece, Tell, titled
+from studies.study import Piece, Progress, define_study
 
 # Permitted error of the default mesh, relative to the limit of infinitely fine ones.
 ALLOWED = 0.01
@@ -40,15 +40,15 @@ class Sizes:
     peaks: int = 3
 
 
-@titled("mesh", "Meshes of the paper's boom")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+@define_study("mesh", "Meshes of the paper's boom")
+def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Compare frequencies, flexibilities and tip peaks of the paper's boom on finer meshes."""
     sizes = sizes or Sizes()
-    case = lasting(friction_case(), sizes.duration)
+    case = set_duration(friction_case(), sizes.duration)
     results = []
     for part in sizes.meshes:
-        tell(f"edges x {part:g}")
-        model = finer(shell_of(case), part)
+        progress(f"edges x {part:g}")
+        model = scale_mesh(shell_of(case), part)
         system = gap_system(case, build_boom(case), model)
         motion = MotionPlan.of(system, case, model).trajectory(lambda part: None)
         results.append(_quantities(system, motion, sizes))

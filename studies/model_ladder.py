@@ -14,7 +14,7 @@ from runs.case import reading as case_file
 from runs.case.schema import Case
 from runs.report.tables import Table
 from studies.motions import CASE, friction_case, trajectories
-from studies.study import Tell, titled
+from studies.study import Progress, define_study
 
 # From the paper's series to the shell: change, and model with it.
 LADDER = (
@@ -35,7 +35,7 @@ LADDER = (
 EXPLAINED = 5.0
 
 
-def rungs(case: Case) -> Table:
+def ladder_table(case: Case) -> Table:
     """Compare the rungs of ``LADDER``: change of the tip, and remaining difference to the shell.
 
     Differences are the largest ones, as parts of the shell's range.
@@ -72,8 +72,8 @@ def rungs(case: Case) -> Table:
     )
 
 
-@titled("model-ladder", "From the paper's series to the shell")
-def study(tell: Tell) -> Iterator[Table]:
+@define_study("model-ladder", "From the paper's series to the shell")
+def study(progress: Progress) -> Iterator[Table]:
     """Run the ladder."""
-    tell("the models from the series to the shell")
-    yield rungs(friction_case())
+    progress("the models from the series to the shell")
+    yield ladder_table(friction_case())

@@ -48,7 +48,7 @@ def friction_case() -> Case:
     return case_file.load(str(CASE))
 
 
-def loaded(case: Case, times: float) -> Case:
+def scale_loads(case: Case, times: float) -> Case:
     """Return the case with its segments' loads multiplied by a factor."""
     segments = tuple(
         segment.model_copy(update={"load": times * segment.load}) for segment in case.segments
@@ -56,7 +56,7 @@ def loaded(case: Case, times: float) -> Case:
     return case.model_copy(update={"segments": segments})
 
 
-def lasting(case: Case, duration: float) -> Case:
+def set_duration(case: Case, duration: float) -> Case:
     """Return the case with another duration in s."""
     time = case.time.model_copy(update={"duration": duration})
     return case.model_copy(update={"time": time})
@@ -80,7 +80,7 @@ def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
     return build(case, boom, model, Workshop(MPI.COMM_SELF)).system
 
 
-def all_built(case: Case, models: Mapping[str, Model]) -> dict[str, Built]:
+def build_all(case: Case, models: Mapping[str, Model]) -> dict[str, Built]:
     """Return several models of a case, with each shell reduced once."""
     from mpi4py import MPI
 
@@ -90,7 +90,7 @@ def all_built(case: Case, models: Mapping[str, Model]) -> dict[str, Built]:
         return {name: build(case, boom, model, tools) for name, model in models.items()}
 
 
-def finer(shell: Shell, part: float) -> Shell:
+def scale_mesh(shell: Shell, part: float) -> Shell:
     """Return the shell with all edge lengths multiplied by a factor."""
     tolerance = shell.contact_tolerance
     if tolerance != "any":
@@ -103,10 +103,10 @@ def trajectories(case: Case) -> list[Trajectory]:
     """Return the motions of all models of a case, in their order, in parallel on the cores."""
     boom = build_boom(case)
     plans = [MotionPlan.of(gap_system(case, boom, m), case, m) for m in case.models]
-    return side_by_side(lambda plan: plan.trajectory(lambda part: None), plans)
+    return run_parallel(lambda plan: plan.trajectory(lambda part: None), plans)
 
 
-def side_by_side(move: Callable[[_Task], _Found], tasks: Iterable[_Task]) -> list[_Found]:
+def run_parallel(move: Callable[[_Task], _Found], tasks: Iterable[_Task]) -> list[_Found]:
     """Return the result of each task, as many at a time as there are cores."""
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return list(pool.map(move, tasks))

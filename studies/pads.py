@@ -43,14 +43,14 @@ def pad_proofs(case: Case, size: tuple[float, float], system: GapSystem) -> Iter
     """
     boom = build_boom(case)
     start, _ = boom.overlap(boom.joints[0])
-    for what, tail, tip, asked, unit, source in (
+    for what, tail, tip, expected, unit, source in (
         ("force of a uniformly pressed pad, over its law's", 1.0, 1.0, 1.0, "",
          "pressure times area"),
         ("its place along the boom, pad at the overlap's start", start, boom.tip,
          start + 0.5 * size[0], "m", "middle of the pad"),
     ):  # fmt: skip
         found = float(upper_rows(system)[0] @ rigid_motion(system, tail, tip))
-        yield Proof(what, found, asked, unit, "analytic", source, 1.0e-6)
+        yield Proof(what, found, expected, unit, "analytic", source, 1.0e-6)
 
 
 def rigid_motion(system: GapSystem, tail: float, tip: float) -> Array:

@@ -60,14 +60,14 @@ class Refined:
         return SAFETY * abs((fine - medium) / fine) / self._shrinking
 
     @property
-    def settles(self) -> bool:
+    def converges(self) -> bool:
         """Whether the values on the meshes converge."""
         return self.order > LEAST_ORDER  # False where there is none
 
     @property
-    def settled(self) -> float:
+    def best(self) -> float:
         """Limit of refinement; the finest mesh's value without convergence."""
-        return self.limit if self.settles else self.values[-1]
+        return self.limit if self.converges else self.values[-1]
 
     @property
     def errors(self) -> list[float]:
@@ -95,15 +95,15 @@ class Refined:
         Raises:
             ValueError: there is no limit for the comparison.
         """
-        if not self.settles and size == self.sizes[-1]:
+        if not self.converges and size == self.sizes[-1]:
             raise ValueError(f"{what}: the finest mesh would be held against itself")
         value = self.values[self.sizes.index(size)]
         source, order = (
             ("limit of its refinement (Richardson 1911)", self.order)
-            if self.settles
+            if self.converges
             else (finest, None)
         )
-        return Proof(what, value, self.settled, self.unit, "other code", source, allowed, order)
+        return Proof(what, value, self.best, self.unit, "other code", source, allowed, order)
 
     @property
     def _ratio(self) -> float:

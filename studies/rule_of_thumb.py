@@ -34,14 +34,14 @@ from studies.calibrated_beams import (
     PLAIN,
     SHELL,
     SPRUNG,
-    calibrated,
+    calibrated_beam,
     move_all,
-    peaks_off,
-    tips_off,
+    peak_errors,
+    tip_errors,
 )
-from studies.motions import all_built, friction_case, model_of, shell_of
+from studies.motions import build_all, friction_case, model_of, shell_of
 from studies.pads import with_pads
-from studies.study import Held, Piece, Proof, Tell, titled
+from studies.study import Criterion, Piece, Progress, Proof, define_study
 from studies.working_load import Point
 
 _DENSITY = 7850.0
@@ -128,7 +128,7 @@ _NEAR = 0.15
 # Permitted geometric mean of measured errors over those of the rule, and of springs.
 MEAN_OFF, PEAK = 0.25, 0.005
 # Rules above this value mean that the tip's motion is unpredictable.
-LOST = 0.5
+UNPREDICTABLE = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,7 +174,7 @@ class Rule:
         return cls(
             bending=tips[0],
             shear=tips[1] - tips[0],
-            pressed=giving_way(given, case) * pressed,
+            pressed=station_compliance(given, case) * pressed,
             frequency=float(tied[1][0].frequencies[0]),
             lever=2.0 * over - 1.0,
         )
@@ -184,7 +184,7 @@ class Rule:
         """Static deflection of the tip in m."""
         return self.bending + (1.0 + UNEVEN) * self.shear + self.pressed
 
-    def lacking(self, name: str) -> float:
+    def missing_part(self, name: str) -> float:
         """Return δ of a kind of beam."""
         known = self.bending + (0.0 if name == EULER else self.shear)
         return 1.0 - known / self.deflection
@@ -193,21 +193,21 @@ class Rule:
         """Return s = √(2γ)."""
         return float(np.sqrt(self.lever * point.play / (point.load * self.deflection)))
 
-    def peak_off(self, name: str, point: Point) -> float:
+    def peak_error(self, name: str, point: Point) -> float:
         """Return the error of the first peak, as a part of it."""
-        return self.lacking(name) / float(np.hypot(1.0, self.swing(point)))
+        return self.missing_part(name) / float(np.hypot(1.0, self.swing(point)))
 
-    def tip_off(self, name: str, point: Point, duration: float) -> float:
+    def tip_error(self, name: str, point: Point, duration: float) -> float:
         """Return the error of the tip within a duration in s, as a part of its range."""
         s = self.swing(point)
         root, chi = float(np.hypot(1.0, s)), np.pi - float(np.arctan(s))
         periods = duration * np.pi * self.frequency / (s + chi)
         psi = 0.5 * (chi + s / root**2) / (s + chi)
         mu = 2.0 * (s + chi) * root / (0.5 * s**2 + 1.0 + root)
-        return min(1.0, self.lacking(name) * (1.0 / root + periods * mu * psi))
+        return min(1.0, self.missing_part(name) * (1.0 / root + periods * mu * psi))
 
 
-def giving_way(given: Proportions, case: Case) -> float:
+def station_compliance(given: Proportions, case: Case) -> float:
     """Return the compliance of a station in m/N, of both walls."""
     material = case.material
     assert material is not None
@@ -224,7 +224,7 @@ def giving_way(given: Proportions, case: Case) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
+class BoomErrors:
     """Errors of a boom's beams against its shell at all points."""
 
     rule: Rule  #: of it
@@ -261,7 +261,7 @@ def _moving_tip(system: GapSystem) -> dict[float, float]:
     return dict(zip(frequencies[much].tolist(), moves[much].tolist(), strict=True))
 
 
-def measure(given: Proportions, sizes: Sizes) -> Measured:
+def measure(given: Proportions, sizes: Sizes) -> BoomErrors:
     """Run the beams and the shell of a boom."""
     case = boom_case(given)
     rule = Rule.of(given, case)
@@ -271,43 +271,47 @@ def measure(given: Proportions, sizes: Sizes) -> Measured:
         SHELL: shell,
         EULER: model_of(case, "beam-fe-rotary"),
         PLAIN: model_of(case, "timoshenko"),
-        SPRUNG: calibrated(case, shell, fields=False),
+        SPRUNG: calibrated_beam(case, shell, fields=False),
     }
     points = Point.each(sizes.plays, sizes.loads)
     duration = sizes.periods / rule.frequency
-    systems = {name: one.system for name, one in all_built(case, models).items()}
+    systems = {name: one.system for name, one in build_all(case, models).items()}
     beams = move_all(systems, points, duration)
     of_shell = beams.pop(SHELL)
-    return Measured(
+    return BoomErrors(
         rule,
         points,
         duration,
-        {name: peaks_off(moved, of_shell) for name, moved in beams.items()},
-        {name: tips_off(moved, of_shell) for name, moved in beams.items()},
+        {name: peak_errors(moved, of_shell) for name, moved in beams.items()},
+        {name: tip_errors(moved, of_shell) for name, moved in beams.items()},
         inner_bending(systems[SHELL], systems[SPRUNG]),
     )
 
 
-def ratios(found: Sequence[Measured], name: str, tips: bool) -> Array:
+def ratios(found: Sequence[BoomErrors], name: str, tips: bool) -> Array:
     """Return the errors of a beam over those of the rule (num_ratios,), of all booms and points."""
     pairs = [
         (
             off,
-            one.rule.tip_off(name, point, one.duration) if tips else one.rule.peak_off(name, point),
+            one.rule.tip_error(name, point, one.duration)
+            if tips
+            else one.rule.peak_error(name, point),
         )
         for one in found
         for point, off in zip(one.points, (one.tips if tips else one.peaks)[name], strict=True)
     ]
-    return np.array([off / rule for off, rule in pairs if np.isfinite(off) and rule < LOST])
+    return np.array(
+        [off / rule for off, rule in pairs if np.isfinite(off) and rule < UNPREDICTABLE]
+    )
 
 
-def boom_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
+def boom_table(found: Mapping[str, BoomErrors], sizes: Sizes) -> Table:
     """Return a table of δ of each boom's beams by the rule and by its shell without play."""
     rows: list[Sequence[Cell]] = []
     for name, one in found.items():
         rule, given = one.rule, sizes.booms[name]
         parts = [part / rule.deflection for part in (rule.shear, rule.pressed)]
-        parts += [rule.lacking(beam) for beam in (EULER, PLAIN)]
+        parts += [rule.missing_part(beam) for beam in (EULER, PLAIN)]
         parts += [one.peaks[beam][0] for beam in (EULER, PLAIN, SPRUNG)]
         sizes_of = given.length / HEIGHT, given.overlap / HEIGHT
         rows.append((name, *sizes_of, *(100.0 * part for part in parts)))
@@ -318,14 +322,14 @@ def boom_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
     }  # fmt: skip
     return Table.of_rows(
         "rule-of-thumb-booms",
-        "What beams lack of the tip's static deflection, and how far their first peaks are off",
+        "Missing parts of the tip's static deflection, and errors of first peaks",
         columns,
         rows,
         (f"Without play, under {sizes.loads[0]:g} times the weight at 1 m/s² at once.",),
     )
 
 
-def scatter_table(found: Sequence[Measured], sizes: Sizes) -> Table:
+def scatter_table(found: Sequence[BoomErrors], sizes: Sizes) -> Table:
     """Return a table of the scatter of measured errors about the rule, over all points."""
     rows: list[Sequence[Cell]] = []
     for tips, what in ((False, "first peak"), (True, "tip")):
@@ -347,12 +351,12 @@ def scatter_table(found: Sequence[Measured], sizes: Sizes) -> Table:
             f"{len(found)} booms, plays of {', '.join(f'{1e3 * play:g}' for play in sizes.plays)} "
             f"mm, loads of {', '.join(f'{load:g}' for load in sizes.loads)} times the weight at "
             f"1 m/s², {sizes.periods:g} periods of the boom without play; where the rule tells "
-            f"more than {100.0 * LOST:g} % the tip is lost, and it is left out.",
+            f"more than {100.0 * UNPREDICTABLE:g} % the tip is lost, and it is left out.",
         ),
     )
 
 
-def springs_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
+def springs_table(found: Mapping[str, BoomErrors], sizes: Sizes) -> Table:
     """Return a table of the errors with springs at the worst points, and the flanges' part."""
     rows: list[Sequence[Cell]] = []
     for name, one in found.items():
@@ -379,7 +383,7 @@ def springs_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
     )
 
 
-def proofs(found: Sequence[Measured]) -> Iterator[Proof]:
+def proofs(found: Sequence[BoomErrors]) -> Iterator[Proof]:
     """Return the proofs of the rule against the shells, and of springs."""
     booms = f"{len(found)} booms"
     for name in (EULER, PLAIN):
@@ -387,17 +391,17 @@ def proofs(found: Sequence[Measured]) -> Iterator[Proof]:
         mean = float(np.exp(np.log(ratios(found, name, tips=False)).mean()))
         yield Proof(what + booms, mean, 1.0, "", "other code", "shells", MEAN_OFF)
     worst = max(float(np.nanmax(one.peaks[SPRUNG])) for one in found)
-    held: Held = ("other code", "the shell that calibrates it", PEAK)
-    yield Proof(f"beam {SPRUNG}: first tip peak, worst of {booms}", worst, 0.0, "", *held)
+    criterion: Criterion = ("other code", "the shell that calibrates it", PEAK)
+    yield Proof(f"beam {SPRUNG}: first tip peak, worst of {booms}", worst, 0.0, "", *criterion)
 
 
-@titled("rule-of-thumb", "A rule of thumb for beams")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+@define_study("rule-of-thumb", "A rule of thumb for beams")
+def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Study booms of other proportions than the paper's, with its friction."""
     sizes = sizes or Sizes()
     found = {}
     for name, given in sizes.booms.items():
-        tell(name)
+        progress(name)
         found[name] = measure(given, sizes)
     every = list(found.values())
     yield boom_table(found, sizes)

@@ -23,7 +23,7 @@ from geometry.load import Load
 from geometry.section import BoxSection
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
-from studies.study import Proof, Tell, titled
+from studies.study import Progress, Proof, define_study
 
 STEEL = Material(2.1e11, 0.3, 7850.0)
 BOX = BoxSection(height=0.2, width=0.15, flange=0.006, web=0.006)
@@ -113,11 +113,11 @@ def column(
     return Boom(pressed, (), loads)
 
 
-@titled("second_order", "Columns: buckling, swing and deflection")
-def study(tell: Tell) -> Iterator[Proof]:
+@define_study("second_order", "Columns: buckling, swing and deflection")
+def study(progress: Progress) -> Iterator[Proof]:
     """Study every model."""
     for name, model in MODELS.items():
-        tell(name)
+        progress(name)
         yield from _euler(name, model)
         yield from (proof(name, model) for proof in (_greenhill, _swing, _berry))
 

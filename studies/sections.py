@@ -25,9 +25,9 @@ from runs.report.tables import Table
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.wall_rows import CornerLines
 from shell_model.reduced_shell import reduce_boom
-from studies.reference_models.lone_segment import compliances, shell_alone
 from studies.reference_models.plates import STEEL
-from studies.study import Held, Piece, Proof, Tell, titled
+from studies.reference_models.single_segment import compliances, shell_alone
+from studies.study import Criterion, Piece, Progress, Proof, define_study
 
 LAW = PowerContact(stiffness=1.0e9, exponent=1.0)
 
@@ -96,7 +96,7 @@ def boom_of(outer: Section, inner: Section) -> Boom:
     )
 
 
-def collared(boom: Boom, thickness: float) -> Boom:
+def add_collars(boom: Boom, thickness: float) -> Boom:
     """Return the boom with collars around both segments at both stations."""
     spans = ((8.85, 9.15), (9.85, 10.0)), ((9.0, 9.15), (9.85, 10.15))
     segments = (
@@ -177,25 +177,25 @@ def tip_of_shell(section: Section, direction: Direction, size: float) -> float:
     return compliances(shell, shell.outline(ARM).wall_deflection(direction))[0]
 
 
-@titled("sections", "Polygons of flat plates")
-def study(tell: Tell) -> Iterator[Piece]:
+@define_study("sections", "Polygons of flat plates")
+def study(progress: Progress) -> Iterator[Piece]:
     """Study properties of sections, rings, and first peaks of booms."""
     yield from _numbers()
     rows: list[tuple[str | float, ...]] = []
-    frame: Held = ("other code", "plane frame, Przemieniecki 1968", 3.0e-3)
+    frame: Criterion = ("other code", "plane frame, Przemieniecki 1968", 3.0e-3)
     for name, (outer, inner) in SHAPES.items():
-        tell(f"{name}: a ring, and booms with and without collars")
+        progress(f"{name}: a ring, and booms with and without collars")
         bars, shell = ring_of_bars(outer, RING), ring_of_shell(outer, RING, RING_MESH)
-        what = f"{name}, ring of {1e3 * RING:g} mm pressed between its flats, gives way"
+        what = f"{name}, ring of {1e3 * RING:g} mm pressed between its flats: compliance"
         yield Proof(what, 1e6 * shell, 1e6 * bars, "1e-6 m/N", *frame)
         plain = boom_of(outer, inner)
         beam = 1e3 * beam_peak(plain)
-        peaks = [1e3 * shell_peak(boom) for boom in (plain, collared(plain, COLLAR))]
+        peaks = [1e3 * shell_peak(boom) for boom in (plain, add_collars(plain, COLLAR))]
         over = [part for peak in peaks for part in (peak, 100.0 * (peak / beam - 1.0))]
         rows.append((name, beam, *over))
-        elements: Held = ("other code", "Timoshenko elements", ALLOWED[name])
+        elements: Criterion = ("other code", "Timoshenko elements", ALLOWED[name])
         yield Proof(f"{name}s with collars: first peak of the tip", peaks[1], beam, "mm", *elements)
-    tell("turned sections")
+    progress("turned sections")
     yield from _turned()
     columns = {
         "sections": "", "beam\nmm": ".4g", "shell\nmm": ".4g", "off the\nbeam (%)": ".2f",

@@ -28,10 +28,10 @@ from studies.box_pair import (
     shell_parts,
     solid_parts,
 )
-from studies.reference_models.lone_segment import natural_frequencies
+from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.solid import SolidFamily, assemble_solid, mesh_quarter
 from studies.refined import Refined, refined_table
-from studies.study import Held, Piece, Proof, Tell, titled
+from studies.study import Criterion, Piece, Progress, Proof, define_study
 
 # Permitted error of the thinnest walls; on a line at a free end, between the corners, a shell is
 # least accurate.
@@ -53,7 +53,7 @@ class Sizes:
     around: float = 0.1
 
 
-class Measured(NamedTuple):
+class Quantity(NamedTuple):
     """Quantity of the pair."""
 
     what: str  #: quantity
@@ -69,18 +69,18 @@ class Measured(NamedTuple):
 
 
 FREQUENCIES = (
-    Measured("free inner box, lowest frequency along z", "Hz", 1, ALONG_Z),
-    Measured("free inner box, lowest of twisting", "Hz", 1, TWISTING),
-    Measured("free inner box, lowest of breathing", "Hz", 1, BREATHING),
-    Measured("held outer box, lowest frequency along z", "Hz", 0, ALONG_Z),
-    Measured("held outer box, lowest of twisting", "Hz", 0, TWISTING),
+    Quantity("free inner box, lowest frequency along z", "Hz", 1, ALONG_Z),
+    Quantity("free inner box, lowest of twisting", "Hz", 1, TWISTING),
+    Quantity("free inner box, lowest of breathing", "Hz", 1, BREATHING),
+    Quantity("held outer box, lowest frequency along z", "Hz", 0, ALONG_Z),
+    Quantity("held outer box, lowest of twisting", "Hz", 0, TWISTING),
 )
 COMPLIANCES = (
-    Measured("held outer box, deflection of its head", "m/N", 0, ALONG_Z, "head"),
-    Measured("held outer box, twist of its head", "rad/(N·m)", 0, TWISTING, "head twist"),
-    Measured("free inner box, squeeze of its tail", "m/N", 1, BREATHING, "tail squeeze",
+    Quantity("held outer box, deflection of its head", "m/N", 0, ALONG_Z, "head"),
+    Quantity("held outer box, twist of its head", "rad/(N·m)", 0, TWISTING, "head twist"),
+    Quantity("free inner box, squeeze of its tail", "m/N", 1, BREATHING, "tail squeeze",
              ALLOWED_OF_A_SQUEEZE),
-    Measured("free inner box, squeeze of its tail by pads", "m/N", 1, BREATHING, "pad squeeze",
+    Quantity("free inner box, squeeze of its tail by pads", "m/N", 1, BREATHING, "pad squeeze",
              ALLOWED_OF_A_SQUEEZE),
 )  # fmt: skip
 EVERY = FREQUENCIES + COMPLIANCES
@@ -92,31 +92,31 @@ class Comparison:
 
     wall: float  #: in m
     #: Of each quantity.
-    shell: Mapping[Measured, Refined]
-    solid: Mapping[Measured, Refined]
+    shell: Mapping[Quantity, Refined]
+    solid: Mapping[Quantity, Refined]
 
     @property
     def walls(self) -> str:
         """Label of the wall thickness."""
         return f"{1.0e3 * self.wall:g} mm"
 
-    def error(self, what: Measured) -> float:
+    def error(self, what: Quantity) -> float:
         """Return the error of the shell, relative to the solid."""
-        return self.shell[what].settled / self.solid[what].settled - 1.0
+        return self.shell[what].best / self.solid[what].best - 1.0
 
-    def slenderness(self, what: Measured) -> float:
+    def slenderness(self, what: Quantity) -> float:
         """Return wall thickness over the width of the box."""
         section = pair(self.wall)[what.segment].section
         assert section is not None
         return self.wall / section.size("y")
 
 
-def compare(sizes: Sizes, tell: Callable[[str], None]) -> list[Comparison]:
-    """Measure the pair at every wall thickness; ``tell`` reports the progress."""
+def compare(sizes: Sizes, progress: Callable[[str], None]) -> list[Comparison]:
+    """Measure the pair at every wall thickness; ``progress`` reports the progress."""
 
     def compared(wall: float) -> Comparison:
         boxes = pair(wall)
-        tell(f"walls of {1.0e3 * wall:g} mm")
+        progress(f"walls of {1.0e3 * wall:g} mm")
 
         def shells(number: int, size: float) -> Mapping[SymmetryClass, Quarter]:
             return shell_parts(boxes[number], PROBES[number], size)
@@ -139,7 +139,7 @@ def _refined(
     model: str,
     sizes: Sequence[_Size],
     parts_of: Callable[[int, _Size], Mapping[SymmetryClass, Quarter]],
-) -> dict[Measured, Refined]:
+) -> dict[Quantity, Refined]:
     """Return every quantity on every mesh."""
     values = [
         [
@@ -158,14 +158,14 @@ def _refined(
     }
 
 
-def order(comparisons: Sequence[Comparison], what: Measured) -> float:
+def order(comparisons: Sequence[Comparison], what: Quantity) -> float:
     """Return the power of the thickness in the shell's error, over the two thickest walls."""
     thin, thick = comparisons[-2:]
     growth = thick.error(what) / thin.error(what)
     return math.log(growth) / math.log(thick.wall / thin.wall) if growth > 0.0 else math.nan
 
 
-def slenderness_at(comparisons: Sequence[Comparison], what: Measured, limit: float) -> str:
+def slenderness_at(comparisons: Sequence[Comparison], what: Quantity, limit: float) -> str:
     """Return the wall over width with a given error, on a power law between two walls."""
     errors = [abs(one.error(what)) for one in comparisons]
     ratios = [one.slenderness(what) for one in comparisons]
@@ -197,7 +197,7 @@ def solid_proofs() -> Iterator[Proof]:
     stretch = np.column_stack([x, -nu * y, -nu * z])
     x, y, z = bent.nodes.T
     bend = np.column_stack([x * z, -nu * y * z, -0.5 * (x**2 + nu * (z**2 - y**2))])
-    for what, matrix, motion, over, asked, unit, source in (
+    for what, matrix, motion, over, expected, unit, source in (
         ("mass", stretched.mass, slide, 1.0, steel.density * section.area * length, "kg",
          "ρ A L with the corners filled"),
         ("stiffness against stretching", stretched.stiffness, stretch, length,
@@ -207,14 +207,14 @@ def solid_proofs() -> Iterator[Proof]:
          "E J of the hollow rectangle (Saint-Venant 1856)"),
     ):  # fmt: skip
         found = quadratic_form(matrix, motion.ravel()) / over
-        yield Proof(f"solid box: {what}", found, asked, unit, "analytic", source, ROUND_OFF)
+        yield Proof(f"solid box: {what}", found, expected, unit, "analytic", source, ROUND_OFF)
     # A lateral inertia slows a rod's waves (Rayleigh 1877, section 157; Love 1927, section 278).
     polar = section.polar_second_moment_of_area / section.area
     slowed = np.sqrt(1.0 + nu**2 * polar * (np.pi / length) ** 2)
     rod = 0.5 * np.sqrt(young / steel.density) / length / slowed
-    held: Held = ("analytic", "c / 2L with lateral inertia (Love 1927)", 1.0e-4)
+    criterion: Criterion = ("analytic", "c / 2L with lateral inertia (Love 1927)", 1.0e-4)
     found = float(natural_frequencies(stretched, 2)[1])
-    yield Proof("solid box: lowest frequency as a rod", found, float(rod), "Hz", *held)
+    yield Proof("solid box: lowest frequency as a rod", found, float(rod), "Hz", *criterion)
 
 
 def _solid(family: SymmetryClass) -> SolidFamily:
@@ -272,18 +272,18 @@ def shell_proofs(thinnest: Comparison) -> Iterator[Proof]:
     """Return the proofs of the shell of the thinnest walls against the solid."""
     walls, source = f"walls of {thinnest.walls}", "elasticity in space"
     for of in EVERY:
-        shell, solid = thinnest.shell[of].settled, thinnest.solid[of].settled
-        held: Held = ("other code", source, of.allowed)
-        yield Proof(f"{of.what}, {walls}", shell, solid, of.unit, *held)
+        shell, solid = thinnest.shell[of].best, thinnest.solid[of].best
+        criterion: Criterion = ("other code", source, of.allowed)
+        yield Proof(f"{of.what}, {walls}", shell, solid, of.unit, *criterion)
 
 
-@titled("solid", "Shells against solids")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+@define_study("solid", "Shells against solids")
+def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Compare the shell with a solid, and the solid with formulas."""
     sizes = sizes or Sizes()
-    tell("the solid against formulas")
+    progress("the solid against formulas")
     yield from solid_proofs()
-    comparisons = compare(sizes, tell)
+    comparisons = compare(sizes, progress)
     yield from shell_proofs(comparisons[0])
     yield error_table(comparisons)
     yield refinements(comparisons)

@@ -26,7 +26,7 @@ from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.pipeline.models import MotionPlan, build
 from runs.report.tables import Table
-from studies.study import Held, Piece, Proof, Tell, titled
+from studies.study import Criterion, Piece, Progress, Proof, define_study
 
 # m in kg, k in N/m, R in N; static friction is so many times that.
 MASS, STIFFNESS, FRICTION, STICKING = 500.0, 1.0e5, 1000.0, 1.5
@@ -41,10 +41,10 @@ ROPE = ElasticDrive(MASS, STIFFNESS, sticking=STICKING)
 CYCLE = "sticking until the spring is taut, slipping on a circle"
 
 
-@titled("stick_slip", "Drives of a given stiffness, on which segments stick and slip")
-def study(tell: Tell) -> Iterator[Piece]:
+@define_study("stick_slip", "Elastic drives with stick and slip")
+def study(progress: Progress) -> Iterator[Piece]:
     """Study cycles, critical speeds, the stiff limit, and the boom along its actual extension."""
-    tell("a mass on a spring")
+    progress("a mass on a spring")
     yield from _cycle()
     yield from map(_critical, RATIOS)
     yield _stiff()
@@ -59,12 +59,12 @@ def study(tell: Tell) -> Iterator[Piece]:
     )
     rows = []
     for stiffness in ROPES:
-        tell(f"the paper's boom on {stiffness:g} N/m")
+        progress(f"the paper's boom on {stiffness:g} N/m")
         rows.append(_one_way(stiffness))
-    yield Table.of_rows("one-way", "What lags behind its drive", columns, rows, notes)
+    yield Table.of_rows("one-way", "Lag behind an elastic drive", columns, rows, notes)
 
 
-def _followed(pulled: ElasticDrive, speed: float, time: Array) -> DriveMotion:
+def _follow_drive(pulled: ElasticDrive, speed: float, time: Array) -> DriveMotion:
     way = Stroke(2.0 * speed * float(time[-1]), speed)
     return follow(pulled, way, time, np.full(time.size, FRICTION))
 
@@ -76,7 +76,7 @@ def _cycle() -> Iterator[Proof]:
     slipping = 2.0 / omega * (np.pi - np.arctan(slack * omega / SPEED))
     period = 2.0 * slack / SPEED + slipping
     time = np.linspace(0.0, first + 9.99 * period, 40_001)
-    found = _followed(ROPE, SPEED, time)
+    found = _follow_drive(ROPE, SPEED, time)
     still = found.drawn_speed == 0.0
     begins = time[1:][still[:-1] & ~still[1:]]
     told = found.told
@@ -88,8 +88,8 @@ def _cycle() -> Iterator[Proof]:
         ("largest acceleration", told.acceleration, omega**2 * radius, "m/s²", 1.0e-3),
         ("energy not accounted for", told.energy_residual, 0.0, "", 1.0e-10),
     ):
-        held: Held = ("analytic", CYCLE, allowed)
-        yield Proof(f"cycle: {what}", float(value), float(reference), unit, *held)
+        criterion: Criterion = ("analytic", CYCLE, allowed)
+        yield Proof(f"cycle: {what}", float(value), float(reference), unit, *criterion)
 
 
 def _critical(ratio: float) -> Proof:
@@ -100,10 +100,10 @@ def _critical(ratio: float) -> Proof:
     while high - low > 1.0e-5 * expected:
         middle = 0.5 * (low + high)
         lasting = 5.0 * FRICTION / STIFFNESS / middle + 20.0 * np.pi * np.sqrt(MASS / STIFFNESS)
-        sticks = _followed(pulled, middle, np.linspace(0.0, lasting, 2001)).told.sticks
+        sticks = _follow_drive(pulled, middle, np.linspace(0.0, lasting, 2001)).told.sticks
         low, high = (middle, high) if sticks else (low, middle)
-    held: Held = ("analytic", "the swing that just comes back to it", 1.0e-4)
-    return Proof(f"critical speed at ζ = {ratio:g}", high, expected, "m/s", *held)
+    criterion: Criterion = ("analytic", "the swing that just comes back to it", 1.0e-4)
+    return Proof(f"critical speed at ζ = {ratio:g}", high, expected, "m/s", *criterion)
 
 
 def _stiff() -> Proof:
@@ -112,22 +112,22 @@ def _stiff() -> Proof:
     pulled = ElasticDrive(MASS, 1.0e9, dashpot=0.2 * np.sqrt(1.0e9 * MASS))
     found = follow(pulled, way, time, np.full(time.size, FRICTION))
     asked = FRICTION + MASS * 0.25 * np.pi
-    held: Held = ("analytic", "friction and m s̈ of the drive", 1.0e-4)
+    criterion: Criterion = ("analytic", "friction and m s̈ of the drive", 1.0e-4)
     force = float(found.drive_force[-1])
-    return Proof("force of a stiff drive", force, float(asked), "N", *held)
+    return Proof("force of a stiff drive", force, float(asked), "N", *criterion)
 
 
 def _one_way(stiffness: float) -> list[float]:
     """Return a row of the table."""
-    case = _weighing(stiffness)
+    case = _weighted_case(stiffness)
     boom = build_boom(case)
     plan = MotionPlan.of(build(case, boom, case.models[0]).system, case, case.models[0])
-    asked = _moved(plan)
+    asked = _move(plan)
     told, data = asked.data.attrs["stick_slip"]["drive_force"], asked.data
     gone = PiecewiseLinear(tuple(asked.time), tuple((data["drawn_out"] - data["drive_lag"]).values))
     (travel,) = plan.motion.system.travels
     along = replace(plan.motion.system, travels=[replace(travel, history=gone, elastic=None)])
-    felt = _moved(replace(plan, motion=replace(plan.motion, system=along)))
+    felt = _move(replace(plan, motion=replace(plan.motion, system=along)))
     forces, tips = (
         [run.data[name].values for run in (asked, felt)] for name in ("contact_force", "tip")
     )
@@ -139,11 +139,11 @@ def _one_way(stiffness: float) -> list[float]:
     ]  # fmt: skip
 
 
-def _moved(plan: MotionPlan) -> Trajectory:
+def _move(plan: MotionPlan) -> Trajectory:
     return plan.trajectory(lambda _: None)
 
 
-def _weighing(stiffness: float) -> Case:
+def _weighted_case(stiffness: float) -> Case:
     """Return the paper's boom under its weight, at rest until a rope telescopes it."""
     case = reading.load(str(CASES / "drawn-out.toml"))
     masses = [one.mass_per_length or 0.0 for one in case.segments]

@@ -22,8 +22,8 @@ from runs.report.tables import Cell, Table
 from shell_model.segment.cross_section import Outline, Row
 from shell_model.segment.solver import quadratic_form
 from studies.motions import friction_case
-from studies.reference_models.lone_segment import compliances, natural_frequencies, shell_alone
-from studies.study import Held, Piece, Proof, Tell, titled
+from studies.reference_models.single_segment import compliances, natural_frequencies, shell_alone
+from studies.study import Criterion, Piece, Progress, Proof, define_study
 
 # Permitted errors: of the mesh, of walls beside a plate, and of a force on a short thick ring.
 ALLOWED = 0.01
@@ -65,7 +65,7 @@ class Variant:
         return [self.what, self.mass, *flexibilities, *self.frequencies]
 
 
-def stiffened(boom: Boom, sizes: Sizes) -> tuple[dict[str, Segment], dict[str, Segment]]:
+def stiffened_segments(boom: Boom, sizes: Sizes) -> tuple[dict[str, Segment], dict[str, Segment]]:
     """Return each of two segments by its stiffeners, from none to all."""
     outer, inner = boom.segments
     head, tail = (outer.end - sizes.collar, outer.end), (inner.start, inner.start + sizes.collar)
@@ -223,12 +223,12 @@ def proofs(boom: Boom, sizes: Sizes) -> Iterator[Proof]:
     what = f"resistance of a diaphragm of {1e3 * t:g} mm to racking"
     value = racking_stiffness(section, material, t, sizes.plate_mesh)
     shear = material.shear_modulus * t * section.width * section.height
-    plate: Held = ("analytic", "G t b h of a plate in pure shear", ALLOWED)
+    plate: Criterion = ("analytic", "G t b h of a plate in pure shear", ALLOWED)
     yield Proof(what, value, shear, "N m", *plate)
     if section.flange != section.web:
         return
     young = material.youngs_modulus
-    beams: Held = ("analytic", "frame of Timoshenko beams", ALLOWED)
+    beams: Criterion = ("analytic", "frame of Timoshenko beams", ALLOWED)
     for thickness, has in (
         (0.0, "without a collar"),
         (collar, f"with a collar of {1e3 * collar:g} mm"),
@@ -238,17 +238,17 @@ def proofs(boom: Boom, sizes: Sizes) -> Iterator[Proof]:
         yield Proof(f"flexibility of a ring {has}, per length", value, frame, "m²/N", *beams)
 
 
-@titled("stiffeners", "Collars and diaphragms")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+@define_study("stiffeners", "Collars and diaphragms")
+def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Study collars and diaphragms at the joint of the paper's boom."""
     sizes = sizes or Sizes()
     boom = build_boom(friction_case())
     stations = boom.joints[0].stations
     found = []
-    for variants in stiffened(boom, sizes):
+    for variants in stiffened_segments(boom, sizes):
         for what, segment in variants.items():
-            tell(f"{segment.name}: {what}")
+            progress(f"{segment.name}: {what}")
             found.append(measure(segment, what, stations, sizes))
     yield table(found, stations, sizes)
-    tell("a diaphragm in pure shear, and rings")
+    progress("a diaphragm in pure shear, and rings")
     yield from proofs(boom, sizes)

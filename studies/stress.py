@@ -23,9 +23,9 @@ from shell_model.stress.fields import gather_stress_modes
 from shell_model.stress.history import stress_near_places
 from shell_model.stress.stresses import ShellStress, wall_forces
 from studies.motions import friction_case, model_of
-from studies.reference_models.lone_segment import at_rest, shell_alone
+from studies.reference_models.single_segment import at_rest, shell_alone
 from studies.refined import Refined, refined_table
-from studies.study import Held, Piece, Proof, Tell, titled
+from studies.study import Criterion, Piece, Progress, Proof, define_study
 
 INNER = 1
 
@@ -51,14 +51,14 @@ class Sizes:
 
 
 @dataclass(frozen=True, slots=True)
-class Pressed:
+class InnerSegmentState:
     """Inner segment at rest between its contacts."""
 
     boom: Boom  #: the paper's
     stress: ShellStress  #: of the segment alone, whose number there is 0
 
     @classmethod
-    def on_mesh(cls, boom: Boom, size: float) -> Pressed:
+    def on_mesh(cls, boom: Boom, size: float) -> InnerSegmentState:
         """Create the state from a static solution of the full shell.
 
         Args:
@@ -79,7 +79,7 @@ class Pressed:
         return cls(boom, ShellStress.still(shell.mesh, modes))
 
     @classmethod
-    def reduced(cls, boom: Boom, size: float) -> Pressed:
+    def reduced(cls, boom: Boom, size: float) -> InnerSegmentState:
         """Create the same state from the coordinates of a run.
 
         Args:
@@ -145,7 +145,9 @@ def contact_forces(boom: Boom) -> dict[float, tuple[int, float]]:
     return {tail: (-1, at_head - lift), head: (1, at_head)}
 
 
-def stresses(pressed: Sequence[Pressed], sizes: Sizes) -> dict[tuple[float, str], Refined]:
+def stresses(
+    pressed: Sequence[InnerSegmentState], sizes: Sizes
+) -> dict[tuple[float, str], Refined]:
     """Return x of each contact, and the largest von Mises stress of a triangle or patch near it."""
     return {
         (x, what): Refined(
@@ -160,7 +162,10 @@ def stresses(pressed: Sequence[Pressed], sizes: Sizes) -> dict[tuple[float, str]
 
 
 def proofs(
-    default: Pressed, reduced: Pressed, near: Mapping[tuple[float, str], Refined], sizes: Sizes
+    default: InnerSegmentState,
+    reduced: InnerSegmentState,
+    near: Mapping[tuple[float, str], Refined],
+    sizes: Sizes,
 ) -> Iterator[Proof]:
     """Check the default mesh against a beam, equilibrium, and the limit of the refinement.
 
@@ -173,7 +178,7 @@ def proofs(
         yield Proof(what, value, reference, "MPa", "analytic", "σ = M z / J", BEAM)
     what = f"shear force of the webs at {sizes.places[0]:g} m, {mesh}"
     yield Proof(what, *default.shear(sizes.places[0]), "N", "analytic", "equilibrium", BEAM)
-    unreduced: Held = ("other code", "the unreduced shell, of the same mesh", REDUCED)
+    unreduced: Criterion = ("other code", "the unreduced shell, of the same mesh", REDUCED)
     for x in default.boom.joints[0].stations:
         at = f"at the contact at {x:g} m"
         what = f"von Mises stress of a patch {at}, {mesh}"
@@ -183,19 +188,19 @@ def proofs(
         yield Proof(what, reduced.near(x)[0] / 1.0e6, reference, "MPa", *unreduced)
 
 
-@titled("stress", "Stresses of the inner segment between its contacts")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+@define_study("stress", "Stresses of the inner segment between its contacts")
+def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Compare stresses of the inner segment of the paper's boom on successively finer meshes."""
     sizes = sizes or Sizes()
     case = friction_case()
     boom = build_boom(case)
     pressed = []
     for size in sizes.meshes:
-        tell(f"mesh of {size:g} m")
-        pressed.append(Pressed.on_mesh(boom, size))
-    tell(f"mesh of {sizes.default:g} m, reduced")
+        progress(f"mesh of {size:g} m")
+        pressed.append(InnerSegmentState.on_mesh(boom, size))
+    progress(f"mesh of {sizes.default:g} m, reduced")
     seen = model_of(case, "shell").joined(boom).boom
-    reduced = Pressed.reduced(seen, sizes.default)
+    reduced = InnerSegmentState.reduced(seen, sizes.default)
     near = stresses(pressed, sizes)
     title = "Von Mises stress where the inner segment is pressed"
     yield refined_table("stress", title, list(near.values()), "{:g} m", (NOTE,))

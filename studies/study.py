@@ -11,13 +11,13 @@ from typing import Literal, ParamSpec
 from runs.report.tables import Plain, Table
 
 # Callback with the next step of a study.
-Tell = Callable[[str], None]
+Progress = Callable[[str], None]
 
 # Kind of reference: a measurement, a formula, a published value, another code or another theory of
 # this project, or its own earlier value.
 Kind = Literal["measured", "analytic", "external", "other code", "non-regression"]
 # Last fields of a proof, which several may share: kind, source, and permitted error.
-Held = tuple[Kind, str, float]
+Criterion = tuple[Kind, str, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,12 +80,12 @@ Piece = Table | Proof | Plot
 _Given = ParamSpec("_Given")
 
 
-def titled(
+def define_study(
     name: str, title: str
 ) -> Callable[[Callable[_Given, Iterable[Piece]]], Callable[_Given, Study]]:
     """Make a study of a generator of tables, proofs and plots, each in the order of its kind."""
 
-    def titling(parts: Callable[_Given, Iterable[Piece]]) -> Callable[_Given, Study]:
+    def define(parts: Callable[_Given, Iterable[Piece]]) -> Callable[_Given, Study]:
         @wraps(parts)
         def study(*args: _Given.args, **kwargs: _Given.kwargs) -> Study:
             found = list(parts(*args, **kwargs))
@@ -95,4 +95,4 @@ def titled(
 
         return study
 
-    return titling
+    return define

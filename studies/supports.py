@@ -23,7 +23,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Cylinder, Joint, Load, Segment, Support
 from geometry.section import BoxSection
 from studies.second_order import STEEL
-from studies.study import Held, Proof, Tell, titled
+from studies.study import Criterion, Progress, Proof, define_study
 
 # Thick walls: the section has little distortion.
 BOX = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
@@ -38,7 +38,7 @@ DASHPOT = 2.0e3
 
 # Beams of rigid cross-sections; series lack the kink of moments at the lug; walls are flexible.
 EXACT, SERIES, WALLS, DECREMENT = 1.0e-6, 1.0e-3, 5.0e-3, 1.0e-4
-LEVERS: Held = ("analytic", "lever arms", EXACT)
+LEVERS: Criterion = ("analytic", "lever arms", EXACT)
 
 
 def lever(cylinder: Cylinder) -> float:
@@ -94,15 +94,15 @@ def decrement(system: GapSystem, position: Array, period: float) -> float:
     return float(np.log(heights[0] / heights[-1]) / (len(heights) - 1))
 
 
-@titled("supports", "Hinges, cylinders, springs and dashpots")
-def study(tell: Tell) -> Iterator[Proof]:
+@define_study("supports", "Hinges, cylinders, springs and dashpots")
+def study(progress: Progress) -> Iterator[Proof]:
     """Compare statics, frequencies and decrements of booms; forces and tips of beams and shells."""
-    yield from _luffed(tell)
-    yield from _turning(tell)
-    yield from _swinging(tell)
+    yield from _luffed(progress)
+    yield from _turning(progress)
+    yield from _swinging(progress)
 
 
-def _luffed(tell: Tell) -> Iterator[Proof]:
+def _luffed(progress: Progress) -> Iterator[Proof]:
     boom = Boom((_segment(),), (), (_PUSHED,), cylinders=(CYLINDER,))
     shear = STEEL.shear_modulus * BOX.shear_area
     for name, shear_stiffness, allowed in (
@@ -111,42 +111,42 @@ def _luffed(tell: Tell) -> Iterator[Proof]:
         ("a series of 24 terms", np.inf, SERIES),
         ("a shell", shear, WALLS),
     ):
-        tell(f"a luffed boom of {name}")
+        progress(f"a luffed boom of {name}")
         system = _MODELS[name](boom).gathered()
         at_rest = system.static_response(system.load)
         force, tip = (
             float(system.observers[one].row @ at_rest) for one in ("cylinder_force", "tip")
         )
         what = f"hinge and inclined cylinder, {name}: "
-        asked = -1e-3 * TIP_LOAD * LENGTH / lever(CYLINDER)
+        expected = -1e-3 * TIP_LOAD * LENGTH / lever(CYLINDER)
         bent = 1e3 * TIP_LOAD * tip_compliance(boom.segments[0], CYLINDER, shear_stiffness)
-        yield Proof(f"{what}its force", 1e-3 * force, asked, "kN", *LEVERS)
-        held: Held = ("analytic", "Castigliano 1879", allowed)
-        yield Proof(f"{what}the tip", 1e3 * tip, bent, "mm", *held)
+        yield Proof(f"{what}its force", 1e-3 * force, expected, "kN", *LEVERS)
+        criterion: Criterion = ("analytic", "Castigliano 1879", allowed)
+        yield Proof(f"{what}the tip", 1e3 * tip, bent, "mm", *criterion)
 
 
-def _turning(tell: Tell) -> Iterator[Proof]:
+def _turning(progress: Progress) -> Iterator[Proof]:
     spring = Support(0.0, rotation_stiffness=ROTATION)
     # The closed form has no rotary inertia; a shell's walls have it.
     thick = replace(_segment(), supports=(spring,))
     slender = replace(thick, rotary_inertia=0.0)
     boom = Boom((slender,), (), (_PUSHED,))
-    blevins: Held = ("analytic", "Blevins 1979", 1e-5)
+    blevins: Criterion = ("analytic", "Blevins 1979", 1e-5)
     theory = first_frequency(slender, ROTATION), blevins
     beam = _MODELS["Timoshenko's elements"](Boom((thick,), ())).frequencies[0]
-    references: Mapping[str, tuple[float, Held]] = {
+    references: Mapping[str, tuple[float, Criterion]] = {
         "elements": theory,
         "a series of 24 terms": theory,
         "a shell": (float(beam), ("other code", "Timoshenko's elements", WALLS)),
     }
-    for name, (reference, held) in references.items():
-        tell(f"a hinge that resists rotation, {name}")
+    for name, (reference, criterion) in references.items():
+        progress(f"a hinge that resists rotation, {name}")
         found = _MODELS[name](boom).frequencies[0]
         what = f"hinge with a spring against rotation, {name}: first frequency"
-        yield Proof(what, found, reference, "Hz", *held)
+        yield Proof(what, found, reference, "Hz", *criterion)
 
 
-def _swinging(tell: Tell) -> Iterator[Proof]:
+def _swinging(progress: Progress) -> Iterator[Proof]:
     """Compare rigid booms: r √(k / I) about the hinge, ζ = c r / 2√(k I), δ = 2πζ/√(1 − ζ²).
 
     On both stations of a joint a segment moves up and down: √(2k / m), ζ = c / √(2k m).
@@ -166,7 +166,7 @@ def _swinging(tell: Tell) -> Iterator[Proof]:
         ("support", Boom((elastic,), ()), 2.5, inertia),
         ("joint", Boom((held, fly), (joint,)), np.sqrt(2.0), mass / LENGTH),
     ):
-        tell(f"a dashpot at a {what}")
+        progress(f"a dashpot at a {what}")
         models = [rigid_segment(one) for one in stands.segments]
         system = gap_system(stands, models)
         omega = arm * np.sqrt(stiffness / effective)
@@ -178,9 +178,9 @@ def _swinging(tell: Tell) -> Iterator[Proof]:
         rows = system.rows if system.laws else np.ones((1, 1))
         raised = np.linalg.lstsq(rows, np.full(len(rows), 1.0e-3), rcond=None)[0]
         found = decrement(system, raised, 2.0 * np.pi / omega)
-        asked = 2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2)
+        expected = 2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2)
         name = f"dashpot at a {what}, rigid boom: logarithmic decrement"
-        yield Proof(name, found, asked, "", "analytic", "an oscillator", DECREMENT)
+        yield Proof(name, found, expected, "", "analytic", "an oscillator", DECREMENT)
 
 
 _PUSHED = Load(0, "z", TIP_LOAD, LENGTH, Step())

@@ -28,7 +28,7 @@ from studies.motions import (
     without_friction,
 )
 from studies.pads import pad_proofs, rigid_motion, with_pads
-from studies.study import Piece, Proof, Tell, titled
+from studies.study import Piece, Progress, Proof, define_study
 
 # Depth of the approaches of the proofs beyond the play, in m.
 DEPTH = 1.0e-3
@@ -56,7 +56,7 @@ class Sizes:
     pads: Sequence[tuple[float, float]] = ((0.1, 0.03), (0.1, 0.06), (0.2, 0.06))
 
 
-class Contact(NamedTuple):
+class ContactModel(NamedTuple):
     """Contact: its name, the contacting parts, and its shell, with friction."""
 
     name: str
@@ -64,17 +64,17 @@ class Contact(NamedTuple):
     system: GapSystem
 
 
-@titled("surface-contact", "Contact over the whole overlap")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+@define_study("surface-contact", "Contact over the whole overlap")
+def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Compare surface and stations, penalties, quadratures, and pads of several sizes."""
     sizes = sizes or Sizes()
     case = friction_case()
     shell = shell_of(case).model_copy(update={"mesh_size": sizes.mesh, "contact_tolerance": "any"})
 
-    def touching(name: str, case: Case, **update: object) -> Contact:
-        tell(f"contact {name}")
+    def touching(name: str, case: Case, **update: object) -> ContactModel:
+        progress(f"contact {name}")
         system = gap_system(case, build_boom(case), shell.model_copy(update=update))
-        return Contact(name, case, system)
+        return ContactModel(name, case, system)
 
     stations = [
         touching("near webs", case),
@@ -96,14 +96,14 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     lines, padded = stations[0], stations[2]
     default = surfaces.get(DEFAULT_POINTS) or next(iter(surfaces.values()))
     softer = [
-        Contact(
+        ContactModel(
             f"{default.name}, {part:g} of the penalty",
             case,
             replace(default.system, laws=[law.shared(part) for law in default.system.laws]),
         )
         for part in sizes.penalties
     ]
-    tell("motions with friction")
+    progress("motions with friction")
     tips = {
         contact.name: np.asarray(move(contact.system, sizes.duration).data["tip"].values)
         for contact in (lines, default)
@@ -117,7 +117,7 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
         "and across half a wall.",
         *NOTES,
     )
-    tell("first peaks")
+    progress("first peaks")
     yield _peaks([*stations, *surfaces.values(), *softer], notes, sizes)
     yield from _proofs(case, default.system)
     yield from pad_proofs(case, sizes.pads[0], padded.system)
@@ -138,7 +138,7 @@ def _density(case: Case, system: GapSystem) -> float:
     return _upper_stiffness(system) / (section.size("y") * (end - start))
 
 
-def _peaks(contacts: Sequence[Contact], notes: Sequence[str], sizes: Sizes) -> Table:
+def _peaks(contacts: Sequence[ContactModel], notes: Sequence[str], sizes: Sizes) -> Table:
     """Return the tip's first peak without and with friction, and changes from the first contact."""
     both = np.array(
         [

@@ -28,7 +28,7 @@ from studies.second_order import (
     STIFFNESS,
     Model,
 )
-from studies.study import Held, Kind, Proof, Tell, titled
+from studies.study import Criterion, Kind, Progress, Proof, define_study
 
 ALPHA = 0.5
 HEAD = BoxSection(*(ALPHA * size for size in (BOX.height, BOX.width, BOX.flange, BOX.web)))
@@ -96,17 +96,17 @@ def critical() -> float:
     return float(u**2 * STIFFNESS / WHOLE**2)
 
 
-@titled("taper", "Segments that taper")
-def study(tell: Tell) -> Iterator[Proof]:
+@define_study("taper", "Segments that taper")
+def study(progress: Progress) -> Iterator[Proof]:
     """Study every model."""
     for name, model in MODELS.items():
-        tell(name)
+        progress(name)
         source = "∫ (L − x)²/(E J) dx" + (" + ∫ dx/(G A_s)" if model.in_shear else "")
         system, _ = model.of(arm())
         found = system.observers["tip"].row @ system.static_response(system.excitations[0].load)
-        held: Held = ("analytic", source, OF_SHELL if name == "shell" else CLOSE)
+        criterion: Criterion = ("analytic", source, OF_SHELL if name == "shell" else CLOSE)
         what, bent = f"tip of a tapered cantilever, {name}", tip(model.in_shear)
-        yield Proof(what, 1e6 * float(found), 1e6 * bent, "1e-6 m/N", *held)
+        yield Proof(what, 1e6 * float(found), 1e6 * bent, "1e-6 m/N", *criterion)
         if name != ELEMENTS:
             yield from _swing_and_force(name, model)
 
@@ -118,11 +118,11 @@ def _swing_and_force(name: str, model: Model) -> Iterator[Proof]:
     if model.in_shear:
         exact, sources, kind = _measured(MODELS[ELEMENTS]), (ELEMENTS, ELEMENTS), "other code"
     allowed = OF_SHELL if name == "shell" else CLOSE
-    for what, found, asked, unit, source in zip(
+    for what, found, expected, unit, source in zip(
         ("first frequency", "critical force"), _measured(model), exact, ("Hz", "N"), sources,
         strict=True,
     ):  # fmt: skip
-        yield Proof(f"{what} of it, {name}", found, asked, unit, kind, source, allowed)
+        yield Proof(f"{what} of it, {name}", found, expected, unit, kind, source, allowed)
 
 
 def _measured(model: Model) -> tuple[float, float]:

@@ -32,7 +32,7 @@ from studies.second_order import (
     STEEL,
     STIFFNESS,
 )
-from studies.study import Held, Proof, Tell, titled
+from studies.study import Criterion, Progress, Proof, define_study
 
 INNER = BoxSection(height=0.16, width=0.11, flange=0.006, web=0.006)
 LAW = PowerContact(1e8, 1.0)
@@ -60,13 +60,11 @@ def column(force: float) -> Boom:
     return Boom(pressed, (joint,))
 
 
-@titled(
-    "telescoping_column", "A column that is pressed ever farther as a segment is drawn out in it"
-)
-def study(tell: Tell) -> Iterator[Proof]:
+@define_study("telescoping_column", "A column compressed over a growing length")
+def study(progress: Progress) -> Iterator[Proof]:
     """Study every model of beams."""
     for name, build in MODELS.items():
-        tell(name)
+        progress(name)
         yield from _proofs(name, build)
 
 
@@ -86,7 +84,7 @@ def _proofs(name: str, build: Callable[[Boom], list[SegmentModel]]) -> Iterator[
     if in_shear:
         return
     system = gap_system(boom, models)
-    held: Held = ("analytic", "beam-column, Timoshenko and Gere 1961", ALLOWED)
+    criterion: Criterion = ("analytic", "beam-column, Timoshenko and Gere 1961", ALLOWED)
     for time, x in ((0.0, START), (1.0, END)):
         row = system.observers["head"].row
         # Of what one segment alone moves.
@@ -94,7 +92,7 @@ def _proofs(name: str, build: Callable[[Boom], list[SegmentModel]]) -> Iterator[
         stiffness = system.standing(time).stiffness[np.ix_(own, own)]
         head = float(row[own] @ np.linalg.solve(stiffness, row[own]))
         what = f"deflection of its head under {SHARE:g} P_cr over {x:g} m, {name}"
-        yield Proof(what, head, _bent(x, SHARE * critical), "m/N", *held)
+        yield Proof(what, head, _bent(x, SHARE * critical), "m/N", *criterion)
 
 
 def _bent(a: float, force: float) -> float:

@@ -25,9 +25,9 @@ from geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
 from geometry.section import BoxSection
 from shell_model.segment.forms import DRILLING_OF_CURVED
 from studies.reference_models.benchmarks import X, Y, Z, grid
-from studies.reference_models.lone_segment import natural_frequencies
+from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.static_shell import StaticShell, hold
-from studies.study import Kind, Piece, Proof, Tell, titled
+from studies.study import Kind, Piece, Progress, Proof, define_study
 
 # DROPBEAR: the beam in m and kg, and what it is assumed to carry at its free end in kg.
 BEAM_LENGTH, BEAM_WIDTH, BEAM_THICKNESS = 0.501, 0.051, 0.00666
@@ -54,8 +54,8 @@ BOOM_LIFT = "Simscape boom lift, MathWorks 2023"
 SIDE, NAFEMS_STEEL = 10.0, Material(200.0e9, 0.3, 8000.0)
 
 
-@titled("validation", "Measurements, published benchmarks and other programs")
-def study(tell: Tell) -> Iterator[Piece]:
+@define_study("validation", "Measurements, published benchmarks and other programs")
+def study(progress: Progress) -> Iterator[Piece]:
     """Compute all rows, the measured ones first."""
     for what, rows in (
         ("a measured beam on a moving roller", moving_roller),
@@ -63,7 +63,7 @@ def study(tell: Tell) -> Iterator[Piece]:
         ("Code_Aster's friction and impact", code_aster),
         ("NAFEMS' plates", nafems),
     ):
-        tell(what)
+        progress(what)
         yield from rows()
 
 

@@ -23,9 +23,9 @@ from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.report.tables import Cell, Table
 from studies.mesh import peak_heights
-from studies.motions import finer, friction_case, gap_system, move, shell_of, side_by_side
+from studies.motions import friction_case, gap_system, move, run_parallel, scale_mesh, shell_of
 from studies.pads import with_pads
-from studies.study import Piece, Proof, Tell, titled
+from studies.study import Piece, Progress, Proof, define_study
 
 # Permitted errors of the first peak, and of the tip as a part of its range.
 PEAK, TIP = 0.002, 0.02
@@ -67,7 +67,7 @@ class Sizes:
 
 
 @dataclass(frozen=True, slots=True)
-class Moved:
+class PointMotion:
     """Motion of a point."""
 
     tip: Array  #: (num_times,) in m
@@ -76,7 +76,7 @@ class Moved:
     seconds: float = 0.0  #: computing time on one core
 
     @classmethod
-    def of(cls, system: GapSystem, duration: float, num_peaks: int = 1) -> Moved:
+    def of(cls, system: GapSystem, duration: float, num_peaks: int = 1) -> PointMotion:
         """Create the motion from rest, in s."""
         begin = perf_counter()
         motion = move(system, duration)
@@ -89,25 +89,25 @@ class Moved:
         tip = np.asarray(motion.data["tip"].values)
         return cls(tip, peaks, np.abs(means).max(axis=0), seconds)
 
-    def tip_off(self, reference: Moved) -> float:
+    def tip_error(self, reference: PointMotion) -> float:
         """Return the largest distance of the tip as a part of the reference's range."""
         return float(np.abs(self.tip - reference.tip).max() / np.ptp(reference.tip))
 
-    def peaks_off(self, reference: Moved) -> Array:
+    def peak_errors(self, reference: PointMotion) -> Array:
         """Return the relative errors (num_peaks,) of the peaks."""
         return np.asarray(np.abs(self.peaks / reference.peaks - 1.0))
 
-    def changes(self, finer: Moved) -> Array:
+    def changes(self, finer: PointMotion) -> Array:
         """Return the relative changes (num_peaks + 2,) of this motion to that of a finer mesh.
 
         They are those of the peaks, then of the stations' forces as parts of the largest, and of
         the tip as a part of its range.
         """
         forces = np.abs(self.forces - finer.forces).max() / finer.forces.max()
-        return np.append(self.peaks_off(finer), [forces, self.tip_off(finer)])
+        return np.append(self.peak_errors(finer), [forces, self.tip_error(finer)])
 
 
-class Touch(NamedTuple):
+class ContactType(NamedTuple):
     """Type of contact."""
 
     name: str  #: of its table
@@ -118,12 +118,12 @@ class Touch(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Contact:
+class ContactResults:
     """Type of contact on every mesh."""
 
-    touch: Touch  #: the way
+    touch: ContactType  #: the way
     #: Point → its motions, from the coarsest mesh to the finest.
-    moved: Mapping[Point, Sequence[Moved]]
+    moved: Mapping[Point, Sequence[PointMotion]]
 
     @property
     def changes(self) -> Array:
@@ -154,7 +154,7 @@ class Contact:
         return found
 
 
-def at_point(system: GapSystem, point: Point) -> GapSystem:
+def set_point(system: GapSystem, point: Point) -> GapSystem:
     """Return the system with another play and load in the same coordinates."""
     laws = [law.scaled(0.0).behind(0.5 * point.play) for law in system.laws]
     return replace(system, laws=laws, load=point.load * system.load)
@@ -169,34 +169,34 @@ def in_space(case: Case) -> Case:
     return case.model_copy(update={"joints": joints, "segments": segments})
 
 
-def measure(touch: Touch, sizes: Sizes) -> Contact:
+def measure(touch: ContactType, sizes: Sizes) -> ContactResults:
     """Run all points of a type of contact, on all meshes."""
     boom, shell = build_boom(touch.case), shell_of(touch.case)
-    systems = [gap_system(touch.case, boom, finer(shell, part)) for part in sizes.meshes]
-    tasks = [at_point(system, point) for point in touch.points for system in systems]
-    moved = side_by_side(lambda task: Moved.of(task, touch.duration, sizes.peaks), tasks)
+    systems = [gap_system(touch.case, boom, scale_mesh(shell, part)) for part in sizes.meshes]
+    tasks = [set_point(system, point) for point in touch.points for system in systems]
+    moved = run_parallel(lambda task: PointMotion.of(task, touch.duration, sizes.peaks), tasks)
     count = len(systems)
-    return Contact(
+    return ContactResults(
         touch, {point: moved[count * i : count * (i + 1)] for i, point in enumerate(touch.points)}
     )
 
 
-def touches(case: Case, sizes: Sizes) -> list[Touch]:
+def contact_types(case: Case, sizes: Sizes) -> list[ContactType]:
     """Return contact near webs, by pads, and in space."""
     every = Point.each(sizes.plays, sizes.loads)
     return [
-        Touch("points-webs", "near webs", case, every, sizes.duration),
+        ContactType("points-webs", "near webs", case, every, sizes.duration),
         *(
-            Touch(f"points-pads-{i}", f"pads of {length:g} m x {width:g} m",
+            ContactType(f"points-pads-{i}", f"pads of {length:g} m x {width:g} m",
                   with_pads(case, length, width), every, sizes.duration)
             for i, (length, width) in enumerate(sizes.pads, start=1)
         ),
-        Touch("points-in-space", "in space, near webs", in_space(case), sizes.in_space,
+        ContactType("points-in-space", "in space, near webs", in_space(case), sizes.in_space,
               sizes.spatial_duration),
     ]  # fmt: skip
 
 
-def summary_table(contacts: Sequence[Contact], sizes: Sizes) -> Table:
+def summary_table(contacts: Sequence[ContactResults], sizes: Sizes) -> Table:
     """Return a table of the largest changes of each type of contact."""
     peaks = [f"peak {which}\n(%)" for which in range(1, sizes.peaks + 1)]
     changes = [*peaks, "pad forces\n(%)", "tip, part of\nits range (%)"]
@@ -220,7 +220,7 @@ def summary_table(contacts: Sequence[Contact], sizes: Sizes) -> Table:
     )
 
 
-def point_table(contact: Contact) -> Table:
+def point_table(contact: ContactResults) -> Table:
     """Return a table of first peaks and changes at every point of one type of contact."""
     columns = {
         "point": "", "first peak (mm)": ".1f", "its change (%)": ".3f", "tip (% of range)": ".2f",
@@ -240,13 +240,13 @@ def point_table(contact: Contact) -> Table:
     )  # fmt: skip
 
 
-@titled("working-load", "Meshes under working loads")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+@define_study("working-load", "Meshes under working loads")
+def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Study the paper's boom with friction under working loads, on three meshes."""
     sizes = sizes or Sizes()
     contacts = []
-    for touch in touches(friction_case(), sizes):
-        tell(touch.where)
+    for touch in contact_types(friction_case(), sizes):
+        progress(touch.where)
         contacts.append(measure(touch, sizes))
     yield summary_table(contacts, sizes)
     for contact in contacts:

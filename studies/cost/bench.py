@@ -39,10 +39,10 @@ from studies.cost.generic_solvers import (
     array_rates,
     compiled_rates,
     generic,
-    matched,
+    match_tolerance,
 )
 from studies.cost.telescoping import MODELS, telescoping
-from studies.cost.timing import NOISE, by_turns, leave
+from studies.cost.timing import NOISE, time_in_turns, write_tables
 from studies.motions import OUTPUT_STEP, friction_case, gap_system, model_of
 
 PAPER = CASES / "paper.toml"
@@ -124,7 +124,7 @@ def errors(sizes: Sizes) -> Table:
         finest = FixedStep(sizes.converged)(motion)
         exact, (_, peak) = np.asarray(finest.data["tip"].values), finest.first_peak()
         ways: list[FixedStep | AdaptiveStep] = [*map(FixedStep, sizes.steps), AdaptiveStep()]
-        seconds = by_turns([partial(way, motion) for way in ways], sizes.most, sizes.budget)
+        seconds = time_in_turns([partial(way, motion) for way in ways], sizes.most, sizes.budget)
         for way, taken in zip(ways, seconds, strict=True):
             begin = process_time()
             run = way(motion)
@@ -172,7 +172,7 @@ def compare(case: Case, sizes: Sizes) -> Table:
         target = off(np.asarray(ours().data["tip"].values), exact)
         methods = [Method(OURS, "", f"{step:g} s", target, ours)]
         for name in solvers:
-            loosest, least = matched(partial(error, name), target)
+            loosest, least = match_tolerance(partial(error, name), target)
             if loosest is None:
                 failed.append(f"{name} errs more than a step of {step:g} s, by {least:.1e}.")
                 continue
@@ -180,7 +180,7 @@ def compare(case: Case, sizes: Sizes) -> Table:
                 Method(name, kind, f"{loosest:.1e}", least, partial(solved, name, loosest, kind))
                 for kind in rates
             ]
-        seconds = by_turns([method.run for method in methods], sizes.most, sizes.budget)
+        seconds = time_in_turns([method.run for method in methods], sizes.most, sizes.budget)
         for method, taken in zip(methods, seconds, strict=True):
             ratios = [theirs / mine for theirs, mine in zip(taken, seconds[0], strict=False)]
             rows.append((*method[:-1], taken, ratios))
@@ -222,7 +222,7 @@ def ensembles(case: Case, sizes: Sizes) -> Table:
     if sizes.shell_members and find_spec("dolfinx"):
         shell = gap_system(case, build_boom(case), model_of(case, "shell"))
         what.append((of_shells, cores, partial(run, shell, sizes.shell_members, fixed, cores)))
-    seconds = by_turns([made for _, _, made in what], sizes.most, sizes.budget)
+    seconds = time_in_turns([made for _, _, made in what], sizes.most, sizes.budget)
     fastest = min(median(taken) for taken in seconds[: len({1, cores})])
     goal = "reached" if fastest <= ENSEMBLE_GOAL else "not reached"
     return Table.of_rows(
@@ -248,7 +248,9 @@ def bench(sizes: Sizes, folder: Path, console: Console) -> None:
     ]
     machine = {"cores": len(os.sched_getaffinity(0)), "python": platform.python_version()}
     data: dict[str, Any] = {"sizes": asdict(sizes), "machine": machine}
-    leave(folder, "bench", "What the time step costs", data, (part() for part in parts), console)
+    write_tables(
+        folder, "bench", "What the time step costs", data, (part() for part in parts), console
+    )
 
 
 if __name__ == "__main__":

@@ -76,12 +76,12 @@ def array_rates(system: GapSystem) -> Rates:
     slides = system.friction_rows
     drag = np.array([f.coefficient * f.normal_force for f in system.frictions])
 
-    def rubbed(t: float, state: Array) -> Array:
+    def rates_with_friction(t: float, state: Array) -> Array:
         out = rates(t, state)
         out[n:] -= (drag * np.sign(slides @ state[n:])) @ slides
         return out
 
-    return rubbed
+    return rates_with_friction
 
 
 def generic(name: str, rates: Rates, num_states: int, duration: float, tolerance: float) -> Array:
@@ -95,7 +95,7 @@ def generic(name: str, rates: Rates, num_states: int, duration: float, tolerance
     return np.asarray(solve_ivp(rates, span, start, name, times, **tolerances).y.T)
 
 
-def matched(error: Callable[[float], float], target: float) -> tuple[float | None, float]:
+def match_tolerance(error: Callable[[float], float], target: float) -> tuple[float | None, float]:
     """Return the loosest of ``TOLERANCES`` that errs by no more than ``target``, and its error.
 
     By bisection, as if less tolerance erred less; None, and the least error that was found, where

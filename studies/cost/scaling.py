@@ -31,7 +31,7 @@ from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import Shell
 from runs.process.terminal import show_notices
 from runs.report.tables import Table, wide_console
-from studies.cost.timing import leave
+from studies.cost.timing import write_tables
 
 SIZED = {"paper": "paper.toml", "friction": "paper-friction.toml"}
 OUT = Path("runs/out/scaling")
@@ -64,10 +64,10 @@ class Sizes:
     duration: float = 10.0  #: of the motions in s
 
 
-def measured(sizes: Sizes) -> Iterator[Table]:
+def measure(sizes: Sizes) -> Iterator[Table]:
     """Measure the default mesh from plates to motion, by ranks; then finer meshes on most ranks."""
     runs = [
-        _measured(ranks, "move", name, sizes.default, sizes.duration)
+        _measure_run(ranks, "move", name, sizes.default, sizes.duration)
         for ranks in sizes.ranks
         for name in SIZED
     ]
@@ -84,7 +84,7 @@ def measured(sizes: Sizes) -> Iterator[Table]:
         [(run["case"], run["ranks"], *motion) for run in runs for motion in run["motions"]],
         (f"Goal: {MOTION_GOAL:g} s at a step of {STEPS[-1]:g} s. The motion is one rank's work.",),
     )
-    runs = [_measured(sizes.ranks[-1], "reduce", "friction", mesh) for mesh in sizes.meshes]
+    runs = [_measure_run(sizes.ranks[-1], "reduce", "friction", mesh) for mesh in sizes.meshes]
     note = "Peaks are sums over the ranks, of each rank's own largest resident set."
     yield _stages("scaling", "The paper's boom as shells, by size", runs, note)
     yield Table.of_rows(
@@ -136,7 +136,7 @@ def _exponent(sizes: Sequence[float], values: Sequence[float]) -> float:
     return float(np.polyfit(np.log(sizes), np.log(values), 1)[0]) if len(sizes) > 1 else math.nan
 
 
-def _measured(ranks: int, *what: object) -> dict[str, Any]:
+def _measure_run(ranks: int, *what: object) -> dict[str, Any]:
     """Return the results of a run in processes of its own."""
     launcher = [] if ranks == 1 else ["mpirun", "-n", str(ranks), "--oversubscribe"]
     if launcher and shutil.which("mpirun") is None:
@@ -150,8 +150,8 @@ def _measured(ranks: int, *what: object) -> dict[str, Any]:
     )
     if done.returncode:
         raise RuntimeError(done.stderr)
-    told: dict[str, Any] = json.loads(done.stdout.strip().splitlines()[-1])
-    return told
+    result: dict[str, Any] = json.loads(done.stdout.strip().splitlines()[-1])
+    return result
 
 
 def _run(what: str, name: str, size: str, duration: str = "0") -> None:
@@ -169,12 +169,12 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
     idle = comm.allreduce(_peak())
     peaks: dict[str, float] = {}
 
-    def tell(stage: str, part: float) -> None:
+    def progress(stage: str, part: float) -> None:
         peaks[stage] = _peak()
 
     comm.barrier()
     start = perf_counter()
-    reduced = reduce_boom(model.joined(boom).boom, options, comm, tell)
+    reduced = reduce_boom(model.joined(boom).boom, options, comm, progress)
     comm.barrier()
     total = perf_counter() - start
     peaks["fields"] = _peak()
@@ -182,7 +182,7 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
     if every is None:
         return
     summed = {stage: sum(one.get(stage, 0.0) for one in every) for stage in peaks}
-    told: dict[str, Any] = {
+    result: dict[str, Any] = {
         "case": name,
         "ranks": comm.size,
         "mesh": options.mesh_size,
@@ -195,8 +195,8 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
         "errors": reduced.errors,
     }
     if what == "move":
-        told["motions"] = [_motion(reduced.system, float(duration), step) for step in STEPS]
-    print(json.dumps(told))
+        result["motions"] = [_motion(reduced.system, float(duration), step) for step in STEPS]
+    print(json.dumps(result))
 
 
 def _motion(system: GapSystem, duration: float, step: float) -> list[float]:
@@ -221,7 +221,7 @@ def _peak() -> float:
 def scaling(sizes: Sizes, folder: Path, console: Console) -> None:
     """Measure, print, and write ``scaling.json`` and ``scaling.md``."""
     data = {"sizes": asdict(sizes)}
-    leave(folder, "scaling", "What a shell costs", data, measured(sizes), console)
+    write_tables(folder, "scaling", "What a shell costs", data, measure(sizes), console)
 
 
 if __name__ == "__main__":

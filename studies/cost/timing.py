@@ -21,7 +21,9 @@ NOISE = (
 )
 
 
-def by_turns(runs: Sequence[Callable[[], object]], most: int, budget: float) -> list[list[float]]:
+def time_in_turns(
+    runs: Sequence[Callable[[], object]], most: int, budget: float
+) -> list[list[float]]:
     """Return wall seconds of each run; all run once before any is repeated.
 
     Args:
@@ -47,7 +49,7 @@ def _mean(run: Callable[[], object]) -> float:
     return seconds / count
 
 
-def leave(
+def write_tables(
     folder: Path,
     name: str,
     title: str,

@@ -26,7 +26,7 @@ from runs.paper.rules import CONFORMITY, DIVERGENCE
 from runs.paper.run_query import peaks_apart
 from runs.pipeline.members import slow_below
 from runs.pipeline.models import MotionPlan
-from studies.motions import gap_system, model_of, side_by_side
+from studies.motions import gap_system, model_of, run_parallel
 from studies.numerics_1997.schemes import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
 
 SERIES = ("kantorovich-4", "kantorovich-5")
@@ -168,7 +168,7 @@ class Example:
         systems = {name: gap_system(case, boom, model_of(case, name)) for name in names}
         cutoff = slow_below(boom, case.time)
         assert cutoff is not None
-        runs = side_by_side(
+        runs = run_parallel(
             # As a run of the case moves the model.
             lambda one: ModelRun.of(one[1].integrator(changed(one[1].motion, "load", one[0]))),
             [
@@ -188,7 +188,7 @@ class Example:
         whole, put_in = self.systems[ELEMENTS], accurate[-1].put_in
         models = [*series, *((lowest(whole, few), put_in) for few in modes)]
         tasks = [(*model, factor) for model in models for factor in factors(MEMBERS)]
-        runs = side_by_side(lambda one: _move(how, self.case.time.duration, *one), tasks)
+        runs = run_parallel(lambda one: _move(how, self.case.time.duration, *one), tasks)
         four, five, *others = (runs[i : i + MEMBERS] for i in range(0, len(runs), MEMBERS))
         tied = self.accurate[0].tied.at(four[0].time)
         return [

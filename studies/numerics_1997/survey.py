@@ -105,16 +105,16 @@ class Survey:
     reached: Mapping[Way, float]
 
     @classmethod
-    def of(cls, tell: Callable[[str], None]) -> Survey:
+    def of(cls, progress: Callable[[str], None]) -> Survey:
         """Run all numerics."""
-        tell("both examples solved accurately")
+        progress("both examples solved accurately")
         free, frictional = (case_file.load(str(path)) for path in (WITHOUT, WITH))
         without, with_friction = Example.of(free, MEMBERS), Example.of(frictional, 1)
-        tell("the general solver")
+        progress("the general solver")
         reached = reach(without, False) | reach(with_friction, True)
-        tell("without friction")
+        progress("without friction")
         of_free = {how: without.samples(how) for how in all_numerics()}
-        tell("with friction")
+        progress("with friction")
         of_rubbed = {how: with_friction.samples(how) for how in all_numerics()}
         return cls(without, with_friction, of_free, of_rubbed, reached)
 

@@ -23,17 +23,17 @@ from studies.numerics_1997.survey import (
     diverges_near_7_s,
     share,
 )
-from studies.study import Piece, Plot, Tell, titled
+from studies.study import Piece, Plot, Progress, define_study
 
 TITLE = "The statements of the paper by numerics of 1997"
 # Figures show unaccounted energy up to this many percent, and this many points of a curve.
 CUT, POINTS = 150.0, 1000
 
 
-@titled("numerics-1997", TITLE)
-def study(tell: Tell) -> Iterator[Piece]:
+@define_study("numerics-1997", TITLE)
+def study(progress: Progress) -> Iterator[Piece]:
     """Run both examples by every scheme with few modes, gaps iterated or lagged, three steps."""
-    survey = Survey.of(tell)
+    survey = Survey.of(progress)
     yield from tables(survey)
     yield from proofs()
     yield from plots(survey)
@@ -52,7 +52,7 @@ def outcome_table(survey: Survey) -> Table:
     ]
     return Table.of_rows(
         "numerics-1997-statements",
-        "Which numerics of 1997 show what the paper says",
+        "Statements of the paper that numerics of 1997 reproduce",
         {"statement": "", "shown": "", "by": ""},
         rows,
         (

@@ -14,7 +14,7 @@ from geometry.boom import Material
 from shell_model.segment.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
 from shell_model.segment.shell import ON_LINE
 from studies.reference_models.benchmarks import X, Y, Z, grid
-from studies.reference_models.lone_segment import natural_frequencies
+from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.static_shell import StaticShell, hold
 
 Field = Callable[[Array, Array], Array]

@@ -15,8 +15,8 @@ from geometry.section import Section
 from shell_model.segment.cross_section import Outline
 from shell_model.segment.forms import DRILLING
 from studies.reference_models.benchmarks import X, Y, Z, grid
-from studies.reference_models.lone_segment import natural_frequencies
 from studies.reference_models.plates import STEEL
+from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.static_shell import StaticShell, hold
 
 

@@ -97,14 +97,14 @@ def resist(problem: Problem, force: Array) -> bool:
     n = free.size
     left, slope = np.zeros(n), np.zeros(n)
     for _ in range(_ROUNDS):
-        settled = True
+        converged = True
         for j in range(n):
             answer, slope[j] = _answer(problem, force, j)
             left[j] = answer - force[j]
-            settled = settled and _excess(compliance, free, force, left[j], j) <= 1.0
+            converged = converged and _excess(compliance, free, force, left[j], j) <= 1.0
             # The sweep continues from this result.
             force[j] = answer
-        if settled:
+        if converged:
             return True
         before = _defect(problem, force, left, slope)
         matrix = np.eye(n)

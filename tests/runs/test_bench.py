@@ -30,7 +30,7 @@ from studies.cost.generic_solvers import (
     array_rates,
     compiled_rates,
     generic,
-    matched,
+    match_tolerance,
 )
 
 SIZES = Sizes(
@@ -89,8 +89,8 @@ def test_the_levels_of_the_command() -> None:
 
 def test_a_solver_that_errs_more_is_named() -> None:
     """Reference: by hand; a tolerance that errs by ten times itself, and one that always does."""
-    assert matched(lambda tolerance: 10.0 * tolerance, 1e-5) == pytest.approx((1e-6, 1e-5))
-    assert matched(lambda tolerance: 1.0, 0.5) == (None, 1.0)
+    assert match_tolerance(lambda tolerance: 10.0 * tolerance, 1e-5) == pytest.approx((1e-6, 1e-5))
+    assert match_tolerance(lambda tolerance: 1.0, 0.5) == (None, 1.0)
 
 
 @pytest.mark.slow

@@ -30,7 +30,7 @@ from runs.pipeline.run import run_case as run_models
 from runs.report.output import write
 from runs.report.pages import Addition
 from studies.motions import move
-from studies.working_load import Point, at_point
+from studies.working_load import Point, set_point
 from tests.runs.coarse_case import COARSE
 
 pytestmark = pytest.mark.slow
@@ -90,7 +90,7 @@ def _built(case: Case, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Bu
 
 def tip(system: GapSystem) -> Array:
     """At a small play and ten times the load, as gravity does."""
-    point = at_point(system, Point(play=4.0e-3, load=10.0))
+    point = set_point(system, Point(play=4.0e-3, load=10.0))
     return np.asarray(move(point, 1.5).data["tip"].values)
 
 

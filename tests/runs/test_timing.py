@@ -10,7 +10,7 @@ import pytest
 
 from runs.report.formatting import repeated
 from studies.cost import timing
-from studies.cost.timing import MEASURABLE, by_turns
+from studies.cost.timing import MEASURABLE, time_in_turns
 
 
 class Clock:
@@ -37,7 +37,7 @@ def test_runs_take_turns(clock: Clock) -> None:
         order.append(name)
         clock.sleep(1.1 * MEASURABLE)
 
-    seconds = by_turns([partial(slow, "a"), partial(slow, "b")], 2, 10.0)
+    seconds = time_in_turns([partial(slow, "a"), partial(slow, "b")], 2, 10.0)
     assert order == ["a", "b", "a", "b"]
     assert [len(taken) for taken in seconds] == [2, 2]
 
@@ -46,14 +46,14 @@ def test_what_takes_long_is_not_repeated(clock: Clock) -> None:
     """Reference: analytic. Two sleeps pass the budget, or one does."""
     nap = 1.1 * MEASURABLE
     runs = [partial(clock.sleep, nap), partial(clock.sleep, 0.001)]
-    assert [len(taken) for taken in by_turns(runs, 3, 1.5 * nap)] == [2, 3]
-    assert [len(taken) for taken in by_turns(runs, 3, 0.5 * nap)] == [1, 3]
+    assert [len(taken) for taken in time_in_turns(runs, 3, 1.5 * nap)] == [2, 3]
+    assert [len(taken) for taken in time_in_turns(runs, 3, 0.5 * nap)] == [1, 3]
 
 
 def test_what_takes_little_is_averaged(clock: Clock) -> None:
     """Reference: analytic. Sleeps of 5 and 15 ms by turns: six of them pass 50 ms."""
     naps = itertools.cycle((0.005, 0.015))
-    ((taken,),) = by_turns([lambda: clock.sleep(next(naps))], 1, 10.0)
+    ((taken,),) = time_in_turns([lambda: clock.sleep(next(naps))], 1, 10.0)
     assert taken == pytest.approx(0.06 / 6)
 
 

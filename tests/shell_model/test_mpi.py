@@ -17,7 +17,7 @@ from shell_model.boom_shell import ShellOptions, assemble_boom
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.symmetry import together
-from studies.reference_models.lone_segment import natural_frequencies
+from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.unreduced import integrate_directly
 from tests.conftest import ranks_in
 from tests.shell_model.booms import HELD, LATERAL_LAW, LAW, boom_in_space, flat_boom

@@ -14,7 +14,6 @@ from dynamics.failure import NumericsError
 from geometry.arrays import Array, Indices
 from shell_model.segment.segment_shell import SegmentShell
 from studies.reference_models.benchmarks import PUBLISHED, twisted_beam
-from studies.reference_models.lone_segment import natural_frequencies
 from studies.reference_models.plates import (
     FLANGE,
     OBLIQUE,
@@ -27,6 +26,7 @@ from studies.reference_models.plates import (
 )
 from studies.reference_models.prismatic import ANGLE, Member, PlainBox
 from studies.reference_models.prismatic import BOX as CLOSED
+from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.static_shell import StaticShell, hold
 from tests.shell_model.booms import HELD, flat_boom
 from tests.shell_model.conftest import BOX

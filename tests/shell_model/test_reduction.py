@@ -18,7 +18,7 @@ from shell_model.reduction.segment import ReducedSegment, reduce_segment
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import ShiftedSolver
-from studies.reference_models.lone_segment import natural_frequencies
+from studies.reference_models.single_segment import natural_frequencies
 from tests.shell_model.booms import HELD
 
 Shells = Callable[..., SegmentShell]

@@ -14,7 +14,7 @@ from geometry.contact_places import Stretch
 from geometry.section import BoxSection
 from shell_model.contact.wall_rows import CornerLines
 from shell_model.segment.segment_shell import SegmentShell
-from studies.reference_models.lone_segment import natural_frequencies
+from studies.reference_models.single_segment import natural_frequencies
 from tests.shell_model.booms import HELD, STEEL, box_segment
 from tests.shell_model.conftest import BOX, compliance
 

@@ -22,7 +22,7 @@ from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.cross_section import Outline
 from shell_model.segment.segment_shell import assemble_segment
 from shell_model.segment.solver import ShiftedSolver, quadratic_form, times
-from studies.reference_models.lone_segment import natural_frequencies
+from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.solid import SolidFamily, SolidMesh, assemble_solid, mesh_quarter
 from tests.shell_model.booms import STEEL, box_segment
 

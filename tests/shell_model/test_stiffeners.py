@@ -27,7 +27,7 @@ from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from shell_model.segment.solver import ShiftedSolver, times
-from studies.reference_models.lone_segment import natural_frequencies
+from studies.reference_models.single_segment import natural_frequencies
 from tests.shell_model.booms import HELD, LAW, STEEL, box_segment, flat_boom
 from tests.shell_model.conftest import BOX, compliance
 from tests.touching import touching

@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from runs.case.build import build_boom
-from studies import answers, contact_size, direct, mesh, stiffeners, stress, surface_contact
+from studies import contact_size, design_results, direct, mesh, stiffeners, stress, surface_contact
 from studies.motions import friction_case
 
 CONTACT_SIZE = contact_size.Sizes(
@@ -210,10 +210,10 @@ def test_a_surface_is_softer_than_webs_on_webs() -> None:
 
 def test_forces_by_hand_are_in_balance() -> None:
     """Reference: analytic, the sum of all forces and of their moments about the origin."""
-    tail, head = answers.station_forces()
+    tail, head = design_results.station_forces()
     assert tail + head == pytest.approx(55.07 * 10.0)
     assert tail * 9.0 + head * 10.0 == pytest.approx(55.07 * 10.0 * 14.0)
-    foot, far = answers.support_forces()
+    foot, far = design_results.support_forces()
     assert foot + far + 831.6 + tail + head == pytest.approx(0.0, abs=1e-9)
     moments = far * 2.0 + 831.6 * 5.0 + tail * 9.0 + head * 10.0
     assert moments == pytest.approx(0.0, abs=1e-9)

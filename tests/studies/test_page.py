@@ -28,8 +28,8 @@ ROOT = Path(__file__).parents[2]
 POINT = re.compile(r" \([^)]*\)$")
 
 
-def moved(touch: working_load.Touch, sizes: working_load.Sizes) -> working_load.Contact:
-    motion = working_load.Moved(np.arange(2.0), np.ones(sizes.peaks), np.ones(2))
+def moved(touch: working_load.ContactType, sizes: working_load.Sizes) -> working_load.Contact:
+    motion = working_load.PointMotion(np.arange(2.0), np.ones(sizes.peaks), np.ones(2))
     return working_load.Contact(touch, dict.fromkeys(touch.points, [motion] * len(sizes.meshes)))
 
 
@@ -60,13 +60,13 @@ def one(*_: object) -> float:
 # Study → what of it takes long → what stands in for it here.
 STAND_INS: Mapping[str, Mapping[str, object]] = {
     "contact_size": {
-        "squeezed": lambda *_: np.ones(2),
-        "supported": lambda _, meshes: np.ones(len(meshes)),
+        "station_compliances": lambda *_: np.ones(2),
+        "support_compliance": lambda _, meshes: np.ones(len(meshes)),
         "first_peaks": lambda _, sizes: np.ones(len(sizes.loads)),
     },
     "working_load": {"measure": moved},
     "direct": {"runs_of": run},
-    "stress": {"Pressed.on_mesh": pressed, "Pressed.reduced": pressed},
+    "stress": {"InnerSegmentState.on_mesh": pressed, "InnerSegmentState.reduced": pressed},
     "stiffeners": {
         "measure": one,
         "table": one,
@@ -78,7 +78,7 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "second_order": {},
     "telescoping_column": {},
     "stick_slip": {"_one_way": lambda _: [1.0] * 6},
-    "answers": {},
+    "design_results": {},
     "supports": {
         "_MODELS": dict.fromkeys(supports._MODELS, supports._MODELS["elements"]),
         "decrement": one,
@@ -119,7 +119,7 @@ def test_each_section_is_that_of_a_study_in_its_order() -> None:
 @pytest.mark.parametrize("name", STAND_INS)
 def test_rows_are_those_of_the_study(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: the study itself, all that takes long one; what is measured holds."""
-    if name == "answers":
+    if name == "design_results":
         pytest.importorskip("rainflow", reason="the cycles are counted by it")
     for what, stand_in in STAND_INS[name].items():
         monkeypatch.setattr(f"studies.{name}.{what}", stand_in)

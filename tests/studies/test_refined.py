@@ -28,7 +28,7 @@ def test_the_published_example() -> None:
     """
     found = refined([0.96178, 0.96854, 0.97050])
     assert found.order == pytest.approx(1.7862, abs=1.0e-4)
-    assert found.limit == found.settled == pytest.approx(0.97130, abs=1.0e-5)
+    assert found.limit == found.best == pytest.approx(0.97130, abs=1.0e-5)
     assert 100.0 * found.index == pytest.approx(0.1031, abs=1.0e-4)
 
 
@@ -52,7 +52,7 @@ def test_no_order_without_convergence(values: tuple[float, ...]) -> None:
     assert math.isnan(found.order)
     assert math.isnan(found.limit)
     assert math.isnan(found.index)
-    assert found.settled == values[-1]
+    assert found.best == values[-1]
     assert found.against_limit("p", found.sizes[0], "finest", 0.01).source == "finest"
     with pytest.raises(ValueError, match=r"^p: the finest mesh would be held against itself$"):
         found.against_limit("p", found.sizes[-1], "finest", 0.01)
@@ -62,7 +62,7 @@ def test_a_slow_order_leads_nowhere() -> None:
     """Reference: analytic, steps that fall to nine tenths are of order 0.15."""
     found = refined([2.0, 1.9, 1.81])
     assert found.order == pytest.approx(0.152, abs=1.0e-3)
-    assert found.settled == 1.81
+    assert found.best == 1.81
 
 
 def test_the_finest_is_held_against_its_reference() -> None:

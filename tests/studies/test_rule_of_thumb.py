@@ -47,23 +47,25 @@ def test_the_rule_is_the_derivative_of_a_caught_fall(play: float) -> None:
     (peak, speed, period), (nearer, _, sooner) = (
         fallen(one, 9.5 * play) for one in (deflection, deflection * (1.0 - small))
     )
-    assert beam.lacking(EULER) == pytest.approx(small)
-    assert beam.peak_off(EULER, point) == pytest.approx(1.0 - nearer / peak, rel=1e-4)
+    assert beam.missing_part(EULER) == pytest.approx(small)
+    assert beam.peak_error(EULER, point) == pytest.approx(1.0 - nearer / peak, rel=1e-4)
     # The rule's seconds go with its frequency.
     unit = 1.0 / (4.0 * np.pi * np.sqrt(deflection))
     late = 3.0 * (period - sooner)
     expected = late * speed / peak + (1.0 - nearer / peak)
-    assert beam.tip_off(EULER, point, 3.0 * period * unit) == pytest.approx(expected, rel=1e-4)
+    assert beam.tip_error(EULER, point, 3.0 * period * unit) == pytest.approx(expected, rel=1e-4)
 
 
 def test_without_play_the_phase_decides() -> None:
     """Reference: analytic, half of the π n δ by which phases of a swing part."""
     beam = rule(0.0099, 0.0001)
-    lacking = beam.lacking(EULER)
-    assert beam.tip_off(EULER, Point(0.0, 1.0), 5.0) == pytest.approx(
-        lacking * (1.0 + 0.5 * np.pi * 10.0)
+    missing_part = beam.missing_part(EULER)
+    assert beam.tip_error(EULER, Point(0.0, 1.0), 5.0) == pytest.approx(
+        missing_part * (1.0 + 0.5 * np.pi * 10.0)
     )
-    assert beam.lacking(PLAIN) == pytest.approx(UNEVEN / (1.0 + UNEVEN) * lacking, rel=0.02)
+    assert beam.missing_part(PLAIN) == pytest.approx(
+        UNEVEN / (1.0 + UNEVEN) * missing_part, rel=0.02
+    )
 
 
 def test_the_first_boom_is_the_paper_s() -> None:
@@ -90,6 +92,6 @@ def test_a_short_boom_is_as_far_off_as_the_rule_tells() -> None:
     sizes = Sizes(booms={name: BOOMS[name]}, mesh_size=0.3, plays=(0.0, 4e-3), periods=2.0)
     found = measure(BOOMS[name], sizes)
     for beam in (EULER, PLAIN):
-        told = [found.rule.peak_off(beam, point) for point in found.points]
+        told = [found.rule.peak_error(beam, point) for point in found.points]
         assert found.peaks[beam] == pytest.approx(told, rel=0.35)
         assert (found.peaks[SPRUNG] < 0.2 * found.peaks[beam]).all()

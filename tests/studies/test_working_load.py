@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from studies.motions import friction_case
-from studies.working_load import Contact, Moved, Point, Sizes, Touch, study
+from studies.working_load import ContactResults, ContactType, Point, PointMotion, Sizes, study
 
 TINY = Sizes(
     meshes=(16.0, 8.0),
@@ -23,19 +23,19 @@ TINY = Sizes(
 )
 
 
-def moved(tip: float, peak: float) -> Moved:
-    return Moved(np.array([0.0, tip]), np.array([peak]), np.ones(2))
+def moved(tip: float, peak: float) -> PointMotion:
+    return PointMotion(np.array([0.0, tip]), np.array([peak]), np.ones(2))
 
 
 def told(*peaks: float) -> list[tuple[str, float]]:
     """Return text and value of a point's proofs for each peak, on two meshes, the finer one 1 m."""
     points = [Point(1.0e-3 * i, 1.0) for i in range(len(peaks))]
-    touch = Touch("points", "webs", friction_case(), points, 1.0)
+    touch = ContactType("points", "webs", friction_case(), points, 1.0)
     meshes = {
         point: [moved(1.01, peak), moved(1.0, 1.0)]
         for point, peak in zip(points, peaks, strict=True)
     }
-    return [(proof.what, proof.value) for proof in Contact(touch, meshes).proofs]
+    return [(proof.what, proof.value) for proof in ContactResults(touch, meshes).proofs]
 
 
 def test_a_first_peak_is_proven_where_there_is_one() -> None:
@@ -52,9 +52,9 @@ def test_a_mesh_errs_more_under_more_load() -> None:
     """Reference: other code, the finer mesh. Ten times the load goes deeper into the walls; one
     reduction serves both loads.
     """
-    touches: list[str] = []
-    found = study(touches.append, TINY)
-    assert touches == ["near webs", "in space, near webs"]
+    contact_types: list[str] = []
+    found = study(contact_types.append, TINY)
+    assert contact_types == ["near webs", "in space, near webs"]
     assert list(found.data) == ["working-load", "points-webs", "points-in-space"]
     light, heavy = found.data["points-webs"]
     assert (light["point"], heavy["point"]) == ("14 mm, load × 1", "14 mm, load × 10")

@@ -24,7 +24,7 @@ from runs.pipeline.motion_results import Motions, evaluate_motion
 from runs.pipeline.run import run_case
 from runs.pipeline.static_results import Diagram, positions, static_result
 from studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
-from studies.study import Held, Proof, Tell, titled
+from studies.study import Criterion, Progress, Proof, define_study
 
 # Stiffness of the paper's boom: N/m on both segments.
 OUTER, INNER = 83.16, 55.07
@@ -38,24 +38,24 @@ LOAD = -100.0
 
 # Elements of half a metre have moments with errors up to q h²/12, here 1.7 N m.
 CLOSE, OF_PIECES, EXACT = 1.0e-3, 5.0e-3, 1.0e-6
-LEVERS: Held = ("analytic", "lever rule", EXACT)
+LEVERS: Criterion = ("analytic", "lever rule", EXACT)
 
 
-@titled("answers", "What a designer asks")
-def study(tell: Tell) -> Iterator[Proof]:
+@define_study("design-results", "Design results")
+def study(progress: Progress) -> Iterator[Proof]:
     """Compare the paper's boom at rest and a cantilever in motion."""
-    tell("the paper's boom at rest")
-    answers = answered()
+    progress("the paper's boom at rest")
+    answers = design_results_at_rest()
     for name in MODELS:
         yield from _at_rest(name, answers.models[name])
     for held, force in zip(answers.reactions, support_forces(), strict=True):
         what = f"reaction at {held.x:g} m"
         yield Proof(what, 1e-3 * held.force, 1e-3 * force, "kN", *LEVERS)
-    tell("a cantilever")
+    progress("a cantilever")
     yield from _cantilever()
 
 
-def answered() -> DesignResults:
+def design_results_at_rest() -> DesignResults:
     """Return the design results of the paper's boom in a run too short for much motion."""
     case = case_file.load(str(CASES / "coarse.toml"))
     time = case.time.model_copy(update={"duration": 0.01})
@@ -85,9 +85,13 @@ def _at_rest(name: str, own: ModelDesignResults) -> Iterator[Proof]:
     (rest,) = own.static
     tail, head = station_forces()
     tilt = (PLAY + (abs(tail) + head) / STIFF) / (HEAD - TAIL)
-    held: Held = ("analytic", "2 Δ and what contacts give way, over the overlap", CLOSE)
+    criterion: Criterion = (
+        "analytic",
+        "2 Δ and the compression of contacts, over the overlap",
+        CLOSE,
+    )
     turned = 1e3 * rest.tilts[0].rotation
-    yield Proof(f"tilt of the joint, {name}", turned, 1e3 * tilt, "mrad", *held)
+    yield Proof(f"tilt of the joint, {name}", turned, 1e3 * tilt, "mrad", *criterion)
     for pressed, force in zip(rest.stations, (tail, head), strict=True):
         what = f"contact force at {pressed.x:g} m, {name}"
         yield Proof(what, 1e-3 * pressed.force, 1e-3 * force, "kN", *LEVERS)
@@ -101,11 +105,11 @@ def _at_rest(name: str, own: ModelDesignResults) -> Iterator[Proof]:
         (inner, ALONG_INNER, "shear", "kN", INNER * s),
         (inner, ALONG_INNER, "moment", "kN m", -0.5 * INNER * s**2),
     ):
-        found, named = 1e-3 * read(diagram, what, place), f"{what} at {place:g} m, {name}"
+        found, named = 1e-3 * value_at(diagram, what, place), f"{what} at {place:g} m, {name}"
         yield Proof(named, found, 1e-3 * force, unit, "analytic", "by hand", OF_PIECES)
 
 
-def read(diagram: Diagram, what: str, place: float) -> float:
+def value_at(diagram: Diagram, what: str, place: float) -> float:
     """Return the value of a curve at a place in m."""
     return float(np.interp(place, diagram.x, diagram.curves[what]))
 
@@ -115,7 +119,7 @@ def _cantilever() -> Iterator[Proof]:
     arm = Segment.of_section("arm", 0.0, LENGTH, STEEL, BOX, supports=(CLAMP,), load=LOAD)
     boom = Boom((arm,), ())
     elements = finite_element_segments(boom, 0.2, "euler-bernoulli", rotary_inertia=False)
-    own = swung(boom, elements)
+    own = suddenly_loaded_results(boom, elements)
     rate = np.sqrt(STIFFNESS / arm.mass_per_length) / (2.0 * np.pi * LENGTH**2)
     for number, root in ((1, 1.875104068711961), (2, 4.694091132974175)):
         mode = next(one for one in own.modes if one.number == number)
@@ -126,9 +130,11 @@ def _cantilever() -> Iterator[Proof]:
     stress = moment * 0.5 * (BOX.height + BOX.flange) / BOX.second_moment_of_area
     (fibre,) = own.motion.fibres
     assert fibre.at_rest is not None
-    held: Held = ("analytic", "M c/J, Navier 1826", CLOSE)
-    yield Proof("outer fibre of it at rest", 1e-6 * fibre.at_rest, 1e-6 * stress, "MPa", *held)
-    single = swung(boom, kantorovich_segments(boom, [1], "complete", rotary_inertia=False))
+    criterion: Criterion = ("analytic", "M c/J, Navier 1826", CLOSE)
+    yield Proof("outer fibre of it at rest", 1e-6 * fibre.at_rest, 1e-6 * stress, "MPa", *criterion)
+    single = suddenly_loaded_results(
+        boom, kantorovich_segments(boom, [1], "complete", rotary_inertia=False)
+    )
     assert single.motion is not None
     for peak in single.motion.peaks:
         assert peak.factor is not None
@@ -136,12 +142,12 @@ def _cantilever() -> Iterator[Proof]:
         yield Proof(what, peak.factor, 2.0, "", "analytic", "1 − cos ωt", CLOSE)
 
 
-def swung(boom: Boom, segments: list[SegmentModel]) -> ModelDesignResults:
+def suddenly_loaded_results(boom: Boom, segments: list[SegmentModel]) -> ModelDesignResults:
     """Return half a second of motion of a single-segment boom under a sudden load."""
     system, along = gap_system(boom.play_free, segments), lines(boom, segments)
     rest = positions(system)[0.0]
-    told = [static_result(boom, system, along, 0.0, rest)]
+    static = [static_result(boom, system, along, 0.0, rest)]
     motion = simulate(system, duration=0.5)
-    motions = Motions(boom, along, motion, rest[None], told, jumps=False)
+    motions = Motions(boom, along, motion, rest[None], static, jumps=False)
     moved, _ = evaluate_motion(motions)
-    return ModelDesignResults(static=told, modes=modes(boom, system, along, rest), motion=moved)
+    return ModelDesignResults(static=static, modes=modes(boom, system, along, rest), motion=moved)
