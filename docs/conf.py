@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import sys
 import tomllib
 from inspect import getdoc
 from pathlib import Path
@@ -17,6 +18,12 @@ from sphinx.writers.html5 import HTML5Translator
 
 import protractile
 
+sys.path.insert(0, str(Path(__file__).parent))
+
+import reference
+
+reference.write()
+
 pyproject = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())
 
 project = pyproject["project"]["name"]
@@ -27,10 +34,11 @@ extensions = [
     "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
 ]
-exclude_patterns = ["_templates"]
+exclude_patterns = ["_templates", "generated"]
 templates_path = ["_templates"]
 
 myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 3
 autodoc_default_options = {"members": True, "ignore-module-all": True, "show-inheritance": True}
 # Public names of `import protractile`, by the modules that document them.
 public = [getattr(protractile, name) for name in dir(protractile)]

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The tutorial's case gives the numbers that the page shows."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import protractile as pt
+from runs.case.build import build_boom
+from runs.pipeline.proportions import slips
+from runs.pipeline.summary import Summary
+from tests.docs.conftest import DOCS, toml_blocks
+
+PAGE = (DOCS / "tutorial.md").read_text("utf-8")
+SECTION = "section = { height = 0.300, width = 0.220, flange = 0.006, web = 0.005 }"
+COLLAR = 'collars = [{ span = [6.3, "head"], thickness = 0.008 }]'
+PAD = re.search(r"^    (pad = .*)$", PAGE, re.MULTILINE)
+
+Runner = Callable[..., Summary]
+
+
+def numbers(label: str, nth: int = 0) -> list[float]:
+    """Return the numbers of the nth table row with this label; no number is NaN."""
+    rows = [line for line in PAGE.splitlines() if line.startswith(f"| {label} |")]
+    cells = [cell.strip(" ").split(" ")[0] for cell in rows[nth].strip("|").split("|")[1:]]
+    return [float(cell.replace("−", "-").replace("–", "nan")) for cell in cells]
+
+
+def shown(value: float, digits: int, label: str, nth: int = 0, column: int = 0) -> bool:
+    """Return whether the page shows a value, rounded to its digits after the point."""
+    return numbers(label, nth)[column] == pytest.approx(round(value, digits), abs=1e-9)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Runner:
+    """Return a function that runs some models of a case and returns the summary."""
+
+    def of(text: str, *models: str, **changes: object) -> Summary:
+        path = tmp_path_factory.mktemp("tutorial") / "my-lift.toml"
+        path.write_text(text, "utf-8")
+        case = pt.change(pt.load_case(path), **changes)
+        return pt.run_case(case, models=[*models]).summary
+
+    return of
+
+
+def test_the_boom_alone_is_that_of_the_first_check(run: Runner, tmp_path: Path) -> None:
+    """Reference: the page, to its digits."""
+    text = toml_blocks("tutorial.md")[0]
+    path = tmp_path / "my-lift.toml"
+    path.write_text(text, "utf-8")
+    case = pt.load_case(path)
+    boom = build_boom(case)
+    assert slips(case, boom) == []
+    mass = sum(segment.mass_per_length * segment.length for segment in boom.segments)
+    assert shown(mass, 0, "mass of the boom")
+    summary = run(text, "beam", **{"time.duration": 0.1})
+    beam = summary.design.models["beam"]
+    assert shown(1e-3 * beam.static[0].cylinders["cylinder_force"], 2, "force of the cylinder")
+    assert shown(1e3 * summary.models["beam"].static_tip, 1, "tip at rest")
+    assert shown(-1e3 * beam.static[0].tilts[0].tip, 1, "of this by the play")
+    assert shown(beam.modes[0].frequency, 2, "first natural frequency, joints pressed")
+
+
+def test_the_beam_is_that_of_the_report(run: Runner, lift: str) -> None:
+    """Reference: the page, to its digits."""
+    summary = run(lift, "beam")
+    beam = summary.design.models["beam"]
+    peaks = {(peak.what, peak.where): peak for peak in beam.motion.peaks}
+    tip = peaks["deflection", "tip"]
+    assert shown(1e3 * summary.models["beam"].static_tip, 1, "tip at rest with the empty cage")
+    assert shown(1e-3 * beam.static[0].cylinders["cylinder_force"], 1, "force of the cylinder", 1)
+    assert shown(beam.modes[0].frequency, 2, "first natural frequency, joints pressed", 1)
+    part = 100.0 / summary.models["beam"].critical_factor
+    assert shown(part, 2, "largest axial force, as a part of the critical one")
+    assert shown(1e3 * tip.at_rest, 1, "static tip deflection, people in the cage (mm)")
+    assert shown(1e3 * tip.largest, 1, "maximum tip deflection (mm)")
+    assert shown(tip.largest / tip.at_rest, 2, "dynamic factor φ")
+    assert shown(beam.modes[0].frequency, 2, "first natural frequency (Hz)")
+    cylinder = peaks["cylinder force", "cylinder_force"].largest
+    assert shown(1e-3 * cylinder, 1, "cylinder force, maximum (kN)")
+    head = peaks["contact force", "6.5"].largest
+    assert shown(1e-3 * head, 1, "force at the head of the base, maximum (kN)")
+    bending = max(abs(fibre.stress) for fibre in beam.motion.fibres)
+    assert shown(1e-6 * bending, 1, "bending stress, maximum (MPa)")
+    assert summary.models["beam"].contact_changes == 0
+    for play in ("1", "6"):
+        swept = run(lift, "beam", **{"joint.play": 1e-3 * float(play), "time.duration": 0.5})
+        rest = {peak.what: peak for peak in swept.design.models["beam"].motion.peaks}
+        assert shown(1e3 * rest["deflection"].at_rest, 1, play)
+
+
+@pytest.mark.slow
+def test_a_coarse_shell_is_near_that_of_the_report(run: Runner, lift: str) -> None:
+    """Reference: the page, whose mesh has a tolerance of 1 %; this one has 5 %."""
+    pytest.importorskip("dolfinx", reason="shells need FEniCSx")
+    coarse = lift.replace('kind = "shell"', 'kind = "shell"\ncontact_tolerance = 0.05')
+    assert PAD is not None
+    cases = (
+        coarse,
+        re.sub("^pad = .*$", PAD[1], coarse, flags=re.MULTILINE),
+        coarse.replace(SECTION, f"{SECTION}\n{COLLAR}"),
+    )
+    assert len({*cases}) == 3
+    for column, case in enumerate(cases):
+        models = ("shell", "calibrated") if column == 0 else ("shell",)
+        summary = run(case, *models, **{"time.duration": 0.4})
+        shell = summary.design.models["shell"]
+        tip = numbers("maximum tip deflection (mm)", 1)[column]
+        assert 1e3 * shell.motion.peaks[0].largest == pytest.approx(tip, rel=5e-3)
+        patches = {
+            (place.segment, round(place.x, 3)): max(place.von_mises_patch)
+            for place in summary.models["shell"].stress.history.places
+        }
+        head, tail = patches["base", 6.5], patches["fly", 5.3]
+        page = numbers("plate stress at the head of the base (MPa)")[column]
+        assert 1e-6 * head == pytest.approx(page, rel=0.05)
+        page = numbers("plate stress at the tail of the fly (MPa)")[column]
+        assert 1e-6 * tail == pytest.approx(page, rel=0.05)
+        pad = max(row.utilisation for row in summary.pads if row.model == "shell")
+        page = numbers("pad utilisation at the head of the base")[column]
+        assert pad == pytest.approx(page, abs=6e-3)
+        if column == 0:
+            calibrated = summary.design.models["calibrated"].motion.peaks[0].largest
+            assert calibrated == pytest.approx(shell.motion.peaks[0].largest, rel=1e-3)
+            assert shell.modes[0].frequency == pytest.approx(
+                numbers("first natural frequency (Hz)")[1], rel=5e-3
+            )
