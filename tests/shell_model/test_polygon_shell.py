@@ -168,7 +168,7 @@ def test_a_hexagonal_boom_with_collars_follows_its_beam(monkeypatch: pytest.Monk
     monkeypatch.setattr(sections, "TOLERANCE", 0.03)
     monkeypatch.setattr(sections, "DURATION", 0.65)
     plain = sections.boom_of(HEXAGON, INNER_HEXAGON)
-    shell = sections.shell_peak(sections.collared(plain, 0.010))
+    shell = sections.shell_peak(sections.add_collars(plain, 0.010))
     assert shell == pytest.approx(sections.beam_peak(plain), rel=0.015)
 
 
@@ -222,7 +222,7 @@ def _of_walls(system: GapSystem, direction: str) -> Array:
 @pytest.mark.slow
 def test_a_mirrored_boom_moves_the_other_way() -> None:
     """Reference: symmetry. Upside down, under forces upside down: what pressed up presses down."""
-    upright = sections.collared(sections.boom_of(U, INNER_U), 0.006)
+    upright = sections.add_collars(sections.boom_of(U, INNER_U), 0.006)
     mirrored = replace(
         upright,
         segments=tuple(

@@ -28,9 +28,10 @@ ROOT = Path(__file__).parents[2]
 POINT = re.compile(r" \([^)]*\)$")
 
 
-def moved(touch: working_load.ContactType, sizes: working_load.Sizes) -> working_load.ContactResults:
+def moved(kind: working_load.ContactType, sizes: working_load.Sizes) -> working_load.ContactResults:
     motion = working_load.PointMotion(np.arange(2.0), np.ones(sizes.peaks), np.ones(2))
-    return working_load.ContactResults(touch, dict.fromkeys(touch.points, [motion] * len(sizes.meshes)))
+    motions = dict.fromkeys(kind.points, [motion] * len(sizes.meshes))
+    return working_load.ContactResults(kind, motions)
 
 
 def run(_case: Case, steps: Sequence[float], *_: object) -> list[direct.Run]:
