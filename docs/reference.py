@@ -19,8 +19,8 @@ DRAWINGS = {
     "SegmentTable": ("boom", "Lengths and places along a boom"),
     "SectionTable": ("sections", "Sections by the mid-lines of their plates"),
     "JointTable": ("station", "Play, pads and walls in a cross-section at a station"),
-    "SlidePadTable": ("pads", "Pads in an overlap, from the side"),
-    "CylinderTable": ("cylinder", "A luffing cylinder, and the pin of the foot"),
+    "SlidePad": ("pads", "Pads in an overlap, from the side"),
+    "Cylinder": ("cylinder", "A luffing cylinder, and the pin of the foot"),
 }
 
 
@@ -53,7 +53,7 @@ def _type(entry: dict[str, Any]) -> str:
         return f"[{_kind(name) or 'table'}](#{name.lower()})"
     for choice in ("anyOf", "oneOf"):
         if choice in entry:
-            if any(one.get("$ref", "").endswith("/PlaceTable") for one in entry[choice]):
+            if any(one.get("$ref", "").endswith("/Distance") for one in entry[choice]):
                 return "[place](#places)"
             types = [_type(one) for one in entry[choice] if one.get("type") != "null"]
             return " or ".join(dict.fromkeys(types))
@@ -102,7 +102,7 @@ def case_tables() -> str:
     Sections follow the order of the keys; tables inside others come after them.
     """
     lines = list(_section("Top of the file", "Case", SCHEMA))
-    listed = {"PlaceTable"}
+    listed = {"Distance"}
 
     def write(path: str, entry: dict[str, Any]) -> None:
         new = [name for name in dict.fromkeys(_tables_in(entry)) if name not in listed]
@@ -117,7 +117,7 @@ def case_tables() -> str:
 
     for key, entry in SCHEMA["properties"].items():
         write(f"[[{key}]]" if entry.get("type") == "array" else f"[{key}]", entry)
-    lines.extend(_section("Place, as a table", "PlaceTable", SCHEMA["$defs"]["PlaceTable"]))
+    lines.extend(_section("Place, as a table", "Distance", SCHEMA["$defs"]["Distance"]))
     return "\n".join(lines)
 
 

@@ -209,7 +209,7 @@ def _spread_weights(segment: Segment, gravity: float) -> list[tuple[float, float
     if segment.section is not None:
         doubler = segment.material.density * gravity
         found += [
-            (each.start, each.end, doubler * segment.mean_perimeter(each) * each.thickness)
+            (*each.span, doubler * segment.mean_perimeter(each) * each.thickness)
             for each in segment.collars
         ]
     return found

@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import TypeVar
 
 from geometry.axial import passed_over
 from geometry.boom_checks import check_boom
+from geometry.boom_error import BoomError
 from geometry.cylinder import Cylinder
-from geometry.fault import BoomError
+from geometry.fields import placed
 from geometry.joint import Joint, PadSize, SlidePad, Stop
 from geometry.load import Load
 from geometry.observation import Observation, Quantity
@@ -29,6 +31,9 @@ from geometry.segment import (
 )
 from geometry.support import Support
 from geometry.telescoping import drives_of, places, reach
+from geometry.typography import choices
+
+_Part = TypeVar("_Part")
 
 __all__ = [
     "SAME_PLACE",
@@ -225,17 +230,33 @@ class Boom:
         ]
 
     def _find_segments(self) -> None:
-        """Replace the segments' names by positions, and lists by tuples."""
-        names = [segment.name for segment in self.segments]
-        for group in (field.name for field in fields(self)):
-            parts = list(getattr(self, group))
-            for number, part in enumerate(parts):
-                for key in ("outer", "inner", "segment"):
-                    name = getattr(part, key, None)
-                    if isinstance(name, str) and name not in names:
-                        where = f"{group}[{number}].{key}"
-                        known = ", ".join(map(repr, names))
-                        raise BoomError(where, f"{name!r} is no segment; give one of {known}")
-                    if isinstance(name, str):
-                        parts[number] = replace(parts[number], **{key: names.index(name)})
-            object.__setattr__(self, group, tuple(parts))
+        """Replace names of segments by positions, places by x, and lists by tuples."""
+        object.__setattr__(self, "segments", tuple(self.segments))
+        for group in [field.name for field in fields(self)][1:]:
+            parts = tuple(
+                on_segments(part, f"{group}[{number}]", self.segments)
+                for number, part in enumerate(getattr(self, group))
+            )
+            object.__setattr__(self, group, parts)
+
+
+def on_segments(part: _Part, where: str, segments: Sequence[Segment]) -> _Part:
+    """Return a part with positions of segments in place of names, and x in place of distances.
+
+    Args:
+        part: a joint, or a part on one segment.
+        where: its place in the boom.
+        segments: of the boom.
+
+    Raises:
+        BoomError: a name that is no segment.
+    """
+    names = [segment.name for segment in segments]
+    for key in ("outer", "inner", "segment"):
+        name = getattr(part, key, None)
+        if isinstance(name, str):
+            if name not in names:
+                raise BoomError(f"{where}.{key}", f"{name!r} is no segment; give {choices(names)}")
+            part = replace(part, **{key: names.index(name)})  # type: ignore[type-var]
+    outer, inner = (getattr(part, key, getattr(part, "segment", 0)) for key in ("outer", "inner"))
+    return placed(part, segments[inner].start, segments[outer].end)

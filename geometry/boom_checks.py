@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from geometry.boom_error import BoomError
 from geometry.cylinder import forces
-from geometry.fault import BoomError
 from geometry.fit import check_flats, check_pads, check_room
 from geometry.holding import check_held
 from geometry.joint import Joint, Stop
+from geometry.load import PartialLoad
 from geometry.observation import IN_SPACE, KINDS
 from geometry.segment import SAME_PLACE
 from geometry.telescoping import check_drives
@@ -153,6 +154,11 @@ def _check_loads(boom: Boom) -> None:
     for number, load in enumerate(boom.loads):
         for key, x in load.places.items():
             boom.segments[load.segment].check_place(f"loads[{number}].{key}", x)
+        if isinstance(load, PartialLoad) and not load.span[0] < load.span[1]:
+            start, end = load.span
+            raise BoomError(
+                f"loads[{number}].to", f"must be beyond from, {start:g} m, got {end:g} m"
+            )
         if load.direction == "y" and not boom.spatial:
             raise BoomError(
                 f"loads[{number}].direction",
@@ -225,10 +231,6 @@ def _check_joint(boom: Boom, where: str, joint: Joint) -> None:
             )
     if joint.tied and joint.dashpot > 0.0:
         raise BoomError(f"{where}.dashpot", "the joint is tied, and nothing moves; leave it out")
-    if not 0.0 <= joint.dashpot < float("inf"):
-        raise BoomError(
-            f"{where}.dashpot", f"must be a number of N s/m from 0 on, got {joint.dashpot:g}"
-        )
     near = SAME_PLACE * outer.length
     if any(right - left <= near for left, right in pairwise(joint.stations)):
         raise BoomError(f"{where}.stations", "must rise from the base to the tip, each given once")

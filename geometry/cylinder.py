@@ -4,25 +4,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import field
 from math import hypot
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
+from pydantic.dataclasses import dataclass
 
 from geometry.arrays import Array
-from geometry.fault import BoomError
+from geometry.boom_error import BoomError
+from geometry.fields import PART, In, NotNegative, Number, Place, Positive, SegmentRef
 from geometry.load import Body
-from geometry.section import SegmentRef
 from geometry.support import Support
 
 if TYPE_CHECKING:
     from geometry.boom import Boom
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, config=PART)
 class Cylinder:
-    """A spring, and a dashpot, between a lug of a segment and a point of the ground.
+    """A luffing cylinder: a spring between a lug of a segment and a point of the ground.
 
     The lug moves with its cross-section. The segment does not stretch; along x its foot holds it,
     the support nearest to the base.
@@ -35,24 +36,23 @@ class Cylinder:
     >>> luffed = replace(boom, segments=(arm, boom.segments[1]), cylinders=(jack,))
     >>> bool((pt.BeamElements(luffed).system().omega2[:2] > 0.0).all())
     True
-
-    Args:
-        segment: its name; in a boom its position.
-        x: of the lug in m.
-        depth: of the lug below the axis in m.
-        ground: x of the other end in m, and how far it is above the axis, which is straight.
-        stiffness: along its line in N/m, of two side by side together.
-        dashpot: along its line in N·s/m, likewise.
-        spread: distance along y in m of two side by side, in space; one in the middle unless given.
     """
 
     segment: SegmentRef
-    x: float
-    depth: float
-    ground: tuple[float, float]
-    stiffness: float
-    dashpot: float = 0.0
-    spread: float = 0.0
+    """the name of the segment"""
+    x: Place
+    """the x of the lug in m"""
+    depth: Annotated[Number, In("m")] = 0.0
+    """how far in m the lug is below the segment's axis"""
+    ground: tuple[Annotated[Number, In("m")], Annotated[Number, In("m")]] = field(kw_only=True)
+    """the other end in m: its x, and how far it is above the boom's axis"""
+    stiffness: Annotated[Positive, In("N/m")] = field(kw_only=True)
+    """the stiffness in N/m along its line, of two side by side together"""
+    dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
+    """the linear dashpot in N s/m along its line, of two together"""
+    spread: Annotated[NotNegative, In("m")] = 0.0
+    """the distance in m across the boom of two side by side, of a boom in space; one in the middle
+    unless given"""
 
     @property
     def length(self) -> float:
@@ -90,22 +90,12 @@ class Cylinder:
             spatial: of the boom.
 
         Raises:
-            BoomError: it has no length, or is impossible, or two are side by side in a flat boom.
+            BoomError: it has no length, or two are side by side in a flat boom.
         """
         if not 0.0 < self.length < float("inf"):
             raise BoomError(
                 f"{where}.ground", "must be another point than the lug; give x and z in m"
             )
-        for key, least, unit in (
-            ("stiffness", "above 0", "N/m"),
-            ("dashpot", "from 0 on", "N s/m"),
-            ("spread", "from 0 on", "m"),
-        ):
-            given = getattr(self, key)
-            if not 0.0 <= given < float("inf") or (given == 0.0 and key == "stiffness"):
-                raise BoomError(
-                    f"{where}.{key}", f"must be a number of {unit} {least}, got {given:g}"
-                )
         if self.spread > 0.0 and not spatial:
             raise BoomError(
                 f"{where}.spread",

@@ -17,8 +17,8 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.axial import on_foot, pin_moments
+from geometry.boom_error import BoomError
 from geometry.cylinder import ground_lines
-from geometry.fault import BoomError
 from geometry.load import Member
 from geometry.section import Direction
 from geometry.segment import Segment

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from geometry.arrays import Array
-from geometry.section import Direction, SegmentRef
+from geometry.fields import SegmentRef
+from geometry.section import Direction
 
 
 class Body(Protocol):

@@ -142,7 +142,7 @@ def collar_breaks(segment: Segment) -> dict[str, float]:
     """Return name → x in m of the ends of a segment's collars."""
     breaks: dict[str, float] = {}
     for k, collar in enumerate(segment.collars, start=1):
-        breaks |= {f"collar-{k}-start": collar.start, f"collar-{k}-end": collar.end}
+        breaks |= dict(zip((f"collar-{k}-start", f"collar-{k}-end"), collar.span, strict=True))
     return breaks
 
 

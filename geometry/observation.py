@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from geometry.section import SegmentRef
+from pydantic.dataclasses import dataclass
+
+from geometry.fields import PART, Name, Place, SegmentRef
 
 # Quantities that a case may observe.
 Recorded = Literal["deflection", "rotation", "velocity", "acceleration", "lateral", "twist"]
@@ -44,7 +45,7 @@ KINDS: Mapping[Quantity, Kind] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, config=PART)
 class Observation:
     """An output that every model records.
 
@@ -52,18 +53,17 @@ class Observation:
     >>> system = pt.BeamElements(replace(boom, observations=(seat,))).system()
     >>> system.observers["seat"].unit
     'm/s'
-
-    Args:
-        name: of the output.
-        segment: its name; in a boom its position.
-        x: m.
-        quantity: of its cross-section there; the lateral deflection and the twist in space alone.
     """
 
-    name: str
+    name: Name
+    """what the results call it"""
     segment: SegmentRef
-    x: float
+    """the name of the segment"""
+    x: Place
+    """the x in m"""
     quantity: Quantity = "deflection"
+    """the deflection along z, its velocity, its acceleration as the mean of each output interval,
+    the rotation of the cross-section; in space the lateral deflection and the twist"""
 
     @property
     def kind(self) -> Kind:

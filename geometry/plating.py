@@ -51,7 +51,8 @@ def plated(segment: Segment, mesh: SegmentMesh) -> PlatedMesh:
         even = plain * segment.area / np.polyval(parabola, part)
     thickness = plain.copy()
     for collar in segment.collars:
-        thickness[mesh.on_walls & (x > collar.start) & (x < collar.end)] += collar.thickness
+        start, end = collar.span
+        thickness[mesh.on_walls & (x > start) & (x < end)] += collar.thickness
     for number, diaphragm in enumerate(segment.diaphragms, start=len(mesh.plates)):
         thickness[mesh.walls == number] = diaphragm.thickness
     return PlatedMesh(

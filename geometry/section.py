@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Any, Literal, NamedTuple, Protocol
+from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -24,8 +24,6 @@ from geometry.arrays import Array, Mask
 
 Direction = Literal["z", "y"]
 Side = Literal[-1, 0, 1]
-# Segment of a boom: its name as the user gives it, or its position in a boom.
-SegmentRef = Any
 Offset = tuple[float, float]
 
 # Position of a direction in (x, y, z).

@@ -9,13 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import Field
+from pydantic.dataclasses import dataclass as part
 
 from geometry.arrays import Array
+from geometry.boom_error import BoomError
 from geometry.compression import UNPRESSED, Compression
-from geometry.fault import BoomError
+from geometry.fields import PART, In, Length, Place, Positive, placed
 from geometry.section import COMPONENT, Section, SectionError
 from geometry.support import Support, check_support
 from geometry.taper import areas, between, check_alike, half_way, mean_area
@@ -29,19 +32,23 @@ SAME_PLACE = 1.0e-10
 APART = 1.0e-4
 
 
-@dataclass(frozen=True, slots=True)
+@part(frozen=True, slots=True, config=PART)
 class Material:
-    """Isotropic linear elasticity: E in Pa, ν, density in kg/m³; yield strength in Pa, if known.
+    """Isotropic linear elasticity.
 
     >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
     >>> print(f"{1e-9 * steel.shear_modulus:.1f} GPa")
     80.8 GPa
     """
 
-    youngs_modulus: float
-    poissons_ratio: float
-    density: float
-    yield_strength: float | None = None
+    youngs_modulus: Annotated[Positive, In("Pa")]
+    """Young's modulus E in Pa"""
+    poissons_ratio: Annotated[float, Field(strict=True, gt=-1.0, lt=0.5), In("1")]
+    """Poisson's ratio"""
+    density: Annotated[Positive, In("kg/m^3")]
+    """the density in kg/m^3"""
+    yield_strength: Annotated[Positive, In("Pa")] | None = None
+    """the yield strength in Pa, beside which a run shows stresses"""
 
     @property
     def shear_modulus(self) -> float:
@@ -49,9 +56,9 @@ class Material:
         return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
 
 
-@dataclass(frozen=True, slots=True)
+@part(frozen=True, slots=True, config=PART)
 class PointMass:
-    """A mass in kg on the axis at x in m, without inertia against turning.
+    """A mass on a segment's axis, without inertia against turning.
 
     >>> arm = replace(boom.segments[0], masses=(pt.PointMass(x=8.0, mass=200.0),))
     >>> heavier = replace(boom, segments=(arm, boom.segments[1]))
@@ -60,43 +67,50 @@ class PointMass:
     True
     """
 
-    x: float
-    mass: float
+    x: Place
+    """the x in m"""
+    mass: Annotated[Positive, In("kg")]
+    """the mass in kg"""
 
 
-@dataclass(frozen=True, slots=True)
+@part(frozen=True, slots=True, config=PART)
 class Collar:
-    """A doubler around the box, on all walls, which leaves the mid-surfaces in place.
+    """A doubler around a segment; the walls' mid-surfaces stay where they are.
 
-    >>> head = pt.Collar(start=7.5, end=8.0, thickness=0.01)
-    >>> len(replace(boom.segments[0], collars=(head,)).collars)
-    1
-
-    Args:
-        start, end: x of its ends in m.
-        thickness: its thickness on each wall in m.
+    >>> head = pt.Collar(span=(7.5, 8.0), thickness=0.01)
+    >>> replace(boom.segments[0], collars=(head,)).collars[0].length
+    0.5
     """
 
-    start: float
-    end: float
-    thickness: float
+    span: tuple[Place, Place]
+    """the x of its two ends in m, rising"""
+    thickness: Length
+    """the thickness in m that it adds to all walls"""
+
+    @property
+    def length(self) -> float:
+        """Length along the boom in m."""
+        return self.span[1] - self.span[0]
+
+    @property
+    def middle(self) -> float:
+        """x of its middle in m."""
+        return 0.5 * sum(self.span)
 
 
-@dataclass(frozen=True, slots=True)
+@part(frozen=True, slots=True, config=PART)
 class Diaphragm:
-    """A plate that closes the box at x, welded to its walls.
+    """A plate that closes a segment's box, welded to its walls.
 
     >>> plate = pt.Diaphragm(x=0.5, thickness=0.01)
     >>> len(replace(boom.segments[0], diaphragms=(plate,)).diaphragms)
     1
-
-    Args:
-        x: of its mid-surface in m.
-        thickness: m.
     """
 
-    x: float
-    thickness: float
+    x: Place
+    """the x in m"""
+    thickness: Length
+    """the thickness in m"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,6 +183,11 @@ class Segment:
     diaphragms: tuple[Diaphragm, ...] = ()
     compression: Compression = UNPRESSED
     shear_stiffnesses: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        for group in ("supports", "masses", "collars", "diaphragms"):
+            on_segment = tuple(placed(one, self.start, self.end) for one in getattr(self, group))
+            object.__setattr__(self, group, on_segment)
 
     @classmethod
     def of_section(
@@ -268,10 +287,7 @@ class Segment:
             for one in self.diaphragms
         )
         of_collars = (
-            PointMass(
-                0.5 * (one.start + one.end),
-                density * self.mean_perimeter(one) * (one.end - one.start) * one.thickness,
-            )
+            PointMass(one.middle, density * self.mean_perimeter(one) * one.length * one.thickness)
             for one in self.collars
         )
         return (*of_diaphragms, *of_collars)
@@ -283,7 +299,7 @@ class Segment:
 
     def mean_perimeter(self, collar: Collar) -> float:
         """Return the length of the mid-lines in m, half-way along a collar."""
-        return self.section_at(0.5 * (collar.start + collar.end)).perimeter
+        return self.section_at(collar.middle).perimeter
 
     def local(self, x: float) -> Segment:
         """Return the plain segment that has this one's section at x in m everywhere."""
@@ -316,7 +332,7 @@ class Segment:
     def rigid_modes(self) -> int:
         """Number of motions along z that the supports leave free of strain."""
         held = sum(
-            1 if support.kind == "pinned" and support.rotation_stiffness is None else 2
+            2 if support.holds_slope("z") or support.rotation_stiffness is not None else 1
             for support in self.supports
         )
         return max(0, 2 - held)
@@ -388,10 +404,6 @@ class Segment:
             )
         for mass in self.masses:
             self.check_place(f"{where}.masses", mass.x)
-            if not 0.0 < mass.mass < float("inf"):
-                raise BoomError(
-                    f"{where}.masses", f"must be positive numbers of kg, got {mass.mass:g}"
-                )
         self._check_collars(where)
         self._check_diaphragms(where)
 
@@ -409,21 +421,20 @@ class Segment:
         for number, collar in enumerate(self.collars):
             key = f"{where}.collars[{number}]"
             self._check_thickness(key, collar.thickness)
-            if not collar.end - collar.start > SAME_PLACE * self.length:
+            if not collar.length > SAME_PLACE * self.length:
                 raise BoomError(
-                    f"{key}.start",
+                    f"{key}.span",
                     "must run from a smaller to a larger x, got "
-                    f"[{collar.start:g}, {collar.end:g}] m",
+                    f"[{collar.span[0]:g}, {collar.span[1]:g}] m",
                 )
-            for x in (collar.start, collar.end):
-                self.check_place(f"{key}.start", x)
-        rising = sorted(self.collars, key=lambda collar: collar.start)
-        for left, right in pairwise(rising):
-            if left.end - right.start > SAME_PLACE * self.length:
+            for x in collar.span:
+                self.check_place(f"{key}.span", x)
+        for (_, left), (right, _) in pairwise(sorted(collar.span for collar in self.collars)):
+            if left - right > SAME_PLACE * self.length:
                 raise BoomError(
                     f"{where}.collars",
-                    f"two lie on one another from {right.start:g} m on; give one of the thickness "
-                    "of both there",
+                    f"two lie on one another from {right:g} m on; give one of the thickness of "
+                    "both there",
                 )
 
     def _check_diaphragms(self, where: str) -> None:
@@ -436,10 +447,6 @@ class Segment:
             raise BoomError(f"{where}.diaphragms", "a place is given twice; give each once")
 
     def _check_thickness(self, where: str, thickness: float) -> None:
-        if not 0.0 < thickness < float("inf"):
-            raise BoomError(
-                f"{where}.thickness", f"must be a positive number of m, got {thickness:g}"
-            )
         if self.section is None:
             return
         ends = self.section, self.head_section or self.section

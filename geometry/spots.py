@@ -133,7 +133,7 @@ def _walls(boom: Boom, number: int) -> Iterator[float]:
         if joint.tied and number in (joint.outer, joint.inner):
             yield from joint.stations
     for collar in segment.collars:
-        yield from (collar.start, collar.end)
+        yield from collar.span
     yield from (plate.x for plate in segment.diaphragms)
 
 

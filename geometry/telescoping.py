@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.fault import BoomError
+from geometry.boom_error import BoomError
 from geometry.fit import check_pads_on_the_way, check_room_on_the_way
 from geometry.joint import Drive, Joint
 from geometry.segment import SAME_PLACE, Segment

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 # Factors from m, N and Pa to mm, kN and MPa, and from a fraction to per cent.
 TO_MICRO, TO_MILLI, TO_KILO, TO_MEGA, TO_PERCENT = 1.0e6, 1.0e3, 1.0e-3, 1.0e-6, 100.0
@@ -31,3 +31,15 @@ def listed(parts: Iterable[str]) -> str:
     """
     *most, last = parts
     return f"{', '.join(most)} and {last}" if most else last
+
+
+# Number of valid names that a message lists.
+MOST_CHOICES = 12
+
+
+def choices(known: Sequence[str]) -> str:
+    """Return "'a', 'b' or 'c'"; the first few of many."""
+    if len(known) > MOST_CHOICES:
+        return f"{', '.join(repr(name) for name in known[:MOST_CHOICES])} or another of its kind"
+    quoted = [repr(name) for name in known]
+    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"

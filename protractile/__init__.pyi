@@ -4,6 +4,7 @@
 # What a boom is made of
 from geometry.boom import Boom as Boom
 from geometry.cylinder import Cylinder as Cylinder
+from geometry.fields import Distance as Distance
 from geometry.joint import Drive as Drive
 from geometry.joint import Joint as Joint
 from geometry.joint import PadSize as PadSize
@@ -61,5 +62,5 @@ from runs.pipeline.results import Results as Results
 
 # Errors
 from dynamics.failure import NumericsError as NumericsError
-from geometry.fault import BoomError as BoomError
+from geometry.boom_error import BoomError as BoomError
 from runs.case.messages import BadInput as BadInput

@@ -123,8 +123,8 @@ def _stiffeners(boom: Boom, system: System) -> Table:
         if segment.section is None:
             continue
         for one in segment.collars:
-            area = segment.mean_perimeter(one) * (one.end - one.start)
-            rows.append(("collar", segment.name, (one.start, one.end), one.thickness, area))
+            area = segment.mean_perimeter(one) * one.length
+            rows.append(("collar", segment.name, one.span, one.thickness, area))
         for plate in segment.diaphragms:
             area, ends = segment.section_at(plate.x).enclosed_area, (plate.x, plate.x)
             rows.append(("diaphragm", segment.name, ends, plate.thickness, area))

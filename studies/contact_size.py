@@ -63,7 +63,7 @@ def contacts_of(case: Case, sizes: Sizes) -> list[Contact]:
     """Return contacts at corners and at pads."""
     corners = []
     for length in sizes.lengths:
-        joints = tuple(joint.model_copy(update={"contact_length": length}) for joint in case.joints)
+        joints = tuple(replace(joint, contact_length=length) for joint in case.joints)
         pressed = case.model_copy(update={"joints": joints})
         corners.append(Contact(f"corner of {length:g} m", pressed, length, None))
     return corners + [

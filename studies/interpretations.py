@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import combinations, groupby, pairwise, product
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -91,7 +91,7 @@ class Interpretation:
             paper: case of the file.
             change: relative, of all loads.
         """
-        law = {
+        law: dict[str, Any] = {
             "play": self.play,
             "stiffness": self.contact_stiffness,
             "exponent": self.exponent,
@@ -119,7 +119,7 @@ class Interpretation:
                 "demand": (),
                 "ensemble": None,
                 "segments": segments,
-                "joints": tuple(joint.model_copy(update=law) for joint in paper.joints),
+                "joints": tuple(replace(joint, **law) for joint in paper.joints),
                 "models": models,
             }
         )

@@ -4,21 +4,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
+from geometry.joint import PadSize
 from runs.case.build import build_boom
-from runs.case.contact import PadTable
 from runs.case.schema import Case
 from studies.study import Proof
 
 
 def with_pads(case: Case, length: float, width: float) -> Case:
     """Return the case with pads of a size, in m, at all its joints."""
-    pad = PadTable.model_validate({"length": length, "width": width})
-    joints = tuple(joint.model_copy(update={"pad": pad}) for joint in case.joints)
+    pad = PadSize(length, width)
+    joints = tuple(replace(joint, pad=pad) for joint in case.joints)
     return case.model_copy(update={"joints": joints})
 
 

@@ -17,7 +17,7 @@ with its friction, show the accuracy of the rule.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -94,7 +94,7 @@ def boom_case(given: Proportions) -> Case:
     segments = []
     for table, box, span in zip(case.segments, boxes, spans, strict=True):
         supports = tuple(
-            support.model_copy(update={"x": 0.2 * head if number else 0.0})
+            replace(support, x=0.2 * head if number else 0.0)
             for number, support in enumerate(table.supports)
         )
         # The box determines its own properties.
@@ -107,9 +107,7 @@ def boom_case(given: Proportions) -> Case:
     forces = tuple(
         0.1 * head * lighter * force for joint in case.joints for force in joint.normal_forces
     )
-    joint = case.joints[0].model_copy(
-        update={"stations": (head - given.overlap, head), "normal_forces": forces}
-    )
+    joint = replace(case.joints[0], stations=(head - given.overlap, head), normal_forces=forces)
     found = case.model_copy(update={"segments": tuple(segments), "joints": (joint,)})
     return found if given.pad is None else with_pads(found, *given.pad)
 

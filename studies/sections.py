@@ -100,7 +100,7 @@ def add_collars(boom: Boom, thickness: float) -> Boom:
     """Return the boom with collars around both segments at both stations."""
     spans = ((8.85, 9.15), (9.85, 10.0)), ((9.0, 9.15), (9.85, 10.15))
     segments = (
-        replace(segment, collars=tuple(Collar(*span, thickness) for span in own))
+        replace(segment, collars=tuple(Collar(span, thickness) for span in own))
         for segment, own in zip(boom.segments, spans, strict=True)
     )
     return replace(boom, segments=tuple(segments))

@@ -72,13 +72,13 @@ def stiffened_segments(boom: Boom, sizes: Sizes) -> tuple[dict[str, Segment], di
     outers, inners = {"nothing": outer}, {"nothing": inner}
     for t in sizes.collars:
         what = f"{1e3 * t:g} mm"
-        outers[f"collar at the head, {what}"] = replace(outer, collars=(Collar(*head, t),))
-        inners[f"collar at the tail, {what}"] = replace(inner, collars=(Collar(*tail, t),))
+        outers[f"collar at the head, {what}"] = replace(outer, collars=(Collar(head, t),))
+        inners[f"collar at the tail, {what}"] = replace(inner, collars=(Collar(tail, t),))
     for t in sizes.diaphragms:
         plates = (Diaphragm(inner.start, t),)
         inners[f"diaphragm in the tail, {1e3 * t:g} mm"] = replace(inner, diaphragms=plates)
     # Both rise.
-    both = replace(inner, collars=(Collar(*tail, sizes.collars[-1]),), diaphragms=plates)
+    both = replace(inner, collars=(Collar(tail, sizes.collars[-1]),), diaphragms=plates)
     return outers, inners | {"the thickest of both": both}
 
 
@@ -158,7 +158,7 @@ def ring_flexibility(section: BoxSection, young: float, collar: float, size: flo
         size: of the mesh in m.
     """
     length = 0.1 * (section.width + section.height)
-    collars = (Collar(0.0, length, collar),) if collar else ()
+    collars = (Collar((0.0, length), collar),) if collar else ()
     ring = _piece(Material(young, 0.0, 7850.0), section, length, collars=collars)
     shell = shell_alone(ring, size, (0.5 * length,))
     across = ((0.0, 1.0 / 6.0), (0.5 * length, 4.0 / 6.0), (length, 1.0 / 6.0))

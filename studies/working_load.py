@@ -162,7 +162,7 @@ def set_point(system: GapSystem, point: Point) -> GapSystem:
 
 def in_space(case: Case) -> Case:
     """Return the case with play and half its load sideways, too."""
-    joints = tuple(joint.model_copy(update={"lateral_play": joint.play}) for joint in case.joints)
+    joints = tuple(replace(joint, lateral_play=joint.play) for joint in case.joints)
     segments = tuple(
         segment.model_copy(update={"lateral_load": 0.5 * segment.load}) for segment in case.segments
     )

@@ -48,7 +48,7 @@ def level() -> tuple[Boom, float]:
 
 
 def _segment(load: float = 0.0, masses: tuple[PointMass, ...] = ()) -> Segment:
-    pin = Support(0.0, lateral_kind="clamped", depth=DEPTH)
+    pin = Support(0.0, "hinged", depth=DEPTH)
     return Segment.of_section(
         "boom", 0.0, LENGTH, LIGHT, BOX, load=load, masses=masses, supports=(pin,)
     )

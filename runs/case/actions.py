@@ -4,17 +4,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
+from typing import Any
 
 from scipy.special import cosdg, sindg
 
 from dynamics.contact import PowerContact
 from dynamics.excitation import History, PiecewiseLinear, Ramp, Released, Sine, Step, Thrown
 from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, BoomError, Cylinder, Direction, Segment, Stop
+from geometry.boom import Boom, BoomError, Direction, Segment, Stop, on_segments
+from geometry.fields import Distance, at
+from geometry.joint import BareStop
 from geometry.load import Load, Moment, PartialLoad, Turn
-from runs.case.messages import choices
-from runs.case.places import at
+from geometry.typography import choices
 from runs.case.schema import (
     AxialTable,
     Case,
@@ -43,10 +45,7 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
             "payload.gravity",
             "the table gravity is given, by which the payload weighs too; leave one of them out",
         )
-    given = [
-        _load(f"load[{number}]", table, segments)
-        for number, table in enumerate(case.loads, start=1)
-    ]
+    given = [_load(f"load[{number}]", table) for number, table in enumerate(case.loads, start=1)]
     last = len(segments) - 1
     if case.payload is not None and case.gravity is None:
         weight = -case.payload.mass * _weighing(case.payload)
@@ -157,13 +156,11 @@ def thrusts(case: Case, segments: Sequence[Segment]) -> tuple[Thrust, ...]:
 
 
 def _thrust(where: str, table: AxialTable, case: Case, segments: Sequence[Segment]) -> Thrust:
-    index = len(segments) - 1
-    if table.segment is not None:
-        index = called(f"{where}.segment", table.segment, segments)
-    ends = segments[index].start, segments[index].end
-    place = segments[index].end if table.x is None else at(table.x, *ends)
-    segments[index].check_place(f"{where}.x", place)
-    return Thrust(index, place, _pull(where, table, case))
+    name: Any = segments[-1].name if table.segment is None else table.segment
+    place: Any = Distance(head=0.0) if table.x is None else table.x
+    thrust = on_segments(Thrust(name, place, _pull(where, table, case)), where, segments)
+    segments[thrust.segment].check_place(f"{where}.x", thrust.x)
+    return thrust
 
 
 def _pull(where: str, table: AxialTable, case: Case) -> float:
@@ -195,11 +192,8 @@ def _weighing(payload: PayloadTable | None) -> float:
     return payload.gravity
 
 
-def _load(where: str, table: LoadTable, segments: Sequence[Segment]) -> Load:
-    index = called(f"{where}.segment", table.segment, segments)
-    ends = segments[index].start, segments[index].end
-    x = None if table.x is None else at(table.x, *ends)
-    acts = index, table.direction, table.magnitude, x, _load_history(where, table)
+def _load(where: str, table: LoadTable) -> Load:
+    acts = table.segment, table.direction, table.magnitude, table.x, _load_history(where, table)
     if table.moment and table.x is None:
         raise BoomError(f"{where}.x", "missing; it is the x in m at which the moment acts")
     for key, given in (("from", table.start), ("to", table.end)):
@@ -209,18 +203,16 @@ def _load(where: str, table: LoadTable, segments: Sequence[Segment]) -> Load:
         return Moment(*acts)
     if table.start is None and table.end is None:
         return Load(*acts)
-    start = ends[0] if table.start is None else at(table.start, *ends)
-    end = ends[1] if table.end is None else at(table.end, *ends)
-    if not start < end:
-        raise BoomError(f"{where}.to", f"must be beyond from, {start:g} m, got {end:g} m")
+    start: Any = Distance(tail=0.0) if table.start is None else table.start
+    end: Any = Distance(head=0.0) if table.end is None else table.end
     return PartialLoad(*acts, span=(start, end))
 
 
-def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:
+def stops(case: Case) -> tuple[Stop, ...]:
     """Return the stops on the ground.
 
     Raises:
-        BoomError: an unknown segment, a stop that nothing can touch.
+        BoomError: nothing can touch a stop.
     """
     for number, table in enumerate(case.stops, start=1):
         if table.stiffness == 0.0 and not table.stiffness_below:
@@ -229,33 +221,12 @@ def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:
             )
     return tuple(
         Stop(
-            segment=index,
-            x=at(table.x, segments[index].start, segments[index].end),
-            play=table.play,
             contact=PowerContact(
                 table.stiffness, table.exponent, stiffness_below=table.stiffness_below
             ),
-            contact_length=table.contact_length,
+            **values(table, BareStop),
         )
-        for number, table in enumerate(case.stops, start=1)
-        for index in [called(f"stop[{number}].segment", table.segment, segments)]
-    )
-
-
-def cylinders(case: Case, segments: Sequence[Segment]) -> tuple[Cylinder, ...]:
-    """Return the luffing cylinders.
-
-    Raises:
-        BoomError: an unknown segment.
-    """
-    return tuple(
-        Cylinder(
-            segment=index,
-            x=at(table.x, segments[index].start, segments[index].end),
-            **table.model_dump(exclude={"segment", "x"}),
-        )
-        for number, table in enumerate(case.cylinders, start=1)
-        for index in [called(f"cylinder[{number}].segment", table.segment, segments)]
+        for table in case.stops
     )
 
 
@@ -279,6 +250,11 @@ def series_notes(case: Case) -> list[str]:
             lasts = f"lasts from {first:g} to {last:g} s, the run {duration:g} s"
             notes.append(f"note: the series of {key} {lasts}: {'; '.join(said)}")
     return notes
+
+
+def values(table: Any, part: type) -> dict[str, Any]:
+    """Return the values that a table has of the fields of a part."""
+    return {field.name: getattr(table, field.name) for field in fields(part)}
 
 
 def called(where: str, name: str, segments: Sequence[Segment | SegmentTable]) -> int:

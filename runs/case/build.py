@@ -13,28 +13,25 @@ from geometry.axial import with_compression
 from geometry.boom import (
     Boom,
     BoomError,
-    Collar,
-    Diaphragm,
     Joint,
     Lateral,
     Material,
     PointMass,
     Segment,
-    Support,
 )
 from geometry.boom_checks import check_order
+from geometry.fields import described, placed
 from geometry.holding import check_pressed
-from geometry.observation import Observation
+from geometry.joint import BareJoint
 from geometry.section import Section, SectionError, infer_inner_section, infer_outer_section
 from geometry.taper import check_alike, half_way, mean_area
 from runs.case import actions
+from runs.case.actions import values
 from runs.case.contact import JointTable
 from runs.case.elastic_drive import check_elastic_drives
 from runs.case.extension import spans
-from runs.case.limits import described
-from runs.case.places import at
 from runs.case.schema import Case
-from runs.case.segment import SegmentTable, SupportTable
+from runs.case.segment import SegmentTable
 
 # Quantities in the trajectories of every boom.
 _TAKEN = {
@@ -60,6 +57,7 @@ def build_boom(case: Case) -> Boom:
     check_names("segment", [segment.name for segment in case.segments])
     _check_flat(case)
     _check_joined(case)
+    _check_observations(case)
     ends = spans(case.segments, case.joints)
     joints = tuple(_joint(case, number, ends) for number in range(len(case.joints)))
     sections = _sections(case, joints)
@@ -72,9 +70,9 @@ def build_boom(case: Case) -> Boom:
         segments,
         joints,
         actions.loads(case, segments),
-        actions.stops(case, segments),
-        _observations(case, segments),
-        actions.cylinders(case, segments),
+        actions.stops(case),
+        case.observe,
+        case.cylinders,
     )
     check_pressed(boom)
     check_elastic_drives(case, boom)
@@ -113,22 +111,18 @@ def _loaded(boom: Boom) -> bool:
     return any(own) or any(load.magnitude for load in lasting)
 
 
-def _observations(case: Case, segments: Sequence[Segment]) -> tuple[Observation, ...]:
+def _check_observations(case: Case) -> None:
+    """Check that observations have names of their own."""
     check_names("observe", [table.name for table in case.observe])
-    found = []
     of_drives = {
         name + suffix for suffix in case.driven for name in (*OF_DRIVES, *OF_ELASTIC_DRIVES)
     }
     for number, table in enumerate(case.observe, start=1):
-        index = actions.called(f"observe[{number}].segment", table.segment, segments)
         if table.name in _TAKEN | of_drives:
             raise BoomError(
                 f"observe[{number}].name",
                 f"{table.name!r} is the name of another output already; give it its own",
             )
-        x = at(table.x, segments[index].start, segments[index].end)
-        found.append(Observation(table.name, index, x, table.quantity))
-    return tuple(found)
 
 
 def check_names(where: str, names: Sequence[str]) -> None:
@@ -175,32 +169,18 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
             f"joint[{index + 1}].friction", "the joint is tied, and nothing slides; leave it out"
         )
     _check_plays(f"joint[{index + 1}]", table)
-    return Joint(
-        outer=outer,
-        inner=inner,
-        stations=tuple(at(place, tail, head) for place in table.stations),
-        play=table.play,
-        contact=table.law("z"),
-        lateral_play=table.lateral_play,
-        lateral_contact=None if table.lateral_play is None else table.law("y"),
-        play_above=table.play_above,
-        lateral_play_right=table.lateral_play_right,
-        interference=table.interference,
-        lateral_interference=table.lateral_interference,
-        friction=table.friction,
-        normal_forces=table.normal_forces,
-        tied=table.tied,
-        pad=None if table.pad is None else table.pad.size,
-        pads=table.slide_pads,
-        contact_length=table.contact_length,
-        dashpot=table.dashpot,
-        locked_at=None if table.locked_at is None else at(table.locked_at, tail, head),
-        drive=None
-        if table.drive is None
-        else table.drive.drive(
+    drive = None
+    if table.drive is not None:
+        drive = table.drive.drive(
             f"joint[{index + 1}]", table.stations, table.locked_at, (table.inner, tail)
-        ),
+        )
+    joint = Joint(
+        **values(table, BareJoint) | {"outer": outer, "inner": inner},
+        contact=table.law("z"),
+        lateral_contact=None if table.lateral_play is None else table.law("y"),
+        drive=drive,
     )
+    return placed(joint, tail, head)
 
 
 def _check_plays(where: str, table: JointTable) -> None:
@@ -221,6 +201,9 @@ def _segment(case: Case, index: int, section: Section | None, ends: tuple[float,
     material = material_of(case, index)
     mass, second_moment = _beam_numbers(case, index)
     rotary, head = table.rotary_inertia, _head_section(table, index)
+    payload: tuple[PointMass, ...] = ()
+    if case.payload is not None and index == len(case.segments) - 1:
+        payload = (PointMass(ends[1], case.payload.mass),)
     return Segment(
         name=table.name,
         start=ends[0],
@@ -232,27 +215,15 @@ def _segment(case: Case, index: int, section: Section | None, ends: tuple[float,
         section=section,
         head_section=head,
         load=table.load,
-        supports=tuple(_support(support, ends) for support in table.supports),
+        supports=table.supports,
         viscous_damping=table.viscous_damping,
-        masses=_masses(case, index, ends),
+        masses=table.masses + payload,
         lateral=_lateral(table, material, section and half_way(section, head))
         if _in_space(case)
         else None,
-        collars=tuple(
-            Collar(at(collar.span[0], *ends), at(collar.span[1], *ends), collar.thickness)
-            for collar in table.collars
-        ),
-        diaphragms=tuple(
-            Diaphragm(at(plate.x, *ends), plate.thickness) for plate in table.diaphragms
-        ),
+        collars=table.collars,
+        diaphragms=table.diaphragms,
     )
-
-
-def _support(table: SupportTable, ends: tuple[float, float]) -> Support:
-    given = table.model_dump() | {"x": at(table.x, *ends)}
-    if table.kind == "hinged":
-        given |= {"kind": "pinned", "lateral_kind": "clamped"}
-    return Support(**given)
 
 
 def material_of(case: Case, index: int) -> Material:
@@ -264,15 +235,7 @@ def material_of(case: Case, index: int) -> Material:
             f"missing, and {case.segments[index].name!r} has none of its own; it is "
             f"{described(Case.model_fields['material'])}",
         )
-    return Material(**table.model_dump())
-
-
-def _masses(case: Case, index: int, ends: tuple[float, float]) -> tuple[PointMass, ...]:
-    table = case.segments[index]
-    masses = [PointMass(at(mass.x, *ends), mass.mass) for mass in table.masses]
-    if case.payload is not None and index == len(case.segments) - 1:
-        masses.append(PointMass(ends[1], case.payload.mass))
-    return tuple(masses)
+    return table
 
 
 def _check_flat(case: Case) -> None:

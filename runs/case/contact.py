@@ -4,38 +4,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Self
 
 from pydantic import AfterValidator, Field, model_validator
+from pydantic.dataclasses import dataclass
 from pydantic_core import PydanticCustomError
 
-from geometry.boom import Direction, PadSize, SlidePad
+from geometry.boom import Direction
+from geometry.fields import PART, In, NotNegative, Number, Positive
+from geometry.joint import BareJoint
 from geometry.section import Side
 from runs.case.drive import DriveTable
-from runs.case.limits import (
-    MOST_STATIONS,
-    CaseTable,
-    Exponent,
-    Few,
-    Flag,
-    In,
-    Length,
-    NotNegative,
-    Number,
-    Positive,
-    Text,
-    fault_at,
-    left_out,
-)
-from runs.case.places import Place
+from runs.case.limits import CaseTable, Exponent, Text, fault_at, left_out
 
 if TYPE_CHECKING:
     from dynamics.contact import ContactLaw
     from dynamics.contact_table import TableContact
-
-# Modulus in Pa of cast polyamide 6 with the 2.5 % of water that it absorbs from air, by the data
-# sheet of PolyJARID; dry it has 3.2e9.
-POLYAMIDE = 1.9e9
 
 BOTH: tuple[Side, Side] = (1, -1)
 
@@ -73,7 +57,7 @@ def _check_points(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float,
     return points
 
 
-def _check_law(table: JointTable | ContactTable, of_power: Sequence[str]) -> None:
+def _check_law(table: ContactTable, of_power: Sequence[str]) -> None:
     """Check that a power law has a stiffness, and that tables and pads with a thickness have none.
 
     Args:
@@ -116,78 +100,10 @@ class RestitutionTable(CaseTable):
     """the speed of the impact in m/s at which it holds"""
 
 
-class PadTable(CaseTable):
-    """A slide pad beside a corner: a patch of the inner segment's wall."""
+@dataclass(frozen=True, config=PART, kw_only=True)
+class ContactTable:
+    """The contact law that one model uses in all joints, instead of the joints' own."""
 
-    length: Length
-    """the length along x in m"""
-    width: Length
-    """the width from the corner inwards in m"""
-    offset: Annotated[NotNegative, In("m")] = 0.0
-    """the distance in m between the pad and the corner"""
-    thickness: Length | None = None
-    """the thickness in m, from which the joint's stiffness follows unless given"""
-    modulus: Annotated[Positive, In("Pa")] = POLYAMIDE
-    """the modulus of compression in Pa; that of moist cast polyamide unless given"""
-    allowable_pressure: Annotated[Positive, In("Pa")] | None = None
-    """the pressure in Pa that it may bear; not judged unless given"""
-
-    @property
-    def size(self) -> PadSize:
-        """Dimensions of the contact patch."""
-        return PadSize(self.length, self.width, self.offset)
-
-    @property
-    def area(self) -> float:
-        """Area in m²."""
-        return self.length * self.width
-
-    @property
-    def stiffness(self) -> float | None:
-        """Stiffness k = E A/t in N/m."""
-        return None if self.thickness is None else self.modulus * self.area / self.thickness
-
-
-class SlidePadTable(PadTable):
-    """One of several pads at each station: a pair of them, beside both corners of a wall."""
-
-    side: Literal["above", "below", "left", "right"]
-    """the wall of the inner segment that it is on; right is where y is positive"""
-    thickness: Length
-    """the thickness in m, from which its stiffness follows"""
-    shim: Annotated[NotNegative, In("m")] = 0.0
-    """how far in m it stands out beyond the play that the joint leaves"""
-
-    @property
-    def made(self) -> SlidePad:
-        """Slide pad with its position and stiffness."""
-        covered = self.length, self.width, self.offset
-        return SlidePad(*covered, self.side, self.modulus * self.area / self.thickness, self.shim)
-
-
-class JointTable(CaseTable):
-    """Where an inner segment slides in an outer one, with play."""
-
-    outer: str
-    """the name of the outer segment"""
-    inner: str
-    """the name of the inner segment"""
-    extension: Annotated[NotNegative, In("m")] | None = None
-    """the length in m of the inner segment that is out of the outer one, where the inner one is
-    given by its length"""
-    drive: DriveTable | None = None
-    """the table of what draws the inner segment out while the boom moves, from where it is at t =
-    0; it stays there unless given"""
-    stations: Annotated[tuple[Place, ...], Field(min_length=1, max_length=MOST_STATIONS)]
-    """the x in m at which the two may touch, rising; 'tail' is the inner segment's start, 'head'
-    the outer one's end, { head = 0.2 } lies 0.2 m before that"""
-    play: Annotated[NotNegative, In("m")]
-    """the play in m, the clearance above and below together"""
-    play_above: Annotated[NotNegative, In("m")] | None = None
-    """the part of the play in m that is above; half of it unless given"""
-    interference: Annotated[NotNegative, In("m")] = 0.0
-    """the amount in m by which shims press the inner segment from above and below together, where
-    there is no play"""
     force_table: Forces | None = None
     """pairs of a penetration in m and a force in N, straight lines between them from 0 on, instead
     of stiffness and exponent"""
@@ -205,40 +121,36 @@ class JointTable(CaseTable):
     """the exponent n of the contact law; 2 unless given"""
     restitution: RestitutionTable | None = None
     """the table of the contact's own damping; none unless given"""
-    friction: Annotated[NotNegative, In("1")] = 0.0
-    """the coefficient of dry friction"""
-    normal_forces: Annotated[tuple[Annotated[NotNegative, In("N")], ...], Few] = ()
-    """the forces in N that press the segments at each station for the friction; in space the
-    contact forces of the other plane do unless given"""
-    lateral_play: Annotated[NotNegative, In("m")] | None = None
-    """the play to the sides in m, left and right together; with it the boom moves in space"""
-    lateral_play_right: Annotated[NotNegative, In("m")] | None = None
-    """the part of the lateral play in m on the right, towards larger y; half of it unless given"""
-    lateral_interference: Annotated[NotNegative, In("m")] = 0.0
-    """the amount in m by which shims press from the sides, without lateral play"""
+
+    @model_validator(mode="after")
+    def _one_law(self) -> Self:
+        _check_law(self, _OF_POWER)
+        return self
+
+    def exponent_of(self, key: str) -> float | None:
+        """Return the exponent of the contact law of a key; None where the table gives none."""
+        return self.exponent or 2.0
+
+    def law(self, direction: Direction) -> ContactLaw | None:
+        """Return the contact law of each station along a direction."""
+        below = self.stiffness_below if direction == "z" else None
+        return _law(self, self.stiffness, below, self.exponent)
+
+
+@dataclass(frozen=True, config=PART, kw_only=True)
+class JointTable(ContactTable, BareJoint):
+    """Where an inner segment slides in an outer one, with play."""
+
+    extension: Annotated[NotNegative, In("m")] | None = None
+    """the length in m of the inner segment that is out of the outer one, where the inner one is
+    given by its length"""
+    drive: DriveTable | None = None
+    """the table of what draws the inner segment out while the boom moves, from where it is at t =
+    0; it stays there unless given"""
     lateral_stiffness: Annotated[Positive, In("N/m^n")] | None = None
     """the contact stiffness to the sides in N/m^n; the same unless given"""
     lateral_exponent: Exponent | None = None
     """the exponent n to the sides; the same unless given"""
-    tied: Flag = False
-    """whether the two deflect alike at the stations, without play"""
-    pad: PadTable | None = None
-    """the table of the slide pads' size, which shells alone heed; the corners of the boxes along
-    contact_length unless given"""
-    pads: Annotated[tuple[SlidePadTable, ...], Few] = ()
-    """the tables of several slide pads at each station, in place of pad and of a stiffness: on a
-    side they press together, and share the force as they are stiff"""
-    locked_at: Place | None = None
-    """the x in m where the inner segment's axial force enters the outer one: of a locking pin, or,
-    below the inner segment, of the foot of the cylinder that pushes its tail; the tail unless
-    given. With a drive what is at a distance from the tail goes with the inner segment, all else
-    stays on the outer one"""
-    contact_length: Length | None = None
-    """the length along x in m on which stations press the corners, as long as a slide pad, which
-    shells alone heed; a tenth of the least overlap unless given"""
-    dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
-    """the linear dashpot across the play at each station in N s/m, to the sides too where the boom
-    moves in space"""
 
     @property
     def thick_pads(self) -> str | None:
@@ -246,11 +158,6 @@ class JointTable(CaseTable):
         if self.pads:
             return "pads"
         return "pad.thickness" if self.pad is not None and self.pad.thickness else None
-
-    @property
-    def slide_pads(self) -> tuple[SlidePad, ...]:
-        """The slide pads of ``pads``."""
-        return tuple(pad.made for pad in self.pads)
 
     @model_validator(mode="after")
     def _pads_or_pad(self) -> Self:
@@ -287,45 +194,12 @@ class JointTable(CaseTable):
 
     def _of_side(self, direction: Direction, side: Side) -> float:
         """Return the stiffness of all pads on a side in N/m."""
-        pads = (pad for pad in self.slide_pads if pad.touches(direction, side))
+        pads = (pad for pad in self.pads if pad.touches(direction, side))
         return PADS_OF_SIDE * sum(pad.stiffness for pad in pads)
 
 
-class ContactTable(CaseTable):
-    """The contact law that one model uses in all joints, instead of the joints' own."""
-
-    force_table: Forces | None = None
-    """pairs of a penetration in m and a force in N, instead of the two below"""
-    force_file: Text | None = None
-    """a CSV file of such pairs, its path seen from the case file"""
-    force_columns: tuple[Text, Text] | None = None
-    """the names of two columns in the heading of the file, of the penetrations and of the forces;
-    its only two unless given"""
-    stiffness: Annotated[Positive, In("N/m^n")] | None = None
-    """the contact stiffness in N/m^n"""
-    stiffness_below: Annotated[NotNegative, In("N/m^n")] | None = None
-    """the contact stiffness in N/m^n below; the same as above unless given"""
-    exponent: Exponent | None = None
-    """the exponent n of the contact law; 2 unless given"""
-    restitution: RestitutionTable | None = None
-    """the table of the contact's own damping; none unless given"""
-
-    @model_validator(mode="after")
-    def _one_law(self) -> Self:
-        _check_law(self, _OF_POWER)
-        return self
-
-    def exponent_of(self, key: str) -> float:
-        return self.exponent or 2.0
-
-    def law(self, direction: Direction) -> ContactLaw:
-        """Return the contact law, as of a joint."""
-        below = self.stiffness_below if direction == "z" else None
-        return _law(self, self.stiffness, below, self.exponent)
-
-
 def _law(
-    table: JointTable | ContactTable,
+    table: ContactTable,
     stiffness: float | None,
     below: float | None,
     exponent: float | None,

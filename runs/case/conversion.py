@@ -4,14 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields, replace
 from fractions import Fraction
 from typing import Any, TypeVar
 
-from runs.case.limits import CaseTable
+from runs.case.limits import CaseTable, is_table, units_of
 from runs.case.schema import Case
 from runs.case.units import System, scaled
 
-_Table = TypeVar("_Table", bound=CaseTable)
+_Table = TypeVar("_Table")
 
 
 def in_si(case: Case) -> Case:
@@ -38,16 +39,24 @@ def in_si(case: Case) -> Case:
 
 
 def _converted(table: _Table, system: System, exponent: float = 2.0) -> _Table:
+    # Defaults are in SI units.
+    keys = table.model_fields_set if isinstance(table, CaseTable) else _changed(table)
     changed = {}
-    for key in table.model_fields_set:
-        sizes = [system.size(unit) for unit in table.units_of(key, exponent)]
+    for key in keys:
+        sizes = [system.size(unit) for unit in units_of(table, key, exponent)]
         changed[key] = _scaled(getattr(table, key), sizes, system, exponent)
-    return table.model_copy(update=changed)
+    if isinstance(table, CaseTable):
+        return table.model_copy(update=changed)
+    return replace(table, **changed)  # type: ignore[type-var]
+
+
+def _changed(part: Any) -> list[str]:
+    return [field.name for field in fields(part) if getattr(part, field.name) != field.default]
 
 
 def _scaled(value: Any, sizes: Sequence[Fraction], system: System, exponent: float) -> Any:
     """Return a value of a table with all its numbers scaled; several sizes apply to each row."""
-    if isinstance(value, CaseTable):
+    if is_table(value):
         return _converted(value, system, exponent)
     if isinstance(value, dict):
         return {key: _scaled(item, sizes, system, exponent) for key, item in value.items()}

@@ -13,18 +13,9 @@ from dynamics.arrays import Array
 from dynamics.drive.travel import SCurve, Stroke
 from dynamics.excitation import History, PiecewiseLinear
 from geometry.boom import BoomError
+from geometry.fields import Distance, In, NotNegative, Number, Positive, described
 from geometry.joint import Carrier, Drive
-from runs.case.limits import (
-    MOST_TIMES,
-    CaseTable,
-    In,
-    NotNegative,
-    Number,
-    Positive,
-    Text,
-    described,
-)
-from runs.case.places import PlaceTable
+from runs.case.limits import MOST_TIMES, CaseTable, Text
 
 # Least duration in s and least travel in m: a shorter time is an input error.
 _SHORTEST, _NOWHERE = 1.0e-6, 1.0e-9
@@ -132,8 +123,8 @@ class DriveTable(CaseTable):
     def drive(
         self,
         where: str,
-        stations: tuple[float | PlaceTable, ...],
-        locked_at: float | PlaceTable | None,
+        stations: tuple[float | Distance, ...],
+        locked_at: float | Distance | None,
         inner: tuple[str, float],
     ) -> Drive | None:
         """Return the drive; None where it moves nothing.
@@ -188,8 +179,8 @@ def _said(key: str) -> str:
     return described(DriveTable.model_fields[key])
 
 
-def _carrier(place: float | PlaceTable, where: str, what: str, inner: str) -> Carrier:
-    if not isinstance(place, PlaceTable):
+def _carrier(place: float | Distance, where: str, what: str, inner: str) -> Carrier:
+    if not isinstance(place, Distance):
         raise BoomError(
             where,
             f"{place:g} m does not tell on which segment {what} goes as {inner!r} is drawn; "

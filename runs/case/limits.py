@@ -3,123 +3,79 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
 from functools import reduce
-from typing import Annotated, Any, ClassVar, Literal, get_args
+from typing import Annotated, Any, Literal
 
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    GetJsonSchemaHandler,
-    ValidationError,
-)
-from pydantic.fields import FieldInfo
-from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic_core import InitErrorDetails, PydanticCustomError
 
-
-class In:
-    """The unit of the numbers of a field, by the names of :mod:`runs.case.units`.
-
-    Args:
-        units: one for all of them, or one for each column of a table; ``1`` for none, ``^n`` a
-            power that is the exponent of a contact law.
-    """
-
-    def __init__(self, *units: str) -> None:
-        self.units = units
-
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> JsonSchemaValue:
-        return {**handler(schema), "unit": ", ".join(self.units)}
-
-
-def _on_one_line(schema: JsonSchemaValue) -> None:
-    for rule in schema.get("properties", {}).values():
-        rule["description"] = " ".join(rule["description"].split())
+from geometry.fields import PART, In, declared_units, fields_of
 
 
 class CaseTable(BaseModel):
     """A table of the case file: nothing but its own keys, and not changed once read."""
 
-    model_config = ConfigDict(
-        extra="forbid", frozen=True, use_attribute_docstrings=True, json_schema_extra=_on_one_line
-    )
+    model_config = ConfigDict(**PART, frozen=True)
 
-    # The key that a plain number sets, where a number may replace the table.
-    bare: ClassVar[str] = ""
-
-    def exponent_of(self, key: str) -> float | None:
-        """Return the exponent of the contact law of a key; None where the table gives none."""
-        return getattr(self, "exponent", None)
-
-    def units_of(self, key: str, exponent: float = 2.0) -> tuple[str, ...]:
-        """Return the units of the numbers of a key, as of :class:`In`; empty for other values.
-
-        Args:
-            key: its name in the class.
-            exponent: that of the contact law of a table without one.
-        """
-        declared = declared_units(type(self).model_fields[key])
-        n = self.exponent_of(key) or exponent
-        powers = (("^(n+2)", f"^{n + 2.0:g}"), ("^n", f"^{n:g}"))
-        return tuple(reduce(lambda unit, power: unit.replace(*power), powers, u) for u in declared)
+    def declared_units(self, key: str) -> tuple[str, ...]:
+        """Return the units of the numbers of a key, as of :class:`geometry.fields.In`."""
+        return declared_units(type(self).model_fields[key])
 
 
-def described(field: FieldInfo) -> str:
-    """Return the description of a key, the string below it in its table, on one line."""
-    return " ".join(str(field.description).split())
+def is_table(value: Any) -> bool:
+    """Return whether a value is a table of a case: a :class:`CaseTable`, or a part of a boom."""
+    return hasattr(type(value), "__pydantic_fields__")
 
 
-def declared_units(field: FieldInfo) -> tuple[str, ...]:
-    """Return the units in a field's :class:`In`."""
-    return next((said.units for said in _said((*field.metadata, field.annotation))), ())
+def units_of(table: Any, key: str, exponent: float = 2.0) -> tuple[str, ...]:
+    """Return the units of the numbers of a key; empty for other values.
+
+    Args:
+        table: of the key.
+        key: its name in the class.
+        exponent: that of the contact law of a table without one.
+    """
+    if isinstance(table, CaseTable):
+        declared = table.declared_units(key)
+    else:
+        declared = declared_units(fields_of(type(table))[key])
+    n = getattr(table, "exponent", None)
+    if hasattr(table, "exponent_of"):
+        n = table.exponent_of(key)
+    n = n or exponent
+    powers = (("^(n+2)", f"^{n + 2.0:g}"), ("^n", f"^{n:g}"))
+    return tuple(reduce(lambda unit, power: unit.replace(*power), powers, u) for u in declared)
 
 
-def _said(parts: Iterable[Any]) -> Iterator[In]:
-    for part in parts:
-        if isinstance(part, In):
-            yield part
-        else:
-            yield from _said(get_args(part))
+def fault_in(table: Any, fault: str | PydanticCustomError, *at: tuple[Any, ...]) -> ValidationError:
+    """Return errors for validators of a whole table: each a path of keys, and the value there."""
+    errors = [InitErrorDetails(type=fault, loc=path, input=value) for path, value in at]
+    return ValidationError.from_exception_data(type(table).__name__, errors)
 
 
-def fault_at(table: CaseTable, fault: str | PydanticCustomError, *keys: str) -> ValidationError:
-    """Return an error at a key, for validators of a whole table, whose own errors name no key."""
-    at = [InitErrorDetails(type=fault, loc=(k,), input=getattr(table, k)) for k in keys]
-    return ValidationError.from_exception_data(type(table).__name__, at)
+def fault_at(table: Any, fault: str | PydanticCustomError, *keys: str) -> ValidationError:
+    """Return errors at keys of a table, for validators of a whole table."""
+    return fault_in(table, fault, *(((key,), getattr(table, key)) for key in keys))
 
 
-def left_out(table: CaseTable, given: str, *keys: str) -> ValidationError:
+def left_out(table: Any, given: str, *keys: str) -> ValidationError:
     """Return a validator's error for keys that repeat another one."""
     what = {"what": f"{given} is given; leave one of them out"}
     return fault_at(table, PydanticCustomError("unsuitable", "{what}", what), *keys)
 
 
-Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Length = Annotated[Positive, In("m")]
 # A Hertz contact has 3/2; the upper limit excludes input errors.
 Exponent = Annotated[float, Field(strict=True, ge=1.0, le=10.0, allow_inf_nan=False), In("1")]
 Count = Annotated[int, Field(strict=True, ge=1, le=1000)]
 Part = Annotated[float, Field(strict=True, gt=0.0, lt=1.0), In("1")]
-Flag = Annotated[bool, Field(strict=True)]
-# A name becomes a part of file names, and an element of a comma-separated list.
-NAME = r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$"
-Name = Annotated[str, Field(pattern=NAME, max_length=60)]
 # No control characters, line breaks or marks of text direction.
 PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]*$"
 Text = Annotated[str, Field(pattern=PRINTABLE, max_length=200)]
 
 # The run stores the whole tip history of each.
 MOST_MEMBERS = 10_000
-# A boom has a few of each; many more are an input error, and would take too long to draw.
-MOST_SEGMENTS, MOST_STATIONS, MOST_MODELS, MOST_FACETS = 20, 50, 50, 20
-Few = Field(max_length=100)
+# Many more are an input error, and would take too long to draw.
+MOST_SEGMENTS, MOST_MODELS, MOST_FACETS = 20, 50, 20
 # Enough for measured accelerations of a minute at 1 kHz, and more.
 MOST_TIMES = 100_000
 

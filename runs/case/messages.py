@@ -8,13 +8,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, get_args
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
-from geometry.fault import BoomError
+from geometry.boom_error import BoomError
+from geometry.fields import NAME, described, fields_of, names_of
+from geometry.typography import choices
 from runs.case import schema
 from runs.case.kinds import KINDS
-from runs.case.limits import NAME, described
 from runs.case.sections import SHAPES
 from runs.process.terminal import shown
 
@@ -24,9 +25,6 @@ _ARRAYS = ("segment", "joint", "stop", "cylinder", "load", "axial", "base", "obs
 # Parts of a boom, and their keys.
 _PARTS = {f"{key}s": key for key in ("segment", "joint", "load", "stop", "cylinder")}
 _PARTS["observations"] = "observe"
-
-# Number of valid names that a message lists.
-MOST_CHOICES = 12
 
 # Valid input, before the given value in a message; braces hold the limits of the schema.
 _MUST = {
@@ -46,6 +44,7 @@ _MUST = {
     "literal_error": "{expected}",
     "tuple_type": "a list",
 }
+_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 # Messages without the given value.
 _SAYS = {
     "unsuitable": "{what}",
@@ -71,7 +70,7 @@ class BadInput(Exception):
         A misspelled key is both unknown and missing: the unknown one is more informative.
         """
         faults = error.errors(include_url=False)
-        first = next((f for f in faults if f["type"] == "extra_forbidden"), faults[0])
+        first = next((f for f in faults if f["type"] in _UNKNOWN), faults[0])
         return cls(file, *_explain(first["type"], first["loc"], first["input"], first.get("ctx")))
 
     @classmethod
@@ -91,14 +90,6 @@ def first_fault(error: ValidationError) -> str:
     return "".join(f"{step}: " for step in fault["loc"]) + fault["msg"]
 
 
-def choices(known: Sequence[str]) -> str:
-    """Return "'a', 'b' or 'c'"; the first few of many."""
-    if len(known) > MOST_CHOICES:
-        return f"{', '.join(repr(name) for name in known[:MOST_CHOICES])} or another of its kind"
-    quoted = [repr(name) for name in known]
-    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"
-
-
 def _explain(
     fault: str, location: tuple[int | str, ...], value: Any, context: Mapping[str, Any] | None
 ) -> tuple[str, str]:
@@ -111,7 +102,7 @@ def _explain(
         return key, f"missing; it is {described(_field(location))}"
     if fault == "union_tag_not_found":
         return f"{key}.kind", f"missing; give {_kinds()}"
-    if fault == "extra_forbidden":
+    if fault in _UNKNOWN:
         return key, _unknown_key(location)
     if fault == "union_tag_invalid" and location[0] == "model":
         return f"{key}.kind", f"must be {_kinds()}, got {_shown(value['kind'])}"
@@ -129,7 +120,7 @@ def _explain(
         must = "a line of printable characters"
     elif fault == "tuple_type" and key in _ARRAYS:
         must = f"an array of tables, each headed [[{key}]]"
-    elif fault.startswith(("model_", "dict_")):
+    elif fault.startswith(("model_", "dict_", "dataclass_")):
         must = "a table"
     else:
         must = _MUST[fault].format(**limits)
@@ -159,7 +150,7 @@ def _without_kind(location: Sequence[int | str]) -> list[int | str]:
     return steps
 
 
-def _table(location: Sequence[int | str]) -> type[BaseModel]:
+def _table(location: Sequence[int | str]) -> type:
     """Return the table of the last step of a path."""
     names = [step for step in location[:-1] if isinstance(step, str)]
     if names[:2] == ["start", "velocity"]:
@@ -168,31 +159,28 @@ def _table(location: Sequence[int | str]) -> type[BaseModel]:
     return _TABLES[names[-1]] if names else schema.Case
 
 
-def _tables(table: type[BaseModel]) -> Iterator[tuple[str, type[BaseModel]]]:
+def _tables(table: type) -> Iterator[tuple[str, type]]:
     """Yield the keys of tables within a table, at all levels."""
-    for key, field in _fields(table).items():
-        for inner in _models(field.annotation):
+    for key, name in names_of(table).items():
+        for inner in _models(fields_of(table)[name].annotation):
             yield key, inner
             yield from _tables(inner)
 
 
-def _models(annotation: Any) -> Iterator[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+def _models(annotation: Any) -> Iterator[type]:
+    if isinstance(annotation, type) and hasattr(annotation, "__pydantic_fields__"):
         yield annotation
     for part in get_args(annotation):
         yield from _models(part)
 
 
-def _fields(table: type[BaseModel]) -> dict[str, FieldInfo]:
-    return {field.alias or name: field for name, field in table.model_fields.items()}
-
-
 def _field(location: Sequence[int | str]) -> FieldInfo:
-    return _fields(_table(location))[str(location[-1])]
+    table = _table(location)
+    return fields_of(table)[names_of(table)[str(location[-1])]]
 
 
 def _unknown_key(location: Sequence[int | str]) -> str:
-    known = list(_fields(_table(location)))
+    known = list(names_of(_table(location)))
     near = get_close_matches(shown(str(location[-1])), known, n=1)
     if near:
         return f"unknown key; the nearest known one is {near[0]}"

@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -13,14 +14,16 @@ import numpy as np
 from pydantic import ValidationError
 
 from geometry.boom import BoomError
+from geometry.fields import described
+from geometry.typography import choices
 from runs.case.build import build_boom, check_names, check_varied
 from runs.case.columns import Column, read_pairs
 from runs.case.contact import ContactTable, JointTable, table_law
 from runs.case.conversion import in_si
 from runs.case.declared import Declared
 from runs.case.kinds.shell import check_mesh_size
-from runs.case.limits import MOST_MEMBERS, described
-from runs.case.messages import BadInput, choices
+from runs.case.limits import MOST_MEMBERS, units_of
+from runs.case.messages import BadInput
 from runs.case.schema import Case, EnsembleTable, HistoryTable, Model, TimeTable
 from runs.case.units import System
 from runs.case.user_files import read_text
@@ -30,7 +33,7 @@ from runs.case.usual import check_usual
 MOST_OUTPUTS = 10_000_000
 
 History = TypeVar("History", bound=HistoryTable)
-Law = TypeVar("Law", JointTable, ContactTable)
+Law = TypeVar("Law", bound=ContactTable)
 
 # Limit of digits of a whole number in an option: longer numbers are input errors.
 _WHOLE = re.compile(r"[0-9]{1,9}")
@@ -206,8 +209,7 @@ def _read_tables(case: Case, path: str) -> Case:
             table_law(points)
         except ValueError as error:
             raise BadInput(path, key, str(error)) from None
-        read = {"force_file": None, "force_columns": None, "force_table": points}
-        return table.model_copy(update=read)
+        return replace(table, force_file=None, force_columns=None, force_table=points)
 
     joints = [
         _driven(path, f"joint[{i}].drive", contact(f"joint[{i}]", joint), system)
@@ -235,7 +237,7 @@ def _history(path: str, key: str, table: History, system: System) -> History:
     if table.file is None:
         return table
     _check_file_alone(path, key, table.table)
-    (unit,) = table.units_of(table.amount)
+    (unit,) = units_of(table, table.amount)
     wanted = Column("time", system.unit("s")), Column("factor", system.unit(unit), factor=True)
     read = read_pairs(path, f"{key}.file", table.file, table.columns, wanted)
     if not read.measured and table.amount not in table.model_fields_set:
@@ -258,7 +260,7 @@ def _driven(path: str, key: str, joint: JointTable, system: System) -> JointTabl
     wanted = Column("time", system.unit("s")), Column("length", system.unit("m"))
     read = read_pairs(path, f"{key}.file", drive.file, drive.columns, wanted).values
     update = {"file": None, "columns": None, "table": read}
-    return joint.model_copy(update={"drive": drive.model_copy(update=update)})
+    return replace(joint, drive=drive.model_copy(update=update))
 
 
 def _check_file_alone(path: str, key: str, table: object) -> None:

@@ -11,9 +11,26 @@ from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
+from pydantic.dataclasses import dataclass
 from pydantic.json_schema import GenerateJsonSchema
 
-from geometry.observation import Recorded
+from geometry.cylinder import Cylinder
+from geometry.fields import (
+    MOST_STATIONS,
+    PART,
+    Few,
+    Flag,
+    In,
+    NotNegative,
+    Number,
+    Place,
+    Positive,
+    is_number,
+)
+from geometry.joint import BareStop
+from geometry.observation import Observation, Recorded
+from geometry.segment import Material
+from geometry.support import Support
 from runs.case.contact import JointTable
 from runs.case.kinds import KINDS
 from runs.case.kinds.model import ModelTable
@@ -21,25 +38,16 @@ from runs.case.limits import (
     MOST_MEMBERS,
     MOST_MODELS,
     MOST_SEGMENTS,
-    MOST_STATIONS,
     MOST_TIMES,
     CaseTable,
     Count,
     Exponent,
-    Few,
-    Flag,
-    In,
-    Length,
-    Name,
-    NotNegative,
-    Number,
     Part,
-    Positive,
     Text,
     fault_at,
+    fault_in,
 )
-from runs.case.places import Place
-from runs.case.segment import MaterialTable, SegmentTable
+from runs.case.segment import SegmentTable
 from runs.case.units import System, SystemName
 from runs.paper.statements import CaseKeys
 
@@ -70,44 +78,16 @@ class EnsembleTable(CaseTable):
     """what is changed, all of it by one factor"""
 
 
-class StopTable(CaseTable):
+@dataclass(frozen=True, slots=True, config=PART, kw_only=True)
+class StopTable(BareStop):
     """A rest on the ground that a segment may touch across a play."""
 
-    segment: str
-    """the name of the segment"""
-    x: Place
-    """the x in m"""
-    play: Annotated[NotNegative, In("m")]
-    """the play in m, above and below together"""
     stiffness: Annotated[NotNegative, In("N/m^n")]
     """the contact stiffness in N/m^n where the segment presses up; 0 for none"""
     stiffness_below: Annotated[NotNegative, In("N/m^n")] | None = None
     """the same where it presses down; the same unless given"""
     exponent: Exponent = 1.0
     """the exponent n of the contact law"""
-    contact_length: Length | None = None
-    """the length along x in m on which it presses the corners, which shells alone heed; a fifth of
-    the box's height unless given"""
-
-
-class CylinderTable(CaseTable):
-    """A luffing cylinder: a spring between a lug of a segment and a point of the ground."""
-
-    segment: str
-    """the name of the segment"""
-    x: Place
-    """the x of the lug in m"""
-    depth: Annotated[Number, In("m")] = 0.0
-    """how far in m the lug is below the segment's axis"""
-    ground: tuple[Annotated[Number, In("m")], Annotated[Number, In("m")]]
-    """the other end in m: its x, and how far it is above the boom's axis"""
-    stiffness: Annotated[Positive, In("N/m")]
-    """the stiffness in N/m along its line, of two side by side together"""
-    dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
-    """the linear dashpot in N s/m along its line, of two together"""
-    spread: Annotated[NotNegative, In("m")] = 0.0
-    """the distance in m across the boom of two side by side, of a boom in space; one in the middle
-    unless given"""
 
 
 Times = Annotated[tuple[tuple[Number, Number], ...], In("s", "1")]
@@ -162,12 +142,12 @@ class LoadTable(HistoryTable):
 
     amount: ClassVar[str] = "magnitude"
 
-    def units_of(self, key: str, exponent: float = 2.0) -> tuple[str, ...]:
+    def declared_units(self, key: str) -> tuple[str, ...]:
         if key == "magnitude" and self.moment:
             return ("N m",)
         if key == "magnitude" and self.x is not None:
             return ("N",)
-        return super().units_of(key, exponent)
+        return super().declared_units(key)
 
 
 class AxialTable(CaseTable):
@@ -219,8 +199,6 @@ class BaseTable(HistoryTable):
 class VelocityTable(CaseTable):
     """How a segment moves at t = 0, as a rigid body would."""
 
-    bare: ClassVar[str] = "z"
-
     z: Annotated[Number, In("m/s")] = 0.0
     """the velocity along z in m/s"""
     y: Annotated[Number, In("m/s")] = 0.0
@@ -235,13 +213,16 @@ class VelocityTable(CaseTable):
 
 def _velocity(given: Any) -> Any:
     """Return a plain number as the velocity along z."""
-    number = isinstance(given, int | float) and not isinstance(given, bool)
-    return {VelocityTable.bare: float(given)} if number else given
+    return {"z": float(given)} if is_number(given) else given
 
 
 Velocity = Annotated[
     VelocityTable, BeforeValidator(_velocity, json_schema_input_type=Number | VelocityTable)
 ]
+
+
+# The key that a plain number sets where it replaces a table.
+PLAIN = {Support: "x", VelocityTable: "z"}
 
 
 class StartTable(CaseTable):
@@ -258,15 +239,10 @@ class StartTable(CaseTable):
         return self.state == "equilibrium"
 
 
-class ObserveTable(CaseTable):
+@dataclass(frozen=True, slots=True, config=PART)
+class ObserveTable(Observation):
     """What is recorded of every model besides the ends of the segments."""
 
-    name: Name
-    """what the results call it"""
-    segment: str
-    """the name of the segment"""
-    x: Place
-    """the x in m"""
     quantity: Recorded = "deflection"
     """the deflection along z, its velocity, its acceleration as the mean of each output interval,
     the rotation of the cross-section; in space the lateral deflection and the twist"""
@@ -319,7 +295,7 @@ class Case(CaseKeys, CaseHeading):
     """the table of the duration and the output step"""
     ensemble: EnsembleTable | None = None
     """the table of the ensembles; none are run unless given"""
-    material: MaterialTable | None = None
+    material: Material | None = None
     """the table of the elastic constants and density of all segments that have none of their own"""
     segments: Annotated[tuple[SegmentTable, ...], Field(min_length=1, max_length=MOST_SEGMENTS)] = (
         Field(alias="segment")
@@ -333,7 +309,7 @@ class Case(CaseKeys, CaseHeading):
         (), alias="stop"
     )
     """the rests that segments may touch, one [[stop]] each"""
-    cylinders: Annotated[tuple[CylinderTable, ...], Few] = Field((), alias="cylinder")
+    cylinders: Annotated[tuple[Cylinder, ...], Few] = Field((), alias="cylinder")
     """the luffing cylinders, one [[cylinder]] each"""
     loads: Annotated[tuple[LoadTable, ...], Few] = Field((), alias="load")
     """the loads that are not uniform or not constant"""
@@ -358,6 +334,18 @@ class Case(CaseKeys, CaseHeading):
         alias="model"
     )
     """the models to run, one [[model]] each"""
+
+    @model_validator(mode="after")
+    def _segments_by_name(self) -> Self:
+        """Check that parts give their segments by name; in a case file none has a position."""
+        groups = {"joint": self.joints, "stop": self.stops, "cylinder": self.cylinders}
+        for group, parts in {**groups, "observe": self.observe}.items():
+            for number, part in enumerate(parts):
+                for key in ("outer", "inner", "segment"):
+                    name = getattr(part, key, "")
+                    if not isinstance(name, str):
+                        raise fault_in(self, "string_type", ((group, number, key), name))
+        return self
 
     @model_validator(mode="after")
     def _calibrators(self) -> Case:

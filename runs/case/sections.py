@@ -3,35 +3,40 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from collections.abc import Callable, Mapping
+from functools import reduce
+from operator import or_
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag
 
+from geometry.fields import Few, In, Length, Number
 from geometry.polygon import closed_polygon
 from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import BoxSection, Section
-from runs.case.limits import MOST_FACETS, CaseTable, Few, In, Length, Number
+from runs.case.limits import MOST_FACETS, CaseTable
 
 
 class ShapeTable(CaseTable):
     """What every shape's table has."""
 
+    # Function of the other keys that returns the section.
+    make: ClassVar[Callable[..., Section]]
     shape: str
 
-    @abstractmethod
     def section(self) -> Section:
         """Return the section of these numbers.
 
         Raises:
             SectionError: the section is invalid.
         """
+        return type(self).make(**self.model_dump(exclude={"shape"}))
 
 
 class SectionTable(ShapeTable):
     """A box by its wall mid-lines and thicknesses."""
 
+    make = BoxSection
     shape: Literal["box"] = "box"
     """the shape of the section"""
     height: Length
@@ -43,13 +48,15 @@ class SectionTable(ShapeTable):
     web: Length
     """the thickness of the two webs in m"""
 
-    def section(self) -> BoxSection:
-        return BoxSection(self.height, self.width, self.flange, self.web)
+
+def _unequal_box(height: float, width: float, top: float, bottom: float, web: float) -> BoxSection:
+    return BoxSection(height, width, top, web, bottom_flange=bottom)
 
 
 class UnequalBoxTable(ShapeTable):
     """A box with flanges of different thickness, by its wall mid-lines and thicknesses."""
 
+    make = _unequal_box
     shape: Literal["unequal box"]
     """the shape of the section"""
     height: Length
@@ -63,13 +70,11 @@ class UnequalBoxTable(ShapeTable):
     web: Length
     """the thickness of the two webs in m"""
 
-    def section(self) -> BoxSection:
-        return BoxSection(self.height, self.width, self.top, self.web, bottom_flange=self.bottom)
-
 
 class PolygonTable(ShapeTable):
     """Flat plates once around a cell, by the corners of their mid-lines."""
 
+    make = closed_polygon
     shape: Literal["polygon"]
     """the shape of the section"""
     corners: Annotated[tuple[tuple[Number, Number], ...], Few, In("m")]
@@ -77,9 +82,6 @@ class PolygonTable(ShapeTable):
     thicknesses: Annotated[tuple[Length, ...], Few]
     """the thickness of each plate in m, from each corner to the next; the last one closes the
     cell"""
-
-    def section(self) -> Section:
-        return closed_polygon(self.corners, self.thicknesses)
 
 
 class _FoldedTable(ShapeTable):
@@ -100,30 +102,27 @@ class _FoldedTable(ShapeTable):
 class HexagonTable(_FoldedTable):
     """A hexagon that lies on a flat bottom, its sides folded in the middle."""
 
+    make = hexagon
     shape: Literal["hexagon"]
     """the shape of the section"""
     flat: Length
     """the width of the top, and of the bottom, in m"""
 
-    def section(self) -> Section:
-        return hexagon(self.height, self.width, self.flat, self.top, self.bottom, self.web)
-
 
 class OctagonTable(_FoldedTable):
     """A rectangle whose corners are cut at 45°."""
 
+    make = octagon
     shape: Literal["octagon"]
     """the shape of the section"""
     chamfer: Length
     """what is cut of the rectangle's sides at each end in m"""
 
-    def section(self) -> Section:
-        return octagon(self.height, self.width, self.chamfer, self.top, self.bottom, self.web)
-
 
 class UTable(_FoldedTable):
     """A U whose bends are folded of flat plates, closed by a flat top."""
 
+    make = u_section
     shape: Literal["U"]
     """the shape of the section"""
     radius: Length
@@ -131,9 +130,12 @@ class UTable(_FoldedTable):
     facets: Annotated[int, Field(strict=True, ge=1, le=MOST_FACETS)] = 3
     """the number of flat plates in each bend, which touch its circle"""
 
-    def section(self) -> Section:
-        sizes = self.height, self.width, self.radius, self.facets
-        return u_section(*sizes, self.top, self.bottom, self.web)
+
+def _shape(given: Any) -> str:
+    """Return the shape of a section's table; default a box."""
+    if isinstance(given, Mapping):
+        return str(given.get("shape", "box"))
+    return str(getattr(given, "shape", "box"))
 
 
 SHAPES: Mapping[str, type[ShapeTable]] = {
@@ -145,20 +147,10 @@ SHAPES: Mapping[str, type[ShapeTable]] = {
     "U": UTable,
 }
 
-
-def _shape(given: Any) -> str:
-    """Return the shape of a section's table; default a box."""
-    if isinstance(given, Mapping):
-        return str(given.get("shape", "box"))
-    return str(getattr(given, "shape", "box"))
-
-
-AnySection = Annotated[
-    Annotated[SectionTable, Tag("box")]
-    | Annotated[UnequalBoxTable, Tag("unequal box")]
-    | Annotated[PolygonTable, Tag("polygon")]
-    | Annotated[HexagonTable, Tag("hexagon")]
-    | Annotated[OctagonTable, Tag("octagon")]
-    | Annotated[UTable, Tag("U")],
-    Discriminator(_shape),
-]
+if TYPE_CHECKING:
+    AnySection = ShapeTable
+else:
+    AnySection = Annotated[
+        reduce(or_, (Annotated[table, Tag(shape)] for shape, table in SHAPES.items())),
+        Discriminator(_shape),
+    ]

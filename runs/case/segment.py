@@ -1,97 +1,26 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A segment of the boom in a case file, with its supports, masses, collars and diaphragms."""
+"""A segment of the boom in a case file."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, model_validator
 
-from runs.case.limits import (
-    CaseTable,
-    Few,
-    In,
-    Length,
-    Name,
-    NotNegative,
-    Number,
-    Positive,
-    fault_at,
-    left_out,
-)
-from runs.case.places import End, Place
+from geometry.fields import End, Few, In, Length, Name, NotNegative, Number, Positive, is_number
+from geometry.segment import Collar, Diaphragm, Material, PointMass
+from geometry.support import Support
+from runs.case.limits import CaseTable, fault_at, left_out
 from runs.case.sections import AnySection
-
-
-class MaterialTable(CaseTable):
-    """Isotropic linear elasticity: the case's for all segments, or a segment's own."""
-
-    youngs_modulus: Annotated[Positive, In("Pa")]
-    """Young's modulus E in Pa"""
-    poissons_ratio: Annotated[float, Field(strict=True, gt=-1.0, lt=0.5), In("1")]
-    """Poisson's ratio"""
-    density: Annotated[Positive, In("kg/m^3")]
-    """the density in kg/m^3"""
-    yield_strength: Annotated[Positive, In("Pa")] | None = None
-    """the yield strength in Pa, beside which a run shows stresses"""
-
-
-class SupportTable(CaseTable):
-    """A place where the ground holds a segment; in space it holds sideways and in twist too."""
-
-    bare: ClassVar[str] = "x"
-
-    x: Place
-    """the x in m"""
-    kind: Literal["pinned", "hinged", "clamped"] = "pinned"
-    """whether the slope is free or held; of a hinge, a pin across the boom, it is free in the plane
-    of bending and held sideways"""
-    stiffness: Annotated[Positive, In("N/m")] | None = None
-    """the stiffness of an elastic support in N/m; rigid unless given"""
-    rotation_stiffness: Annotated[Positive, In("N m/rad")] | None = None
-    """the stiffness in N m/rad against the slopes that the kind leaves free; none unless given"""
-    dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
-    """the linear dashpot of an elastic support in N s/m, beside its stiffness"""
-    depth: Annotated[Number, In("m")] = 0.0
-    """how far in m its pin is below the segment's axis, of the first support of a segment with a
-    cylinder or axial forces"""
-
-
-class MassTable(CaseTable):
-    """A mass on a segment."""
-
-    x: Place
-    """the x in m"""
-    mass: Annotated[Positive, In("kg")]
-    """the mass in kg"""
-
-
-class CollarTable(CaseTable):
-    """A doubler around a segment; the walls' mid-surfaces stay where they are."""
-
-    span: tuple[Place, Place]
-    """the x of its two ends in m, rising"""
-    thickness: Length
-    """the thickness in m that it adds to all walls"""
-
-
-class DiaphragmTable(CaseTable):
-    """A plate that closes a segment's box, welded to its walls."""
-
-    x: Place
-    """the x in m"""
-    thickness: Length
-    """the thickness in m"""
 
 
 def _support(given: Any) -> Any:
     """Return a plain place as a pinned support."""
-    place = isinstance(given, int | float | str) and not isinstance(given, bool)
-    return {SupportTable.bare: given} if place else given
+    return {"x": given} if isinstance(given, str) or is_number(given) else given
 
 
-Support = Annotated[
-    SupportTable, BeforeValidator(_support, json_schema_input_type=Number | End | SupportTable)
+_Support = Annotated[
+    Support, BeforeValidator(_support, json_schema_input_type=Number | End | Support)
 ]
 
 
@@ -105,11 +34,11 @@ class SegmentTable(CaseTable):
     length: Length | None = None
     """the length in m of a segment whose place follows from the extension of the joint in which it
     slides; the first one then starts at 0"""
-    material: MaterialTable | None = None
+    material: Material | None = None
     """the table of the segment's own material; the case's unless given"""
-    supports: Annotated[tuple[Support, ...], Few] = ()
+    supports: Annotated[tuple[_Support, ...], Few] = ()
     """the places that the ground holds: an x in m each, or a table"""
-    masses: Annotated[tuple[MassTable, ...], Few] = ()
+    masses: Annotated[tuple[PointMass, ...], Few] = ()
     """the masses on the segment"""
     mass_per_length: Annotated[Positive, In("kg/m")] | None = None
     """the mass per length in kg/m; follows from the section unless given"""
@@ -141,9 +70,9 @@ class SegmentTable(CaseTable):
     polar_inertia: Annotated[Positive, In("kg m")] | None = None
     """the mass moment of inertia about the axis per length in kg m; follows from the section unless
     given"""
-    collars: Annotated[tuple[CollarTable, ...], Few] = ()
+    collars: Annotated[tuple[Collar, ...], Few] = ()
     """the doublers around the box: stiffness of shells alone, mass of all models"""
-    diaphragms: Annotated[tuple[DiaphragmTable, ...], Few] = ()
+    diaphragms: Annotated[tuple[Diaphragm, ...], Few] = ()
     """the plates that close the box: stiffness of shells alone, mass of all models"""
 
     @model_validator(mode="after")

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from geometry.boom import Boom, BoomError, Segment
 from runs.case.actions import STANDARD_GRAVITY
 from runs.case.contact import JointTable
 from runs.case.drive import fastest
-from runs.case.limits import CaseTable
 from runs.case.schema import Case
 from runs.case.units import System, Unit
 
@@ -163,7 +162,7 @@ def _of_joint(case: Case, boom: Boom, number: int) -> Iterator[Usual]:
 
 
 def _of_contacts(where: str, table: JointTable) -> Iterator[Usual]:
-    tables: dict[str, CaseTable | None] = {where: table, f"{where}.pad": table.pad}
+    tables: dict[str, Any] = {where: table, f"{where}.pad": table.pad}
     tables |= {f"{where}.pads[{i}]": pad for i, pad in enumerate(table.pads, start=1)}
     tables[f"{where}.drive"] = table.drive
     for key, what, unit, limits in (

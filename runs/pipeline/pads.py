@@ -13,9 +13,9 @@ import numpy as np
 from dynamics.contact import ContactLaw
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction, Joint
-from geometry.joint import SIDES
+from geometry.joint import SIDES, PadSize
 from geometry.section import Side
-from runs.case.contact import PADS_OF_SIDE, JointTable, PadTable
+from runs.case.contact import PADS_OF_SIDE, JointTable
 from runs.case.schema import Case, Model
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def pressed_pads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PressedPa
 
 
 def _pressed(
-    model: Model, joint: JointTable, pad: PadTable, x: float, side: str, both: float
+    model: Model, joint: JointTable, pad: PadSize, x: float, side: str, both: float
 ) -> PressedPad:
     """Return one pad of a pair that carries a force in N evenly."""
     force, allowable = both / PADS_OF_SIDE, pad.allowable_pressure

@@ -64,10 +64,10 @@ def _in_vain(case: Case) -> Iterator[str]:
                 f"ramp of {ramp:g} s; usual is a ramp that ends within the run"
             )
     for number, joint in enumerate(case.joints, start=1):
-        if any(joint.normal_forces) and "friction" not in joint.model_fields_set:
+        if any(joint.normal_forces) and joint.friction == 0.0:
             yield (
-                f"joint[{number}].normal_forces: they press for a friction that is not given, and "
-                "do nothing; give friction, usual is 0.05 to 0.3, or leave them out"
+                f"joint[{number}].normal_forces: they press for a friction, which is 0, and do "
+                "nothing; give friction, usual is 0.05 to 0.3, or leave them out"
             )
     angle = 0.0 if case.gravity is None else case.gravity.angle
     if LEVEL < abs(angle) <= 0.5 * np.pi:

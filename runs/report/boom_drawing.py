@@ -263,7 +263,7 @@ def _draw_segment(panel: Panel, number: int) -> None:
     if panel.whole:
         return
     for collar in segment.collars:
-        ends = collar.start, collar.end
+        ends = collar.span
         for edge in zip(*(edges(boom, segment, x) for x in ends), strict=True):
             panel.line([*zip(ends, edge, strict=True)], color=color, linewidth=2.6)
     for plate in segment.diaphragms:

@@ -23,10 +23,11 @@ from dynamics.excitation import Released, Thrown
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError
 from geometry.contact_places import Pad, pads
+from geometry.typography import choices
 from runs.case.build import build_boom
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.kinds.model import Joined, Workshop, of_kind
-from runs.case.messages import BadInput, choices
+from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.folder.cache import Cache
 from runs.folder.files import write_whole

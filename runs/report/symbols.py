@@ -16,9 +16,9 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
 from geometry.boom import Boom, Segment
+from geometry.fields import at
 from geometry.section import Direction
 from runs.case import actions
-from runs.case.places import at
 from runs.case.schema import Case, HistoryTable, LoadTable
 from runs.report import theme
 from runs.report.formatting import number

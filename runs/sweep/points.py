@@ -19,10 +19,11 @@ import numpy as np
 from pydantic import ValidationError
 
 from geometry.section import BoxSection
+from geometry.typography import choices
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.build import build_boom
-from runs.case.messages import BadInput, choices
+from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.sections import SectionTable
 from runs.sweep.variation import Tables, Variation, parse, unit_of

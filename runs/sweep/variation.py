@@ -17,9 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from runs.case.limits import CaseTable
+from geometry.fields import names_of
+from runs.case.limits import is_table, units_of
 from runs.case.messages import BadInput
-from runs.case.schema import Case
+from runs.case.schema import PLAIN, Case
 from runs.case.units import scaled
 
 # A case file as plain tables and lists.
@@ -123,14 +124,13 @@ def unit_of(place: Place, case: Case) -> str:
     here: Any = case
     units: tuple[str, ...] = ()
     for step in place.steps:
-        if isinstance(here, CaseTable):
-            names = {field.alias or name: name for name, field in type(here).model_fields.items()}
-            units = here.units_of(names[str(step)])
-            here = getattr(here, names[str(step)])
+        if is_table(here):
+            name = names_of(type(here))[str(step)]
+            units, here = units_of(here, name), getattr(here, name)
         else:
             here = here[step]
-    if isinstance(here, CaseTable) and here.bare:
-        units = here.units_of(here.bare)
+    if type(here) in PLAIN:
+        units = units_of(here, PLAIN[type(here)])
     return units[0] if len(units) == 1 and units[0] != "1" else ""
 
 

@@ -8,6 +8,7 @@ extension is the reference.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from importlib.util import find_spec
 from time import process_time
 from typing import Any, NamedTuple
@@ -91,7 +92,7 @@ def _cases(duration: float, values: Mapping[str, Any]) -> tuple[Case, Case]:
     case = case_file.load(str(CASE))
     times = {"time.duration": duration, "joint.drive.time": duration}
     moving = change(case, **times, **values, **{"joint.contact_length": _PAD})
-    still = tuple(joint.model_copy(update={"drive": None}) for joint in moving.joints)
+    still = tuple(replace(joint, drive=None) for joint in moving.joints)
     return moving, moving.model_copy(update={"joints": still})
 
 

@@ -247,7 +247,7 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: SymmetryClass) -> 
     if any(
         support.stiffness is not None
         or support.rotation_stiffness is not None
-        or support.lateral_kind is not None
+        or support.kind == "hinged"
         for support in segment.supports
     ):
         raise ValueError(f"{segment.name!r} as a solid takes rigid supports alone")

@@ -76,7 +76,9 @@ def test_a_rigid_segment_on_its_hinge_loses_its_swing(
         line = np.array([4.6, 1.5]) / np.hypot(4.6, 1.5)
         # (6 − 3, −0.5 + 0.25) × line
         arm, damping = 3.0 * line[1] + 0.25 * line[0], 8.0e3
-        cylinders.append(Cylinder(0, 6.0, 0.5, (1.4, -2.0), SPRING, dashpot=damping))
+        cylinders.append(
+            Cylinder(0, 6.0, depth=0.5, ground=(1.4, -2.0), stiffness=SPRING, dashpot=damping)
+        )
     segment = beam(supports=supports)
     boom = Boom((segment,), (), cylinders=tuple(cylinders))
     system = gap_system(boom, [rigid_segment(segment)])

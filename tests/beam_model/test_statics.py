@@ -97,7 +97,7 @@ def test_three_supports_bear_by_their_stiffness(beam: Callable[..., Segment]) ->
 def test_a_cylinder_bears_what_turns_about_the_hinge(beam: Callable[..., Segment]) -> None:
     """Reference: by hand. 500 N at 2.5 m from the hinge on an upright cylinder 2 m from it."""
     segment = beam(supports=[3.0], load=-100.0)
-    jack = Cylinder(0, 5.0, 0.3, (5.0, -2.0), 1.0e7)
+    jack = Cylinder(0, 5.0, depth=0.3, ground=(5.0, -2.0), stiffness=1.0e7)
     hinge, lug = static_state(Boom((segment,), (), cylinders=(jack,))).reactions
     assert (hinge.x, lug.x) == (3.0, 5.0)
     assert lug.force == pytest.approx(500.0 * 2.5 / 2.0, rel=1e-5)

@@ -76,7 +76,7 @@ def test_masses_collars_and_diaphragms_weigh_along_the_boom() -> None:
     fly = replace(
         fly,
         masses=(PointMass(14.0, 300.0), PointMass(10.0, 50.0)),
-        collars=(Collar(8.0, 9.0, 0.01),),
+        collars=(Collar((8.0, 9.0), 0.01),),
         diaphragms=(Diaphragm(12.0, 0.02),),
     )
     _, pressed = with_compression((arm, fly), [JOINT], [], gravity=2.0)

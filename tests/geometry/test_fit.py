@@ -22,7 +22,7 @@ def padded(steel: Material, widths: Mapping[PadSide, float]) -> Boom:
     held = (Support(0.0, "clamped"),)
     base = Segment.of_section("base", 0.0, 6.0, steel, BASE, supports=held)
     fly = Segment.of_section("fly", 5.0, 11.0, steel, FLY)
-    pads = tuple(SlidePad(0.1, width, side=side) for side, width in widths.items())
+    pads = tuple(SlidePad(0.1, width, side=side, thickness=0.02) for side, width in widths.items())
     return Boom((base, fly), (Joint(0, 1, (5.0, 6.0), play=0.01, lateral_play=0.01, pads=pads),))
 
 

@@ -105,7 +105,7 @@ def test_spots_are_what_acts_on_a_segment(paper_boom: Boom) -> None:
     assert outer.section is not None
     assert inner.section is not None
     b, h = 0.5 * outer.section.width, 0.5 * outer.section.height
-    stiff = replace(outer, collars=(Collar(8.0, 8.5, 0.01),), diaphragms=(Diaphragm(5.0, 0.01),))
+    stiff = replace(outer, collars=(Collar((8.0, 8.5), 0.01),), diaphragms=(Diaphragm(5.0, 0.01),))
     boom = replace(paper_boom, segments=(stiff, inner))
     found = spots(boom, 0, 0.01, "near webs", [], pads(boom))
     assert [spot.low[0] for spot in found[:-2]] == [0.0, 2.0, 8.0, 8.5, 5.0]

@@ -135,7 +135,7 @@ def test_plates_have_their_thicknesses() -> None:
     box = BoxSection(height=0.5, width=0.3, flange=0.008, web=0.006)
     segment = replace(
         box_segment("box", 0.0, 10.0, box),
-        collars=(Collar(8.7, 9.1, 0.01),),
+        collars=(Collar((8.7, 9.1), 0.01),),
         diaphragms=(Diaphragm(9.0, 0.012), Diaphragm(2.0, 0.004)),
     )
     plates = diaphragm_breaks(segment)

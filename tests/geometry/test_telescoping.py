@@ -107,7 +107,10 @@ def test_tapered_segments_fit_all_of_the_way(steel: Material) -> None:
 
 LEFT = "must not be above the overlap of 0.1 m that is left where 'fly' is drawn out by 1.1 m, got "
 PAD = PadSize(0.12, 0.05)
-PADS = SlidePad(0.08, 0.05, side="above"), SlidePad(0.11, 0.05, side="below")
+PADS = (
+    SlidePad(0.08, 0.05, side="above", thickness=0.02),
+    SlidePad(0.11, 0.05, side="below", thickness=0.02),
+)
 
 
 @pytest.mark.parametrize(

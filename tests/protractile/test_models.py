@@ -119,7 +119,7 @@ def test_what_presses_or_is_modelled_must_be_given(boom: pt.Boom) -> None:
 def test_a_name_that_is_no_segment(boom: pt.Boom) -> None:
     with pytest.raises(pt.BoomError) as error:
         replace(boom, loads=[pt.Load("jib", "z", -1.0, 14.0, pt.Step())])
-    assert str(error.value) == "loads[0].segment: 'jib' is no segment; give one of 'arm', 'fly'"
+    assert str(error.value) == "loads[0].segment: 'jib' is no segment; give 'arm' or 'fly'"
 
 
 def test_keys_are_those_of_the_table(boom: pt.Boom) -> None:

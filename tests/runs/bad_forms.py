@@ -131,7 +131,8 @@ FORMS = {
     "missing key of a law": (
         CONTACT,
         "contact = { exponent = 1.0 }",
-        "model[3].contact.stiffness: missing; it is the contact stiffness in N/m^n",
+        "model[3].contact.stiffness: missing; it is the contact stiffness in N/m^n where the inner "
+        "segment presses up",
     ),
     "missing mass": (
         "mass_per_length = 55.07\n",

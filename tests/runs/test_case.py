@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -49,7 +50,7 @@ def test_any_text_and_number_survives_writing(folder: Path) -> None:
     """Reference: analytic. Quotes, escapes, and numbers that no short form holds."""
     title = 'quote " back\\slash é ∆ 𝔅'
     case = load(str(CASES / "paper.toml")).model_copy(update={"title": title})
-    joint = case.joints[0].model_copy(update={"stiffness": 1.0e13 / 3.0, "stiffness_below": 0.0})
+    joint = replace(case.joints[0], stiffness=1.0e13 / 3.0, stiffness_below=0.0)
     case = case.model_copy(update={"joints": (joint,), "demand": ("S1", "S5")})
     (folder / "case.toml").write_text(toml.dumps(case), encoding="utf-8")
     assert load("case.toml") == case

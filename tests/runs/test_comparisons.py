@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -23,7 +25,7 @@ def case_of(*names: str, friction: float = 0.0, pressed: tuple[float, ...] = PRE
     """Return the coarse case with some of its models, and friction in its joint."""
     case = case_file.select(case_file.load(str(COARSE)), "", names, None)
     rubbing = {"friction": friction, "normal_forces": pressed}
-    joints = tuple(joint.model_copy(update=rubbing) for joint in case.joints)
+    joints = tuple(replace(joint, **rubbing) for joint in case.joints)
     return case.model_copy(update={"joints": joints})
 
 

@@ -79,8 +79,10 @@ ARM = (3.0 * 1.9 + 0.3 * 1.8) / np.hypot(1.8, 1.9)
 def test_the_boom_is_what_the_case_says(case: Case, tmp_path: Path) -> None:
     """As it is written, and as a run writes it again."""
     for boom in (build_boom(case), build_boom(read_case(tmp_path, dumps(case)))):
-        assert boom.segments[0].supports == (Support(0.0, lateral_kind="clamped", depth=0.2),)
-        assert boom.cylinders == (Cylinder(0, 3.0, 0.5, (1.2, -2.4), 6.0e7, 2.0e4, 0.0),)
+        assert boom.segments[0].supports == (Support(0.0, "hinged", depth=0.2),)
+        assert boom.cylinders == (
+            Cylinder(0, 3.0, depth=0.5, ground=(1.2, -2.4), stiffness=6.0e7, dashpot=2.0e4),
+        )
         assert boom.joints[0].dashpot == 500.0
 
 

@@ -231,7 +231,7 @@ def test_chaos_is_compared_until_its_horizon() -> None:
     )
     assert until == found.times[0, 1]
     assert 0.12 < until < 3.0
-    joint = case.joints[0].model_copy(update={"friction": 0.2, "normal_forces": (4500.0, 5000.0)})
+    joint = replace(case.joints[0], friction=0.2, normal_forces=(4500.0, 5000.0))
     rubbing = case.model_copy(update={"joints": (joint,)})
     assert comparable_until(rubbing, model, run_case(rubbing), None, None) == 3.0
 

@@ -65,10 +65,8 @@ def test_a_file_and_a_model_s_own_table_are_the_same(tmp_path: Path) -> None:
 
 def test_to_the_sides_a_stiffness_makes_a_power_law_beside_a_table() -> None:
     to_the_sides = {"lateral_play": 0.01, "lateral_stiffness": 1.0e9, "lateral_exponent": 1.5}
-    joint = JointTable.model_validate(
-        {"outer": "a", "inner": "b", "stations": (1.0,), "play": 0.0, **to_the_sides}
-        | {"force_table": ((1.0e-3, 2.0),)}
-    )
+    table = ((1.0e-3, 2.0),)
+    joint = JointTable("a", "b", stations=(1.0,), play=0.0, force_table=table, **to_the_sides)
     assert joint.law("y") == PowerContact(1.0e9, 1.5)
     assert joint.law("z") == TableContact((1.0e-3,), (2.0,))
 

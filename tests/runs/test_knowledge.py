@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import Any
 
 import xarray as xr
@@ -27,7 +28,7 @@ def results(comparisons: Any = None, friction: float = 0.0, **changes: Any) -> R
     """Ten seconds of two models with play and one without; ``changes`` to the first of them."""
     case = case_file.select(case_file.load(str(COARSE)), "", MODELS, None)
     rubbing = {"friction": friction, "normal_forces": (4500.0, 5000.0)}
-    joints = tuple(joint.model_copy(update=rubbing) for joint in case.joints)
+    joints = tuple(replace(joint, **rubbing) for joint in case.joints)
     time = case.time.model_copy(update={"duration": 10.0})
     models = {name: model_summary() for name in MODELS} | {MODELS[0]: model_summary(**changes)}
     asked = {"members": 32, "relative": 1e-9, "seed": 1, "vary": "load", "slow_below": 1.67}
@@ -173,6 +174,6 @@ def test_contact_laws_are_those_of_the_models() -> None:
         (name, "inner in outer", "14.0", "k 1e+13, n 2", "168.9") for name in MODELS[:2]
     ]
     free = results()
-    joints = [joint.model_copy(update={"tied": True}) for joint in free.case.joints]
+    joints = [replace(joint, tied=True) for joint in free.case.joints]
     tied = free.case.model_copy(update={"joints": tuple(joints)})
     assert law_table(Results(tied, free.trajectories, free.summary)) is None

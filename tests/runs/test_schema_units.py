@@ -7,21 +7,21 @@ import io
 import re
 import tomllib
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
 import pytest
-from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from rich.console import Console
 
+from geometry.fields import declared_units, described, fields_of
 from protractile.cases import change
 from runs.case import reading, toml
 from runs.case.build import build_boom
 from runs.case.contact import ContactTable, JointTable
 from runs.case.conversion import in_si
 from runs.case.declared import Declared
-from runs.case.limits import declared_units, described
 from runs.case.messages import BadInput
 from runs.case.schema import Case, case_schema
 from runs.case.units import System, Unit
@@ -177,7 +177,7 @@ def test_a_case_in_millimetres_is_the_same_case(units: str) -> None:
     expected, found = case_of(written()), in_mm(units)
     assert (found.units, found.shown_units) == ("SI", units)
     # That of the exponent 3/2, N/mm^1.5, is no decimal; 3e9 N/m^1.5 was left as it is.
-    stop = found.stops[0].model_copy(update={"stiffness": 3e9})
+    stop = replace(found.stops[0], stiffness=3e9)
     assert found.stops[0].stiffness == pytest.approx(3e9 * 1000.0**1.5, rel=1e-15)
     same = found.model_copy(update={"shown_units": None, "stops": (stop,)})
     assert same == expected
@@ -237,12 +237,8 @@ SIDES = "lateral_stiffness = 1e3"
 )
 def test_a_stiffness_has_the_unit_of_its_own_law(own: str, sides: str, power: float) -> None:
     """Reference: analytic, N/mmⁿ times 1000ⁿ, with the exponent that the law presses by."""
-    joint = JointTable.model_validate(
-        tomllib.loads(
-            "outer = 'base'\ninner = 'fly'\nstations = [1.0]\nplay = 1.0\nlateral_play = 1.0\n"
-            f"{own}\n{sides}"
-        )
-    )
+    laws = tomllib.loads(f"{own}\n{sides}")
+    joint = JointTable("base", "fly", stations=(1.0,), play=1.0, lateral_play=1.0, **laws)
     (found,) = in_si(in_mm().model_copy(update={"units": "mm-t-s", "joints": (joint,)})).joints
     stiffness = found.lateral_stiffness if sides else found.stiffness
     assert stiffness == pytest.approx(1e3 * 1000.0**power, rel=1e-15)
@@ -251,7 +247,7 @@ def test_a_stiffness_has_the_unit_of_its_own_law(own: str, sides: str, power: fl
 def test_a_models_own_contact_has_an_exponent_of_its_own() -> None:
     """Reference: analytic, N/mm² where no exponent is given, beside joints of another."""
     case = in_mm()
-    joint = case.joints[0].model_copy(update={"exponent": 1.0})
+    joint = replace(case.joints[0], exponent=1.0)
     model = case.models[0].model_copy(update={"contact": ContactTable(stiffness=1e3)})
     update = {"units": "mm-t-s", "joints": (joint,), "models": (model,)}
     contact = in_si(case.model_copy(update=update)).models[0].contact
@@ -331,12 +327,12 @@ def test_other_systems_are_refused() -> None:
     )
 
 
-def _tables(model: type[BaseModel] = Case) -> Iterator[type[BaseModel]]:
+def _tables(table: type = Case) -> Iterator[type]:
     """Yield the classes of all tables of a case."""
-    yield model
-    for field in model.model_fields.values():
+    yield table
+    for field in fields_of(table).values():
         for part in _parts(field.annotation):
-            if isinstance(part, type) and issubclass(part, BaseModel):
+            if hasattr(part, "__pydantic_fields__"):
                 yield from _tables(part)
 
 
@@ -348,7 +344,7 @@ def _parts(annotation: Any) -> Iterator[Any]:
 
 def _fields() -> Iterator[tuple[str, FieldInfo]]:
     for table in dict.fromkeys(_tables()):
-        for key, field in table.model_fields.items():
+        for key, field in fields_of(table).items():
             yield f"{table.__name__}.{key}", field
 
 

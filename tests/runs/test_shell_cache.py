@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from time import sleep
 
@@ -69,7 +70,7 @@ def test_a_second_run_skips_mesh_and_reduction(case: Case, tmp_path: Path) -> No
 def varied(case: Case, play: float, times: float, ramp: float) -> Case:
     """Return the case with another play, multiplied loads, and a gust that rises in ``ramp`` s."""
     gust = LoadTable(segment="inner", x="head", magnitude=-50.0 * times, ramp=ramp)
-    joints = tuple(joint.model_copy(update={"play": play}) for joint in case.joints)
+    joints = tuple(replace(joint, play=play) for joint in case.joints)
     sections = [segment.section for segment in build_boom(case).segments]
     segments = tuple(
         segment.model_copy(

@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import sqrt
 from pathlib import Path
 
 import pytest
 
+from geometry.fields import Distance
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
@@ -51,7 +53,7 @@ def test_unequal_plays_are_not_pressed_in() -> None:
     """Reference: by hand, √(F/k) of 2.2 and 2.8 kN on 1e13 N/m², whatever the play above."""
     case = case_file.load(str(CASES / "coarse.toml"))
     (joint,) = case.joints
-    joint = joint.model_copy(update={"play_above": 0.001})
+    joint = replace(joint, play_above=0.001)
     lines = told(case.model_copy(update={"joints": (joint,)}))
     rows = {tuple(line.split()[:2]): line.split()[2:] for line in lines}
     assert [float(value) for value in rows["inner", "9"]] == pytest.approx(
@@ -66,9 +68,7 @@ def test_a_boom_without_play_has_no_tilt_and_its_stops_are_its_own() -> None:
     """Reference: by hand. The tip of 9.916 mm presses a stop of 10 N/m, 5 mm above, by 4.916 mm."""
     case = case_file.load(str(CASES / "coarse.toml"))
     tied = tuple(model for model in case.models if model.play_free)
-    stop = StopTable.model_validate(
-        {"segment": "inner", "x": "head", "play": 0.01, "stiffness": 10.0, "exponent": 1.0}
-    )
+    stop = StopTable("inner", Distance(head=0.0), play=0.01, stiffness=10.0)
     lines = told(case.model_copy(update={"models": tied, "stops": (stop,)}))
     assert not any("nan" in line or line.startswith("Play rotates") for line in lines)
     rows = {tuple(line.split()[:2]): line.split()[2:] for line in lines}

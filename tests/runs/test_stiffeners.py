@@ -35,7 +35,7 @@ def stiffened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 def test_stiffeners_change_no_number_of_the_beams(stiffened: str) -> None:
     """Reference: the case without them."""
     outer, inner = build_boom(load(stiffened)).segments
-    assert outer.collars == (Collar(9.7, 10.0, 0.01),)
+    assert outer.collars == (Collar((9.7, 10.0), 0.01),)
     assert outer.diaphragms == (Diaphragm(0.0, 0.006),)
     assert (inner.collars, inner.diaphragms) == ((), (Diaphragm(9.0, 0.008),))
     Path("plain.toml").write_text(COARSE, encoding="utf-8")

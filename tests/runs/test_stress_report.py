@@ -89,7 +89,7 @@ def test_the_largest_stress_stands_beside_the_yield_strength_where_it_is_known()
     plain = results(STRESS)
     material = plain.case.material
     assert material is not None
-    steel = material.model_copy(update={"yield_strength": 355e6})
+    steel = replace(material, yield_strength=355e6)
     known = replace(plain, case=plain.case.model_copy(update={"material": steel}))
     said = [table.notes[0] for found in (plain, known) if (table := wall_table(found))]
     assert "91.6 MPa at x" in said[0]

@@ -139,7 +139,7 @@ def test_what_no_boom_has_is_refused(
          "joint[1].drive: the largest speed at which 'fly' is drawn is 8 m/s, usual is up to 5 "
          "m/s; if it is in mm/s, give 0.008 m/s"),
         (PLAY, f"{PLAY}normal_forces = [1e3, 1e3]\n",
-         "joint[1].normal_forces: they press for a friction that is not given, and do nothing; "
+         "joint[1].normal_forces: they press for a friction, which is 0, and do nothing; "
          "give friction, usual is 0.05 to 0.3, or leave them out"),
         ("[0.7, -1.1]", "[0.7, 1.1]",
          "cylinder[1].ground: a height of 1.1 m is above the lug, and the cylinder would pull; "

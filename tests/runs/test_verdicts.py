@@ -219,7 +219,7 @@ def test_s6_asks_for_greater_relative_differences() -> None:
 def rubbing() -> Case:
     """Return the case with friction."""
     (joint,) = paper().joints
-    joint = joint.model_copy(update={"friction": 0.2, "normal_forces": (4500.0, 5000.0)})
+    joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
     return paper().model_copy(update={"joints": (joint,)})
 
 

@@ -30,7 +30,7 @@ from tests.touching import touching
 
 # Thick walls: the section hardly distorts.
 BOX = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
-HINGE = Support(0.0, lateral_kind="clamped", depth=0.1)
+HINGE = Support(0.0, "hinged", depth=0.1)
 CYLINDER = Cylinder(0, x=2.5, depth=0.3, ground=(1.0, -1.8), stiffness=2.0e7, dashpot=2.0e4)
 
 
@@ -134,7 +134,7 @@ def test_two_cylinders_hold_a_shell_in_space_as_a_beam() -> None:
     joint = replace(free.joints[0], tied=True)
     pair = Cylinder(0, x=4.0, depth=0.3, ground=(1.5, -1.5), stiffness=5.0e7, spread=1.5)
     pushed = (Load(1, "y", 1.0e3, 19.0, Step()),)
-    hinge = Support(0.0, lateral_kind="clamped")
+    hinge = Support(0.0, "hinged")
     boom = Boom((replace(outer, supports=(hinge,)), inner), (joint,), pushed, cylinders=(pair,))
     systems = shell(boom), beam(boom)
     names = "cylinder_force", "cylinder_force_difference", "tip_lateral", "tip"

@@ -219,7 +219,10 @@ def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
             "the unreduced shell takes joints without dashpots",
         ),
         (
-            replace(flat_boom(), cylinders=(Cylinder(0, 4.0, 0.3, (1.0, -2.0), 1.0e7),)),
+            replace(
+                flat_boom(),
+                cylinders=(Cylinder(0, 4.0, depth=0.3, ground=(1.0, -2.0), stiffness=1.0e7),),
+            ),
             LAW,
             "the unreduced shell takes neither cylinders nor dashpots",
         ),

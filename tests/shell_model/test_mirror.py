@@ -31,7 +31,7 @@ def _laden(section: Section) -> SegmentShell:
         box_segment("box", 0.0, 10.0, section),
         supports=(Support(0.0, stiffness=1.0e6), Support(2.0)),
         masses=(PointMass(10.0, 70.0),),
-        collars=(Collar(4.0, 5.0, 0.004),),
+        collars=(Collar((4.0, 5.0), 0.004),),
         diaphragms=(Diaphragm(6.0, 0.01),),
     )
     breaks = {"start": 0.0, "support": 2.0, "end": 10.0}

@@ -289,7 +289,7 @@ def _laden(boom: Boom, line: ContactLine) -> Boom:
     outer = replace(outer, supports=(Support(0.0), Support(2.0, stiffness=1.0e8)))
     inner = replace(
         inner,
-        collars=(Collar(9.0, 9.5, 0.004),),
+        collars=(Collar((9.0, 9.5), 0.004),),
         masses=(PointMass(19.0, 50.0),),
         diaphragms=(Diaphragm(18.5, 0.005),),
     )

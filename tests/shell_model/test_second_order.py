@@ -58,7 +58,7 @@ def test_walls_give_way_to_a_turn_by_the_whole_axial_force() -> None:
     """Reference: analytic. Turned by θ a segment shortens by θ²/2 everywhere: K_G is the sum of P
     over its length, collars and a weight that grows in it, and nothing for what only translates.
     """
-    fly = replace(telescope(0.0).segments[1], collars=(Collar(7.0, 8.0, 0.004),))
+    fly = replace(telescope(0.0).segments[1], collars=(Collar((7.0, 8.0), 0.004),))
     (pressed,) = with_compression([fly], [], [Thrust(0, 9.0, 4e4)], gravity=9.0)
     mesh = segment_mesh(Boom((replace(pressed, supports=HELD),), ()), 0, OPTIONS)
     shell_of = assemble_segment(MPI.COMM_SELF, pressed, mesh)

@@ -224,7 +224,7 @@ def _compliance(model: SolidFamily, row: Array) -> float:
             "'box' as a solid has plain walls and carries no masses",
         ),
         (
-            {"collars": (Collar(0.5, 1.0, 0.01),)},
+            {"collars": (Collar((0.5, 1.0), 0.01),)},
             "'box' as a solid has plain walls and carries no masses",
         ),
         (

@@ -34,7 +34,7 @@ from tests.touching import touching
 
 # At both ends, on a support, within a collar, and free.
 PLATES = tuple(Diaphragm(x, 0.008) for x in (0.0, 2.0, 5.0, 8.0, 10.0))
-COLLARS = (Collar(9.0, 10.0, 0.01), Collar(4.5, 5.5, 0.004))
+COLLARS = (Collar((9.0, 10.0), 0.01), Collar((4.5, 5.5), 0.004))
 
 
 def meshed(segment: Segment, size: float) -> PlatedMesh:
@@ -109,7 +109,7 @@ def test_a_thrown_segment_flies_with_its_stiffeners(inertial: bool) -> None:
     """
     boom = flat_boom()
     inner = replace(
-        boom.segments[1], diaphragms=(Diaphragm(9.0, 0.016),), collars=(Collar(9.0, 9.5, 0.01),)
+        boom.segments[1], diaphragms=(Diaphragm(9.0, 0.016),), collars=(Collar((9.0, 9.5), 0.01),)
     )
     momentum = 0.1 * inner.mass_per_length
     thrown = Load(1, "z", momentum, None, Step(), inertial)
@@ -158,7 +158,7 @@ def test_a_stiffened_shell_mirrors_itself() -> None:
 def test_a_collar_all_along_is_a_thicker_box() -> None:
     """Reference: the box of thicker walls on the same mid-surfaces, to round-off."""
     thick = BoxSection(BOX.height, BOX.width, BOX.flange + 0.004, BOX.web + 0.004)
-    collared = shell_of((Collar(0.0, 10.0, 0.004),), supports=HELD)
+    collared = shell_of((Collar((0.0, 10.0), 0.004),), supports=HELD)
     frequencies = natural_frequencies(shell_of(supports=HELD, section=thick), 8)[1:]
     assert natural_frequencies(collared, 8)[1:] == pytest.approx(frequencies, rel=1.0e-8)
     plain = natural_frequencies(shell_of(supports=HELD), 8)[1:]
@@ -217,7 +217,7 @@ def test_pictures_know_walls_from_diaphragms() -> None:
     """Reference: the plain boom. Flanges are found in a stiffened one."""
     boom = flat_boom()
     plates = (Diaphragm(0.0, 0.008), Diaphragm(2.0, 0.008), Diaphragm(8.0, 0.008))
-    outer = replace(boom.segments[0], diaphragms=plates, collars=(Collar(9.7, 10.0, 0.01),))
+    outer = replace(boom.segments[0], diaphragms=plates, collars=(Collar((9.7, 10.0), 0.01),))
     inner = replace(boom.segments[1], diaphragms=(Diaphragm(9.0, 0.008),))
     stiff = replace(boom, segments=(outer, inner))
     reduced = reduce_boom(touching(stiff, LAW), ShellOptions(0.5), MPI.COMM_WORLD)

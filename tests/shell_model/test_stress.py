@@ -279,7 +279,7 @@ def test_a_column_is_pressed_by_its_load_and_its_weight() -> None:
     np.testing.assert_allclose(shell.at(0.0).membrane[:, 0], -force / COLUMN_BOX.area, rtol=1e-6)
     assert np.abs(shell.at(0.0).membrane[:, 1:]).max() == 0.0
     (segment,) = boom.segments
-    doubled = replace(segment, collars=(Collar(3.0, 4.0, 0.006),))
+    doubled = replace(segment, collars=(Collar((3.0, 4.0), 0.006),))
     collared = stressed(replace(boom, segments=(doubled,)))
     assert collared.at(0.0).membrane[:, 0].max() == pytest.approx(-0.5 * force / COLUMN_BOX.area)
     assert carried(collared, 3.5) == pytest.approx(-force, rel=1e-6)

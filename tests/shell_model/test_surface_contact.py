@@ -18,7 +18,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, PadSize, SlidePad
 from geometry.contact_places import ContactLine
 from geometry.contact_places import pads as places_of_pads
-from geometry.joint import PadSide
+from geometry.joint import POLYAMIDE, PadSide
 from shell_model.boom_shell import ShellOptions, assemble_segments
 from shell_model.contact.rows import ShellContacts
 from shell_model.contact.surface import SurfaceOptions
@@ -261,7 +261,7 @@ def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
     """
     boom = flat_boom() if len(sides) == 2 else boom_in_space()
     pads = tuple(
-        SlidePad(0.1, width, offset, side, stiffness)
+        SlidePad(0.1, width, offset, side=side, thickness=POLYAMIDE * 0.1 * width / stiffness)
         for side in sides
         for width, offset, stiffness in ((0.03, 0.0, 3e8), (0.02, 0.05, 1e8))
     )

@@ -64,7 +64,7 @@ def test_thicker_flanges_give_way_less() -> None:
 
 def _laden(boom: Boom) -> Boom:
     outer, inner = boom.segments
-    outer = replace(outer, collars=(Collar(4.0, 5.0, 0.004),))
+    outer = replace(outer, collars=(Collar((4.0, 5.0), 0.004),))
     masses, plates = (PointMass(19.0, 50.0),), (Diaphragm(18.5, 0.005),)
     inner = replace(inner, masses=masses, diaphragms=plates)
     pads = (replace(boom.joints[0], pad=PadSize(0.1, 0.06)),)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -34,7 +36,7 @@ def run(change: float) -> Results:
     case = chaotic()
     assert case.material is not None
     modulus = case.material.youngs_modulus * (1.0 + change)
-    material = case.material.model_copy(update={"youngs_modulus": modulus})
+    material = replace(case.material, youngs_modulus=modulus)
     case = case.model_copy(update={"material": material})
     return run_case(case)
 

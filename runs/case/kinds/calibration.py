@@ -13,9 +13,9 @@ import numpy as np
 from pydantic import Discriminator, Tag
 
 from geometry.boom import Boom, BoomError
+from geometry.fields import Name
 from runs.case.kinds.model import BeamTable, Built, Joined, ModelTable, StandIn, Workshop
 from runs.case.kinds.shell import Shell
-from runs.case.limits import Name
 
 if TYPE_CHECKING:
     from dynamics.gap_system import GapSystem

@@ -12,10 +12,10 @@ from pydantic import Field
 from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
 from geometry.boom import Boom, BoomError
+from geometry.fields import Flag, Length
 from runs.case.kinds.calibration import CalibratedTable
 from runs.case.kinds.model import Built, Joined, StandIn
 from runs.case.kinds.shell import Shell
-from runs.case.limits import Flag, Length
 
 if TYPE_CHECKING:
     from dynamics.line import Line

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from beam_model.component import SegmentModel
 from beam_model.kantorovich import check_base, kantorovich_segments
 from geometry.boom import Boom, BoomError
+from geometry.fields import Few, Flag
 from runs.case.kinds.calibration import CalibratedTable
 from runs.case.kinds.model import Joined, StandIn
-from runs.case.limits import Count, Few, Flag
+from runs.case.limits import Count
 
 # Beyond this, round-off in the polynomials exceeds 1e-6 of the lowest frequencies.
 MOST_TERMS = 60

@@ -15,8 +15,9 @@ from pydantic import PrivateAttr
 
 from beam_model.component import SegmentModel
 from geometry.boom import Boom, BoomError
+from geometry.fields import In, Name, Positive
 from runs.case.contact import ContactTable
-from runs.case.limits import CaseTable, In, Name, Positive
+from runs.case.limits import CaseTable
 
 if TYPE_CHECKING:
     from mpi4py import MPI

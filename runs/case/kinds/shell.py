@@ -13,9 +13,10 @@ from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
 from geometry.boom import Boom, BoomError
 from geometry.contact_places import pads, rests
+from geometry.fields import In, Length, Positive
 from geometry.spots import spots
 from runs.case.kinds.model import BeamTable, Built, Joined, ModelTable, StandIn, Workshop
-from runs.case.limits import ContactTolerance, Count, In, Length, Modes, Part, Positive
+from runs.case.limits import ContactTolerance, Count, Modes, Part
 
 if TYPE_CHECKING:
     from dynamics.line import Line

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Fields of the parts of a boom: numbers with limits and units, names, and places along x.
+
+Parts are pydantic dataclasses, in Python as in a case file, whose key is the name of the field.
+The JSON Schema and messages show the string below a field.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import fields, replace
+from typing import Annotated, Any, Literal, TypeVar, get_args
+
+from pydantic import (
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    WithJsonSchema,
+)
+from pydantic.dataclasses import dataclass
+from pydantic.fields import FieldInfo
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError
+
+
+class In:
+    """The unit of the numbers of a field, by the names of :mod:`runs.case.units`.
+
+    Args:
+        units: one for all of them, or one for each column of a table; ``1`` for none, ``^n`` a
+            power that is the exponent of a contact law.
+    """
+
+    def __init__(self, *units: str) -> None:
+        self.units = units
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        return {**handler(schema), "unit": ", ".join(self.units)}
+
+
+def fields_of(table: type) -> dict[str, FieldInfo]:
+    """Return the fields of a part, or of a table of a case, by their names in the class.
+
+    Those that a part inherits are described in its base.
+    """
+    bases = [getattr(base, "__pydantic_fields__", {}) for base in table.__mro__]
+    described = {
+        name: next((base[name] for base in bases if name in base and base[name].description), None)
+        for name in bases[0]
+    }
+    return {name: field or bases[0][name] for name, field in described.items()}
+
+
+def names_of(table: type) -> dict[str, str]:
+    """Return the names of a table's fields in the class by their keys in the case file."""
+    return {field.alias or name: name for name, field in fields_of(table).items()}
+
+
+def declared_units(field: FieldInfo) -> tuple[str, ...]:
+    """Return the units in a field's :class:`In`; none for other values."""
+    return next((unit.units for unit in _units((*field.metadata, field.annotation))), ())
+
+
+def _units(parts: Iterable[Any]) -> Iterator[In]:
+    for part in parts:
+        if isinstance(part, In):
+            yield part
+        else:
+            yield from _units(get_args(part))
+
+
+def described(field: FieldInfo) -> str:
+    """Return the description of a field, the string below it, on one line."""
+    return " ".join(str(field.description).split())
+
+
+def _shorten(schema: JsonSchemaValue, table: type) -> None:
+    """Put the descriptions of a JSON Schema on one line each, without examples."""
+    schema["description"] = " ".join(str(table.__doc__).split("\n\n")[0].split())
+    for key, rule in schema.get("properties", {}).items():
+        rule["description"] = described(fields_of(table)[names_of(table)[key]])
+
+
+# A part has nothing but its own fields.
+PART = ConfigDict(extra="forbid", use_attribute_docstrings=True, json_schema_extra=_shorten)
+
+Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Length = Annotated[Positive, In("m")]
+# A name becomes a part of file names, and an element of a comma-separated list.
+NAME = r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$"
+Name = Annotated[str, Field(pattern=NAME, max_length=60)]
+Flag = Annotated[bool, Field(strict=True)]
+# A boom has a few of each; many more are an input error, and would take too long to draw.
+Few = Field(max_length=100)
+MOST_STATIONS = 50
+
+
+@dataclass(frozen=True, slots=True, config=PART)
+class Distance:
+    """A distance from an end: of a segment, or of the overlap of a joint's."""
+
+    tail: Annotated[NotNegative, In("m")] | None = None
+    """the distance in m from the segment's start, in a joint the inner one's"""
+    head: Annotated[NotNegative, In("m")] | None = None
+    """the distance in m from the segment's end, in a joint the outer one's"""
+
+
+# Names of places: the ends.
+End = Literal["tail", "head"]
+
+
+def _place(given: Any) -> Any:
+    """Check a number or a distance; a union's own messages would name its branches."""
+    if isinstance(given, Distance):
+        return given
+    if is_number(given):
+        if not math.isfinite(given):
+            raise PydanticKnownError("finite_number")
+        return float(given)
+    distances = {given: 0.0} if isinstance(given, str) else given
+    if isinstance(distances, Mapping) and len(distances) == 1:
+        ((end, distance),) = distances.items()
+        if end in get_args(End) and is_number(distance) and 0.0 <= distance < math.inf:
+            return Distance(**{end: distance})
+    raise PydanticCustomError("place", "a place")
+
+
+def is_number(given: Any) -> bool:
+    """Return whether a value is a number, which true and false are not."""
+    return isinstance(given, int | float) and not isinstance(given, bool)
+
+
+class _AnyPlace:
+    """Validation of a place: its x, which a distance from an end stands for in a loose part."""
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        check = BeforeValidator(_place, json_schema_input_type=Number | End | Distance)
+        return handler.generate_schema(Annotated[float | Distance, check])
+
+
+# The x in m; 'tail', 'head' or a distance from one of them until the part is on a segment.
+Place = Annotated[float, _AnyPlace(), In("m")]
+
+# Segment of a part: its name as the user gives it, its position once the part is in a boom.
+SegmentRef = Annotated[Any, WithJsonSchema({"type": "string"})]
+
+_Part = TypeVar("_Part")
+
+
+def at(place: float | Distance, tail: float, head: float) -> float:
+    """Return the x in m of a place between two ends."""
+    if not isinstance(place, Distance):
+        return place
+    if place.head is not None:
+        return head - place.head
+    assert place.tail is not None
+    return tail + place.tail
+
+
+def placed(part: _Part, tail: float, head: float) -> _Part:
+    """Return a part, a dataclass, with the x in m in place of all distances from two ends."""
+    found: dict[str, Any] = {}
+    for field in fields(part):  # type: ignore[arg-type]
+        given = getattr(part, field.name)
+        if isinstance(given, Distance):
+            found[field.name] = at(given, tail, head)
+        elif isinstance(given, tuple) and any(isinstance(one, Distance) for one in given):
+            found[field.name] = tuple(at(one, tail, head) for one in given)
+    return replace(part, **found) if found else part  # type: ignore[type-var]
