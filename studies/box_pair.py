@@ -135,7 +135,7 @@ def shell_parts(
     symmetry = SymmetryReduction(whole)
     return {
         job.symmetry_class: Quarter(
-            job.shell(symmetry.part),
+            job.shell(symmetry.cell),
             {
                 probe.what: force
                 for probe, force in zip(probes, job.forces.T, strict=True)

@@ -54,7 +54,7 @@ def shell_compliance(symmetry: SymmetryReduction, rows: Array, frequency: float 
     """
 
     def answers(_: int, job: Job) -> Array:
-        solve = ShiftedSolver(job.shell(symmetry.part), frequency)
+        solve = ShiftedSolver(job.shell(symmetry.cell), frequency)
         found = job.forces.T @ solve(job.forces)
         solve.destroy()
         return found

@@ -142,32 +142,6 @@ def cell_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
     )
 
 
-class Rows(NamedTuple):
-    """Components and places of the rows of a quarter.
-
-    Args:
-        component: (num_rows,) 0 to 2 of the displacement, 3 to 5 of the rotation.
-        in_mirrors: (2, num_rows) whether they lie in the plane y = 0, and in z = 0.
-    """
-
-    component: Indices
-    in_mirrors: Mask
-
-
-def components(part: int) -> Indices:
-    return np.arange(3 * part, 3 * part + 3)
-
-
-def rows_of(quarter: Sequence[tuple[Array, Indices]]) -> Rows:
-    size = sum(rows.size for _, rows in quarter)
-    found = Rows(np.empty(size, dtype=np.int64), np.empty((2, size), dtype=bool))
-    for part, (places, rows) in enumerate(quarter):
-        found.component[rows] = components(part)
-        for axis in (1, 2):
-            found.in_mirrors[axis - 1, rows] = on_plane(places, axis)[:, None]
-    return found
-
-
 def _sorted(triangles: Indices, thickness: Array) -> tuple[Indices, Array]:
     """Return triangles and their thickness in an order that is independent of the input's."""
     corners = np.sort(triangles, axis=1)

@@ -51,7 +51,7 @@ def pad_responses(symmetry: SymmetryReduction, columns: Array, test: float) -> P
     """
 
     def of_class(_: int, job: Job) -> Array:
-        shell = job.shell(symmetry.part)
+        shell = job.shell(symmetry.cell)
         solve = ShiftedSolver(shell, SLOW)
         # Pads press at few of all places.
         pressed = np.flatnonzero((job.forces != 0.0).any(axis=1))

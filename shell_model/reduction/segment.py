@@ -24,7 +24,7 @@ from scipy.linalg import block_diag
 from dynamics.failure import NumericsError
 from geometry.arrays import Array
 from shell_model.reduction.krylov import ClassCoordinates, KrylovOptions, reduce_class
-from shell_model.reduction.symmetry import Job, SymmetryReduction, shared
+from shell_model.reduction.symmetry import Job, SymmetryReduction, share_jobs
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,14 +87,14 @@ def reduce_segment(
         mine = range(comm.rank, len(symmetry_classes), comm.size)
         done, most = mine.index(number), options.most
         return reduce_class(
-            job.shell(symmetry.part),
+            job.shell(symmetry.cell),
             job.forces,
             job.readings,
             replace(options, most=most and most * counts[number] // sum(counts)),
             lambda part: tell((done + part) / len(mine)),
         )
 
-    found = list(shared(comm, jobs, reduce_one))
+    found = list(share_jobs(comm, jobs, reduce_one))
     parts = [
         comm.bcast(None if own is None else own._replace(shapes=np.empty(0)), root)
         for root, own in found

@@ -19,36 +19,33 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from dynamics.failure import NumericsError
-from geometry.arrays import Array, Indices
+from geometry.arrays import Array, Indices, Mask
 from geometry.boom import Segment
 from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT, Direction
 from shell_model import compat
 from shell_model.reduction.mirror import (
-    Rows,
     SymmetryClass,
     cell_mesh,
-    components,
     image_of,
     matches,
     on_plane,
-    rows_of,
     symmetry_classes,
     to_cell,
 )
 from shell_model.segment.attachments import Attached
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.shell import (
-    Matrices,
     Plates,
     Shell,
     assemble_plates,
-    free_rows,
-    hold,
-    owned_nodes,
+    dirichlet_condition,
 )
 
 _Found = TypeVar("_Found")
+
+# Components of the displacement, and of the rotation.
+_COMPONENTS = np.arange(6).reshape(2, 3)
 
 # A force with less than this part of its largest value in a class has no part in it.
 _NO_PART = 1.0e-9
@@ -63,32 +60,33 @@ class SymmetryCell:
     Args:
         segment: the whole segment.
         mirrors: those of its section.
-        mesh: that of the part.
+        mesh: that of the cell.
     """
 
     segment: Segment
     mirrors: Sequence[Direction]
     mesh: PlatedMesh
 
-    @property
-    def copies(self) -> float:
-        """Number of parts that make the segment."""
-        return 2.0 ** len(self.mirrors)
-
     @cached_property
     def plates(self) -> Plates:
-        """Plates of the part, on this rank alone."""
-        return assemble_plates(MPI.COMM_SELF, self.segment, self.mesh)
+        """Plates of the cell on this rank alone, with the energies of the whole segment."""
+        copies = 2.0 ** len(self.mirrors)
+        return assemble_plates(MPI.COMM_SELF, self.segment, self.mesh, copies)
 
     @cached_property
-    def nodes(self) -> Sequence[tuple[Array, Indices]]:
-        """Places of the displacement nodes and of the rotation nodes, in m."""
-        return [owned_nodes(self.plates.space, kind) for kind in (0, 1)]
+    def component(self) -> Indices:
+        """Component (num_rows,) of each row: 0 to 2 of the displacement, 3 to 5 of the rotation."""
+        component = np.empty(sum(rows.size for _, rows in self.plates.nodes), dtype=np.int64)
+        for (_, rows), components in zip(self.plates.nodes, _COMPONENTS, strict=True):
+            component[rows] = components
+        return component
 
-    @cached_property
-    def rows(self) -> Rows:
-        """Component of each row, and the mirrors in which the row lies."""
-        return rows_of(self.nodes)
+    def in_mirror(self, axis: int) -> Mask:
+        """Return which rows (num_rows,) lie in the mirror of an axis."""
+        within = np.empty(self.component.size, dtype=bool)
+        for places, rows in self.plates.nodes:
+            within[rows] = on_plane(places, axis)[:, None]
+        return within
 
     @cached_property
     def _matrices(self) -> dict[Any, _FreeMatrix]:
@@ -103,9 +101,8 @@ class SymmetryCell:
             whole.destroy()
             rows = np.repeat(np.arange(first.size - 1, dtype=columns.dtype), np.diff(first))
             kept = (values != 0.0) | (rows == columns)
-            self._matrices[form] = _FreeMatrix(
-                rows[kept], columns[kept], self.copies * values[kept]
-            )
+            values = self.plates.copies * values[kept]
+            self._matrices[form] = _FreeMatrix(rows[kept], columns[kept], values)
         return self._matrices[form]
 
     def __reduce__(self) -> tuple[type[SymmetryCell], tuple[Any, ...]]:
@@ -120,32 +117,27 @@ class _FreeMatrix(NamedTuple):
     value: Array
 
 
-class _ClassMatrices(Matrices):
-    """Matrices of a symmetry class on one rank, those of its cell with the class's supports.
+@dataclass(frozen=True)
+class _ClassShell(Shell):
+    """Shell of a symmetry class on one rank, by the matrices of its cell.
 
     They have none of the zeros in the pattern of their forms: motions of a plane wall in its plane
     and across it do not couple, nor do the masses of different components. Factors would store
     these zeros too.
     """
 
-    def __init__(
-        self, cell: SymmetryCell, holds: list[Any], springs: Attached, masses: Attached
-    ) -> None:
-        super().__init__(MPI.COMM_SELF, cell.plates, holds, springs, masses)
-        self._cell = cell
+    cell: SymmetryCell
 
     def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
-        row, column, value = self._cell.matrix(form)
-        free = free_rows(self.plates.space, self._holds)
-        value = np.where(
-            free[row], value, np.where(row == column, self._cell.copies * diagonal, 0.0)
-        )
+        (row, column, value), free = self.cell.matrix(form), self.free
+        fixed = np.where(row == column, self.plates.copies * diagonal, 0.0)
+        value = np.where(free[row], value, fixed)
         kept = (value != 0.0) & (free[column] | (row == column))
         first = np.cumsum([0, *np.bincount(row[kept], minlength=free.size)], dtype=row.dtype)
         matrix = PETSc.Mat().createAIJ(
-            (free.size, free.size), csr=(first, column[kept], value[kept]), comm=self._comm
+            (free.size, free.size), csr=(first, column[kept], value[kept]), comm=self.comm
         )
-        attached.add_to(self._comm, matrix)
+        attached.add_to(self.comm, matrix)
         return matrix
 
 
@@ -155,7 +147,7 @@ class Job:
 
     Args:
         symmetry_class: the symmetry class.
-        forces, readings: (num_rows, num_columns) on that part's rows, images added up.
+        forces, readings: (num_rows, num_columns) on the cell's rows, images added up.
         springs, masses: of the segment, on these rows.
     """
 
@@ -165,53 +157,27 @@ class Job:
     springs: Attached
     masses: Attached
 
-    def shell(self, part: SymmetryCell) -> Shell:
-        """Return the shell of the part of a segment, with the energies of the whole one."""
-        plates, mirrors = part.plates, part.mirrors
-        holds = [
-            *plates.holds,
-            *(
-                hold(plates.space, kind, component, partial(on_plane, axis=axis))
-                for axis in (COMPONENT[mirror] for mirror in mirrors)
-                for kind, component in self.symmetry_class.held(axis)
-            ),
+    def shell(self, cell: SymmetryCell) -> Shell:
+        """Return the shell of a cell in this class, with the energies of the whole segment."""
+        conditions = [
+            dirichlet_condition(cell.plates.space, kind, component, partial(on_plane, axis=axis))
+            for axis in (COMPONENT[mirror] for mirror in cell.mirrors)
+            for kind, component in self.symmetry_class.held(axis)
         ]
-        (nodes, node_dofs), (rotation_nodes, rotation_dofs) = part.nodes
-        return Shell(
-            comm=MPI.COMM_SELF,
-            matrices=_ClassMatrices(part, holds, self.springs, self.masses),
-            free=free_rows(plates.space, holds),
-            springs=self.springs,
-            nodes=nodes,
-            node_dofs=node_dofs,
-            rotation_nodes=rotation_nodes,
-            rotation_dofs=rotation_dofs,
-            space=plates.space,
+        conditions = [*cell.plates.supports, *conditions]
+        return _ClassShell(
+            MPI.COMM_SELF, cell.plates, conditions, self.springs, self.masses, cell
         )
 
 
-def _part_of(shell: SegmentShell) -> SymmetryCell:
-    """Assemble the part of a segment on each rank; rank 0 reduces by symmetry. Collective."""
-    mirrors, comm = shell.section.mirrors, shell.comm
-
-    def of_mesh() -> SymmetryCell | None:
-        if shell.mesh is None:
-            return None
-        part = SymmetryCell(shell.segment, mirrors, cell_mesh(shell.mesh, mirrors))
-        # Assembled here, where all ranks receive an error.
-        assert part.nodes
-        return part
-
-    found = together(comm, of_mesh)
-    sent: SymmetryCell = comm.bcast(found)
-    return found or sent
-
-
 class SymmetryReduction:
-    """Map between the distributed rows of a segment and those of its quarter. Collective.
+    """Map between the distributed rows of a segment and those of its symmetry cell. Collective.
 
     Args:
         shell: that of the whole segment.
+
+    Attributes:
+        cell: assembled on rank 0, and on each other rank that computes a class.
 
     Raises:
         NumericsError: it is not its own mirror image.
@@ -219,20 +185,31 @@ class SymmetryReduction:
 
     def __init__(self, shell: SegmentShell) -> None:
         self.shell, self._comm, self._mirrors = shell, shell.comm, shell.section.mirrors
-        self.part = _part_of(shell)
-        parts = (shell.nodes, shell.node_dofs), (shell.rotation_nodes, shell.rotation_dofs)
+
+        def of_mesh() -> SymmetryCell | None:
+            if shell.mesh is None:
+                return None
+            cell = SymmetryCell(shell.segment, self._mirrors, cell_mesh(shell.mesh, self._mirrors))
+            # Assembled here, where all ranks receive an error.
+            assert cell.plates.nodes
+            return cell
+
+        found = run_collectively(self._comm, of_mesh)
+        sent: SymmetryCell = self._comm.bcast(found)
+        self.cell = found or sent
         first, _ = shell.owned
-        shape = 3, shell.free.size
-        self._row, self._image_of_row, self._component = np.empty(shape, dtype=np.int64)
-        for number, (nodes, dofs) in enumerate(parts):
+        self._row, self._image_of_row, self._component = np.empty(
+            (3, shell.free.size), dtype=np.int64
+        )
+        for part, (nodes, dofs) in enumerate(shell.plates.nodes):
             gathered = self._comm.gather(to_cell(nodes, self._mirrors))
-            found: Sequence[Any] = []
+            rows_of_nodes: Sequence[Any] = []
             if gathered is not None:
-                places, rows = self.part.nodes[number]
-                found = [rows[matches(some, places)] for some in gathered]
-            self._row[dofs - first] = self._comm.scatter(found)
+                places, rows = self.cell.plates.nodes[part]
+                rows_of_nodes = [rows[matches(some, places)] for some in gathered]
+            self._row[dofs - first] = self._comm.scatter(rows_of_nodes)
             self._image_of_row[dofs - first] = image_of(nodes, self._mirrors)[:, None]
-            self._component[dofs - first] = components(number)
+            self._component[dofs - first] = _COMPONENTS[part]
 
     def jobs(self, inputs: Array, readings: Array) -> list[Job]:
         """Return a job for each class that an input excites, on rank 0; none elsewhere. Collective.
@@ -247,14 +224,12 @@ class SymmetryReduction:
         images = [self._images(entries) for entries in gathered if entries is not None]
         jobs = []
         for symmetry_class in symmetry_classes(self._mirrors):
-            signs = symmetry_class.signs[:, self.part.rows.component]
+            signs = symmetry_class.signs[:, self.cell.component]
             forces, read, springs, masses = (_added_up(image, signs) for image in images)
             if forces.any():
-                attached = (
-                    Attached(springs, shell.springs.factors),
-                    Attached(masses, shell.masses.factors),
-                )
-                jobs.append(Job(symmetry_class, forces, read, *attached))
+                pulled = Attached(springs, shell.springs.factors)
+                carried = Attached(masses, shell.masses.factors)
+                jobs.append(Job(symmetry_class, forces, read, pulled, carried))
         return jobs
 
     def sum_classes(
@@ -265,14 +240,14 @@ class SymmetryReduction:
         ``total`` holds the sum. Collective.
         """
         jobs = self.jobs(columns, columns[:, :0])
-        for root, found in shared(self._comm, jobs, compute):
+        for root, found in share_jobs(self._comm, jobs, compute):
             total += self._comm.bcast(found, root)
         return total
 
     def expand(self, shapes: Array | None, symmetry_class: SymmetryClass, root: int) -> Array:
         """Return shapes (num_owned, num_shapes) of a class on the whole segment. Collective.
 
-        On the quarter they are (num_rows, num_shapes) on the rank ``root``, None elsewhere.
+        On the cell they are (num_rows, num_shapes) on the rank ``root``, None elsewhere.
         """
         comm = self._comm
         count = comm.bcast(None if shapes is None else shapes.shape[1], root)
@@ -281,17 +256,17 @@ class SymmetryReduction:
         if rows is not None:
             every, sizes = np.concatenate(rows), [one.size for one in rows]
         signs = symmetry_class.signs[self._image_of_row, self._component]
-        unfolded = np.empty((self._row.size, count), order="F")
+        expanded = np.empty((self._row.size, count), order="F")
         for column in range(count):
             # One after another, so that no rank holds the whole block.
             whole = None if shapes is None else shapes[every, column]
             if comm.size == 1:
                 # Open MPI takes ten times as long to send a column to its own process.
-                unfolded[:, column] = whole
+                expanded[:, column] = whole
             else:
-                comm.Scatterv(None if whole is None else (whole, sizes), unfolded[:, column], root)
-            unfolded[:, column] *= signs
-        return unfolded
+                comm.Scatterv(None if whole is None else (whole, sizes), expanded[:, column], root)
+            expanded[:, column] *= signs
+        return expanded
 
     def _gather(self, block: Array) -> list[_Entries] | None:
         """Gather the nonzero entries of a block on rank 0."""
@@ -301,31 +276,32 @@ class SymmetryReduction:
         return self._comm.gather(mine)
 
     def _images(self, gathered: list[_Entries]) -> Array:
-        """Return a block in each quarter (4, num_rows, num_columns), halved on mirror planes."""
-        in_mirrors = self.part.rows.in_mirrors
-        images = np.zeros((4, self.part.rows.component.size, gathered[0].columns))
+        """Return the images (4, num_rows, num_columns) of a block, halved on mirror planes."""
+        images = np.zeros((4, self.cell.component.size, gathered[0].columns))
         for entries in gathered:
-            images[entries.quarter, entries.row, entries.column] = entries.value
+            images[entries.image, entries.row, entries.column] = entries.value
         for axis in self._mirrors:
-            within = in_mirrors[COMPONENT[axis] - 1]
+            within = self.cell.in_mirror(COMPONENT[axis])
             for here, there in _IMAGES[axis]:
                 images[here, within] *= 0.5
                 images[there, within] = images[here, within]
         return images
 
 
-def shared(
+def share_jobs(
     comm: MPI.Comm, jobs: Sequence[Job], compute: Callable[[int, Job], _Found]
 ) -> Iterator[tuple[int, _Found | None]]:
     """Compute each job of rank 0 on one rank; yield the rank and its result. Collective."""
     roots = [number % comm.size for number in range(comm.bcast(len(jobs)))]
     mine = {number: job for number, job in enumerate(_sent(comm, jobs, roots)) if job is not None}
-    found = together(comm, lambda: {number: compute(number, job) for number, job in mine.items()})
+    found = run_collectively(
+        comm, lambda: {number: compute(number, job) for number, job in mine.items()}
+    )
     for number, root in enumerate(roots):
         yield root, found.pop(number, None)
 
 
-def together(comm: MPI.Comm, work: Callable[[], _Found]) -> _Found:
+def run_collectively(comm: MPI.Comm, work: Callable[[], _Found]) -> _Found:
     """Return each rank's result of its own work. Collective, but the work must not communicate.
 
     Raises:
@@ -339,7 +315,7 @@ def together(comm: MPI.Comm, work: Callable[[], _Found]) -> _Found:
         problem = str(error)
     except (MemoryError, PETSc.Error) as error:
         problem = f"the direct solver failed ({error}); give it more memory, or a coarser mesh"
-    problems = [told for told in comm.allgather(problem) if told]
+    problems = [message for message in comm.allgather(problem) if message]
     if problems:
         raise NumericsError(problems[0])
     return results[0]
@@ -361,13 +337,13 @@ class _Entries(NamedTuple):
     """Entries of a block: (num_entries,) each, and the number of columns of the block."""
 
     row: Indices
-    quarter: Indices
+    image: Indices
     column: Indices
     value: Array
     columns: int
 
 
-# Quarters that meet in the mirror of an axis.
+# Images that meet in the mirror of an axis.
 _IMAGES: Mapping[Direction, Sequence[tuple[int, int]]] = {
     "y": ((0, 1), (2, 3)),
     "z": ((0, 2), (1, 3)),

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from mpi4py import MPI
@@ -16,44 +17,44 @@ from geometry.section import COMPONENT, Section
 from shell_model import compat
 from shell_model.segment.attachments import Attached, masses, springs
 from shell_model.segment.cross_section import Outline, Row
-from shell_model.segment.shell import (
-    Matrices,
-    Plates,
-    Shell,
-    assemble_plates,
-    free_rows,
-    owned_nodes,
-)
+from shell_model.segment.shell import Shell, assemble_plates, free_rows
 from shell_model.segment.solver import times
 
 # Part of the largest value below which a value of a load is round-off.
 _ROUND_OFF = 1.0e-10
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class SegmentShell(Shell):
     """Shell of one segment, with the loads of a :class:`geometry.load.Member`.
 
     Args:
-        unit_loads: direction → (num_owned,) a uniform load of 1 N/m along it, zero in held rows;
-            it is spread over the plain section, without collars and diaphragms.
-        plain_loads: direction → (num_owned,) inertia of the plain section under an acceleration
-            along it, as 1 N/m on average; ``unit_loads`` unless it tapers.
-        stiffener_loads: direction → (num_owned,) inertia of collars and diaphragms alone under an
-            acceleration of 1 m/s² along it, in N, zero in held rows.
-        masses: point masses on the segment.
         section: that of the plates.
         segment: its geometry and material.
         mesh: on rank 0.
     """
 
-    unit_loads: Mapping[Direction, Array]
-    plain_loads: Mapping[Direction, Array]
-    stiffener_loads: Mapping[Direction, Array]
-    masses: Attached
     section: Section
     segment: Segment
     mesh: PlatedMesh | None
+
+    @cached_property
+    def unit_loads(self) -> Mapping[Direction, Array]:
+        """Uniform load (num_owned,) of 1 N/m along each direction, zero in fixed rows. Collective.
+
+        It is spread over the plain section, without collars and diaphragms.
+        """
+        loads = self._loads_on(lambda mesh: mesh.even)
+        return {direction: load / self.segment.area for direction, load in loads.items()}
+
+    @cached_property
+    def plain_loads(self) -> Mapping[Direction, Array]:
+        """Inertia (num_owned,) of the plain section under an acceleration along each direction.
+
+        It is 1 N/m on average: ``unit_loads`` unless the segment tapers. Collective.
+        """
+        loads = self._loads_on(lambda mesh: mesh.plain)
+        return {direction: load / self.segment.area for direction, load in loads.items()}
 
     def outline(self, x: float) -> Outline:
         """Return the outline at x, the same on every rank. Collective."""
@@ -88,27 +89,46 @@ class SegmentShell(Shell):
         if span is None:
             return self.unit_loads[direction]
         start, end = span
-        thickness = None
-        if self.mesh is not None:
-            x = self.mesh.along
-            thickness = self.mesh.even * ((x > start) & (x < end))
-        load = _unit_loads(self.comm, self.matrices.plates, thickness)[direction]
-        return load / self.segment.area * self.free
+        loads = self._loads_on(lambda mesh: mesh.even * ((mesh.along > start) & (mesh.along < end)))
+        return loads[direction] / self.segment.area
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        """Return the load (num_owned,) of an acceleration, given in N/m on the plain segment."""
+        """Return the load (num_owned,) of an acceleration, given in N/m on the plain segment.
+
+        Collective.
+        """
         acceleration = force / self.segment.mass_per_length
+        of_stiffeners = self._loads_on(lambda mesh: mesh.thickness - mesh.plain)[direction]
         whole = force * self.plain_loads[direction]
-        return whole + acceleration * self.stiffener_loads[direction]
+        return whole + acceleration * (self.segment.material.density * of_stiffeners)
 
     def turning(self, direction: Direction) -> Array:
         """Return the inertia (num_owned,) of all plates under 1 rad/s² about x = 0. Collective."""
         axis = np.cross([1.0, 0.0, 0.0], np.eye(3)[COMPONENT[direction]])
         # Constrained degrees of freedom contribute to the inertia of the free ones.
-        mass = compat.assemble_matrix(self.matrices.plates.forms.mass, [], 0.0)
+        mass = compat.assemble_matrix(self.plates.forms.mass, [], 0.0)
         inertia = times(mass, self.turn(axis, 0.0)[:, None])[:, 0] * self.free
         mass.destroy()
         return np.asarray(inertia)
+
+    def _loads_on(self, thickness: Callable[[PlatedMesh], Array]) -> dict[Direction, Array]:
+        """Return loads (num_owned,) by direction: 1 N/m³ on a thickness (num_triangles,) in m.
+
+        They are zero in fixed rows, and exactly at the vertices, where a quadratic function has no
+        mean; elsewhere at most two cells carry them, so that no order of summation is left in that
+        of a plain box. Collective.
+        """
+        of_cells = self.comm.bcast(None if self.mesh is None else thickness(self.mesh))
+        forms = self.plates.forms
+        forms.loaded.x.array[:] = compat.cellwise_function(self.space.mesh, of_cells).x.array
+        found: dict[Direction, Array] = {}
+        for direction, component in COMPONENT.items():
+            forms.load_direction.value[:] = np.eye(3)[component]
+            load = compat.assemble_vector(forms.unit_load)
+            largest = self.comm.allreduce(np.abs(load).max(initial=0.0), MPI.MAX)
+            load[np.abs(load) < _ROUND_OFF * largest] = 0.0
+            found[direction] = load * self.free
+        return found
 
     def row(self, weights: Row) -> Array:
         """Return this rank's part (num_owned,) of a row given as global dof → weight."""
@@ -134,44 +154,26 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) 
     section = segment.section
     assert section is not None
     plates = assemble_plates(comm, segment, mesh)
-    space, free = plates.space, free_rows(plates.space, plates.holds)
-    plain, even, stiffening = (
-        {d: load * free for d, load in _unit_loads(comm, plates, thickness).items()}
-        for thickness in (
-            (None, None, None)
-            if mesh is None
-            else (mesh.plain, mesh.even, mesh.thickness - mesh.plain)
-        )
-    )
-    nodes, node_dofs = owned_nodes(space, 0)
-    rotation_nodes, rotation_dofs = owned_nodes(space, 1)
+    first = plates.space.dofmap.index_map.local_range[0]
+    free = free_rows(plates.space, plates.supports)
 
     def attached(what: Iterator[tuple[float, Callable[[Outline], Row], float]]) -> Attached:
         rows, factors = [], []
         for x, row, factor in what:
-            outline = Outline.around(comm, nodes, node_dofs, segment.section_at(x), x)
-            rows.append(_local_row(space.dofmap.index_map.local_range[0], free, row(outline)))
+            outline = Outline.around(comm, *plates.nodes[0], segment.section_at(x), x)
+            rows.append(_local_row(first, free, row(outline)))
             factors.append(factor)
         return Attached.of(rows, factors, free.size)
 
-    pulling, carried = attached(springs(segment)), attached(masses(segment))
     return SegmentShell(
-        comm=comm,
-        matrices=Matrices(comm, plates, plates.holds, pulling, carried),
-        unit_loads={d: load / segment.area for d, load in even.items()},
-        plain_loads={d: load / segment.area for d, load in plain.items()},
-        stiffener_loads={d: segment.material.density * load for d, load in stiffening.items()},
-        free=free,
-        springs=pulling,
-        masses=carried,
-        nodes=nodes,
-        node_dofs=node_dofs,
-        rotation_nodes=rotation_nodes,
-        rotation_dofs=rotation_dofs,
-        section=section,
-        segment=segment,
-        mesh=mesh,
-        space=space,
+        comm,
+        plates,
+        plates.supports,
+        attached(springs(segment)),
+        attached(masses(segment)),
+        section,
+        segment,
+        mesh,
     )
 
 
@@ -181,22 +183,3 @@ def _local_row(first: int, free: Mask, weights: Row) -> Array:
         if first <= dof < first + free.size and free[dof - first]:
             local[dof - first] += weight
     return local
-
-
-def _unit_loads(comm: MPI.Comm, plates: Plates, thickness: Array | None) -> dict[Direction, Array]:
-    """Return unit loads (num_owned,) by direction: 1 N/m³ on a thickness (num_triangles,) in m.
-
-    The thickness is on rank 0. Collective. A load has exact zeros at the vertices, where a
-    quadratic function has no mean, and at most two cells that carry it elsewhere, so that no order
-    of summation is left in that of a plain box.
-    """
-    loaded = compat.cellwise_function(plates.space.mesh, comm.bcast(thickness))
-    plates.forms.loaded.x.array[:] = loaded.x.array
-    found: dict[Direction, Array] = {}
-    for direction, component in COMPONENT.items():
-        plates.forms.load_direction.value[:] = np.eye(3)[component]
-        load = compat.assemble_vector(plates.forms.unit_load)
-        largest = comm.allreduce(np.abs(load).max(initial=0.0), MPI.MAX)
-        load[np.abs(load) < _ROUND_OFF * largest] = 0.0
-        found[direction] = load
-    return found

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Distributed matrices of a shell: mass, stiffness, supports."""
+"""Shell model of plates: distributed mass, stiffness and supports."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from dolfinx import fem
@@ -27,111 +27,113 @@ from shell_model.segment.forms import ShellForms
 ON_LINE = 1.0e-7
 
 
-# Constraint of a support: 0 of the displacement or 1 of the rotation, component, and a function
+# Condition of a support: 0 of the displacement or 1 of the rotation, component, and a function
 # of places (num_places, 3) in m.
-Hold = tuple[int, int, Callable[[Array], Mask]]
+_Condition = tuple[int, int, Callable[[Array], Mask]]
 
 
-class Plates(NamedTuple):
-    """Plates before assembly: function space, forms, supports.
+@dataclass(frozen=True)
+class Plates:
+    """Plates before assembly.
 
-    ``compressed``: whether they carry an axial force.
+    Args:
+        space: function space, which owns the communicator that the matrices live on.
+        forms: compiled forms of one copy, see :class:`ShellForms`.
+        supports: Dirichlet conditions of the rigid supports.
+        compressed: whether they carry an axial force.
+        copies: number of congruent parts whose energies they have together.
     """
 
     space: Any
-    forms: ShellForms
-    holds: list[Any]
+    forms: Any
+    supports: list[Any]
     compressed: bool = False
-
-
-class Matrices:
-    """Matrices of plates with springs and masses, assembled on first use. Collective.
-
-    Args:
-        comm: the ranks that share them.
-        plates: their forms.
-        holds: Dirichlet conditions.
-        springs, masses: attached ones.
-    """
-
-    def __init__(
-        self,
-        comm: MPI.Comm,
-        plates: Plates,
-        holds: list[Any],
-        springs: Attached,
-        masses: Attached,
-    ) -> None:
-        self._comm, self.plates, self._holds = comm, plates, holds
-        self._springs, self._masses = springs, masses
+    copies: float = 1.0
 
     @cached_property
-    def stiffness(self) -> PETSc.Mat:
-        return self._assembled(self.plates.forms.stiffness, 1.0, self._springs)
+    def nodes(self) -> Sequence[tuple[Array, Indices]]:
+        """Places (num_owned, 3) in m and global rows (num_owned, 3) of the nodes on this rank.
 
-    @cached_property
-    def mass(self) -> PETSc.Mat:
-        return self._assembled(self.plates.forms.mass, 0.0, self._masses)
+        Those of the displacement, then those of the rotation.
+        """
+        return [self._nodes(part) for part in (0, 1)]
 
-    @cached_property
-    def geometric(self) -> PETSc.Mat | None:
-        if not self.plates.compressed:
-            return None
-        nothing = Attached(self._masses.rows[:, :0], self._masses.factors[:0])
-        return self._assembled(self.plates.forms.geometric, 0.0, nothing)
-
-    def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
-        matrix = compat.assemble_matrix(form, self._holds, diagonal)
-        attached.add_to(self._comm, matrix)
-        return matrix
+    def _nodes(self, part: int) -> tuple[Array, Indices]:
+        collapsed, to_parent = self.space.sub(part).collapse()
+        index_map = self.space.dofmap.index_map
+        local = np.asarray(to_parent, dtype=np.int32).reshape(-1, 3)
+        places = compat.node_places(collapsed)[: len(local)]
+        owned = local[:, 0] < index_map.size_local
+        return places[owned], index_map.local_range[0] + local[owned].astype(np.int64)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Shell:
-    """Shell model K u = f and M ü, distributed by rows.
+    """Shell model K u = f and M ü, distributed by rows; matrices are assembled on first use.
 
     Args:
         comm: the ranks that share it.
-        matrices: K and M.
-        free: (num_owned,) False in held rows.
-        springs: of the supports.
-        nodes: (num_owned_nodes, 3) places of the displacement nodes in m.
-        node_dofs: (num_owned_nodes, 3) global rows of their displacements.
-        rotation_nodes: (num_owned_rotation_nodes, 3) places of the rotation nodes in m.
-        rotation_dofs: (num_owned_rotation_nodes, 3) global rows of their rotations.
-        space: the function space, which owns the communicator that the matrices live on.
+        plates: its plates.
+        conditions: Dirichlet conditions.
+        springs, masses: attached ones.
     """
 
     comm: MPI.Comm
-    matrices: Matrices
-    free: Mask
+    plates: Plates
+    conditions: list[Any]
     springs: Attached
-    nodes: Array
-    node_dofs: Indices
-    rotation_nodes: Array
-    rotation_dofs: Indices
-    space: Any
+    masses: Attached
 
-    @property
+    @cached_property
     def stiffness(self) -> PETSc.Mat:
         """Stiffness (num_dofs, num_dofs), decoupled and positive in fixed rows. Collective."""
-        return self.matrices.stiffness
+        return self._assembled(self.plates.forms.stiffness, 1.0, self.springs)
 
-    @property
+    @cached_property
     def mass(self) -> PETSc.Mat:
         """Mass matrix (num_dofs, num_dofs), with 0 on the diagonal of fixed rows.
 
         These degrees of freedom are at infinite frequency. Collective.
         """
-        return self.matrices.mass
+        return self._assembled(self.plates.forms.mass, 0.0, self.masses)
 
-    @property
+    @cached_property
     def geometric(self) -> PETSc.Mat | None:
         """Matrix K_G (num_dofs, num_dofs), the softening by axial forces; None without any.
 
         Collective.
         """
-        return self.matrices.geometric
+        if not self.plates.compressed:
+            return None
+        return self._assembled(
+            self.plates.forms.geometric, 0.0, Attached.of([], [], self.free.size)
+        )
+
+    def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
+        matrix = compat.assemble_matrix(form, self.conditions, diagonal)
+        matrix.scale(self.plates.copies)
+        attached.add_to(self.comm, matrix)
+        return matrix
+
+    @cached_property
+    def free(self) -> Mask:
+        """Mask (num_owned,), False in fixed rows."""
+        return free_rows(self.plates.space, self.conditions)
+
+    @property
+    def nodes(self) -> Array:
+        """Places (num_owned_nodes, 3) of the displacement nodes in m."""
+        return self.plates.nodes[0][0]
+
+    @property
+    def node_dofs(self) -> Indices:
+        """Global rows (num_owned_nodes, 3) of their displacements."""
+        return self.plates.nodes[0][1]
+
+    @property
+    def space(self) -> Any:
+        """Function space of displacement and rotation."""
+        return self.plates.space
 
     @property
     def num_dofs(self) -> int:
@@ -173,45 +175,38 @@ class Shell:
         first, _ = self.owned
         motion = np.zeros(self.free.size)
         motion[self.node_dofs - first] = np.cross(axis, self.nodes - [x, 0.0, 0.0])
-        motion[self.rotation_dofs - first] = axis
+        motion[self.plates.nodes[1][1] - first] = axis
         return motion
 
 
-def free_rows(space: Any, holds: list[Any]) -> Mask:
-    """Return the mask (num_owned,) of the free rows of a space, False in fixed rows."""
+def free_rows(space: Any, conditions: list[Any]) -> Mask:
+    """Return the mask (num_owned,) of the rows of a space that Dirichlet conditions leave free."""
     free = np.ones(space.dofmap.index_map.size_local, dtype=bool)
-    for bc in holds:
-        held, _ = bc.dof_indices()
-        free[held[held < free.size]] = False
+    for condition in conditions:
+        fixed, _ = condition.dof_indices()
+        free[fixed[fixed < free.size]] = False
     return free
 
 
-def hold(space: Any, part: int, component: int, where: Callable[[Array], Mask]) -> Any:
-    """Return a Dirichlet condition: zero displacement (part 0) or rotation (part 1) component.
+def dirichlet_condition(
+    space: Any, part: int, component: int, where: Callable[[Array], Mask]
+) -> Any:
+    """Return the condition of zero displacement (part 0) or rotation (part 1) in a component.
 
     ``where`` returns which of places (num_places, 3) in m are fixed.
     """
-    held = space.sub(part).sub(component)
-    collapsed, _ = held.collapse()
-    dofs = fem.locate_dofs_geometrical((held, collapsed), lambda points: where(points.T))
+    fixed = space.sub(part).sub(component)
+    collapsed, _ = fixed.collapse()
+    dofs = fem.locate_dofs_geometrical((fixed, collapsed), lambda points: where(points.T))
     function = fem.Function(collapsed)
     function.x.array[:] = PETSc.ScalarType(0.0)
-    return fem.dirichletbc(function, dofs, held)
+    return fem.dirichletbc(function, dofs, fixed)
 
 
-def owned_nodes(space: Any, part: int) -> tuple[Array, Indices]:
-    """Return places of a vector part's nodes on this rank, and global rows of their components."""
-    collapsed, to_parent = space.sub(part).collapse()
-    index_map = space.dofmap.index_map
-    local = np.asarray(to_parent, dtype=np.int32).reshape(-1, 3)
-    places = compat.node_places(collapsed)[: len(local)]
-    owned = local[:, 0] < index_map.size_local
-    return places[owned], index_map.local_range[0] + local[owned].astype(np.int64)
-
-
-def assemble_plates(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) -> Plates:
+def assemble_plates(
+    comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None, copies: float = 1.0
+) -> Plates:
     """Assemble the plates of a mesh, that of a whole segment or a part of it. Collective."""
-    held = list(_held(segment))
     points, triangles, of_cells = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64), None
     if mesh is not None:
         # The plain walls carry the whole axial force, so that it is the same in each section.
@@ -223,10 +218,11 @@ def assemble_plates(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) -
     )
     space = compat.shell_space(domain)
     forms = ShellForms(space, thickness, segment.material, compression=compression)
-    return Plates(space, forms, [hold(space, *one) for one in held], bool(segment.compression))
+    supports = [dirichlet_condition(space, *one) for one in _rigid_supports(segment)]
+    return Plates(space, forms, supports, bool(segment.compression), copies)
 
 
-def _held(segment: Segment) -> Iterator[Hold]:
+def _rigid_supports(segment: Segment) -> Iterator[_Condition]:
     """Return the conditions of rigid supports: y and z of the outline, all parts if clamped."""
     for support in segment.supports:
         if support.stiffness is not None:

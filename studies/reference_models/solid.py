@@ -20,14 +20,14 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.sparse import csr_matrix, diags, vstack
 
-from geometry.arrays import Array, Indices
+from geometry.arrays import Array, Indices, Mask
 from geometry.boom import Material, Segment
 from geometry.section import BoxSection
 from shell_model import compat
 from shell_model.reduction.mirror import SymmetryClass, on_plane
 from shell_model.segment.attachments import Attached
 from shell_model.segment.cross_section import Outline, Row
-from shell_model.segment.shell import ON_LINE, Matrices, Shell
+from shell_model.segment.shell import ON_LINE, Plates, Shell
 
 # Ratio of an edge to the one before it; effects decay more slowly at places than at corners.
 _GROWTH_ALONG = 3.0
@@ -134,21 +134,46 @@ def _walls(planes: tuple[Array, Array, Array], layers: int) -> tuple[Array, Indi
     return lattice[used], hexahedra.reshape(-1, 8)
 
 
-@dataclass(frozen=True, slots=True)
+class _SolidPlates(Plates):
+    """Space and forms of a solid, which has no rotations, on one process."""
+
+    @cached_property
+    def nodes(self) -> Sequence[tuple[Array, Indices]]:
+        """Places in m and rows of the nodes of the displacement."""
+        places = self.space.tabulate_dof_coordinates()
+        none = np.zeros((0, 3))
+        return [(places, np.arange(places.size).reshape(-1, 3)), (none, none.astype(np.int64))]
+
+
+@dataclass(frozen=True)
 class SolidFamily(Shell):
     """Solid model K u = f and M ü of a quarter, with the energies of the whole segment.
 
     It is on one process, and there are no rotations.
 
     Args:
+        fixed: (num_fixed,) constrained degrees of freedom.
         section: the walls.
         middles: (num_middles, 3) places on the mid-surfaces of the whole segment in m.
         means: (3 num_middles, num_dofs) the mean displacements over the thickness there.
     """
 
+    fixed: Indices
     section: BoxSection
     middles: Array
     means: csr_matrix
+
+    @cached_property
+    def free(self) -> Mask:
+        """Mask (num_dofs,), False in fixed rows."""
+        free = np.ones(self.nodes.size, dtype=bool)
+        free[self.fixed] = False
+        return free
+
+    def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
+        matrix = super()._assembled(form, diagonal, attached)
+        matrix.zeroRowsColumns(self.fixed.astype(PETSc.IntType), diagonal)
+        return matrix
 
     @property
     def num_dofs(self) -> int:
@@ -196,36 +221,6 @@ def solid_forms(space: Any, material: Material) -> SolidForms:
     return SolidForms(fem.form(energy * dx), fem.form(density * ufl.inner(u, v) * dx))
 
 
-class SolidMatrices(Matrices):
-    """Matrices of four quarters on this process, assembled on first use.
-
-    Args:
-        forms: of one quarter.
-        held: (num_held,) constrained degrees of freedom.
-    """
-
-    def __init__(self, forms: SolidForms, held: Indices) -> None:
-        self._forms, self._held = forms, held.astype(PETSc.IntType)
-
-    @cached_property
-    def stiffness(self) -> PETSc.Mat:
-        return self._decoupled(self._forms.stiffness, 1.0)
-
-    @cached_property
-    def mass(self) -> PETSc.Mat:
-        return self._decoupled(self._forms.mass, 0.0)
-
-    @cached_property
-    def geometric(self) -> None:
-        return None
-
-    def _decoupled(self, form: Any, diagonal: float) -> PETSc.Mat:
-        matrix = compat.assemble_matrix(form, [], diagonal)
-        matrix.scale(4.0)
-        matrix.zeroRowsColumns(self._held, diagonal)
-        return matrix
-
-
 def assemble_solid(segment: Segment, mesh: SolidMesh, family: SymmetryClass) -> SolidFamily:
     """Assemble one symmetry class of a segment's motions on this process.
 
@@ -253,8 +248,8 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: SymmetryClass) -> 
         raise ValueError(f"{segment.name!r} as a solid takes rigid supports alone")
     comm = MPI.COMM_SELF
     space = compat.solid_space(compat.create_hexahedron_mesh(comm, mesh.points, mesh.hexahedra))
-    nodes = space.tabulate_dof_coordinates()
-    node_dofs = np.arange(nodes.size).reshape(-1, 3)
+    plates = _SolidPlates(space, solid_forms(space, segment.material), [], copies=4.0)
+    nodes, _ = plates.nodes[0]
     free = np.ones(nodes.shape, dtype=bool)
     for axis in (1, 2):
         for part, component in family.held(axis):
@@ -264,20 +259,9 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: SymmetryClass) -> 
         fixed = slice(0 if support.kind == "clamped" else 1, None)
         free[np.abs(nodes[:, 0] - support.x) < ON_LINE, fixed] = False
     middles, means = _means(mesh, nodes, family)
-    return SolidFamily(
-        comm=comm,
-        matrices=SolidMatrices(solid_forms(space, segment.material), np.flatnonzero(~free)),
-        free=free.ravel(),
-        springs=Attached.of([], [], free.size),
-        nodes=nodes,
-        node_dofs=node_dofs,
-        rotation_nodes=np.zeros((0, 3)),
-        rotation_dofs=np.zeros((0, 3), dtype=np.int64),
-        space=space,
-        section=section,
-        middles=middles,
-        means=means,
-    )
+    nothing = Attached.of([], [], free.size)
+    held = np.flatnonzero(~free)
+    return SolidFamily(comm, plates, [], nothing, nothing, held, section, middles, means)
 
 
 def _means(mesh: SolidMesh, nodes: Array, family: SymmetryClass) -> tuple[Array, csr_matrix]:

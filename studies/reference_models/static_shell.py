@@ -22,7 +22,7 @@ from geometry.boom import Material
 from shell_model import compat
 from shell_model.segment.attachments import Attached
 from shell_model.segment.forms import DRILLING, SHEAR_CORRECTION, ShellForms
-from shell_model.segment.shell import ON_LINE, Matrices, Plates, Shell, owned_nodes
+from shell_model.segment.shell import ON_LINE, Plates, Shell
 from shell_model.segment.solver import times
 
 # Permitted residual as a part of the load.
@@ -67,8 +67,8 @@ class StaticShell:
         forms = ShellForms(space, walls, material, drilling, shear_correction=shear_correction)
         self._plates = Plates(space, forms, [])
         self.stiffness = compat.assemble_matrix(forms.stiffness, [], diagonal=1.0)
-        self.nodes, self.node_dofs = owned_nodes(space, 0)
-        self.rotation_nodes, self.rotation_dofs = owned_nodes(space, 1)
+        (self.nodes, self.node_dofs), rotations = self._plates.nodes
+        self.rotation_nodes, self.rotation_dofs = rotations
 
     @property
     def num_dofs(self) -> int:
@@ -184,21 +184,9 @@ class StaticShell:
         """Return the shell with some degrees of freedom fixed, for vibration."""
         rows = np.fromiter(dofs, dtype=np.int32, count=len(dofs))
         zero = fem.Function(self._plates.space)
-        holds = [fem.dirichletbc(zero, np.sort(rows))]
-        free = np.ones(self.num_dofs, dtype=bool)
-        free[rows] = False
-        nothing = Attached.of([], [], free.size)
-        return Shell(
-            comm=MPI.COMM_SELF,
-            matrices=Matrices(MPI.COMM_SELF, self._plates, holds, nothing, nothing),
-            free=free,
-            springs=nothing,
-            nodes=self.nodes,
-            node_dofs=self.node_dofs,
-            rotation_nodes=self.rotation_nodes,
-            rotation_dofs=self.rotation_dofs,
-            space=self._plates.space,
-        )
+        conditions = [fem.dirichletbc(zero, np.sort(rows))]
+        nothing = Attached.of([], [], self.num_dofs)
+        return Shell(MPI.COMM_SELF, self._plates, conditions, nothing, nothing)
 
 
 def hold(dofs: Indices, values: float | Array = 0.0) -> dict[int, float]:

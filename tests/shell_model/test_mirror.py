@@ -64,7 +64,7 @@ def test_rigid_motions_belong_to_their_families(
     symmetry, jobs = _everything(shell)
     assert [job.symmetry_class for job in jobs] == list(own)
     for job in jobs:
-        found = symmetry.expand(job.shell(symmetry.part).rigid_motions(), job.symmetry_class, 0)
+        found = symmetry.expand(job.shell(symmetry.cell).rigid_motions(), job.symmetry_class, 0)
         expected = motions[:, own[job.symmetry_class]]
         assert found.shape == expected.shape
         combination = np.linalg.lstsq(expected, found, rcond=None)[0]
@@ -84,7 +84,7 @@ def test_a_quarter_moves_as_its_family_does_in_the_whole(box_shell: Shells, kind
     shell = shells[kind]()
     symmetry, jobs = _everything(shell)
     for job in jobs:
-        quarter = job.shell(symmetry.part)
+        quarter = job.shell(symmetry.cell)
         motion = np.random.default_rng(2).standard_normal((quarter.num_dofs, 1))
         motion *= quarter.free[:, None]
         whole = symmetry.expand(motion, job.symmetry_class, 0)
@@ -108,7 +108,7 @@ def test_forces_do_the_same_work_on_the_parts(box_shell: Shells, section: Sectio
     for job in symmetry.jobs(force, force):
         assert np.array_equal(job.forces, job.readings)
         motion = np.random.default_rng(2).standard_normal((len(job.forces), 1))
-        motion *= job.shell(symmetry.part).free[:, None]
+        motion *= job.shell(symmetry.cell).free[:, None]
         parts += (job.forces.T @ motion)[:, 0]
         total += (force.T @ symmetry.expand(motion, job.symmetry_class, 0))[:, 0]
     assert parts == pytest.approx(total, rel=1.0e-10)

@@ -16,7 +16,7 @@ from dynamics.failure import NumericsError
 from shell_model.boom_shell import ShellOptions, assemble_boom
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.krylov import KrylovOptions
-from shell_model.reduction.symmetry import together
+from shell_model.reduction.symmetry import run_collectively
 from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.unreduced import integrate_directly
 from tests.conftest import ranks_in
@@ -109,7 +109,7 @@ def failure(comm: MPI.Comm) -> list[str] | None:
             raise NumericsError("the second rank cannot")
 
     try:
-        together(comm, work)
+        run_collectively(comm, work)
         told = ""
     except NumericsError as error:
         told = str(error)

@@ -193,7 +193,7 @@ def test_the_shell_of_a_thin_box_is_the_solid_s() -> None:
     symmetry = SymmetryReduction(shell)
     (job,) = symmetry.jobs(lift[:, None], np.zeros((lift.size, 0)))
     assert job.symmetry_class == ALONG_Z
-    quarter = job.shell(symmetry.part)
+    quarter = job.shell(symmetry.cell)
     solid = assemble_solid(box, mesh_quarter(thin, (0.0, 0.5, 2.0), (0.02, 0.2), 0.05), ALONG_Z)
     of_shell, of_solid = (
         _compliance(model, row)
