@@ -10,7 +10,6 @@ from scipy.linalg import block_diag, null_space
 
 from beam_model.component import (
     BeamMember,
-    Component,
     Modes,
     Motion,
     Rule,
@@ -21,7 +20,7 @@ from beam_model.telescoping import moving_axial_forces
 from dynamics.second_order import buckling_factor, softened
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
-from geometry.cylinder import GroundLine, ground_lines
+from geometry.cylinder import ground_lines
 from geometry.telescoping import places, stands
 
 # One component of one segment.
@@ -55,23 +54,22 @@ class BoomModes:
         load: list[Array] = []
         damping: list[Array] = []
         first = 0
-        for group in _groups(boom):
-            components = [models[i].components[motion] for i, motion in group]
-            modes = _group_modes(boom, group, components)
-            geometric = block_diag(*(component.softening for component in components))
+        for group in _groups(boom, models):
+            modes = group.modes()
+            geometric = group.softening
             if geometric.any():
                 taken = modes.shapes.T @ geometric @ modes.shapes
                 softer, combination = softened(modes.omega2, taken)
                 modes = Modes(softer, modes.shapes @ combination)
             columns = slice(first, first + modes.omega2.size)
             first = columns.stop
-            sizes = np.cumsum([len(component.load) for component in components])
+            sizes = np.cumsum([len(component.load) for component in group.components])
             parts = np.split(modes.shapes, sizes[:-1])
-            for one, part in zip(group, parts, strict=True):
+            for one, part in zip(group.parts, parts, strict=True):
                 self._shapes[one] = columns, part
             omega2.append(modes.omega2)
-            load.append(np.concatenate([c.load for c in components]) @ modes.shapes)
-            rates = block_diag(*(c.damping for c in components))
+            load.append(np.concatenate([c.load for c in group.components]) @ modes.shapes)
+            rates = block_diag(*(c.damping for c in group.components))
             damping.append(
                 np.einsum("ki,kl,li->i", modes.shapes, rates, modes.shapes, optimize=True)
             )
@@ -123,17 +121,14 @@ def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
     The boom is without play. The factor is infinite without such forces, and None for a mechanism.
     Of a telescoping boom it is the smallest at several extensions, the stroke's ends among them.
     """
-    tied = boom.play_free
     drives = [number for number, joint in enumerate(boom.joints) if joint.drive is not None]
     smallest = np.inf
-    for group in _groups(tied):
-        components = [models[i].components[motion] for i, motion in group]
-        first = block_diag(*(component.softening for component in components))
-        members = _members(boom, group, components)
-        passing = {number: moving_axial_forces(boom, models, members, number) for number in drives}
+    for group in _groups(boom.play_free, models):
+        first = group.softening
+        passing = {n: moving_axial_forces(boom, models, group.members, n) for n in drives}
         if not (first.any() or any(passing.values())):
             continue
-        if (_group_modes(tied, group, components).omega2 == 0.0).any():
+        if (group.modes().omega2 == 0.0).any():
             return None
         for extensions in stands(boom):
             moving = (
@@ -143,14 +138,13 @@ def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
             )
             geometric = sum(moving, first)
             moved = {n: places(boom.joints[n], extension) for n, extension in extensions.items()}
-            ties, pulled = _holds(tied, group, components, moved)
-            stiffness, free = _held_stiffness(components, pulled), _free(ties, len(geometric))
+            stiffness, free = group.stiffness(), _kernel(group.ties(moved), len(geometric))
             factor = buckling_factor(free.T @ stiffness @ free, free.T @ geometric @ free)
             smallest = min(smallest, factor)
     return smallest
 
 
-def _groups(boom: Boom) -> list[list[_Part]]:
+def _groups(boom: Boom, models: Sequence[SegmentModel]) -> list[_Group]:
     """Return the groups with common modes: segments that bonded joints connect, in each motion.
 
     Two inclined cylinders side by side couple the twist of a segment to its slope along y.
@@ -169,19 +163,32 @@ def _groups(boom: Boom) -> list[list[_Part]]:
         kept, lost = group_of[one], group_of[other]
         group_of = {part: kept if at == lost else at for part, at in group_of.items()}
     return [
-        [part for part in parts if group_of[part] == name]
+        _Group(boom, models, [part for part in parts if group_of[part] == name])
         for name in dict.fromkeys(group_of.values())
     ]
 
 
-def _members(
-    boom: Boom, group: Sequence[_Part], components: Sequence[Component]
-) -> list[BeamMember]:
-    """Return each segment under loads on a group's components; a row is 0 where it has none."""
+class _Group:
+    """Components of a boom's segments side by side, which ties and cylinders couple.
 
-    def member(segment: int) -> BeamMember:
+    Attributes:
+        parts, components: segment and motion of each component, and the component.
+        members: each segment under loads on these components; a row is 0 where it has none.
+        springs: the cylinders that act on them.
+        softening: geometric stiffness K_G (num_dofs, num_dofs).
+    """
+
+    def __init__(self, boom: Boom, models: Sequence[SegmentModel], parts: Sequence[_Part]) -> None:
+        self._boom, self.parts = boom, parts
+        self.components = [models[i].components[motion] for i, motion in parts]
+        self.members = [self._member(number) for number in range(len(boom.segments))]
+        lines = ground_lines(boom, self.members)
+        self.springs = [line for line in lines if line.stiffness > 0.0 and line.push.any()]
+        self.softening = block_diag(*(component.softening for component in self.components))
+
+    def _member(self, segment: int) -> BeamMember:
         def read(motion: Motion, rule: Rule) -> Array:
-            parts = zip(group, components, strict=True)
+            parts = zip(self.parts, self.components, strict=True)
             own = (segment, motion)
             return np.concatenate(
                 [rule(c) if part == own else np.zeros(len(c.load)) for part, c in parts]
@@ -189,60 +196,48 @@ def _members(
 
         return BeamMember(read)
 
-    return [member(number) for number in range(len(boom.segments))]
+    def ties(self, moved: Mapping[int, Sequence[tuple[float, float]]]) -> list[Array]:
+        """Return rows (num_dofs,) that bonded joints keep at zero.
+
+        Telescoping ones are bonded where they have ``moved`` to, x in m on both segments.
+        """
+        return [
+            self.members[joint.inner].at(motion, on_inner)
+            - self.members[joint.outer].at(motion, on_outer)
+            for number, joint in enumerate(self._boom.joints)
+            if joint.tied
+            for motion in dict.fromkeys(motion for _, motion in self.parts)
+            if (joint.outer, motion) in self.parts
+            for on_outer, on_inner in moved.get(number, [(x, x) for x in joint.stations])
+        ]
+
+    def stiffness(self) -> Array:
+        """Return the stiffness (num_dofs, num_dofs) with the springs of cylinders."""
+        stiffness = block_diag(*(c.stiffness for c in self.components))
+        for line in self.springs:
+            stiffness += line.stiffness * np.outer(line.push, line.push)
+        return np.asarray(stiffness)
+
+    def modes(self) -> Modes:
+        """Return the modes under the constraints of ties and cylinders."""
+        apart = [natural_modes(c.stiffness, c.mass, c.rigid_modes) for c in self.components]
+        ties = self.ties({})
+        if not ties and not self.springs and len(apart) == 1:
+            return apart[0]
+        rigid = block_diag(
+            *(m.shapes[:, : c.rigid_modes] for m, c in zip(apart, self.components, strict=True))
+        )
+        # Rigid motions of the segments that satisfy these constraints stay rigid.
+        rows = [*ties, *(line.push for line in self.springs)]
+        held = np.array(rows).reshape(-1, len(rigid)) @ rigid
+        bound = np.linalg.svd(held, compute_uv=False) if held.size else np.zeros(0)
+        rigid_modes = rigid.shape[1] - int((bound > ROUND_OFF * bound.max(initial=0.0)).sum())
+        stiffness, mass = self.stiffness(), block_diag(*(c.mass for c in self.components))
+        free = _kernel(ties, len(mass))
+        modes = natural_modes(free.T @ stiffness @ free, free.T @ mass @ free, rigid_modes)
+        return Modes(modes.omega2, free @ modes.shapes)
 
 
-def _holds(
-    boom: Boom,
-    group: Sequence[_Part],
-    components: Sequence[Component],
-    moved: Mapping[int, Sequence[tuple[float, float]]],
-) -> tuple[list[Array], list[GroundLine]]:
-    """Return rows (num_dofs,) that ties keep at zero, and those of the cylinders, of a group.
-
-    Telescoping joints are bonded where they have ``moved`` to, x in m on both segments.
-    """
-    members = _members(boom, group, components)
-    ties = [
-        members[joint.inner].at(motion, on_inner) - members[joint.outer].at(motion, on_outer)
-        for number, joint in enumerate(boom.joints)
-        if joint.tied
-        for motion in dict.fromkeys(motion for _, motion in group)
-        if (joint.outer, motion) in group
-        for on_outer, on_inner in moved.get(number, [(x, x) for x in joint.stations])
-    ]
-    lines = ground_lines(boom, members)
-    return ties, [line for line in lines if line.stiffness > 0.0 and line.push.any()]
-
-
-def _held_stiffness(components: Sequence[Component], pulled: Sequence[GroundLine]) -> Array:
-    """Return the stiffness (num_dofs, num_dofs) with the springs of cylinders."""
-    stiffness = block_diag(*(c.stiffness for c in components))
-    for line in pulled:
-        stiffness += line.stiffness * np.outer(line.push, line.push)
-    return np.asarray(stiffness)
-
-
-def _free(ties: Sequence[Array], num_dofs: int) -> Array:
+def _kernel(ties: Sequence[Array], num_dofs: int) -> Array:
     """Return (num_dofs, num_free) the motions that keep the ties at zero."""
     return null_space(np.array(ties)) if ties else np.eye(num_dofs)
-
-
-def _group_modes(boom: Boom, group: Sequence[_Part], components: Sequence[Component]) -> Modes:
-    """Return the modes of components side by side under the constraints of ties and cylinders."""
-    apart = [natural_modes(c.stiffness, c.mass, c.rigid_modes) for c in components]
-    ties, pulled = _holds(boom, group, components, {})
-    if not ties and not pulled and len(apart) == 1:
-        return apart[0]
-    rigid = block_diag(
-        *(m.shapes[:, : c.rigid_modes] for m, c in zip(apart, components, strict=True))
-    )
-    # Rigid motions of the segments that satisfy these constraints stay rigid.
-    held = np.array([*ties, *(line.push for line in pulled)]).reshape(-1, len(rigid)) @ rigid
-    bound = np.linalg.svd(held, compute_uv=False) if held.size else np.zeros(0)
-    rigid_modes = rigid.shape[1] - int((bound > ROUND_OFF * bound.max(initial=0.0)).sum())
-    stiffness = _held_stiffness(components, pulled)
-    mass = block_diag(*(c.mass for c in components))
-    free = _free(ties, len(mass))
-    modes = natural_modes(free.T @ stiffness @ free, free.T @ mass @ free, rigid_modes)
-    return Modes(modes.omega2, free @ modes.shapes)

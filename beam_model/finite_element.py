@@ -16,8 +16,6 @@ import numpy as np
 
 from beam_model.component import Component, Motion, SegmentModel, products
 from beam_model.elements import Theory, element
-from beam_model.segment_model import gap_system
-from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import SAME_PLACE, Boom, BoomError, Segment
 from geometry.segment import APART
@@ -29,31 +27,14 @@ _MASS, _ROTARY = map(attrgetter, ("mass_per_length", "rotary_inertia"))
 _TORSION, _POLAR = map(attrgetter, ("lateral.torsion_constant", "lateral.polar_inertia"))
 
 
-def finite_element_system(
-    boom: Boom,
-    element_length: float = 0.5,
-    theory: Theory = "euler-bernoulli",
-    rotary_inertia: bool = True,
-) -> GapSystem:
-    """Return the gap system of a boom by beam finite elements.
-
-    Args:
-        boom: flat or in space.
-        element_length: largest length of an element in m.
-        theory: ``timoshenko`` needs the segments' sections.
-        rotary_inertia: keep I_p of (3).
+def finite_element_segments(
+    boom: Boom, element_length: float, theory: Theory, rotary_inertia: bool
+) -> list[SegmentModel]:
+    """Return all segments of a boom, with nodes where something acts; arguments as below.
 
     Raises:
         BoomError: the boom lacks what the theory needs.
     """
-    models = finite_element_segments(boom, element_length, theory, rotary_inertia)
-    return gap_system(boom, models)
-
-
-def finite_element_segments(
-    boom: Boom, element_length: float, theory: Theory, rotary_inertia: bool
-) -> list[SegmentModel]:
-    """Return all segments of a boom, with nodes where something acts; arguments as below."""
     return [
         finite_element_segment(
             segment, element_length, boom.stations_of(number), theory, rotary_inertia

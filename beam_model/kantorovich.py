@@ -19,8 +19,6 @@ from numpy.polynomial import Legendre, Polynomial
 from scipy.linalg import null_space, rq
 
 from beam_model.component import Component, Motion, SegmentModel, products
-from beam_model.segment_model import gap_system
-from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Segment
 from geometry.compression import Compression
@@ -31,31 +29,14 @@ _TAPERING = 6
 Base = Literal["as printed", "pinned", "complete"]
 
 
-def kantorovich_system(
-    boom: Boom,
-    terms: Sequence[int],
-    base: Base = "complete",
-    rotary_inertia: bool = True,
-) -> GapSystem:
-    """Return the gap system of a boom by Kantorovich series.
-
-    Args:
-        boom: flat or in space.
-        terms: number of functions of each segment.
-        base: which reading of (29) and (31).
-        rotary_inertia: keep I_p of (3) and (9), or drop it as (21) does.
+def kantorovich_segments(
+    boom: Boom, terms: Sequence[int], base: Base, rotary_inertia: bool
+) -> list[SegmentModel]:
+    """Return all segments of a boom, each with its own number of terms; arguments as below.
 
     Raises:
         BoomError: the boom has what the base cannot take.
     """
-    models = kantorovich_segments(boom, terms, base, rotary_inertia)
-    return gap_system(boom, models)
-
-
-def kantorovich_segments(
-    boom: Boom, terms: Sequence[int], base: Base, rotary_inertia: bool
-) -> list[SegmentModel]:
-    """Return all segments of a boom, each with its own number of terms; arguments as below."""
     check_base(boom, base)
     return [
         kantorovich_segment(segment, count, base, rotary_inertia)

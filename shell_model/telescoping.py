@@ -16,7 +16,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from mpi4py import MPI
@@ -87,7 +86,7 @@ class _SampledRows:
         rows = [one.some_rows(self.moving, read) for one in self.touching[::step]]
         return np.asarray(np.concatenate(rows).T)
 
-    def told_apart(self, comm: MPI.Comm, columns: Array) -> tuple[Mask, Mask]:
+    def moving_and_staying(self, comm: MPI.Comm, columns: Array) -> tuple[Mask, Mask]:
         """Return which rows (num_extensions · num_moving) read other places as a segment extends.
 
         Also return the first of each of those that read the same place. Collective.
@@ -122,22 +121,6 @@ def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]
     return [*found, _SampledRows(None, still, np.zeros(1), [full.rows])] if still else found
 
 
-class _Readings(NamedTuple):
-    """Rows that read a segment.
-
-    Args:
-        columns: (num_owned, num_columns) of pads, at all extensions.
-        moving: (num_columns,) which of these read other places of the segment as it extends.
-        staying: (num_columns,) one of all that read the same place.
-        observed: (num_owned, num_observed).
-    """
-
-    columns: Array
-    moving: Mask
-    staying: Mask
-    observed: Array
-
-
 class TelescopingShell:
     """Shell of a telescoping boom. Collective.
 
@@ -164,17 +147,17 @@ class TelescopingShell:
         self._boom, self._full, self._test = boom, full, test
         self._sampled = _sample_rows(boom, full, size)
         self.reduced: list[ReducedSegment] = []
-        self._answers: list[PadResponses] = []
-        for number in range(len(full.shells)):
-            own = reduce(number, self._columns(number, _EVERY))
-            read = self._read(number)
-            self._answers.append(pad_responses(full.symmetries[number], read.columns, test))
-            self.reduced.append(self._kept(number, own, read))
+        self._responses: list[PadResponses] = []
+        for number, symmetry in enumerate(full.symmetries):
+            segment = reduce(number, self._columns(number, _EVERY))
+            columns = self._columns(number)
+            self._responses.append(pad_responses(symmetry, columns, test))
+            self.reduced.append(self._with_few_modes(number, segment, columns))
         # Springs represent the response beyond the modes of the unloaded boom.
         free = [replace(one, geometric=0.0 * one.geometric) for one in self.reduced]
         self._apart = BoomCoordinates(full.comm, full.shells, free, ())
         self._rows = [sampled.rows(self._apart) for sampled in self._sampled]
-        self._springs = [springs(*self._left(k)) for k in range(len(self._sampled))]
+        self._springs = [springs(*self._residuals(k)) for k in range(len(self._sampled))]
 
     def lost(self, contacts: int) -> Array:
         """Return the largest error (num_contacts,) of each compliance at any extension, in m/N."""
@@ -183,7 +166,7 @@ class TelescopingShell:
             omega2, pulls = self._springs[k]
             parts = (self._rows[k], self._apart.omega2), (pulls, omega2)
             own = sum(rows**2 @ (1.0 / (of + sigma)) for rows, of in parts)
-            whole = np.einsum("wjj->wj", self._answered(k, "tested"))
+            whole = np.einsum("wjj->wj", self._compliance(k, "tested"))
             off = np.abs(whole - own).max(axis=0)
             for (kind, row), most in zip(sampled.moving, off.tolist(), strict=True):
                 if kind == "rows":
@@ -223,45 +206,46 @@ class TelescopingShell:
         shell = self._full.shells[number]
         return np.hstack([sampled.columns(shell, number, step) for sampled in self._sampled])
 
-    def _read(self, number: int) -> _Readings:
-        columns = self._columns(number)
-        parts = np.split(columns, np.cumsum([one.count for one in self._sampled])[:-1], axis=1)
-        told = [
-            sampled.told_apart(self._full.comm, part)
-            for sampled, part in zip(self._sampled, parts, strict=True)
-        ]
-        moving, staying = (np.concatenate(which) for which in zip(*told, strict=True))
-        seen = [one.reading for one in self._full.observed.values()]
-        return _Readings(columns, moving, staying, self._full.columns(number, seen))
+    def _with_few_modes(
+        self, number: int, segment: ReducedSegment, columns: Array
+    ) -> ReducedSegment:
+        """Select the modes that pads excite, and the responses to all forces at fixed places.
 
-    def _kept(self, number: int, own: ReducedSegment, read: _Readings) -> ReducedSegment:
-        """Select the modes that pads excite, and the responses to all forces at fixed places."""
+        ``columns`` (num_owned, num_columns) are the rows of pads at all extensions.
+        """
 
         def modal(columns: Array) -> Array:
             """Return the modal values (num_columns, num_modes) of the segment."""
-            rows = [exact_product(self._full.comm, column, own.shapes) for column in columns.T]
-            return np.array(rows).reshape(-1, own.omega2.size)
+            rows = [exact_product(self._full.comm, column, segment.shapes) for column in columns.T]
+            return np.array(rows).reshape(-1, segment.omega2.size)
 
-        rows, observed = modal(read.columns), modal(read.observed)
-        parts = rows[read.moving] ** 2 / (own.omega2 + squared(SLOW))
-        below = own.omega2 < squared(_CUTOFF)
-        local = np.diag(self._answers[number].compliance)[read.moving]
+        bounds = np.cumsum([sampled.count for sampled in self._sampled])[:-1]
+        masks = [
+            sampled.moving_and_staying(self._full.comm, part)
+            for sampled, part in zip(self._sampled, np.split(columns, bounds, axis=1), strict=True)
+        ]
+        moving, staying = (np.concatenate(which) for which in zip(*masks, strict=True))
+        seen = [one.reading for one in self._full.observed.values()]
+        rows, observed = modal(columns), modal(self._full.columns(number, seen))
+        parts = rows[moving] ** 2 / (segment.omega2 + squared(SLOW))
+        below = segment.omega2 < squared(_CUTOFF)
+        local = np.diag(self._responses[number].compliance)[moving]
         left = local - parts[:, below].sum(axis=1)
-        slow = own.omega2 < squared(_SLOWEST)
+        slow = segment.omega2 < squared(_SLOWEST)
         slow |= below & (parts > _PART * left[:, None]).any(axis=0)
         stays = self._full.pushed(number), self._full.columns(number, self._full.ties)
-        pushes = [*(modal(some) for some in stays), observed, rows[read.staying]]
+        pushes = [*(modal(some) for some in stays), observed, rows[staying]]
         modes = np.flatnonzero(slow), np.flatnonzero(~slow)
-        omega2, shapes = fewer(own.omega2, np.vstack(pushes), *modes, MOMENTS)
+        omega2, shapes = fewer(segment.omega2, np.vstack(pushes), *modes, MOMENTS)
         order = np.argsort(omega2, kind="stable")
         omega2, shapes = omega2[order], shapes[:, order]
-        off = self._transfer_error((own.omega2, rows, observed), (omega2, shapes))
+        error = self._transfer_error((segment.omega2, rows, observed), (omega2, shapes))
         return replace(
-            own,
+            segment,
             omega2=omega2,
-            shapes=own.shapes @ shapes,
-            geometric=shapes.T @ own.geometric @ shapes,
-            reading_error=max(own.reading_error, off),
+            shapes=segment.shapes @ shapes,
+            geometric=shapes.T @ segment.geometric @ shapes,
+            reading_error=max(segment.reading_error, error),
         )
 
     def _transfer_error(self, many: tuple[Array, Array, Array], few: tuple[Array, Array]) -> float:
@@ -278,17 +262,19 @@ class TelescopingShell:
         scale = np.maximum(np.outer(*sizes), np.finfo(float).tiny)
         return float((np.abs(missed) / scale).max(initial=0.0))
 
-    def _left(self, k: int) -> tuple[Array, Array]:
+    def _residuals(self, k: int) -> tuple[Array, Array]:
         """Return the residuals of compliance and inertia of sampled rows beyond the modes."""
         rows, shifted = self._rows[k], self._apart.omega2 + squared(SLOW)
-        taken = [rows / shifted**power @ rows.swapaxes(1, 2) for power in (1, 2)]
-        return self._answered(k, "compliance") - taken[0], self._answered(k, "inertia") - taken[1]
+        compliance, inertia = (rows / shifted**power @ rows.swapaxes(1, 2) for power in (1, 2))
+        return self._compliance(k, "compliance") - compliance, self._compliance(
+            k, "inertia"
+        ) - inertia
 
-    def _answered(self, k: int, what: str) -> Array:
+    def _compliance(self, k: int, kind: str) -> Array:
         """Return the compliance (num_extensions, num_moving, num_moving) of all full segments."""
         first, sampled = sum(one.count for one in self._sampled[:k]), self._sampled[k]
         own = slice(first, first + sampled.count)
-        whole = np.sum([getattr(one, what)[own, own] for one in self._answers], axis=0)
+        whole = np.sum([getattr(one, kind)[own, own] for one in self._responses], axis=0)
         size = sampled.extensions.size
         return np.asarray(
             np.einsum("wiwj->wij", whole.reshape(size, len(sampled.moving), size, -1))

@@ -10,8 +10,9 @@ from functools import partial
 import numpy as np
 from scipy.optimize import brentq
 
-from beam_model.finite_element import finite_element_system
-from beam_model.kantorovich import kantorovich_system
+from beam_model.elements import Theory
+from beam_model.finite_element import finite_element_segments
+from beam_model.kantorovich import kantorovich_segments
 from beam_model.rigid import rigid_segment
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
@@ -200,9 +201,15 @@ def _shell(boom: Boom) -> GapSystem:
     return reduce_boom(boom, ShellOptions(0.2), MPI.COMM_SELF).system
 
 
+def _elements(boom: Boom, theory: Theory) -> GapSystem:
+    return gap_system(boom, finite_element_segments(boom, 0.5, theory, rotary_inertia=True))
+
+
 _MODELS: Mapping[str, Callable[[Boom], GapSystem]] = {
-    "elements": finite_element_system,
-    "Timoshenko's elements": partial(finite_element_system, theory="timoshenko"),
-    "a series of 24 terms": lambda boom: kantorovich_system(boom, [24]),
+    "elements": partial(_elements, theory="euler-bernoulli"),
+    "Timoshenko's elements": partial(_elements, theory="timoshenko"),
+    "a series of 24 terms": lambda boom: gap_system(
+        boom, kantorovich_segments(boom, [24], "complete", rotary_inertia=True)
+    ),
     "a shell": _shell,
 }

@@ -15,6 +15,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.linalg import block_diag
 
+from beam_model.elements import Theory
+from beam_model.finite_element import finite_element_segments
+from beam_model.segment_model import gap_system
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
 from dynamics.drive.travel import SCurve
@@ -37,6 +40,15 @@ def telescope(boom: Boom, way: float, drive: Drive | None = None, **changes: Any
     inner = shifted(inner, way - 4.0)
     joint = replace(boom.joints[0], stations=(inner.start, outer.end), drive=drive, **changes)
     return replace(boom, segments=(outer, inner), joints=(joint,))
+
+
+def elements(
+    boom: Boom,
+    length: float = 0.5,
+    theory: Theory = "euler-bernoulli",
+    rotary_inertia: bool = True,
+) -> GapSystem:
+    return gap_system(boom, finite_element_segments(boom, length, theory, rotary_inertia))
 
 
 def tips(system: GapSystem) -> list[float]:

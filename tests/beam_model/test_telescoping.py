@@ -14,8 +14,8 @@ from scipy.linalg import eigh
 
 from beam_model.boom_modes import critical_factor
 from beam_model.component import SegmentModel
-from beam_model.finite_element import finite_element_segments, finite_element_system
-from beam_model.kantorovich import kantorovich_segments, kantorovich_system
+from beam_model.finite_element import finite_element_segments
+from beam_model.kantorovich import kantorovich_segments
 from beam_model.segment_model import gap_system
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
@@ -28,7 +28,16 @@ from dynamics.motion import Motion
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, BoomError, Joint, PointMass, Stop, Support
 from geometry.joint import Carrier, Drive
-from tests.beam_model.telescoping import DRIVE, LAW, LONGEST, runge_kutta, shifted, telescope, tips
+from tests.beam_model.telescoping import (
+    DRIVE,
+    LAW,
+    LONGEST,
+    elements,
+    runge_kutta,
+    shifted,
+    telescope,
+    tips,
+)
 from tests.touching import touching
 
 
@@ -48,11 +57,11 @@ def three(boom: Boom, ways: tuple[float, float], drives: Sequence[Drive | None])
 
 
 SYSTEMS: dict[str, Callable[[Boom], GapSystem]] = {
-    "Euler-Bernoulli": lambda boom: finite_element_system(touching(boom, LAW), element_length=0.5),
-    "Timoshenko": lambda boom: finite_element_system(
-        touching(boom, LAW), element_length=0.5, theory="timoshenko"
+    "Euler-Bernoulli": lambda boom: elements(touching(boom, LAW), length=0.5),
+    "Timoshenko": lambda boom: elements(touching(boom, LAW), length=0.5, theory="timoshenko"),
+    "series": lambda boom: gap_system(
+        touching(boom, LAW), kantorovich_segments(boom, (4, 6), "complete", rotary_inertia=True)
     ),
-    "series": lambda boom: kantorovich_system(touching(boom, LAW), (4, 6), base="complete"),
 }
 
 
@@ -73,7 +82,7 @@ def test_three_segments_a_stop_and_dashpots_on_the_way(paper_boom: Boom) -> None
     drives = (Drive(SCurve(1.0, 2.0), ("inner", "outer")), Drive(SCurve(2.0, 2.0), DRIVE.carriers))
 
     def built(ways: tuple[float, float], drives: Sequence[Drive | None]) -> GapSystem:
-        return finite_element_system(touching(three(paper_boom, ways, drives), [LAW, LAW]))
+        return elements(touching(three(paper_boom, ways, drives), [LAW, LAW]))
 
     system, there = built((0.0, 0.0), drives).standing(2.0), built((1.0, 2.0), (None, None))
     assert [type(t.history) for t in built((0.0, 0.0), drives).travels] == [
@@ -90,7 +99,7 @@ def test_in_space_the_rows_turn_with_the_sections(spatial_boom: Boom) -> None:
 
     def built(way: float, drive: Drive | None) -> GapSystem:
         boom = telescope(spatial_boom, way, drive, friction=0.2)
-        return finite_element_system(touching(boom, LAW, LAW), element_length=0.5)
+        return elements(touching(boom, LAW, LAW), length=0.5)
 
     system, there = built(0.0, DRIVE).standing(5.0), built(4.0, None)
     for rows in ("rows", "friction_rows"):
@@ -105,7 +114,7 @@ def test_in_space_the_rows_turn_with_the_sections(spatial_boom: Boom) -> None:
 def test_a_slow_drive_follows_the_statics(paper_boom: Boom) -> None:
     """Reference: analytic, the rest of each position, within 0.1 % of the tip's deflection."""
     boom = telescope(paper_boom, 1.0, Drive(SCurve(3.0, 80.0), DRIVE.carriers))
-    system = finite_element_system(touching(boom, LAW), element_length=1.0)
+    system = elements(touching(boom, LAW), length=1.0)
     system = replace(system, damping=np.ones(system.num_modes))
     rest = equilibrium(system, system.load)
     run = FixedStep(1.0e-4)(Motion(system, 80.0, 0.1, position=rest))
@@ -136,9 +145,7 @@ def test_an_integration_of_its_own(paper_boom: Boom, thrust: float) -> None:
         ropes = [Thrust(1, segments[1].end, thrust)]
         segments = with_compression(segments, boom.joints, ropes)
     boom = replace(boom, segments=segments)
-    system = finite_element_system(
-        touching(boom, LAW), element_length=LONGEST, rotary_inertia=False
-    )
+    system = elements(touching(boom, LAW), length=LONGEST, rotary_inertia=False)
     runs = [FixedStep(step)(Motion(system, 0.6, 5.0e-3)) for step in (2.0e-5, 1.0e-5)]
     tip, work = runge_kutta(boom, history, runs[0].time, thrust)
     assert runs[0].data.attrs["contact_changes"] > 2
@@ -158,7 +165,7 @@ def test_the_ledger_of_the_papers_boom(paper_boom: Boom) -> None:
     """Reference: analytic, the balance within 1e-5 of the load's work, with friction as well."""
     for changes in ({}, RESISTED):
         boom = telescope(paper_boom, 0.0, Drive(Stroke(4.0, 4.0, 0.2), DRIVE.carriers), **changes)
-        system = finite_element_system(touching(boom, LAW), element_length=1.0)
+        system = elements(touching(boom, LAW), length=1.0)
         run = FixedStep(1.0e-5)(Motion(system, 1.5))
         put_in = float(np.abs(run.data["work"]).max())
         assert run.energy_residual < 1.0e-5
@@ -171,7 +178,7 @@ def test_out_and_in_again(paper_boom: Boom) -> None:
     there_and_back = PiecewiseLinear([0.0, 0.2, 0.4], [0.0, 4.0, 0.0])
     boom = telescope(paper_boom, 0.0, Drive(there_and_back, DRIVE.carriers))
     boom = replace(boom, segments=tuple(replace(one, load=0.0) for one in boom.segments))
-    system = finite_element_system(touching(boom, LAW), element_length=1.0)
+    system = elements(touching(boom, LAW), length=1.0)
     speeds = 1.0e-3 * np.cos(np.arange(system.num_modes))
     moved, rest = (
         FixedStep(1.0e-4)(Motion(one, 0.4, 1.0e-2, velocity=speeds))
@@ -307,7 +314,7 @@ def test_in_space_both_planes_soften(spatial_boom: Boom) -> None:
 
     def built(way: float, drive: Drive | None) -> GapSystem:
         boom = pressed(spatial_boom, way, drive)
-        return finite_element_system(touching(boom, LAW, LAW), element_length=0.5)
+        return elements(touching(boom, LAW, LAW), length=0.5)
 
     here, there = built(0.0, DRIVE).standing(5.0), built(4.0, None)
     assert frequencies(here) == pytest.approx(frequencies(there), rel=1e-6)
@@ -319,16 +326,16 @@ def test_in_space_both_planes_soften(spatial_boom: Boom) -> None:
 def test_a_slow_drive_follows_the_second_order_statics(paper_boom: Boom) -> None:
     """Reference: other code path, the rest of the boom that lies there, within 0.1 %."""
     boom = pressed(paper_boom, 2.0, Drive(SCurve(2.0, 60.0), DRIVE.carriers))
-    system = finite_element_system(touching(boom, LAW), element_length=1.0)
+    system = elements(touching(boom, LAW), length=1.0)
     system = replace(system, damping=0.2 * np.ones(system.num_modes))
     rest = equilibrium(system, system.load)
     run = FixedStep(1.0e-4)(Motion(system, 60.0, 0.1, position=rest))
     for way, time in ((2.0, 0.0), (3.0, 30.0), (4.0, 60.0)):
-        there = finite_element_system(touching(pressed(paper_boom, way), LAW), element_length=1.0)
+        there = elements(touching(pressed(paper_boom, way), LAW), length=1.0)
         found = float(run.data["tip"].sel(time=time, method="nearest"))
         assert found == pytest.approx(tips(there)[0], rel=1.0e-3)
         plain = telescope(paper_boom, way)
-        first = tips(finite_element_system(touching(plain, LAW), element_length=1.0))[0]
+        first = tips(elements(touching(plain, LAW), length=1.0))[0]
         assert abs(found / first - 1.0) > 0.01
 
 
@@ -340,7 +347,7 @@ def test_the_ledger_and_the_order(paper_boom: Boom) -> None:
     for changes in ({}, RESISTED):
         boom = pressed(paper_boom, 0.0, Drive(Stroke(4.0, 4.0, 0.2), DRIVE.carriers))
         boom = replace(boom, joints=(replace(boom.joints[0], **changes),))
-        system = finite_element_system(touching(boom, LAW), element_length=1.0)
+        system = elements(touching(boom, LAW), length=1.0)
         steps = (4.0e-5, 2.0e-5, 1.0e-5)
         runs = [FixedStep(step)(Motion(system, 1.5, 5.0e-3)) for step in steps]
         assert max(run.energy_residual for run in runs) < 1.0e-11
