@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -91,15 +91,35 @@ def reduce_boom(
     """
     stages = Stages(progress)
     full = assemble_boom(boom, options, comm, stages)
-    found = (_telescoping if boom.driven else _resting)(boom, full, options, stages)
+    telescoping = None
+    if boom.driven:
+        fewer = replace(options, krylov=replace(options.krylov, moments=MOMENTS))
+        reduce = partial(_reduced, full, fewer, stages)
+        test = options.krylov.tests[0]
+        telescoping = TelescopingShell(boom, full, options.mesh_size, reduce, test)
+        segments = telescoping.reduced
+    else:
+        segments = [_reduced(full, options, stages, n) for n in range(len(full.shells))]
+    coordinates = BoomCoordinates(full.comm, full.shells, segments, full.ties, full.lines)
+    with stages.stage("rows"):
+        own_loads = np.array([coordinates.push(i, load) for i, load in enumerate(full.own_loads)])
+        system = _gap_system(full, coordinates, own_loads)
+        if telescoping:
+            system = telescoping.with_springs(system, coordinates)
+            own_loads = np.pad(own_loads, ((0, 0), (0, system.num_modes - own_loads.shape[1])))
+    if telescoping:
+        whole = compliance(system.omega2, system.rows)
+        lost = telescoping.lost(len(system.laws))
+    else:
+        whole, lost = _contact_compliance(full, segments)
     with stages.stage("fields"):
-        fields = gather_fields(boom, full.shells, found.segments, found.coordinates, found.system)
+        fields = gather_fields(boom, full.shells, segments, coordinates, system)
     with stages.stage("mesh error"):
         coarse = assemble_boom(boom, options.coarser, comm)
         local, coarse_local = (
-            local_compliance(whole, [row.law for row in rows], [row.station for row in rows])
-            for whole, rows in (
-                (found.compliance, full.rows.contacts),
+            local_compliance(found, [row.law for row in rows], [row.station for row in rows])
+            for found, rows in (
+                (whole, full.rows.contacts),
                 (full_compliance(coarse.shells, coarse.rows.contacts), coarse.rows.contacts),
             )
         )
@@ -107,85 +127,41 @@ def reduce_boom(
     with stages.stage("unit responses"):
         responses = [probe_segment(boom, number, one) for number, one in enumerate(full.symmetries)]
     return ReducedShell(
-        system=found.system,
+        system=system,
         num_dofs=full.num_dofs,
         fields=fields,
         errors={
-            "contact_compliance": _largest(found.lost / local),
-            "readings": max(segment.reading_error for segment in found.segments),
-            "frequency_limit_in_hz": min(segment.frequency_limit for segment in found.segments),
+            "contact_compliance": _largest(lost / local),
+            "readings": max(segment.reading_error for segment in segments),
+            "frequency_limit_in_hz": min(segment.frequency_limit for segment in segments),
         },
         local_compliance=local,
         mesh_error=_largest(mesh_error),
         seconds=stages.seconds,
         meshes=[shell.mesh for shell in full.shells if shell.mesh is not None],
-        critical_factor=critical_factor(boom, full, found.segments),
+        critical_factor=critical_factor(boom, full, segments),
         probe_responses=responses,
-        own_loads=found.own_loads,
+        own_loads=own_loads,
     )
 
 
-class _Reduction(NamedTuple):
-    """Boom in reduced coordinates.
+def _contact_compliance(full: BoomShell, segments: Sequence[ReducedSegment]) -> tuple[Array, Array]:
+    """Return the compliance (num_contacts, num_contacts) of reduced segments apart, in m/N.
 
-    Args:
-        segments: in their reduced coordinates.
-        coordinates: those of the boom, without springs.
-        system: gap system in these coordinates.
-        own_loads: (num_segments, num_modes) modal loads of each segment, in N/√kg.
-        compliance: (num_contacts, num_contacts) of the contacts in m/N.
-        lost: (num_contacts,) largest error of the compliance of each in m/N.
+    Also return the largest error (num_contacts,) of that of each contact.
     """
-
-    segments: Sequence[ReducedSegment]
-    coordinates: BoomCoordinates
-    system: GapSystem
-    own_loads: Array
-    compliance: Array
-    lost: Array
-
-
-def _resting(_: Boom, full: BoomShell, options: ShellOptions, stages: Stages) -> _Reduction:
-    """Reduce a boom with pads at fixed places."""
-    reduced = [_reduced(full, number, options, stages) for number in range(len(full.shells))]
-    coordinates = BoomCoordinates(full.comm, full.shells, reduced, full.ties, full.lines)
-    with stages.stage("rows"):
-        loads = _own_loads(full, coordinates)
-        system = _gap_system(full, coordinates, loads)
-    apart = BoomCoordinates(full.comm, full.shells, reduced, ())
+    apart = BoomCoordinates(full.comm, full.shells, segments, ())
     contacts = full.rows.contacts
     rows = np.array([apart.row(contact.reading) for contact in contacts])
-    pressed, lost = (
-        compliance(apart.omega2, rows.reshape(-1, apart.omega2.size)),
-        np.zeros(len(contacts)),
-    )
-    for number, segment in enumerate(reduced):
+    lost = np.zeros(len(contacts))
+    for number, segment in enumerate(segments):
         touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
         lost[touching] += segment.lost_compliance[: len(touching)]
-    return _Reduction(reduced, coordinates, system, loads, pressed, lost)
-
-
-def _telescoping(boom: Boom, full: BoomShell, options: ShellOptions, stages: Stages) -> _Reduction:
-    """Reduce a telescoping boom."""
-    fewer = replace(options, krylov=replace(options.krylov, moments=MOMENTS))
-
-    def reduce(number: int, columns: Array) -> ReducedSegment:
-        return _reduced(full, number, fewer, stages, columns)
-
-    telescoping = TelescopingShell(boom, full, options.mesh_size, reduce, options.krylov.tests[0])
-    coordinates = BoomCoordinates(
-        full.comm, full.shells, telescoping.reduced, full.ties, full.lines
-    )
-    with stages.stage("rows"):
-        loads = _own_loads(full, coordinates)
-        system = telescoping.with_springs(_gap_system(full, coordinates, loads), coordinates)
-    loads = np.pad(loads, ((0, 0), (0, system.num_modes - loads.shape[1])))
-    pressed, lost = compliance(system.omega2, system.rows), telescoping.lost(len(system.laws))
-    return _Reduction(telescoping.reduced, coordinates, system, loads, pressed, lost)
+    return compliance(apart.omega2, rows.reshape(-1, apart.omega2.size)), lost
 
 
 def _reduced(
-    full: BoomShell, number: int, options: ShellOptions, stages: Stages, *beside: Array
+    full: BoomShell, options: ShellOptions, stages: Stages, number: int, *beside: Array
 ) -> ReducedSegment:
     """Reduce a segment to the motions that its forces excite and its observers read."""
     krylov, joined = options.krylov, full.joined(number)
@@ -199,11 +175,6 @@ def _reduced(
         if at_surface and joined.size:
             own = without_stiff_modes(full.comm, own, joined)
     return own
-
-
-def _own_loads(full: BoomShell, coordinates: BoomCoordinates) -> Array:
-    """Return the modal loads (num_segments, num_modes) of each segment's own loads, in N/√kg."""
-    return np.array([coordinates.push(i, load) for i, load in enumerate(full.own_loads)])
 
 
 def _gap_system(full: BoomShell, coordinates: BoomCoordinates, own_loads: Array) -> GapSystem:
@@ -230,7 +201,7 @@ def _largest(parts: Array) -> float:
 def critical_factor(boom: Boom, full: BoomShell, reduced: Sequence[ReducedSegment]) -> float | None:
     """Return the critical factor of the axial forces on the boom without play. Collective.
 
-        It is infinite without axial forces.
+    It is infinite without axial forces.
 
     Raises:
         NumericsError: it is 1 or less, and the boom buckles.
