@@ -227,7 +227,7 @@ def test_pictures_know_walls_from_diaphragms() -> None:
     motion = xr.Dataset({"tip": ("time", np.zeros(2))}, coords={"time": [0.0, 1.0]})
     scene = Scene(
         boom=stiff,
-        marks=[],
+        symbols=[],
         **{name: fields[name].values for name in ("points", "triangles", "segment", "modes")},
         state=fields["state"],
         motion=motion,
