@@ -13,7 +13,8 @@ from typing import NamedTuple, cast
 import numpy as np
 from scipy.optimize import brentq, least_squares
 
-from beam_model.finite_element import finite_element_system
+from beam_model.finite_element import finite_element_segments
+from beam_model.segment_model import gap_system
 from dynamics.contact import Gap, PowerContact
 from dynamics.excitation import Excitation, Sine
 from dynamics.friction import DryFriction
@@ -93,7 +94,7 @@ def roller_frequency(x: float) -> float:
         supports=(Support(0.0, "clamped"), Support(x)),
         masses=(PointMass(BEAM_LENGTH, ACCELEROMETERS),),
     )  # fmt: skip
-    return float(finite_element_system(Boom((beam,), ()), 0.05).frequencies[0])
+    return _first_frequency(Boom((beam,), ()), 0.05, rotary_inertia=True)
 
 
 def boom_lift() -> Iterator[Proof]:
@@ -144,7 +145,7 @@ def lift_frequency(retracted: float, mass: float) -> float:
         for number, (outer, inner) in enumerate(pairwise(segments))
     ]
     boom = Boom(tuple(segments), tuple(joints))
-    return float(finite_element_system(boom, 0.25, rotary_inertia=False).frequencies[0])
+    return _first_frequency(boom, 0.25, rotary_inertia=False)
 
 
 class Oscillators(NamedTuple):
@@ -278,3 +279,9 @@ def _plate(edges: int, thickness: float, widths: tuple[float, float] = (SIDE, SI
         return np.stack([SIDE * x, width * (y - 0.5), np.zeros_like(x)], axis=1)
 
     return StaticShell(*grid(surface, edges, edges), thickness, NAFEMS_STEEL, DRILLING_OF_CURVED)
+
+
+def _first_frequency(boom: Boom, length: float, rotary_inertia: bool) -> float:
+    """Return the lowest frequency in Hz of a boom by slender elements of a length in m."""
+    models = finite_element_segments(boom, length, "euler-bernoulli", rotary_inertia)
+    return float(gap_system(boom, models).frequencies[0])

@@ -165,9 +165,7 @@ class Job:
             for kind, component in self.symmetry_class.held(axis)
         ]
         conditions = [*cell.plates.supports, *conditions]
-        return _ClassShell(
-            MPI.COMM_SELF, cell.plates, conditions, self.springs, self.masses, cell
-        )
+        return _ClassShell(MPI.COMM_SELF, cell.plates, conditions, self.springs, self.masses, cell)
 
 
 class SymmetryReduction:

@@ -15,7 +15,7 @@ import xarray as xr
 from shell_model.stress.stresses import COMPONENTS, FACES, ShellStress, Stress
 
 # A series has at most this number of frames, and fewer of a fine mesh: all triangles of all frames,
-# of about 80 bytes each, make 80 MB at most. Stresses pack to nine tenths and so stay unpacked.
+# of about 110 bytes each, make 110 MB at most. Stresses hardly pack and so stay unpacked.
 FRAMES, TRIANGLES = 51, 1_000_000
 
 
