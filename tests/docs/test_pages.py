@@ -15,6 +15,7 @@ import protractile as pt
 from runs import cli
 from runs.case.build import build_boom
 from runs.case.reading import load
+from studies.convergence import STUDIES
 from tests.docs.conftest import DOCS, merged, toml_blocks
 
 ROOT = DOCS.parent
@@ -85,3 +86,14 @@ def test_commands_have_options_that_exist(page: Path) -> None:
 
 def test_the_readme_is_short() -> None:
     assert len((ROOT / "README.md").read_text("utf-8").split()) <= 800
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "CONTRIBUTING.md"], ids=lambda page: page.name)
+def test_files_and_studies_exist(page: Path) -> None:
+    """A page names files and studies that exist."""
+    text = page.read_text("utf-8")
+    rooms = "geometry|dynamics|beam_model|shell_model|runs|protractile|studies|tests|docs|examples"
+    files = re.findall(rf"`((?:{rooms})/(?!out/)[a-z0-9_/.-]+\.(?:py|md|toml|csv))`", text)
+    assert [name for name in files if not (ROOT / name).exists()] == []
+    studies = re.findall(r"-m\s+studies\.convergence ([a-z_]+(?: [a-z_]+)*)`", text)
+    assert {name for names in studies for name in names.split()} <= {*STUDIES}
