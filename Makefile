@@ -46,7 +46,7 @@ snapshots: $(REPORTS) ## pictures of the verify cases with a shell
 	@set -e; for case in $(SHELL_CASES); do $(BIN)/protractile snapshot runs/out/$$case; done
 
 gallery: $(REPORTS) $(SWINGS) ## the pictures of docs/gallery.md, from the verify cases
-	$(BIN)/python -m runs.report.gallery
+	$(BIN)/python -m studies.gallery
 
 bench: $(READY) ## what integrators and reductions cost, into runs/out/bench
 	$(BIN)/python -m studies.cost.bench

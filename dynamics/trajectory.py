@@ -57,6 +57,8 @@ OF_DRIVES: Mapping[str, Mapping[str, str]] = {
 
 # A peak below this part of the deflection is the round-off of something at rest.
 STILL = 1.0e-6
+# Main peaks stand out by this part of the range.
+MAIN_PEAK = 0.2
 
 
 class Output(NamedTuple):
@@ -325,3 +327,20 @@ def _first_prominent(values: Array, prominence: float) -> int | None:
 def _mean_rate(time: Array, values: Array) -> Array:
     """Return the mean rate (num_times,) of the interval that ends at each time, 0 at the start."""
     return np.concatenate([[0.0], np.diff(values) / np.diff(time)])
+
+
+def mean_period(time: Array, tip: Array) -> float:
+    """Return the mean time between main peaks in s; NaN where there are fewer than two.
+
+    Args:
+        time: (num_times,) in s.
+        tip: (num_times,) in m, which sets out from its first value.
+    """
+    from scipy.signal import find_peaks
+
+    if tip.size < 3:
+        return float("nan")
+    off = tip - tip[0]
+    side = np.sign(off[np.abs(off).argmax()])
+    peaks, _ = find_peaks(side * tip, prominence=MAIN_PEAK * np.ptp(tip))
+    return float(np.diff(time[peaks]).mean()) if peaks.size > 1 else float("nan")

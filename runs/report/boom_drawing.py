@@ -29,7 +29,7 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.folder.files import whole
 from runs.report import formatting, theme
-from runs.report.figure_context import Figure, FigureContext
+from runs.report.figure_context import LETTERS, Figure, FigureContext
 from runs.report.symbols import PINNED, Symbol, abbreviated, boom_symbols, edges, marker_style
 
 # Part of the panel's height that the outermost section takes where heights are exaggerated.
@@ -39,8 +39,6 @@ SIGN, SMALL = 15.0, 9.0
 # Heights in inches: of the panel along the boom, of the panel to scale (maximum, minimum), of the
 # sections, of a line of the legend.
 LYING, HIGHEST, LEAST, SECTIONS, LEGEND_LINE = 1.8, 2.6, 0.7, 1.6, 0.24
-# Characters that fit in one of the two columns of the legend.
-LETTERS = 30
 # Above this angle in degrees, this number of sections fits beside the boom.
 STEEP, BESIDE = 25.0, 3
 # Margin beside the boom, as a part of its length.
@@ -50,8 +48,8 @@ MARGIN = 0.06
 MOST, GAP = 8, 0.35
 
 CAPTION = (
-    "The boom before anything moves: as it stands, along itself with its joints, and its sections. "
-    "Signs are explained below the drawing; a segment is tinted where another one is inside it."
+    "The boom in its initial position: to scale, along its axis with its joints, and its sections. "
+    "The legend explains the symbols; a segment is tinted where another one is inside it."
 )
 
 
@@ -259,7 +257,7 @@ def _draw_segment(panel: Panel, number: int) -> None:
     if travel := farthest(boom, number):
         dashed: dict[str, Any] = {"linewidth": 0.9, "linestyle": "--"}
         panel.outline(np.add(box, [travel, 0.0]), facecolor="none", edgecolor=color, **dashed)
-        panel.meanings["drawn to"] = Line2D([], [], color=theme.PLAY_FREE, **dashed)
+        panel.meanings["extended position"] = Line2D([], [], color=theme.PLAY_FREE, **dashed)
     if panel.whole:
         return
     for collar in segment.collars:
@@ -280,8 +278,8 @@ def _draw_stations(panel: Panel, joint: Joint) -> None:
         both = edges(panel.boom, inner, x), edges(panel.boom, outer, x)
         for ends in zip(*both, strict=True):
             panel.line([(x, z) for z in ends], **bar)
-    touching = "slide pads" if joint.padded else "where segments touch"
-    panel.meanings["tied" if joint.tied else touching] = Line2D([], [], **bar)
+    touching = "slide pads" if joint.padded else "contact stations"
+    panel.meanings["bonded joint" if joint.tied else touching] = Line2D([], [], **bar)
 
 
 def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:

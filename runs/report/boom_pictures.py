@@ -139,7 +139,6 @@ def draw_boom(
     """
     scene, camera = view.scene, view.camera
     time, tip = scene.motion["time"].values, 1.0e3 * scene.motion["tip"].values
-    side = " sideways" if scene.from_above else ""
     sheet = Sheet(camera.pixels, 325, part)
     sheet.mark_x(camera, *view.span)
     bar = sheet.figure.colorbar(
@@ -147,7 +146,7 @@ def draw_boom(
         cax=sheet.axes(1110, 150, 420, 40),
         orientation="horizontal",
     )
-    bar.set_label(f"magnitude of deflection{side} (mm)")
+    bar.set_label("lateral deflection (mm)" if scene.from_above else "deflection (mm)")
     curve = sheet.axes(150, 85, 820, 150)
     curve.plot(time, tip, color=theme.FAINT, linewidth=2)
     curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
@@ -176,7 +175,7 @@ def draw_boom(
             )
             sheet.write(
                 instant.heading(scene),
-                f"{'seen from above; ' if side else ''}displacements and play × "
+                f"{'seen from above; ' if scene.from_above else ''}displacements and play × "
                 f"{view.scale:g}, sections × {SECTION_DRAWN:g}\ngrey: undeformed"
                 f"{', as at t = 0' if scene.boom.driven else ''}"
                 f"{f'; symbols: {symbols}' if symbols else ''}{pace}",

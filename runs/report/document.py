@@ -26,7 +26,7 @@ from runs.report.summary_table import (
 from runs.report.tables import Table
 
 # Kinds of pictures in the order of their numbers.
-PARTS = "case", "motion", "rest", "snapshots", "knowledge", "numerics"
+PARTS = "case", "motion", "rest", "snapshots", "horizons", "numerics"
 
 
 def render(
@@ -47,11 +47,11 @@ def render(
 
     Without plotly the report shows static pictures of curves only.
     """
-    first = summary_table(results)
+    summary = summary_table(results)
     tables: dict[str, list[Table]] = {
-        "first": [first] if first else [],
-        "answers": result_tables(results),
-        "known": predictability_tables(results),
+        "summary": [summary] if summary else [],
+        "results": result_tables(results),
+        "predictability": predictability_tables(results),
         "compared": comparison_tables(results),
         "models": model_tables(results),
     }
@@ -77,8 +77,8 @@ def render(
         adds=play_effect(results),
         of=results.play.model if results.play else "",
         strength=utilisation_verdict(results),
-        nearness=deviation_note(results),
-        trust=[known.line for known in results.summary.design.quality_notes],
+        deviation=deviation_note(results),
+        quality=[known.line for known in results.summary.design.quality_notes],
         viewer=viewer,
         charts=packed_charts(charts) if charts else "",
         plotly=packed_plotly() if charts else "",
@@ -110,8 +110,8 @@ def _costs(results: Results) -> Mapping[str, str]:
             for what, error in errors.items()
         ]
         if right_to is not None:
-            parts.append(f"its modes right up to {number(right_to, 2)} Hz")
+            parts.append(f"its modes accurate up to {number(right_to, 2)} Hz")
         if error := model.mesh_error:
-            parts.append(f"local compliance {percent(error, 2)} off an infinitely fine mesh's")
+            parts.append(f"mesh error of the local compliance {percent(error, 2)}")
         costs[name] = ", ".join(parts)
     return costs

@@ -5,11 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import cycle
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
@@ -23,7 +25,7 @@ from runs.report import theme
 from runs.report.charts import Chart, Curve
 
 # Parts of the report to which figures belong.
-Part = Literal["case", "motion", "rest", "knowledge", "numerics"]
+Part = Literal["case", "motion", "rest", "horizons", "numerics"]
 
 # Widths of background curves, as a part of those of the leading curves.
 BEHIND = 0.5
@@ -33,6 +35,8 @@ PAST = 1.3
 HARDLY_CHANGES = 0.02
 # Line styles of drives.
 EXTENSIONS = ("-", "--", "-.", ":")
+# Characters of a label that fit in one of two columns of a legend.
+LETTERS = 30
 # Plotly's names of the line styles.
 CHART_DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
 THINNED = (
@@ -97,12 +101,10 @@ class FigureContext:
     def stations(self) -> list[str]:
         """Return the names of the stations' panels."""
         places = self.data["station"]
-        if "direction" not in places.coords:
-            return [f"x = {x:g} m" for x in places.values]
-        how = {"z": "", "y": ", to the sides"}
+        lateral = places["direction"] == "y" if "direction" in places.coords else places.isnull()
         return [
-            f"x = {x:g} m{how[str(direction)]}"
-            for x, direction in zip(places.values, places["direction"].values, strict=True)
+            f"x = {x:g} m{', lateral' if aside else ''}"
+            for x, aside in zip(places.values, lateral.values, strict=True)
         ]
 
     def line(
@@ -170,6 +172,11 @@ class FigureContext:
             beside.spines["right"].set_visible(True)
         return sheet, column
 
+    @cached_property
+    def tips(self) -> list[str]:
+        """Displacements of the tip, that of the largest amplitude first."""
+        return tip_directions(self.data)
+
     @property
     def stays_pressed(self) -> bool:
         """Whether no contact opens, so that no impact amplifies small differences."""
@@ -180,7 +187,7 @@ class FigureContext:
     @property
     def first_stretch(self) -> float:
         """Time until shortly after the first tip peaks in s; the whole run without peaks."""
-        found = (self.summary[name].first_peak["tip"].time for name in self.models)
+        found = (self.summary[name].first_peak[self.tips[0]].time for name in self.models)
         peaks = [time for time in found if time is not None]
         end = float(self.time[-1])
         return min(float(f"{PAST * max(peaks):.2g}"), end) if peaks else end
@@ -201,7 +208,8 @@ class FigureContext:
             for axes in sheet.axes:
                 handles, labels = axes.get_legend_handles_labels()
                 named = dict(zip(labels, handles, strict=True)) | named
-            sheet.legend([*named.values()], [*named], loc="outside lower left", ncols=2)
+            columns = 2 if max(map(len, named)) <= LETTERS else 1
+            sheet.legend([*named.values()], [*named], loc="outside lower left", ncols=columns)
         sheet.suptitle(title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
         path = self.folder / f"{stem}.png"
         # An existing file shows the same numbers.
@@ -210,6 +218,13 @@ class FigureContext:
         if chart is not None and chart.thinned:
             caption += THINNED
         return Figure(path, title, caption, part, chart)
+
+
+def tip_directions(trajectories: xr.Dataset) -> list[str]:
+    """Return the names of the tip's displacements, that of the largest amplitude first."""
+    places = [name for name in ("tip", "tip_lateral") if name in trajectories]
+    spans = {name: float(np.ptp(trajectories[name].values, axis=-1).max()) for name in places}
+    return sorted(places, key=lambda name: -spans[name])
 
 
 def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet, list[Axes]]:
@@ -249,7 +264,7 @@ def highest(values: Sequence[float] | Array) -> float:
 
 def of_start(case: Case) -> str:
     """Return a sentence on initial positions for figures over x; empty without telescoping."""
-    return " Places are those of t = 0, and go with their segments." if case.driven else ""
+    return " Positions x are those of t = 0 and move with their segments." if case.driven else ""
 
 
 def of_rests(case: Case, rests: Iterable[StaticResult]) -> str:

@@ -55,7 +55,7 @@ def first_contacts(run: FigureContext) -> list[Figure]:
     title = f"Mean contact forces, first {end:g} s"
     caption = (
         f"Contact force at each station, mean over {TO_MILLI * FORCE_WINDOW:g} ms"
-        + ("" if run.stays_pressed else ": what the many short impacts of a press amount to")
+        + ("" if run.stays_pressed else " of many short impacts")
         + ". Positive where the inner segment presses up."
         + of_start(run.case)
     )
@@ -87,6 +87,7 @@ def contact_peaks(run: FigureContext) -> list[Figure]:
     caption = (
         f"Largest contact force at each station in every {run.time[-1] / len(bins):.2g} s, up or "
         f"down, on a logarithmic scale; no mark where it stays below {LEAST_FORCE * TO_KILO:g} kN."
+        " A peak lasts microseconds; pads and walls are sized by the mean contact force."
         + of_start(run.case)
     )
     return [run.finish(sheet, panels[0], "contact-peaks", title, caption)]
@@ -108,8 +109,7 @@ def friction(run: FigureContext) -> list[Figure]:
     caption = (
         f"Force of dry friction on {name} at each station, mean over "
         f"{TO_MILLI * FORCE_WINDOW:g} ms. Positive where it pushes the inner segment up. Where the "
-        "segments stick, it is what holds them, and less than the coefficient times the normal "
-        "force."
+        "segments stick, it holds them, and is less than the coefficient times the normal force."
     )
     title = f"{name}: friction forces up to {highest(np.abs(force).ravel()):.2g} kN"
     return [run.finish(sheet, None, "friction", title, caption)]

@@ -66,10 +66,15 @@ def model_table(results: Results) -> Table:
         )
     if resolving := [model.resolving_step for model in models if model.resolving_step]:
         notes.append(
-            "≥: the blow is shorter than six steps, and the force is the largest mean of a step; "
+            "≥: the impact is shorter than six steps, and the force is the largest mean of a step; "
             f"time.step = {min(resolving):.1e} would resolve it."
         )
-    return Table("What each model found", columns, notes, "models")
+    if any(model.peak_contact_force for model in models):
+        notes.append(
+            "Peak contact force: of one impact, for microseconds. Pads and walls are sized by the "
+            "means over output steps in the design results."
+        )
+    return Table("Models: results and numerics", columns, notes, "models")
 
 
 def metric_columns(kind: type, rows: Sequence[object]) -> list[Column]:
@@ -240,7 +245,7 @@ def wall_table(results: Results) -> Table | None:
         "pull; shear forces act on the part before the section, along each wall, upwards where it "
         "is steep and else towards larger y; moments about the section's y-axis pull at the top."
     )
-    title = "What the walls carry at the instant of the largest stress"
+    title = "Section forces of walls at the instant of the largest stress"
     return Table(title, columns, (*largest, means), "walls")
 
 

@@ -31,21 +31,30 @@ HELD = {"strain_energy": 0.65, "kinetic_energy": 0.3, "contact_energy": 1.0}
 LOST = (0.75, 0.45, 0.2)
 
 
+# Displacement of the tip → its direction in titles and captions.
+DIRECTIONS = {"tip": "", "tip_lateral": ", lateral"}
+
+
 def tip(run: FigureContext) -> list[Figure]:
-    """Draw the tip deflection of all models in one panel."""
-    sheet, (axes,) = run.over_time(1, 3.9)
-    axes.set_ylabel("deflection (mm)")
-    for name in run.models:
-        run.line(axes, name, run.time, TO_MILLI * run.of(name, "tip"))
-        _members(run, axes, name, "tip")
-    caption = f"Deflection of the tip, all models.{_sampled(run, 'tip')}"
-    title = f"Tip: {_reach(run, 'tip')}"
-    return [run.finish(sheet, axes, "tip", title, caption, chart=_chart(run, "tip"))]
+    """Draw the tip deflection of all models in one panel, that of larger amplitude first."""
+    figures = []
+    for place in run.tips:
+        sheet, (axes,) = run.over_time(1, 3.9)
+        axes.set_ylabel("deflection (mm)")
+        for name in run.models:
+            run.line(axes, name, run.time, TO_MILLI * run.of(name, place))
+            _members(run, axes, name, place)
+        way = DIRECTIONS[place]
+        caption = f"Deflection of the tip{way}, all models.{_sampled(run, place)}"
+        title, stem = f"Tip{way}: {_reach(run, place)}", place.replace("_", "-")
+        figures.append(run.finish(sheet, axes, stem, title, caption, chart=_chart(run, place)))
+    return figures
 
 
 def close_up(run: FigureContext) -> list[Figure]:
     """Draw the tip until shortly after its first peak; nothing where no model has a peak."""
-    if not any(run.summary[name].first_peak["tip"].time for name in run.models):
+    place = run.tips[0]
+    if not any(run.summary[name].first_peak[place].time for name in run.models):
         return []
     end = run.first_stretch
     shown = run.time <= end
@@ -53,7 +62,7 @@ def close_up(run: FigureContext) -> list[Figure]:
     contacts, peakless = [], []
     circle: dict[str, Any] = {"mfc": "white", "ms": 7, "mew": 1.6}
     for name in run.models:
-        deflection = TO_MILLI * run.of(name, "tip")
+        deflection = TO_MILLI * run.of(name, place)
         run.line(axes, name, run.time[shown], deflection[shown])
         color = run.strokes[name].color
         contact = run.summary[name].first_contact
@@ -61,7 +70,7 @@ def close_up(run: FigureContext) -> list[Figure]:
             contacts.append(contact)
             then = np.interp(contact, run.time, deflection)
             axes.plot(contact, then, "o", color=color, zorder=4, **circle)
-        peak, height = run.summary[name].first_peak["tip"]
+        peak, height = run.summary[name].first_peak[place]
         if peak is None or height is None:
             peakless.append(name)
         elif peak <= end:
@@ -71,7 +80,7 @@ def close_up(run: FigureContext) -> list[Figure]:
     axes.plot([], [], "v", color=theme.INK, ms=8, label="first peak")
     axes.set_ylabel("deflection (mm)")
     axes.margins(y=0.08)
-    title, marked = f"Tip, first {end:g} s", "Triangles mark each model's"
+    title, marked = f"Tip{DIRECTIONS[place]}, first {end:g} s", "Triangles mark each model's"
     if contacts:
         title += f": the segments first touch at {min(contacts):.2f} s"
         marked = "Circles mark where a model's segments first touch, triangles its"
@@ -112,19 +121,6 @@ def _head(run: FigureContext, place: str) -> Figure:
     )
     title = f"{place.replace('-', ' ').capitalize()}: {_reach(run, place)}"
     return run.finish(sheet, panels[0], place, title, caption, chart=_chart(run, place))
-
-
-def lateral_tip(run: FigureContext) -> list[Figure]:
-    """Draw the lateral tip deflection of a spatial boom."""
-    if "tip_lateral" not in run.data:
-        return []
-    sheet, (axes,) = run.over_time(1, 3.9)
-    axes.set_ylabel("displacement (mm)")
-    curves = {name: TO_MILLI * run.of(name, "tip_lateral") for name in run.models}
-    chart = Chart(run.time, axes.get_ylabel(), run.plot(axes, curves))
-    caption = "Displacement of the tip along y, to the sides, all models."
-    title = f"Tip, to the sides: {_reach(run, 'tip_lateral')}"
-    return [run.finish(sheet, axes, "tip-lateral", title, caption, chart=chart)]
 
 
 def _chart(run: FigureContext, place: str) -> Chart:
@@ -239,7 +235,7 @@ def slow_peaks(run: FigureContext) -> list[Figure]:
         "not all its members have the next peak."
     )
     title = f"Slow peaks: {number} are common to all members"
-    return [run.finish(sheet, axes, "slow-peaks", title, caption, "knowledge")]
+    return [run.finish(sheet, axes, "slow-peaks", title, caption, "horizons")]
 
 
 def horizons(run: FigureContext) -> list[Figure]:
@@ -271,7 +267,7 @@ def horizons(run: FigureContext) -> list[Figure]:
         "with a finer step is as far from the run; below the line's end a finer step would help."
     )
     title = "Horizons: how long a motion can be predicted"
-    return [run.finish(sheet, axes, "horizons", title, caption, "knowledge")]
+    return [run.finish(sheet, axes, "horizons", title, caption, "horizons")]
 
 
 def energies(run: FigureContext) -> list[Figure]:
@@ -309,7 +305,7 @@ def energies(run: FigureContext) -> list[Figure]:
         f"Strain, kinetic and contact energy of {name} on top of one another{hatched}. Their sum "
         f"is the {of}{more}, up to the residual of the next figure."
     )
-    title = f"{name}: the load's work, and where it is"
+    title = f"{name}: work of the loads, stored and dissipated energy"
     return [run.finish(sheet, axes, "energies", title, caption, part="numerics")]
 
 

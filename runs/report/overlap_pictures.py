@@ -115,8 +115,8 @@ class OverlapView:
 
     @property
     def stations(self) -> Array:
-        """Positions x of the stations (num_stations,) in m."""
-        return np.asarray(self.motion["station"].values)
+        """Positions x of the stations (num_stations,) in m: of their pads' centres."""
+        return np.asarray(self.overlap.centres)
 
     @property
     def middle(self) -> float:

@@ -22,6 +22,7 @@ import xarray as xr
 
 from geometry.arrays import Array
 from geometry.boom import Boom, Segment
+from geometry.contact_places import pads
 from geometry.section import Direction
 from geometry.telescoping import drives_below
 from geometry.typography import signed
@@ -56,12 +57,14 @@ class Overlap(NamedTuple):
     Args:
         outer, inner: their numbers.
         stations: of contact, as positions in the trajectories.
+        centres: x in m of their pads' centres.
         clearance: Δ in m.
     """
 
     outer: int
     inner: int
     stations: list[int]
+    centres: list[float]
     clearance: float
 
 
@@ -196,6 +199,9 @@ class Scene:
     @cached_property
     def overlaps(self) -> list[Overlap]:
         """Overlaps of the joints with play along the third direction, from the base to the tip."""
+        middles: dict[int, list[float]] = {}
+        for pad in pads(self.boom):
+            middles.setdefault(pad.station, []).append(pad.middle)
         found, begin = [], 0
         for direction in self.boom.directions:
             for joint in self.boom.joints:
@@ -205,7 +211,8 @@ class Scene:
                 begin += len(stations)
                 play = joint.play if direction == "z" else joint.lateral_play
                 if direction == self.direction and play is not None:
-                    found.append(Overlap(joint.outer, joint.inner, stations, 0.5 * play))
+                    centres = [float(np.mean(middles[station])) for station in stations]
+                    found.append(Overlap(joint.outer, joint.inner, stations, centres, 0.5 * play))
         return found
 
     def displacement(self, t: float) -> Array:

@@ -6,6 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import log, pi
 
+import numpy as np
+
+from dynamics.trajectory import mean_period
 from geometry.arrays import Array
 from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
 from runs.pipeline.design_results import ModelDesignResults, PlayDifference
@@ -14,7 +17,7 @@ from runs.pipeline.motion_results import Peak
 from runs.pipeline.pads import PressedPad
 from runs.pipeline.results import Results
 from runs.pipeline.utilisation import Utilisation, utilisations
-from runs.report.figure_context import farthest
+from runs.report.figure_context import farthest, tip_directions
 from runs.report.formatting import NONE, SHOWN, amount, fixed, number, percent
 from runs.report.result_tables import hardly, times
 from runs.report.tables import Column, Table
@@ -41,6 +44,11 @@ def summary_table(results: Results) -> Table | None:
     hardest = governing_pads(results)
     pads = {name: _pad(pad) for name, pad in hardest.items()}
     stations = [None if hardest else _largest(one, "contact force", at="\nat {} m") for one in own]
+    time = np.asarray(results.trajectories["time"].values, dtype=float)
+    # Of the direction that moves.
+    main = results.trajectories[tip_directions(results.trajectories)[0]]
+    found = [mean_period(time, main.sel(model=name).values) for name in names]
+    periods = [period if np.isfinite(period) else None for period in found]
     damages = [one["detail"].load if "detail" in one else None for one in used]
     at_start, at_most, extended = (
         [max((rest.tip for rest in rests), key=abs, default=None) for rests in several]
@@ -58,10 +66,10 @@ def summary_table(results: Results) -> Table | None:
         Column("Maximum dynamic tip deflection (factor φ)", dynamic, unit="mm"),
         # A motion that starts undeformed needs no initial state.
         Column("Tip travel from t = 0", travel, ".1f", "mm"),
-        Column("Residual vibration of the tip", [_swings(one) for one in own], unit="mm"),
+        Column("Residual vibration of the tip", [_vibration(one) for one in own], unit="mm"),
         Column("Lateral tip deflection, maximum", _each(own, "lateral deflection"), unit="mm"),
         Column("First natural frequency", hertz, ".3g", "Hz"),
-        Column("Natural period", [f and 1.0 / f for f in hertz], ".3g", "s"),
+        Column("Period of the motion (measured)", periods, ".3g", "s"),
         Column("Decay time to 10 %", decay_times, ".2g", "s"),
         Column("Governing pad: force, pressure, utilisation", [pads.get(name) for name in names]),
         Column("Contact force, maximum", stations, unit="kN"),
@@ -78,7 +86,7 @@ def summary_table(results: Results) -> Table | None:
     strong = [_stress(one) for one in (*walls, *fibres) if one and (one.value or 0.0) >= NEAR]
     strong += [pads[name] for name, pad in hardest.items() if (pad.utilisation or 0.0) >= NEAR]
     strong += [number(damage) for damage in damages if (damage or 0.0) >= NEAR]
-    return Table("The answers", columns, [" ".join(_notes(results, rows))], "answers", strong)
+    return Table("Design results", columns, [" ".join(_notes(results, rows))], "summary", strong)
 
 
 def deviation_note(results: Results) -> str:
@@ -170,7 +178,7 @@ def _pad(pad: PressedPad) -> str:
     """Return force, pressure and position of a pad."""
     used = _used(pad.utilisation, "allowable")
     force, pressure = amount(pad.force, "N"), amount(pad.pressure, "Pa")
-    return f"{force}\n{pressure}{used}\n{pad.inner} {_FACES[pad.side]}, {pad.x:g} m"
+    return f"{force}\n{pressure}{used}\n{pad.inner} {_FACES[pad.side]}, x = {pad.x:g} m"
 
 
 _FACES = {"above": "top", "below": "bottom", "left": "left", "right": "right"}
@@ -178,7 +186,7 @@ _FACES = {"above": "top", "below": "bottom", "left": "left", "right": "right"}
 
 def _stress(most: Utilisation) -> str:
     stress = number(TO_MEGA * most.load)
-    return f"{stress}{_used(most.value, 'yield')}\n{most.segment}, {most.x:.1f} m"
+    return f"{stress}{_used(most.value, 'yield')}\n{most.segment}, x = {most.x:.1f} m"
 
 
 def _used(part: float | None, borne: str) -> str:
@@ -208,9 +216,16 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
         yield f"φ (×): maximum in motion over the static value under the maximum load{extended}."
     if "Residual vibration of the tip, mm" in rows:
         yield (
-            "Residual vibration: amplitude about the static deflection; standing: where drives "
-            "begin and end."
+            "Residual vibration: amplitude about the static deflection; without telescoping: at "
+            "the initial and the final extension."
         )
+    if "Contact force, maximum, kN" in rows:
+        yield (
+            "Contact force: mean over an output step; it sizes pads and walls. Peaks of impacts in "
+            "the table of models last microseconds; they do not."
+        )
+    if "Period of the motion (measured), s" in rows:
+        yield "Period: mean time between the main peaks of the tip, play included."
     if "Decay time to 10 %, s" in rows:
         ratio = percent(results.case.damping.modal)
         yield f"Decay time: of the amplitude, by the case's damping ratio of {ratio} alone."
@@ -225,8 +240,8 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     if shells:
         most = [f"{amount(one.von_mises, 'Pa')} in {name}" for name, one in shells.items()]
         yield (
-            f"Single triangles beside lines of contact have more ({listed(most)}), the more the "
-            "finer the mesh; the table of what the walls carry tells where."
+            f"Single elements beside lines of contact have higher stresses ({listed(most)}), which "
+            "grow as the mesh refines; the table of wall forces gives their places."
         )
 
 
@@ -242,12 +257,12 @@ def _farthest(own: ModelDesignResults, tip: Array) -> str:
     return _milli(farthest(tip)) + (times(peak) if peak else "")
 
 
-def _swings(own: ModelDesignResults) -> str | None:
+def _vibration(own: ModelDesignResults) -> str | None:
     """Return the residual vibration of the tip, and that of the boom where drives end."""
-    if (swing := own.residual_vibration) is None:
+    if (found := own.residual_vibration) is None:
         return None
-    begun, ended = _milli(swing.initial), _milli(swing.final)
-    return f"{_milli(swing.tip)}\nstanding {begun}\nand {ended}"
+    static = f"{_milli(found.initial)}, {_milli(found.final)}"
+    return f"{_milli(found.tip)}\n(without telescoping\n{static})"
 
 
 def _milli(deflection: float | None) -> str:

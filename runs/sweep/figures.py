@@ -29,7 +29,7 @@ from runs.report import theme
 from runs.report.figure_context import new_sheet
 from runs.report.formatting import number
 from runs.sweep.quantities import DISTANCES, LEVELS, QUANTITIES, TIP_OFF, UNTIL
-from runs.sweep.residual_vibration import draw_swings
+from runs.sweep.residual_vibration import draw_vibration
 
 CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
 # Readable cells of a map along each axis.
@@ -92,7 +92,7 @@ def draw(data: xr.Dataset, play_free: Sequence[str], folder: Path) -> None:
                 name = f"sweep-lines-{count}.png" if there else "sweep-lines.png"
                 _finish(sheet, f"Sweep over {_quantity(keys[0])}{where}", folder / name)
         if len(keys) == 1:
-            draw_swings(data, strokes, folder / "sweep-swing.png")
+            draw_vibration(data, strokes, folder / "sweep-residual-vibration.png")
 
 
 def _at_ends(data: xr.Dataset, keys: Sequence[str]) -> Iterator[dict[str, float]]:

@@ -21,7 +21,7 @@ from runs.report.tables import Table
 from runs.sweep.figures import draw, draw_distances
 from runs.sweep.points import Plan
 from runs.sweep.quantities import DISTANCES, QUANTITIES, UNTIL
-from runs.sweep.residual_vibration import describe, swings
+from runs.sweep.residual_vibration import describe, vibration_curves
 from runs.sweep.run import Outcome
 
 NETCDF = "sweep.nc"
@@ -110,7 +110,9 @@ def show(data: xr.Dataset, reference: str | None, console: Console) -> None:
         ("model", *(heading.replace(" ", "\n") for heading in headings)),
         rows,
     ).show(console)
-    for line in (line for name, one in swings(data).items() for line in describe(name, one)):
+    for line in (
+        line for name, one in vibration_curves(data).items() for line in describe(name, one)
+    ):
         console.print(line, markup=False, highlight=False)
     if reference is not None:
         _show_distances(data, reference, console)

@@ -16,6 +16,7 @@ import numpy as np
 from dynamics.failure import NumericsError
 from dynamics.predictability.ensemble import EnsembleMember, Vary, run_members
 from dynamics.predictability.horizon import SHARES, horizon
+from dynamics.trajectory import mean_period
 from geometry.arrays import Array
 from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT
 from runs.case.build import build_boom
@@ -45,8 +46,6 @@ ROUND_OFF = 1.0e-12
 CHANGE = 1.0e-6
 # Time in s over which the force of a pad is averaged: single impacts last microseconds.
 HELD = 0.02
-# Slow peaks stand out by this part of the tip's range.
-OUTSTANDING = 0.2
 
 
 # Sources of a model's numbers beside its fields: results that are records, and its summary.
@@ -171,7 +170,7 @@ class Features:
         return cls(
             tip[time <= until],
             np.nan if height is None else height,
-            slow_period(time, tip),
+            mean_period(time, tip),
             held_force(time, np.asarray(data["contact_force"].values)),
             np.nan if stress is None else stress,
         )
@@ -187,24 +186,6 @@ class Features:
         } | {"tip": apart}
         found = {one.name: parts.get(one.name.removesuffix("_off"), np.nan) for one in DISTANCES}
         return {name: part if np.isfinite(part) else None for name, part in found.items()}
-
-
-def slow_period(time: Array, tip: Array) -> float:
-    """Return the mean time between peaks in s; NaN where fewer than two peaks stand out.
-
-    Args:
-        time: (num_times,) in s.
-        tip: (num_times,) in m, which sets out from its first value.
-    """
-    if tip.size < 3:
-        return float("nan")
-    off = tip - tip[0]
-    side = np.sign(off[np.abs(off).argmax()])
-    # Not at the top: the import takes half a second.
-    from scipy.signal import find_peaks
-
-    peaks, _ = find_peaks(side * tip, prominence=OUTSTANDING * np.ptp(tip))
-    return float(np.diff(time[peaks]).mean()) if peaks.size > 1 else float("nan")
 
 
 def held_force(time: Array, forces: Array) -> float:

@@ -22,25 +22,26 @@ _SAME = 1.0e-2
 
 # Names and line styles of the ends of the extension, at which the same boom is at rest.
 _ENDS = {
-    "residual_vibration_initial": ("where it begins", ":"),
-    "residual_vibration_final": ("where it ends", "--"),
+    "residual_vibration_initial": ("at the initial extension", ":"),
+    "residual_vibration_final": ("at the final extension", "--"),
 }
 
 
-class Swings(NamedTuple):
+class VibrationCurve(NamedTuple):
     """Vibrations in m of one model over rising mean speeds in m/s, and the levels at each end."""
 
     speed: Array
-    swing: Array
+    vibration: Array
     levels: dict[str, Array]
 
-    def where_known(self, end: str) -> Swings:
+    def where_known(self, end: str) -> VibrationCurve:
         """Return the values at the speeds at which the level of an end is known."""
         known = np.isfinite(self.levels[end])
-        return Swings(self.speed[known], self.swing[known], {end: self.levels[end][known]})
+        levels = {end: self.levels[end][known]}
+        return VibrationCurve(self.speed[known], self.vibration[known], levels)
 
 
-def swings(data: xr.Dataset) -> dict[str, Swings]:
+def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
     """Return the vibrations of each model whose speed a sweep over one key varies.
 
     Args:
@@ -57,23 +58,24 @@ def swings(data: xr.Dataset) -> dict[str, Swings]:
         order = np.argsort(speed)
         ends = {end: one[end].values[known][order] for end in _ENDS}
         levels = {end: level for end, level in ends.items() if np.isfinite(level).any()}
-        found[str(name)] = Swings(speed[order], vibration[known][order], levels)
+        found[str(name)] = VibrationCurve(speed[order], vibration[known][order], levels)
     return found
 
 
-def fastest_within(swings: Swings, end: str) -> float | None:
+def fastest_within(curve: VibrationCurve, end: str) -> float | None:
     """Return the speed in m/s up to which no vibration exceeds its level, None where all do.
 
     The vibration is interpolated linearly between speeds.
 
 
-    >>> speed, swing = np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0])
-    >>> one = Swings(speed, swing, {"begun": 4.0 + 0.0 * speed, "ended": np.array([1.0, 2.0, 3.0])})
-    >>> fastest_within(one, "begun"), fastest_within(one, "ended")
+    >>> speed, vibration = np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0])
+    >>> levels = {"initial": 4.0 + 0.0 * speed, "final": np.array([1.0, 2.0, 3.0])}
+    >>> one = VibrationCurve(speed, vibration, levels)
+    >>> fastest_within(one, "initial"), fastest_within(one, "final")
     (2.5, None)
     """
-    speed, swing, levels = swings.where_known(end)
-    beyond = swing - levels[end]
+    speed, vibration, levels = curve.where_known(end)
+    beyond = vibration - levels[end]
     over = np.flatnonzero(beyond > _SAME * levels[end])
     if not over.size:
         return float(speed[-1])
@@ -84,24 +86,23 @@ def fastest_within(swings: Swings, end: str) -> float | None:
     return float(np.interp(0.0, beyond[near], speed[near]))
 
 
-def describe(name: str, swings: Swings) -> Iterator[str]:
+def describe(name: str, curve: VibrationCurve) -> Iterator[str]:
     """Yield a sentence on the admissible telescoping speed for each end of the extension."""
-    for end in swings.levels:
-        speed, swing, levels = swings.where_known(end)
-        level, fastest = levels[end], fastest_within(swings, end)
+    for end in curve.levels:
+        speed, vibration, levels = curve.where_known(end)
+        level, fastest = levels[end], fastest_within(curve, end)
         ends = dict.fromkeys(number(TO_MILLI * of) for of in (level.min(), level.max()))
-        last = "the fastest here" if speed[-1] == swings.speed[-1] else "the fastest known"
-        rest = f"standing {_ENDS[end][0]}, {' to '.join(ends)} mm"
+        without = f"that without telescoping, {_ENDS[end][0]} ({' to '.join(ends)} mm)"
         if fastest is None:
-            slow, least = speed[0], number(TO_MILLI * float(swing[0]))
-            yield f"{name}: vibration above that {rest}, at {slow:.3g} m/s already: {least} mm"
-        elif fastest == speed[-1]:
-            yield f"{name}: vibration within that {rest}, up to {fastest:.3g} m/s, {last}"
+            slowest = f"the slowest speed, {speed[0]:.3g} m/s"
+            least = number(TO_MILLI * float(vibration[0]))
+            yield f"{name}: vibration of {least} mm at {slowest}, exceeds {without}"
         else:
-            yield f"{name}: vibration within that {rest}, up to {fastest:.3g} m/s"
+            last = ", the fastest speed with a result" if fastest == speed[-1] else ""
+            yield f"{name}: vibration within {without} up to {fastest:.3g} m/s{last}"
 
 
-def draw_swings(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Path) -> None:
+def draw_vibration(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Path) -> None:
     """Draw the vibration over the mean speed of the drive, where a sweep varies that.
 
     Args:
@@ -109,16 +110,16 @@ def draw_swings(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Pat
         strokes: of its models.
         path: of the PNG file.
     """
-    found = swings(data)
+    found = vibration_curves(data)
     if not found:
         return
     sheet, (axes,) = new_sheet(1, 4.6)
     for name, one in found.items():
         line: dict[str, Any] = {"color": strokes[name].color, "label": f"{name}, telescoping"}
-        axes.plot(one.speed, TO_MILLI * one.swing, marker="o", markersize=4.0, **line)
+        axes.plot(one.speed, TO_MILLI * one.vibration, marker="o", markersize=4.0, **line)
         for end, level in one.levels.items():
             where, dashes = _ENDS[end]
-            line["label"] = f"{name}, standing {where}"
+            line["label"] = f"{name}, without telescoping, {where}"
             axes.plot(one.speed, TO_MILLI * level, linestyle=dashes, linewidth=1.0, **line)
     axes.set(xlabel="mean speed of the drive (m/s)", ylabel="residual vibration of the tip (mm)")
     axes.set_ylim(bottom=0.0)

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure as Sheet
 from rich.console import Console
 
 from dynamics.predictability.horizon import measure_horizons
+from dynamics.trajectory import mean_period
 from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.build import build_boom
@@ -30,7 +31,6 @@ from runs.sweep.quantities import (
     Measured,
     comparable_until,
     held_force,
-    slow_period,
 )
 from runs.sweep.run import Outcome, run_point
 from tests.runs.sweeping import COARSE, run
@@ -43,7 +43,7 @@ RUBBING = "friction = 0.2\nnormal_forces = [4500.0, 5000.0]\n"
 def features(height: float, period: float) -> Features:
     """Return a vibration of an amplitude in m, from rest, of a period in s."""
     tip = 0.5 * height * (1.0 - np.cos(2.0 * np.pi * TIME / period))
-    return Features(tip, height, slow_period(TIME, tip), 2e3 * height, 1e8 * height)
+    return Features(tip, height, mean_period(TIME, tip), 2e3 * height, 1e8 * height)
 
 
 def test_distances_are_parts_of_the_reference() -> None:

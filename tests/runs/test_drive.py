@@ -308,7 +308,7 @@ def _check_rests(results: Results) -> None:
     assert pressed.columns[1].cells == [one.force for one in ended.stations]
     assert tilts.notes[0].endswith("beside them. Extension as at 0.2 s.")
     # Both stand for too short to swing farther than they start.
-    standing = [f"standing {1e3 * begun.tip:.1f}", f"and {1e3 * ended.tip:.1f}"]
+    standing = ["(without telescoping", f"{1e3 * begun.tip:.1f}, {1e3 * ended.tip:.1f})"]
     assert str(cells["Residual vibration of the tip, mm"]).splitlines()[1:] == standing
 
 
@@ -391,7 +391,7 @@ def test_a_drawing_shows_where_a_segment_is_drawn_to() -> None:
     x = dashed.get_xy()[:, 0]
     assert (x.min(), x.max()) == pytest.approx((9.0, 19.0))
     assert sheet.axes[1].get_xlim()[1] > 19.0
-    assert "drawn to" in [text.get_text() for text in sheet.legends[0].get_texts()]
+    assert "extended position" in [text.get_text() for text in sheet.legends[0].get_texts()]
 
 
 def test_resolving_times_have_both_ends() -> None:

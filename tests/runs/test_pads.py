@@ -138,7 +138,7 @@ def test_the_first_look_has_the_pad_that_presses_most(tmp_path: Path) -> None:
     assert lines[1].startswith(f"{pressure} MPa, ")
     where = columns["at\nm"].cells[most]
     face = {"above": "top", "below": "bottom"}[str(columns["side"].cells[most])]
-    assert lines[2:] == ["beyond allowable", f"inner {face}, {where} m"]
+    assert lines[2:] == ["beyond allowable", f"inner {face}, x = {where} m"]
     assert told["Governing pad: force, pressure, utilisation"] in table.strong
     assert not any(asked.startswith("Contact force") for asked in told)
 

@@ -16,12 +16,12 @@ from geometry.boom import Cylinder
 from runs.case.schema import LoadTable, PayloadTable
 from runs.report import opengl, snapshots, theme
 from runs.report.boom_pictures import BoomView, draw_boom
-from runs.report.gallery import draw_mesh, draw_sections
 from runs.report.opengl import RenderingUnavailable
 from runs.report.overlap_pictures import STRESS_PIXELS, StressScale, draw_overlap, draw_stress
 from runs.report.scene import Instant, Scene
 from runs.report.sheet import Camera, Sheet, stage, surface
 from runs.report.snapshots import render_film, render_stills, telling_instants
+from studies.gallery import draw_mesh, draw_sections
 from tests.runs.moving_segments import CASE, TIME, moving_scene
 
 # Of the film, each as any other.

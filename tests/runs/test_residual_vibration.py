@@ -24,7 +24,13 @@ from runs import CASES
 from runs.case.schema import Case
 from runs.pipeline.residual_vibration import ResidualVibration, farthest_from_rest
 from runs.report import theme
-from runs.sweep.residual_vibration import Swings, describe, draw_swings, fastest_within, swings
+from runs.sweep.residual_vibration import (
+    VibrationCurve,
+    describe,
+    draw_vibration,
+    fastest_within,
+    vibration_curves,
+)
 from tests.runs.case_texts import read_case
 
 # No play and a load that ramps: no chaos, and swings that are no mere distance of the start.
@@ -143,7 +149,9 @@ def test_a_drive_that_the_run_does_not_see_the_end_of_has_no_swing(tmp_path: Pat
 )
 def test_the_fastest_is_where_lines_cross(level: float, fastest: float | None) -> None:
     """Reference: by hand; what exceeds the level by less than a hundredth does not."""
-    one = Swings(np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0]), {"end": np.full(3, level)})
+    one = VibrationCurve(
+        np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0]), {"end": np.full(3, level)}
+    )
     assert fastest_within(one, "end") == pytest.approx(fastest)
 
 
@@ -159,34 +167,40 @@ def swept() -> xr.Dataset:
     return xr.Dataset(variables, coords={"key": [1.0, 1.5, 2.0], "model": ["beam"]})
 
 
+FINAL = "that without telescoping, at the final extension (60 mm)"
+LAST = ", the fastest speed with a result"
+
+
 def test_a_chart_says_how_fast_it_may_be_drawn_out(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Reference: by hand."""
     data = swept()
-    assert list(describe("beam", swings(data)["beam"])) == [
-        "beam: vibration within that standing where it begins, 30 mm, up to 1.33 m/s",
-        "beam: vibration within that standing where it ends, 60 mm, up to 2 m/s, the fastest here",
+    assert list(describe("beam", vibration_curves(data)["beam"])) == [
+        "beam: vibration within that without telescoping, at the initial extension (30 mm) up to "
+        "1.33 m/s",
+        f"beam: vibration within {FINAL} up to 2 m/s{LAST}",
     ]
     tight = data.assign(residual_vibration_initial=0.1 * data["residual_vibration_initial"])
-    assert next(describe("beam", swings(tight)["beam"])) == (
-        "beam: vibration above that standing where it begins, 3 mm, at 1 m/s already: 20 mm"
+    assert next(describe("beam", vibration_curves(tight)["beam"])) == (
+        "beam: vibration of 20 mm at the slowest speed, 1 m/s, exceeds that without telescoping, "
+        "at the initial extension (3 mm)"
     )
     # Of a speed whose standing boom has no motion the level is not known, and the others count.
     gap = xr.concat([swept(), swept().isel(key=[2]).assign_coords(key=[1.2])], "key")
     gap["residual_vibration_final"][-1], gap["drive_speed"][-1] = np.nan, 3.0
-    assert list(describe("beam", swings(gap)["beam"]))[1] == (
-        "beam: vibration within that standing where it ends, 60 mm, up to 2 m/s, the fastest known"
+    assert list(describe("beam", vibration_curves(gap)["beam"]))[1] == (
+        f"beam: vibration within {FINAL} up to 2 m/s{LAST}"
     )
     # Booms that are drawn to different places swing about as much as each does there, or less.
     elsewhere = data.assign(residual_vibration_initial=data["residual_vibration"] + 0.01)
-    assert next(describe("beam", swings(elsewhere)["beam"])) == (
-        "beam: vibration within that standing where it begins, 30 to 60 mm, up to 2 m/s, the "
-        "fastest here"
+    assert next(describe("beam", vibration_curves(elsewhere)["beam"])) == (
+        "beam: vibration within that without telescoping, at the initial extension (30 to 60 mm) "
+        f"up to 2 m/s{LAST}"
     )
     saved: list[Sheet] = []
     monkeypatch.setattr(Sheet, "savefig", lambda sheet, path: saved.append(sheet))
-    draw_swings(data, theme.strokes(["beam"], ()), tmp_path / "swing.png")
+    draw_vibration(data, theme.strokes(["beam"], ()), tmp_path / "swing.png")
     curve, *levels = saved[0].axes[0].get_lines()
     np.testing.assert_allclose(curve.get_xydata(), [[1.0, 20.0], [2.0, 50.0]])
     assert [line.get_ydata()[0] for line in levels] == [30.0, 60.0]
@@ -194,5 +208,5 @@ def test_a_chart_says_how_fast_it_may_be_drawn_out(
 
 def test_what_varies_no_speed_has_no_such_chart(tmp_path: Path) -> None:
     data = swept().isel(key=[0])
-    draw_swings(data, theme.strokes(["beam"], ()), tmp_path / "swing.png")
+    draw_vibration(data, theme.strokes(["beam"], ()), tmp_path / "swing.png")
     assert not list(tmp_path.iterdir())

@@ -20,10 +20,10 @@ from runs import CASES
 from runs.case.build import build_boom
 from runs.case.reading import load
 from runs.pipeline.model_output import BeamOutput, SegmentMotion
-from runs.report.gallery import change_of_shape
 from runs.report.overlap_pictures import smoothed
 from runs.report.scene import Scene, round_scale
 from runs.report.snapshots import where_pressed
+from studies.gallery import change_of_shape
 from tests.runs.moving_segments import (
     BOOM,
     CASE,
@@ -99,7 +99,7 @@ def test_contact_in_the_run_is_contact_in_the_picture(
     """Reference: analytic. A relative displacement by the clearance leaves one wall between the
     middles of two walls, and one by its opposite leaves twice the clearance besides."""
     (overlap,) = shell.overlaps
-    assert overlap == (0, 1, [0, 1], CLEARANCE)
+    assert overlap == (0, 1, [0, 1], [9.0, 10.0], CLEARANCE)
     moved = np.zeros_like(shell.points)
     moved[shell.owner == 1, 2] = CLEARANCE
     drawn = shell.drawn(moved, scale, section)
@@ -123,13 +123,17 @@ def in_space(shell: Scene) -> list[Scene]:
 
 
 def test_each_overlap_gets_its_stations(in_space: list[Scene]) -> None:
-    side, above = in_space
-    one, two = side.boom.joints
-    assert side.overlaps == [(0, 1, [0, 1], 0.5 * one.play), (1, 2, [2, 3], 0.5 * two.play)]
-    assert above.overlaps == [
+    one, two = in_space[0].boom.joints
+    found = [(*at[:3], at.clearance) for scene in in_space for at in scene.overlaps]
+    assert found == [
+        (0, 1, [0, 1], 0.5 * one.play),
+        (1, 2, [2, 3], 0.5 * two.play),
         (0, 1, [4, 5], 0.5 * one.lateral_play),
         (1, 2, [6, 7], 0.5 * two.lateral_play),
     ]
+    # Pads are 0.12 m long and begin at the ends of the overlap.
+    for scene in in_space:
+        assert scene.overlaps[0].centres == pytest.approx([3.56, 4.44])
 
 
 @pytest.mark.parametrize(

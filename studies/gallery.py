@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Pictures of docs/gallery.md, from finished runs.
 
-``python -m runs.report.gallery`` takes them from the folders ``paper``, ``spatial``,
+``python -m studies.gallery`` takes them from the folders ``paper``, ``spatial``,
 ``three-segments`` and ``convergence`` of runs/out, which ``make verify convergence`` leaves, and
 ``drawn-out-sweep``, which ``make gallery`` makes, and writes the pictures in docs/gallery.
 """
@@ -54,7 +54,7 @@ COPIED = {
     "three-segments": ("three-segments", "snapshots/boom-first-peak.png"),
     "three-segments-overlap": ("three-segments", "snapshots/overlap-2-first-peak.png"),
     "three-segments-stress": ("three-segments", "snapshots/stress-2-first-peak.png"),
-    "drawn-out-swing": ("drawn-out-sweep", "figures/sweep-swing.png"),
+    "drawn-out-swing": ("drawn-out-sweep", "figures/sweep-residual-vibration.png"),
     "benchmarks": ("convergence", "figures/benchmarks.png"),
     "meshes": ("convergence", "figures/mesh.png"),
     "solid": ("convergence", "figures/solid-frequencies.png"),

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from runs.report import gallery
+from studies import gallery
 
 DOCS = Path(__file__).parents[2] / "docs"
 MADE = {*gallery.COPIED, "lift", "mesh", "sections-largest-force"}
