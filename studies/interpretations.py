@@ -13,6 +13,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import combinations, groupby, pairwise, product
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Literal
 
 import numpy as np
@@ -25,7 +27,7 @@ from runs.case import reading as case_file
 from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.kinds.model import of_kind
 from runs.case.schema import Case
-from runs.folder.cache import Memory
+from runs.folder.cache import Cache
 from runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER, judge
 from runs.paper.verdicts import MARKS, Judgement
 from runs.pipeline.context import RunContext
@@ -178,8 +180,9 @@ def survey(
     paper = case_file.load(str(PAPER))
 
     def judge_group(group: Sequence[Interpretation]) -> list[JudgedInterpretation]:
-        motions = Memory()
-        return [_judge(one, paper, members, motions) for one in group]
+        with TemporaryDirectory() as folder:
+            motions = Cache(Path(folder))
+            return [_judge(one, paper, members, motions) for one in group]
 
     groups = groupby(interpretations, lambda one: replace(one, base="complete"))
     with ThreadPoolExecutor(2) as pool:
@@ -188,7 +191,7 @@ def survey(
 
 
 def _judge(
-    interpretation: Interpretation, paper: Case, members: int, motions: Memory
+    interpretation: Interpretation, paper: Case, members: int, motions: Cache
 ) -> JudgedInterpretation:
     """Run an interpretation and judge all statements but S9, which needs several of them.
 
@@ -237,7 +240,7 @@ def judge_exponents(judged: Sequence[JudgedInterpretation]) -> list[JudgedInterp
     ]
 
 
-def _results(case: Case, motions: Memory) -> Results:
+def _results(case: Case, motions: Cache) -> Results:
     finished = run_case(case, "paper.toml", RunContext(motions=motions))
     assert finished is not None
     for model, why in finished.results.summary.failures.items():

@@ -13,7 +13,6 @@ import fcntl
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, nullcontext, suppress
-from copy import deepcopy
 from dataclasses import dataclass, replace
 from hashlib import file_digest, sha256
 from io import BufferedIOBase
@@ -36,7 +35,7 @@ if TYPE_CHECKING:
 Kept = TypeVar("Kept")
 
 # Size in bytes of all entries of a user.
-ROOM = 4 * 1024**3
+MAX_SIZE = 4 * 1024**3
 
 # Environment variable for another folder than the user's own.
 VARIABLE = "PROTRACTILE_CACHE"
@@ -161,7 +160,7 @@ class Cache:
                 VARIABLE,
             )
 
-    def make_room(self, room: int = ROOM) -> None:
+    def make_room(self, room: int = MAX_SIZE) -> None:
         """Remove the least recently used entries until the others take ``room`` bytes together."""
         used: list[tuple[float, int, Path]] = []
         for entry in self.folder.glob(f"*{_SUFFIX}"):
@@ -178,23 +177,6 @@ class Cache:
 
     def _entry(self, key: str) -> Path:
         return self.folder / f"{key}{_SUFFIX}"
-
-
-class Memory:
-    """A cache in memory, like :class:`Cache`, of entries that are still referenced."""
-
-    def __init__(self) -> None:
-        self._entries: dict[str, Any] = {}
-
-    def load(self, key: str, kind: type[Kept]) -> Kept | None:
-        """Return a copy of an entry; None where there is none."""
-        thing = deepcopy(self._entries.get(key))
-        assert thing is None or isinstance(thing, kind)
-        return thing
-
-    def remember(self, key: str, thing: Any) -> None:
-        """Store a copy."""
-        self._entries[key] = deepcopy(thing)
 
 
 def remembered(

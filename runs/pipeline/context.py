@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from runs.folder.cache import Cache, Memory
+from runs.folder.cache import Cache
 from runs.process.progress import Progress
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class RunContext:
     comm: MPI.Intracomm | None = None
     progress: Progress = silent
     cache: Cache | None = None
-    motions: Cache | Memory | None = None
+    motions: Cache | None = None
 
     @property
     def first_rank(self) -> bool:

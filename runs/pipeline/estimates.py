@@ -24,7 +24,7 @@ from runs.case.schema import Case, Model
 from runs.pipeline.models import begun, build_on
 
 # Memory in bytes and time in s of runs that need no confirmation.
-ROOM, PATIENCE = 4.0e9, 3600.0
+MAX_MEMORY, MAX_TIME = 4.0e9, 3600.0
 
 # Memory in bytes of the libraries for a beam and for a shell, with the code compiled at first.
 _LIBRARIES, _SHELL_LIBRARIES = 1.3e9, 1.6e9
@@ -122,9 +122,9 @@ def refuse_large(cost: Cost, file: str) -> None:
     """Refuse a run or sweep that needs much memory or time without confirmation.
 
     Raises:
-        BadInput: more than :data:`ROOM` or :data:`PATIENCE`.
+        BadInput: more than :data:`MAX_MEMORY` or :data:`MAX_TIME`.
     """
-    if not (cost.memory <= ROOM and cost.seconds <= PATIENCE):
+    if not (cost.memory <= MAX_MEMORY and cost.seconds <= MAX_TIME):
         raise BadInput(
             file,
             "--large",

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from geometry.boom import Boom
-from runs.folder.cache import Cache, Memory, key
+from runs.folder.cache import Cache, key
 from runs.process.terminal import shown
 
 ROOT = Path(__file__).parents[2]
@@ -24,9 +24,8 @@ ROOT = Path(__file__).parents[2]
 ENTRY = "a.record"
 
 
-@pytest.mark.parametrize("keeper", ["Cache", "Memory"])
 def test_an_entry_is_found_again(tmp_path: Path, keeper: str) -> None:
-    cache = Cache(tmp_path / "cache") if keeper == "Cache" else Memory()
+    cache = Cache(tmp_path / "cache")
     assert cache.load("a", dict) is None
     thing = {"array": np.arange(3.0)}
     cache.remember("a", thing)
