@@ -26,9 +26,19 @@ from runs.case.declared import Declared
 from runs.case.kinds.model import ModelTable
 from runs.case.schema import Case, Model
 from runs.case.units import System
-from runs.pipeline.drives import drive_lines, slip_cautions, slip_lines, slippings
-from runs.pipeline.estimates import Preview, of_preview
-from runs.pipeline.proportions import of_buckling, of_period, of_tip, slips
+from runs.pipeline.drives import (
+    drive_lines,
+    stick_slip_cautions,
+    stick_slip_estimates,
+    stick_slip_lines,
+)
+from runs.pipeline.estimates import Preview, preview_cost
+from runs.pipeline.proportions import (
+    buckling_cautions,
+    period_cautions,
+    proportion_cautions,
+    tip_cautions,
+)
 from runs.pipeline.static_results import tilts
 from runs.pipeline.statics import (
     Statics,
@@ -72,14 +82,18 @@ def print_check(declared: Declared, console: Console) -> None:
     for table in tables:
         if table.rows:
             table.show(console)
-    drives = list(slippings(case, boom))
-    lines = [*drive_lines(boom, case.system), *slip_lines(drives, case.system)]
+    drives = list(stick_slip_estimates(case, boom))
+    lines = [*drive_lines(boom, case.system), *stick_slip_lines(drives, case.system)]
     lines += [*_static_lines(case, boom, found)]
     if boom.compressed:
         for model in case.models:
-            lines += of_buckling(_beam_name(model), _critical_factor(declared, model))
-    lines += [*actions.series_notes(case), *slips(case, boom), *slip_cautions(drives, case.system)]
-    for line in (*lines, f"A run may take {of_preview(preview)}."):
+            lines += buckling_cautions(_beam_name(model), _critical_factor(declared, model))
+    lines += [
+        *actions.series_notes(case),
+        *proportion_cautions(case, boom),
+        *stick_slip_cautions(drives, case.system),
+    ]
+    for line in (*lines, f"A run may take {preview_cost(preview)}."):
         print_lines(line)
 
 
@@ -367,5 +381,5 @@ def _static_lines(case: Case, boom: Boom, found: Statics | None) -> Iterator[str
             f"Play rotates {tilt.inner!r} by {number(TO_MILLI * tilt.rotation, 4)} mrad in "
             f"{tilt.outer!r}, which moves the tip by {number(TO_MILLI * tilt.tip, 4)} mm."
         )
-    yield from of_tip(_BEAMS, state.tip, boom)
-    yield from of_period(_BEAMS, hertz, case)
+    yield from tip_cautions(_BEAMS, state.tip, boom)
+    yield from period_cautions(_BEAMS, hertz, case)

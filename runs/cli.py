@@ -74,8 +74,8 @@ Picture = Annotated[
 Folder = Annotated[str, typer.Argument(metavar="DIR", help="The folder of a run.")]
 
 
-def _print_version(asked: bool) -> None:
-    if asked:
+def _print_version(requested: bool) -> None:
+    if requested:
         from runs.folder.versions import installed_version
 
         print(f"protractile {installed_version('protractile') or '(not installed)'}")
@@ -123,7 +123,7 @@ def run(
     from runs.sweep.run import launched_world
 
     if not large:
-        estimates.refuse_large(estimates.of_run(effective), case)
+        estimates.refuse_large(estimates.run_cost(effective), case)
     cache = None if no_cache else Cache.of_user()
     comm = _enter_mpi(effective, case)
     if comm is None and effective.ensemble is not None:
@@ -222,7 +222,7 @@ def sweep(
 
     plan = points.plan(case, vary, _names(models), mesh_size, against)
     if not large:
-        estimates.refuse_large(estimates.of_sweep([point.case for point in plan.points]), case)
+        estimates.refuse_large(estimates.sweep_cost([point.case for point in plan.points]), case)
     comm = _enter_mpi(plan.points[0].case, case) or sweep_runs.launched_world(case)
     with _all_ranks_end_together(comm):
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")

@@ -9,10 +9,10 @@ from typing import ClassVar
 import numpy as np
 import xarray as xr
 
-from dynamics.arrays import Array, Mask
+from dynamics.arrays import Array
 from dynamics.predictability.horizon import SHARES, horizons_of
 from dynamics.trajectory import Pointwise
-from runs.pipeline.low_pass import SlowPeaks
+from runs.pipeline.low_pass import Number, Numbers, SlowPeaks
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,10 +23,9 @@ class PeakDifferences:
     member of the other.
 
     Args:
-        times: (num_peaks,) in s.
-        time_spreads: (num_peaks,) combined, in s.
-        heights: (num_peaks,) in the signal's unit.
-        height_spreads: (num_peaks,) combined.
+        time, time_spread: (num_peaks,) difference and combined spread in s.
+        height, height_spread: (num_peaks,) likewise, in the signal's unit.
+        explained: (num_peaks,) true where both differ by no more than the spreads.
     """
 
     decides: ClassVar[str] = (
@@ -35,28 +34,24 @@ class PeakDifferences:
         "have."
     )
 
-    times: Array
-    time_spreads: Array
-    heights: Array
-    height_spreads: Array
+    time: Numbers
+    time_spread: Numbers
+    height: Numbers
+    height_spread: Numbers
+    explained: list[bool]
 
     @classmethod
     def of(cls, one: SlowPeaks, other: SlowPeaks) -> PeakDifferences:
         """Compare the first peaks of both, as many as both have."""
-        common = min(one.times.size, other.times.size)
-        return cls(
-            times=other.times[:common] - one.times[:common],
-            time_spreads=one.time_spreads[:common] + other.time_spreads[:common],
-            heights=other.heights[:common] - one.heights[:common],
-            height_spreads=one.height_spreads[:common] + other.height_spreads[:common],
+        common = slice(min(one.time.size, other.time.size))
+        time, height = (
+            other.time[common] - one.time[common],
+            other.height[common] - one.height[common],
         )
-
-    @property
-    def explained(self) -> Mask:
-        """True (num_peaks,) where both time and height differ by no more than the spreads."""
-        return (np.abs(self.times) <= self.time_spreads) & (
-            np.abs(self.heights) <= self.height_spreads
-        )
+        time_spread = one.time_spread[common] + other.time_spread[common]
+        height_spread = one.height_spread[common] + other.height_spread[common]
+        explained = (np.abs(time) <= time_spread) & (np.abs(height) <= height_spread)
+        return cls(time, time_spread, height, height_spread, explained.tolist())
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +60,7 @@ class Distributions:
 
     Args:
         since: the later of both horizons at the last of ``SHARES`` in s.
-        ranges, means, deviations: of both, in the signal's unit; NaN where there is no such time.
+        range, mean, deviation: of both, in the signal's unit; NaN where there is no such time.
         distance: Kolmogorov's and Smirnov's, the largest difference of the cumulated shares, 0
             to 1. No significance follows: values of one member at close times are not
             independent.
@@ -76,11 +71,11 @@ class Distributions:
         "it cannot tell when they do, or in what order."
     )
 
-    since: float
-    ranges: tuple[float, float]
-    means: tuple[float, float]
-    deviations: tuple[float, float]
-    distance: float
+    since: Number
+    range: tuple[Number, Number]
+    mean: tuple[Number, Number]
+    deviation: tuple[Number, Number]
+    distance: Number
 
     @classmethod
     def of(cls, one: Array, other: Array, time: Array, since: float) -> Distributions:

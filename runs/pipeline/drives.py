@@ -56,7 +56,7 @@ def drive_lines(boom: Boom, system: System) -> Iterator[str]:
 
 
 @dataclass(frozen=True, slots=True)
-class Slipping:
+class StickSlipEstimate:
     """The stick-slip behaviour of a drive of finite stiffness, estimated before the motion.
 
     Args:
@@ -77,7 +77,7 @@ class Slipping:
         return self.pulled.critical_speed(self.friction)
 
 
-def slippings(case: Case, boom: Boom) -> Iterator[Slipping]:
+def stick_slip_estimates(case: Case, boom: Boom) -> Iterator[StickSlipEstimate]:
     """Yield the estimate for each drive of finite stiffness, from pad forces at rest."""
     joints = elastic_drives(case, boom)
     if not joints or statics(case, boom) is None:
@@ -88,7 +88,7 @@ def slippings(case: Case, boom: Boom) -> Iterator[Slipping]:
         joint = boom.joints[number]
         assert joint.drive is not None
         name, friction = boom.segments[joint.inner].name, _friction(system, travel, case)
-        yield Slipping(name, pulled, friction, fastest(joint.drive))
+        yield StickSlipEstimate(name, pulled, friction, fastest(joint.drive))
 
 
 def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
@@ -104,7 +104,7 @@ def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
     return most
 
 
-def slip_lines(found: Iterable[Slipping], system: System) -> Iterator[str]:
+def stick_slip_lines(found: Iterable[StickSlipEstimate], system: System) -> Iterator[str]:
     """Yield a sentence for each drive of finite stiffness."""
     for one in found:
         if one.critical == 0.0:
@@ -121,7 +121,7 @@ def slip_lines(found: Iterable[Slipping], system: System) -> Iterator[str]:
         )
 
 
-def slip_cautions(found: Iterable[Slipping], system: System) -> Iterator[str]:
+def stick_slip_cautions(found: Iterable[StickSlipEstimate], system: System) -> Iterator[str]:
     """Yield a caution for each drive with stick-slip along the whole travel."""
     for one in found:
         if one.critical <= one.fastest:

@@ -21,7 +21,7 @@ from runs.case.declared import Declared
 from runs.case.kinds.model import ModelTable
 from runs.case.messages import BadInput
 from runs.case.schema import Case, Model
-from runs.pipeline.models import begun, build_on
+from runs.pipeline.models import build_on, initial_motion
 
 # Memory in bytes and time in s of runs that need no confirmation.
 MAX_MEMORY, MAX_TIME = 4.0e9, 3600.0
@@ -88,17 +88,17 @@ class Preview:
             if known == beam:
                 return motion
         case, joined = self.declared.case, self.declared.joined(model)
-        motion = begun(build_on(joined, case, beam).system, case)
+        motion = initial_motion(build_on(joined, case, beam).system, case)
         self._motions.append((beam, motion))
         return motion
 
 
-def of_run(case: Case) -> Cost:
+def run_cost(case: Case) -> Cost:
     """Return the cost of a run of a checked case."""
-    return of_preview(Preview(Declared(case)))
+    return preview_cost(Preview(Declared(case)))
 
 
-def of_preview(preview: Preview) -> Cost:
+def preview_cost(preview: Preview) -> Cost:
     """Return the cost of a run of a case, some of whose models may already be built as beams."""
     case = preview.declared.case
     shell = any(model.needs_shell for model in case.models)
@@ -110,10 +110,10 @@ def of_preview(preview: Preview) -> Cost:
     return total
 
 
-def of_sweep(cases: Sequence[Case]) -> Cost:
+def sweep_cost(cases: Sequence[Case]) -> Cost:
     """Return the cost of a sweep of checked cases on all cores."""
     at_a_time = min(len(cases), os.cpu_count() or 1)
-    sample = [of_run(case) for case in cases[:: -(-len(cases) // _SAMPLE)]]
+    sample = [run_cost(case) for case in cases[:: -(-len(cases) // _SAMPLE)]]
     seconds = sum(cost.seconds for cost in sample) / len(sample) * len(cases)
     return Cost(at_a_time * max(cost.memory for cost in sample), seconds / at_a_time)
 

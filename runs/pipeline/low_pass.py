@@ -3,11 +3,24 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from pydantic import BeforeValidator, PlainSerializer, PlainValidator
 
 from dynamics.arrays import Array
+
+# Arrays and numbers in JSON, which has neither NaN nor infinity.
+Numbers = Annotated[
+    Array, PlainValidator(np.asarray), PlainSerializer(lambda values: np.asarray(values).tolist())
+]
+Number = Annotated[
+    float,
+    BeforeValidator(lambda value: math.nan if value is None else value),
+    PlainSerializer(lambda value: value if math.isfinite(value) else None),
+]
 
 # Cut-off as a part of the lowest elastic frequency of the closed system. With play the boom
 # vibrates more slowly than the closed structure, and the ripple of impacts is faster.
@@ -70,20 +83,20 @@ class SlowPeaks:
     :func:`dynamics.predictability.horizon.spread`; values are the members' means.
 
     Args:
-        times: (num_peaks,) in s.
-        time_spreads: (num_peaks,) in s.
-        heights: (num_peaks,) in the signal's unit.
-        height_spreads: (num_peaks,) in the signal's unit.
+        time: (num_peaks,) in s.
+        time_spread: (num_peaks,) in s.
+        height: (num_peaks,) in the signal's unit.
+        height_spread: (num_peaks,) in the signal's unit.
         period: mean distance of successive peaks in s, NaN with fewer than two.
         period_spread: in s, NaN as above.
     """
 
-    times: Array
-    time_spreads: Array
-    heights: Array
-    height_spreads: Array
-    period: float
-    period_spread: float
+    time: Numbers
+    time_spread: Numbers
+    height: Numbers
+    height_spread: Numbers
+    period: Number
+    period_spread: Number
 
     @classmethod
     def of(cls, members: Array, time: Array, cutoff: float) -> SlowPeaks:
@@ -107,10 +120,10 @@ class SlowPeaks:
         h = np.array(heights).reshape(-1, len(members))
         periods = np.ptp(t, axis=0) / (len(t) - 1) if len(t) > 1 else np.full(1, np.nan)
         return cls(
-            times=t.mean(axis=1),
-            time_spreads=0.5 * np.ptp(t, axis=1),
-            heights=h.mean(axis=1),
-            height_spreads=0.5 * np.ptp(h, axis=1),
+            time=t.mean(axis=1),
+            time_spread=0.5 * np.ptp(t, axis=1),
+            height=h.mean(axis=1),
+            height_spread=0.5 * np.ptp(h, axis=1),
             period=float(periods.mean()),
             period_spread=float(0.5 * np.ptp(periods)),
         )

@@ -23,7 +23,6 @@ from geometry.boom import Boom
 from runs.case.schema import TimeTable
 from runs.pipeline.low_pass import CUTOFF_SHARE, SlowPeaks, slow_peaks
 from runs.pipeline.summary import (
-    CommonPeaks,
     EnsembleSummary,
     Predictability,
     StepsForPeaks,
@@ -86,7 +85,7 @@ def slow_below(boom: Boom, time: TimeTable) -> float | None:
     return cutoff
 
 
-def sum_up_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> EnsembleSummary:
+def summarise_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> EnsembleSummary:
     """Return the summary of one model's ensemble.
 
     Args:
@@ -97,7 +96,7 @@ def sum_up_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> EnsembleSu
     return EnsembleSummary(
         horizons={f"{share:g}": time for share, time in shares},
         energy_residual=float(ensemble["energy_residual"].max()),
-        slow_peaks=None if peaks is None else CommonPeaks.model_validate(peaks),
+        slow_peaks=peaks,
     )
 
 
@@ -168,10 +167,10 @@ def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsFor
     Returns:
         The trials; None if there are fewer peaks.
     """
-    if peaks.times.size < PEAKS:
+    if peaks.time.size < PEAKS:
         return None
     # The filter needs half of its own period after the last peak.
-    lasting = peaks.times[PEAKS - 1] + 1.0 / cutoff
+    lasting = peaks.time[PEAKS - 1] + 1.0 / cutoff
     # There is at least one step between outputs.
     steps = motion.output_step * 2.0 ** np.arange(_FINEST, 64)
     trials = []
@@ -203,8 +202,8 @@ def _holds(trajectory: Trajectory, peaks: SlowPeaks, cutoff: float) -> bool:
     if times.size < PEAKS:
         return False
     first = slice(None, PEAKS)
-    late = np.abs(times[first] - peaks.times[first])
-    apart = np.abs(heights[first] - peaks.heights[first])
-    in_time = WITHIN * peaks.period + peaks.time_spreads[first]
-    in_height = WITHIN * np.abs(peaks.heights[first]) + peaks.height_spreads[first]
+    late = np.abs(times[first] - peaks.time[first])
+    apart = np.abs(heights[first] - peaks.height[first])
+    in_time = WITHIN * peaks.period + peaks.time_spread[first]
+    in_height = WITHIN * np.abs(peaks.height[first]) + peaks.height_spread[first]
     return bool((late <= in_time).all() and (apart <= in_height).all())

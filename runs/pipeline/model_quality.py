@@ -21,9 +21,14 @@ from runs.case.actions import series_notes
 from runs.case.schema import Case, Model
 from runs.pipeline.comparison import Distributions, PeakDifferences, compare
 from runs.pipeline.design_results import DesignResults, ModelDesignResults, QualityNote
-from runs.pipeline.drives import lag_cautions, slip_cautions, slippings
-from runs.pipeline.proportions import of_buckling, of_period, of_tip, slips
-from runs.pipeline.summary import Comparisons, Levels, Summary, Whole
+from runs.pipeline.drives import lag_cautions, stick_slip_cautions, stick_slip_estimates
+from runs.pipeline.proportions import (
+    buckling_cautions,
+    period_cautions,
+    proportion_cautions,
+    tip_cautions,
+)
+from runs.pipeline.summary import Comparisons, Summary, Whole
 
 # Difference of members, as a part of the tip's range, beyond which their motions have diverged.
 _PARTED = 0.2
@@ -92,8 +97,7 @@ def compare_models(
             for name in (reference, *_others(ensembles, reference))
         )
         found.ensembles = {
-            str(other["model"].item()): Levels.model_validate(compare(one, other, cutoff))
-            for other in others
+            str(other["model"].item()): compare(one, other, cutoff) for other in others
         }
     if case.regular:
         time, whole = trajectories["time"].values, {}
@@ -216,8 +220,8 @@ def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list
         summary: that of the run, with all failures.
     """
     return [
-        *slips(case, boom),
-        *slip_cautions(slippings(case, boom), case.system),
+        *proportion_cautions(case, boom),
+        *stick_slip_cautions(stick_slip_estimates(case, boom), case.system),
         *lag_cautions(boom, data, case.system),
         *(f"failed: {name}: {why}" for name, why in summary.failures.items()),
         *_static(summary, case, boom),
@@ -231,12 +235,12 @@ def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list
 def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
     """Yield cautions about axial forces, the static deflection and the duration."""
     for name, model in summary.models.items():
-        yield from of_buckling(name, model.critical_factor)
-        yield from of_tip(f"in {name}", model.static_tip, boom)
+        yield from buckling_cautions(name, model.critical_factor)
+        yield from tip_cautions(f"in {name}", model.static_tip, boom)
     found = summary.design.models.items()
     slowest = min(((mode.frequency, name) for name, one in found for mode in one.modes), default=())
     if slowest:
-        yield from of_period(f"in {slowest[1]}", slowest[0], case)
+        yield from period_cautions(f"in {slowest[1]}", slowest[0], case)
 
 
 def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:

@@ -173,7 +173,7 @@ def _move(
             )
         tips, time = ensemble["tip"].values, ensemble["time"].values
         peaks = None if cutoff is None else SlowPeaks.of(tips, time, cutoff)
-        summary.ensemble = members.sum_up_ensemble(ensemble, peaks)
+        summary.ensemble = members.summarise_ensemble(ensemble, peaks)
         with stages.stage("horizons") as told:
             summary.horizons = members.measure_predictability(
                 motion, plan.integrator, table.vary, trajectory, executor, told

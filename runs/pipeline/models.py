@@ -48,7 +48,7 @@ def build_on(
     return replace(built, system=with_elastic_drives(built.system, case, joined.boom))
 
 
-def begun(system: GapSystem, case: Case) -> Motion:
+def initial_motion(system: GapSystem, case: Case) -> Motion:
     """Return the initial motion of a system as the case defines it.
 
     Raises:
@@ -86,7 +86,7 @@ class MotionPlan:
         """
         from dynamics.integrator import AdaptiveStep, FixedStep
 
-        motion, time = begun(system, case), case.time
+        motion, time = initial_motion(system, case), case.time
         step = model.step or time.step
         if step is None:
             return cls(motion, AdaptiveStep(time.tolerance))

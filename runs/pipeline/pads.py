@@ -29,7 +29,7 @@ _ON = {on: side for side, on in SIDES.items()}
 
 
 @dataclass(frozen=True, slots=True)
-class PressedPad:
+class PadLoad:
     """The governing slide pad of a pair at a station in one model.
 
     ``force`` is in N, ``x`` of the station in m, ``pressure`` in Pa; ``utilisation`` of the
@@ -46,7 +46,7 @@ class PressedPad:
     utilisation: float | None
 
 
-def pressed_pads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PressedPad]:
+def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
     """Yield the governing pads of every station of joints with play, in each model.
 
     Args:
@@ -81,11 +81,11 @@ def pressed_pads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PressedPa
 
 def _pressed(
     model: Model, joint: JointTable, pad: PadSize, x: float, side: str, both: float
-) -> PressedPad:
+) -> PadLoad:
     """Return one pad of a pair that carries a force in N evenly."""
     force, allowable = both / PADS_OF_SIDE, pad.allowable_pressure
     pressure = force / pad.area
-    return PressedPad(
+    return PadLoad(
         model=model.name,
         outer=joint.outer,
         inner=joint.inner,
@@ -146,7 +146,7 @@ def _of_a_side(both: float, law: ContactLaw) -> float:
     return max(both, at_rest + 0.5 * both)
 
 
-def most_on_pad(joint: Joint, direction: Direction, sides: Sequence[float]) -> float | None:
+def largest_pad_force(joint: Joint, direction: Direction, sides: Sequence[float]) -> float | None:
     """Return the largest force in N on one pad for the forces of both sides; None without pads."""
     if not joint.padded:
         return None
@@ -165,7 +165,7 @@ def _hardest(joint: Joint, direction: Direction, side: Side, force: float) -> fl
     return float(stiffness * (shares * (ways.min() + shims)).max())
 
 
-def one_sided_force(law: ContactLaw, side: int, gap: float) -> float:
+def side_force(law: ContactLaw, side: int, gap: float) -> float:
     """Return the contact force on a side in N, not negative."""
     there = law.one_sided(side)
     return 0.0 if there is None else float(abs(there.force(np.array(gap))))

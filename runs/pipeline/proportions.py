@@ -37,7 +37,7 @@ LIFTING = 0.3
 SAME, ALIKE = 0.01, 0.05
 
 
-def slips(case: Case, boom: Boom) -> list[str]:
+def proportion_cautions(case: Case, boom: Boom) -> list[str]:
     """Return suspicious inputs, a line each."""
     unusual = (one for one in usual_numbers(case, boom) if one.unusual)
     found = [f"{one.key}: {one.said(case.system)}" for one in unusual]
@@ -208,7 +208,7 @@ def _without_gravity(case: Case, boom: Boom) -> Iterator[str]:
         )
 
 
-def of_period(where: str, frequency: float, case: Case) -> list[str]:
+def period_cautions(where: str, frequency: float, case: Case) -> list[str]:
     """Return a caution against a run that is shorter than one period of the boom.
 
     Args:
@@ -236,7 +236,7 @@ def static_tip(system: GapSystem) -> float:
         return float("nan")
 
 
-def of_buckling(name: str, critical_factor: float | None) -> list[str]:
+def buckling_cautions(name: str, critical_factor: float | None) -> list[str]:
     """Return a caution against a model's axial forces, if they are too large.
 
     Args:
@@ -251,7 +251,7 @@ def of_buckling(name: str, critical_factor: float | None) -> list[str]:
     ]
 
 
-def of_tip(where: str, tip: float | None, boom: Boom) -> list[str]:
+def tip_cautions(where: str, tip: float | None, boom: Boom) -> list[str]:
     """Return a caution against a static deflection, if it is too large.
 
     Args:

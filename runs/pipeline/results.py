@@ -28,7 +28,7 @@ from runs.folder.files import MANIFEST, damaged, write_whole
 from runs.pipeline.design_results import PlayEffect
 from runs.pipeline.model_quality import cautions, leading, reference_of
 from runs.pipeline.motion_results import MotionResult
-from runs.pipeline.pads import pressed_pads
+from runs.pipeline.pads import pad_loads
 from runs.pipeline.static_results import place_names
 from runs.pipeline.summary import Summary
 
@@ -109,7 +109,7 @@ class Results:
     def conclude(self) -> None:
         """Complete the summary with what follows from the motion and its other parts."""
         case, boom, data, summary = self.case, self.boom, self.trajectories, self.summary
-        summary.pads = list(pressed_pads(case, boom, data))
+        summary.pads = list(pad_loads(case, boom, data))
         summary.cautions = cautions(case, boom, data, summary)
 
     def save(self, folder: Path | str) -> None:
@@ -146,7 +146,7 @@ class Results:
         return next((one for one in known if one.model == self.reference), None)
 
     @cached_property
-    def read_first(self) -> list[str]:
+    def leading_models(self) -> list[str]:
         """The most important models, the reference before the others."""
         names = list(self.summary.models)
         first = leading(self.case, names)
@@ -158,7 +158,7 @@ class Results:
         own = self.summary.design.models
         return {
             name: moved
-            for name in self.read_first
+            for name in self.leading_models
             if name in own and (moved := own[name].motion) is not None
         }
 

@@ -25,7 +25,7 @@ from geometry.boom import Boom
 from geometry.cylinder import forces
 from geometry.telescoping import drawn, places
 from runs.case.drive import resolving_times
-from runs.pipeline.pads import SIGNS, most_on_pad, one_sided_force
+from runs.pipeline.pads import SIGNS, largest_pad_force, side_force
 from runs.pipeline.section_forces import rounded, section_forces
 
 # Distance from the farthest extension, as a part of it, that counts as zero.
@@ -233,12 +233,12 @@ def static_result(
         tip_lateral=seen.get("tip_lateral"),
         diagrams=diagrams,
         tilts=list(tilts(boom, system, position, time)),
-        stations=list(pressed(boom, system, position)),
+        stations=list(station_loads(boom, system, position)),
         cylinders={name: seen[name] for name in forces(boom)},
     )
 
 
-def pressed(boom: Boom, system: GapSystem, position: Array) -> Iterator[StationLoad]:
+def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[StationLoad]:
     """Yield the stations of joints with play, in z and in y, and the stops, at (num_modes,)."""
     gaps = system.rows @ position
     loose = [joint for joint in boom.joints if not joint.tied]
@@ -249,15 +249,14 @@ def pressed(boom: Boom, system: GapSystem, position: Array) -> Iterator[StationL
         # A model without play has stations, but no contact rows there.
         here = np.flatnonzero(system.station_of_row == k)
         sides = [
-            sum(one_sided_force(system.laws[row], side, gaps[row]) for row in here)
-            for side in SIGNS
+            sum(side_force(system.laws[row], side, gaps[row]) for row in here) for side in SIGNS
         ]
         yield StationLoad(
             place=name,
             x=x,
             direction=direction,
             force=sides[0] - sides[1],
-            pad=None if joint is None else most_on_pad(joint, direction, sides),
+            pad=None if joint is None else largest_pad_force(joint, direction, sides),
             depth=max((system.laws[row].depth(float(gaps[row])) for row in here), default=0.0),
         )
 

@@ -15,7 +15,7 @@ from geometry.axial import on_foot
 from geometry.boom import Boom
 from geometry.cylinder import force_name
 from runs.case.schema import Case
-from runs.pipeline.static_results import pressed
+from runs.pipeline.static_results import station_loads
 
 # Part of the other reactions below which a reaction counts as zero.
 ROUND_OFF = 1.0e-9
@@ -131,7 +131,7 @@ def _depths(state: StaticState) -> dict[tuple[int, float], float]:
     joints = [joint for joint in boom.joints if not joint.tied]
     inner = [one.inner for _ in boom.directions for one in joints for _ in one.stations]
     owners = [*inner, *(stop.segment for stop in boom.stops)]
-    found = pressed(boom, state.system, state.position)
+    found = station_loads(boom, state.system, state.position)
     return {
         (number, one.x): one.depth
         for number, one in zip(owners, found, strict=True)

@@ -10,33 +10,27 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
-import numpy as np
-from pydantic import AliasChoices, AliasGenerator, BaseModel, BeforeValidator, ConfigDict
+from pydantic import BaseModel, BeforeValidator, ConfigDict
 from pydantic_core import to_jsonable_python
 
 from dynamics.drive.stick_slip import StickSlip
 from dynamics.failure import NumericsError
-from dynamics.trajectory import Pointwise
 from geometry.typography import TO_KILO, TO_PERCENT
 from runs.case.schema import EnsembleTable
+from runs.pipeline.comparison import Comparison
 from runs.pipeline.design_results import DesignResults
+from runs.pipeline.low_pass import SlowPeaks
 from runs.pipeline.metrics import Metric
-from runs.pipeline.pads import PressedPad
+from runs.pipeline.pads import PadLoad
 from shell_model.stress.history import StressSummary
-
-
-def _listed(values: Any) -> Any:
-    return values.tolist() if isinstance(values, np.ndarray) else values
-
 
 # A number, and None for NaN and infinity, which JSON does not have.
 Known = Annotated[
     float | None,
     BeforeValidator(lambda n: None if isinstance(n, float) and not math.isfinite(n) else n),
 ]
-Numbers = Annotated[list[float], BeforeValidator(_listed)]
 
 
 class SummaryTable(BaseModel):
@@ -45,31 +39,11 @@ class SummaryTable(BaseModel):
     model_config = ConfigDict(extra="forbid", validate_assignment=True)
 
 
-class Measured(SummaryTable):
-    """What is measured elsewhere, by the same names or by their plurals."""
-
-    model_config = ConfigDict(
-        from_attributes=True,
-        alias_generator=AliasGenerator(validation_alias=lambda n: AliasChoices(n, f"{n}s")),
-    )
-
-
 class FirstPeak(NamedTuple):
     """Time in s and height in m; None where there is no peak."""
 
     time: Known
     height: Known
-
-
-class CommonPeaks(Measured):
-    """Of :class:`runs.pipeline.low_pass.SlowPeaks`, in s and m."""
-
-    time: Numbers
-    time_spread: Numbers
-    height: Numbers
-    height_spread: Numbers
-    period: Known
-    period_spread: Known
 
 
 class EnsembleSummary(SummaryTable):
@@ -81,7 +55,7 @@ class EnsembleSummary(SummaryTable):
 
     horizons: dict[str, Known]
     energy_residual: float
-    slow_peaks: CommonPeaks | None
+    slow_peaks: SlowPeaks | None
 
     def horizon(self, share: float) -> float | None:
         """Return the horizon in s for one of :data:`dynamics.predictability.horizon.SHARES`."""
@@ -223,34 +197,6 @@ class ModelSummary(SummaryTable):
     stick_slip: dict[str, StickSlip] = {}
 
 
-class PeaksLevel(Measured):
-    """Of :class:`runs.pipeline.comparison.PeakDifferences`, in s and m."""
-
-    time: Numbers
-    time_spread: Numbers
-    height: Numbers
-    height_spread: Numbers
-    explained: Annotated[list[bool], BeforeValidator(_listed)]
-
-
-class DistributionsLevel(Measured):
-    """Of :class:`runs.pipeline.comparison.Distributions`, in s and m."""
-
-    since: Known
-    range: list[Known]
-    mean: list[Known]
-    deviation: list[Known]
-    distance: Known
-
-
-class Levels(Measured):
-    """Two ensembles compared, at three levels."""
-
-    pointwise: Pointwise
-    peaks: PeaksLevel
-    distributions: DistributionsLevel
-
-
 class Whole(SummaryTable):
     """Two tips until several times in s, as parts of the larger range."""
 
@@ -263,7 +209,7 @@ class Comparisons(SummaryTable):
     """Each model against the reference, by its name; ``whole`` where segments rub."""
 
     reference: str
-    ensembles: dict[str, Levels] = {}
+    ensembles: dict[str, Comparison] = {}
     whole: dict[str, Whole] = {}
 
 
@@ -294,7 +240,7 @@ class Summary(SummaryTable):
     failures: dict[str, str]
     ensemble: Ensembles | None = None
     design: DesignResults = DesignResults({})
-    pads: list[PressedPad] = []
+    pads: list[PadLoad] = []
     cautions: list[str] = []
     comparisons: Comparisons | None = None
     snapshots: Snapshots = Snapshots(written=[], skipped=None)

@@ -90,7 +90,7 @@ class FigureContext:
             if model.play_free
         }
         self.answers = results.summary.design.models
-        self.leading = results.read_first
+        self.leading = results.leading_models
 
     def of(self, name: str, variable: str) -> Array:
         """Return a result (num_times,) of a model, at stations (num_times, num_stations)."""

@@ -206,7 +206,7 @@ def slow_peaks(run: FigureContext) -> list[Figure]:
         for name in run.with_play
         if (ensemble := run.summary[name].ensemble)
         and (peaks := ensemble.slow_peaks)
-        and peaks.time
+        and peaks.time.size
     }
     if not found:
         return []

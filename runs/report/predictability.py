@@ -6,16 +6,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 
+import numpy as np
+
 from dynamics.predictability.horizon import SHARES
 from geometry.typography import TO_MILLI, signed
+from runs.pipeline.comparison import Comparison, PeakDifferences
+from runs.pipeline.low_pass import SlowPeaks
 from runs.pipeline.model_quality import DECIDES
 from runs.pipeline.results import Results
 from runs.pipeline.summary import (
-    CommonPeaks,
     Ensembles,
-    Levels,
     ModelSummary,
-    PeaksLevel,
     Predictability,
     Whole,
 )
@@ -66,7 +67,7 @@ def comparison_tables(results: Results) -> list[Table]:
     return tables
 
 
-def _slow_peaks(model: ModelSummary) -> CommonPeaks | None:
+def _slow_peaks(model: ModelSummary) -> SlowPeaks | None:
     return model.ensemble.slow_peaks if model.ensemble else None
 
 
@@ -126,14 +127,14 @@ def _peak_columns(peaks: Mapping[str, Sequence[str]]) -> list[Column]:
     return [Column("peak", numbers), *(Column(*column) for column in peaks.items())]
 
 
-def _heights(found: CommonPeaks) -> list[str]:
+def _heights(found: SlowPeaks) -> list[str]:
     """Return time and height of each peak."""
     times = map(partial(_spread, decimals=3), found.time, found.time_spread)
     heights = map(partial(_spread, decimals=2, factor=TO_MILLI), found.height, found.height_spread)
     return [f"{time} s\n{height} mm" for time, height in zip(times, heights, strict=True)]
 
 
-def _differences(found: PeaksLevel) -> list[str]:
+def _differences(found: PeakDifferences) -> list[str]:
     """Return the differences of each peak from the reference, in time and height."""
     signed_milli = partial(_spread, factor=TO_MILLI, sign="+")
     times = map(partial(signed_milli, decimals=0), found.time, found.time_spread)
@@ -143,7 +144,7 @@ def _differences(found: PeaksLevel) -> list[str]:
     return [f"{time} ms\n{height} mm{mark}" for time, height, mark in rows]
 
 
-def _level_tables(reference: str, levels: Mapping[str, Levels]) -> list[Table]:
+def _level_tables(reference: str, levels: Mapping[str, Comparison]) -> list[Table]:
     """Return comparisons at every instant, peak by peak, and of all values afterwards."""
     points = [level.pointwise for level in levels.values()]
     spreads = [level.distributions for level in levels.values()]
@@ -181,9 +182,9 @@ def _level_tables(reference: str, levels: Mapping[str, Levels]) -> list[Table]:
     ]
 
 
-def _both(values: Sequence[float | None]) -> str:
+def _both(values: Sequence[float]) -> str:
     """Return the value of the model and that of the reference, in mm, separated by a slash."""
-    if all(value is None for value in values):
+    if not np.isfinite(values).any():
         return NONE
     return " / ".join(fixed(value, 1, TO_MILLI) for value in reversed(values))
 

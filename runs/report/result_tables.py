@@ -335,7 +335,7 @@ def life_table(results: Results) -> Table | None:
     rows = [
         (name, life)
         for name, own in models.items()
-        if name in results.read_first
+        if name in results.leading_models
         for life in own.life
     ]
     if not rows:

@@ -14,7 +14,7 @@ from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
 from runs.pipeline.design_results import ModelDesignResults, PlayDifference
 from runs.pipeline.model_quality import off_at_rest
 from runs.pipeline.motion_results import Peak
-from runs.pipeline.pads import PressedPad
+from runs.pipeline.pads import PadLoad
 from runs.pipeline.results import Results
 from runs.pipeline.utilisation import Utilisation, utilisations
 from runs.report.figure_context import farthest, tip_directions
@@ -30,7 +30,7 @@ NEAR = 0.9
 
 def summary_table(results: Results) -> Table | None:
     """Return the design results of the leading models, the reference's before the others'."""
-    names, answers = results.read_first, results.summary.design.models
+    names, answers = results.leading_models, results.summary.design.models
     if not answers:
         return None
     own = [answers[name] for name in names]
@@ -103,7 +103,7 @@ def deviation_note(results: Results) -> str:
     ]
     if not deviations:
         return ""
-    behind = [name for name in results.summary.models if name not in results.read_first]
+    behind = [name for name in results.summary.models if name not in results.leading_models]
     more = f" For {listed(behind)} see the tables and figures below." if behind else ""
     return (
         f"Deviation of the static tip deflection (maximum load) from {reference}: "
@@ -137,7 +137,7 @@ def utilisation_verdict(results: Results) -> str:
 
     The text is empty where neither strengths, allowable pressures nor a fatigue life are known.
     """
-    first = results.read_first[0]
+    first = results.leading_models[0]
     known = [one for one in utilisations(results, first).values() if one.value is not None]
     if not known:
         return ""
@@ -167,14 +167,14 @@ def _more(one: PlayDifference) -> str:
     return f"{amount(one.increase, one.unit)}{share}"
 
 
-def governing_pads(results: Results) -> dict[str, PressedPad]:
+def governing_pads(results: Results) -> dict[str, PadLoad]:
     """Return each model's pad of the highest utilisation, else of the largest pressure."""
     pads = results.summary.pads[::-1]
     pads = sorted(pads, key=lambda pad: (pad.utilisation or 0.0, pad.pressure))
     return {pad.model: pad for pad in pads}
 
 
-def _pad(pad: PressedPad) -> str:
+def _pad(pad: PadLoad) -> str:
     """Return force, pressure and position of a pad."""
     used = _used(pad.utilisation, "allowable")
     force, pressure = amount(pad.force, "N"), amount(pad.pressure, "Pa")
@@ -199,8 +199,8 @@ def _used(part: float | None, borne: str) -> str:
 def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]:
     """Yield notes that explain the table's numbers."""
     models = sorted(
-        (model for model in results.ran if model.name in results.read_first),
-        key=lambda model: results.read_first.index(model.name),
+        (model for model in results.ran if model.name in results.leading_models),
+        key=lambda model: results.leading_models.index(model.name),
     )
     described = (
         f"{model.name}: {model.kind}, {model.describe()}"

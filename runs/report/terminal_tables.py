@@ -50,7 +50,7 @@ def print_results(results: Results, console: Console) -> None:
         return
     result_table(results).show(console)
     for line in filter(None, (play_effect(results), utilisation_verdict(results))):
-        text = f"{results.read_first[0]}: {line[0].lower()}{line[1:]}"
+        text = f"{results.leading_models[0]}: {line[0].lower()}{line[1:]}"
         console.print(text, markup=False, highlight=False)
 
 

@@ -11,7 +11,7 @@ import pytest
 
 import protractile as pt
 from runs.case.build import build_boom
-from runs.pipeline.proportions import slips
+from runs.pipeline.proportions import proportion_cautions
 from runs.pipeline.summary import Summary
 from tests.docs.conftest import DOCS, toml_blocks
 
@@ -55,7 +55,7 @@ def test_the_boom_alone_is_that_of_the_first_check(run: Runner, tmp_path: Path) 
     path.write_text(text, "utf-8")
     case = pt.load_case(path)
     boom = build_boom(case)
-    assert slips(case, boom) == []
+    assert proportion_cautions(case, boom) == []
     mass = sum(segment.mass_per_length * segment.length for segment in boom.segments)
     assert shown(mass, 0, "mass of the boom")
     summary = run(text, "beam", **{"time.duration": 0.1})

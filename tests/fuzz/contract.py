@@ -113,6 +113,6 @@ def _announced(arguments: Sequence[str]) -> int:
     if arguments[:2] != ["run", "case.toml"]:
         return 0
     try:
-        return int(estimates.of_run(case_file.load("case.toml")).seconds)
+        return int(estimates.run_cost(case_file.load("case.toml")).seconds)
     except Exception:
         return 0

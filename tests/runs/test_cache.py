@@ -24,7 +24,7 @@ ROOT = Path(__file__).parents[2]
 ENTRY = "a.record"
 
 
-def test_an_entry_is_found_again(tmp_path: Path, keeper: str) -> None:
+def test_an_entry_is_found_again(tmp_path: Path) -> None:
     cache = Cache(tmp_path / "cache")
     assert cache.load("a", dict) is None
     thing = {"array": np.arange(3.0)}

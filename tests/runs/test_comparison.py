@@ -48,11 +48,11 @@ def test_levels_of_two_models_that_part() -> None:
     found = compare(ensemble(growth=1.0), ensemble(delay=0.05, growth=1.0), CUTOFF)
     assert found.pointwise.until == pytest.approx(np.log(100.0 / np.pi), abs=0.25)
     assert found.pointwise.largest == pytest.approx(np.sin(0.05 * np.pi), rel=1e-2)
-    np.testing.assert_allclose(found.peaks.times[1:5], 0.05, atol=2e-3)
+    np.testing.assert_allclose(found.peaks.time[1:5], 0.05, atol=2e-3)
     explained = found.peaks.explained
     # Both phases are uncertain by 1e-4 exp(t) s: the delay is explained from 5.5 s on.
-    assert explained.tolist()[:4] == [False] * 4
-    assert explained[6:].all()
+    assert explained[:4] == [False] * 4
+    assert all(explained[6:])
     assert found.distributions.since == pytest.approx(np.log(2000.0 / np.pi), abs=0.3)
     assert found.distributions.distance < 0.05
 
@@ -61,9 +61,9 @@ def test_peaks_beyond_the_spread_are_differences_of_the_models() -> None:
     one = SlowPeaks.of(ensemble()["tip"].values, TIME, CUTOFF)
     higher = SlowPeaks.of(ensemble(height=1.1)["tip"].values, TIME, CUTOFF)
     found = PeakDifferences.of(one, higher)
-    np.testing.assert_allclose(found.heights[1:-1], 0.1, rtol=0.01)
-    assert not found.explained.any()
-    assert PeakDifferences.of(one, one).explained.all()
+    np.testing.assert_allclose(found.height[1:-1], 0.1, rtol=0.01)
+    assert not any(found.explained)
+    assert all(PeakDifferences.of(one, one).explained)
 
 
 def test_distance_of_shifted_distributions() -> None:
@@ -74,8 +74,8 @@ def test_distance_of_shifted_distributions() -> None:
         other = generator.normal(shift, 1.0, size=values.shape)
         found = Distributions.of(values, other, TIME, 1.0)
         assert found.distance == pytest.approx(2.0 * norm.cdf(0.5 * shift) - 1.0, abs=0.01)
-        assert found.means[1] - found.means[0] == pytest.approx(shift, abs=0.02)
-        assert found.deviations == pytest.approx((1.0, 1.0), abs=0.02)
+        assert found.mean[1] - found.mean[0] == pytest.approx(shift, abs=0.02)
+        assert found.deviation == pytest.approx((1.0, 1.0), abs=0.02)
 
 
 def test_models_that_stay_predictable_have_no_distribution() -> None:
@@ -93,7 +93,7 @@ def test_a_chaotic_system_is_like_itself() -> None:
     )
     found = compare(one, other, 2.0)
     assert found.pointwise.largest == 0.0  # of the unchanged members
-    assert found.peaks.explained.all()
+    assert all(found.peaks.explained)
     assert found.distributions.distance < 0.05
     shifted = other.assign(tip=other["tip"] + 0.5 * np.ptp(other["tip"].values))
     assert compare(one, shifted, 2.0).distributions.distance > 0.5

@@ -19,7 +19,7 @@ from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import Shell
 from runs.case.messages import BadInput
 from runs.check import print_check
-from runs.pipeline.estimates import Cost, of_run, of_sweep, refuse_large
+from runs.pipeline.estimates import Cost, refuse_large, run_cost, sweep_cost
 from runs.sweep import points as sweep_points
 from tests.runs.coarse_case import COARSE
 from tests.runs.summaries import printed
@@ -99,7 +99,7 @@ def test_memory_is_not_above_the_estimate_and_not_far_below(
     write(*edits)
     case = case_file.load("case.toml")
     case = case_file.select(case, "case.toml", [options[1]], members=members)
-    told, arguments = of_run(case).memory, (*options, "--members", str(members or 0))
+    told, arguments = run_cost(case).memory, (*options, "--members", str(members or 0))
     used = memory(*arguments)
     if used > told:  # by a run that had to compile; a later one has not
         used = memory(*arguments)
@@ -141,7 +141,7 @@ def test_what_takes_much_is_refused_with_the_number(
     """Reference: non-regression; what a million outputs, dofs and steps take was measured."""
     write(*edits)
     with pytest.raises(BadInput) as refused:
-        refuse_large(of_run(case_file.load("case.toml")), "case.toml")
+        refuse_large(run_cost(case_file.load("case.toml")), "case.toml")
     assert str(refused.value) == (
         f"case.toml: --large: missing, and it may take {line}; give it to start all the same, or "
         "ask for fewer outputs, members, points or steps, or for coarser meshes"
@@ -173,7 +173,7 @@ def test_a_sweep_takes_the_time_of_its_points(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     write()
     points = [p.case for p in sweep_points.plan("case.toml", VARY, ["beam-fe"], None).points]
-    one, all_of_them = of_run(points[0]), of_sweep(points)
+    one, all_of_them = run_cost(points[0]), sweep_cost(points)
     assert all_of_them.memory == pytest.approx(2.0 * one.memory, rel=1e-9)
     assert all_of_them.seconds == pytest.approx(50.0 * one.seconds, rel=0.5)
 
@@ -183,7 +183,7 @@ VARY = ["joint.stiffness=1e13:1.1e13:100"]
 
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
 def test_the_cases_that_come_with_the_project_start_unasked(path: Path) -> None:
-    refuse_large(of_run(case_file.load(str(path))), str(path))
+    refuse_large(run_cost(case_file.load(str(path))), str(path))
 
 
 def test_an_unknown_cost_is_a_large_one() -> None:

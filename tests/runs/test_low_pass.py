@@ -45,12 +45,12 @@ def test_spreads_over_members() -> None:
     """Reference: analytic. Delays of −20 … 40 ms, heights of 0.9 … 1.1."""
     members = np.array([swing(), swing(0.04, 0.9), swing(-0.02, 1.1)])
     found = SlowPeaks.of(members, TIME, CUTOFF)
-    assert found.times.size == 10
+    assert found.time.size == 10
     inner = slice(1, -1)
-    np.testing.assert_allclose(found.times[inner], np.arange(1, 9) + 0.5 + 0.02 / 3, atol=2e-3)
-    np.testing.assert_allclose(found.time_spreads[inner], 0.03, atol=2e-3)
+    np.testing.assert_allclose(found.time[inner], np.arange(1, 9) + 0.5 + 0.02 / 3, atol=2e-3)
+    np.testing.assert_allclose(found.time_spread[inner], 0.03, atol=2e-3)
     # A tenth of the heights, which the filter lowers by 0.7 %.
-    np.testing.assert_allclose(found.height_spreads[inner], 0.1, rtol=0.01)
+    np.testing.assert_allclose(found.height_spread[inner], 0.1, rtol=0.01)
     assert found.period == pytest.approx(1.0, abs=2e-3)
     assert found.period_spread < 4e-3
 
@@ -58,15 +58,15 @@ def test_spreads_over_members() -> None:
 def test_counts_peaks_up_to_the_first_that_a_member_has_not() -> None:
     lost = swing()
     lost[(TIME > 4.0) & (TIME < 5.0)] = 0.0
-    assert SlowPeaks.of(np.array([swing(), lost]), TIME, CUTOFF).times.size == 4
+    assert SlowPeaks.of(np.array([swing(), lost]), TIME, CUTOFF).time.size == 4
     drifting = 0.5 * (1.0 - np.cos(2.0 * np.pi * TIME * 0.95))
     # The k-th peak is late by (k − ½)·0.0526 s; half a period of the cut-off is 0.294 s.
-    assert SlowPeaks.of(np.array([swing(), drifting]), TIME, CUTOFF).times.size == 6
+    assert SlowPeaks.of(np.array([swing(), drifting]), TIME, CUTOFF).time.size == 6
 
 
 def test_a_motion_without_peaks_has_no_period() -> None:
     found = SlowPeaks.of(np.array([TIME, 2.0 * TIME]), TIME, CUTOFF)
-    assert found.times.size == 0
+    assert found.time.size == 0
     assert np.isnan([found.period, found.period_spread]).all()
 
 

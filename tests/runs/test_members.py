@@ -292,7 +292,7 @@ def test_counts_the_fewest_of_the_trials_that_hold(five_terms: tuple[GapSystem, 
 def test_peaks_that_no_run_has_are_kept_by_none(five_terms: tuple[GapSystem, float]) -> None:
     system, cutoff = five_terms
     peaks = peaks_of(system, cutoff, 0.0)
-    peaks = replace(peaks, heights=1.05 * peaks.heights)
+    peaks = replace(peaks, height=1.05 * peaks.height)
     found = steps_for_peaks(Motion(system, 4.0, STEP), peaks, cutoff)
     assert found is not None
     assert found.fewest is None

@@ -18,7 +18,7 @@ from runs.case.schema import Case
 from runs.check import print_check
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
-from runs.pipeline.static_results import positions, pressed
+from runs.pipeline.static_results import positions, station_loads
 from runs.pipeline.summary import Summary
 from runs.report.result_tables import pad_table
 from runs.report.summary_table import summary_table
@@ -152,7 +152,7 @@ def test_at_rest_the_pad_that_bears_most_is_told(tmp_path: Path, shim: float) ->
     boom = build_boom(case)
     system = build(case, boom, case.models[0]).system.gathered()
     position = positions(system)[0.0]
-    tail, head = pressed(boom, system, position)
+    tail, head = station_loads(boom, system, position)
     of_rows = [
         abs(law.force(y)) for law, y in zip(system.laws, system.rows @ position, strict=True)
     ]

@@ -10,7 +10,7 @@ import pytest
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.pipeline.proportions import slips
+from runs.pipeline.proportions import proportion_cautions
 from tests.runs.case_texts import STEEL, box, joint, read_case
 
 CASE = f"""
@@ -39,7 +39,7 @@ def slips_of(folder: Path, old: str, new: str) -> list[str]:
     """Of the case with something else in place of what it says."""
     assert CASE.count(old) == 1 or old == ""
     case = read_case(folder, CASE.replace(old, new) if old else CASE)
-    return slips(case, build_boom(case))
+    return proportion_cautions(case, build_boom(case))
 
 
 def test_an_arm_has_none(tmp_path: Path) -> None:
@@ -49,7 +49,7 @@ def test_an_arm_has_none(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
 def test_cases_that_come_along_have_none(path: Path) -> None:
     case = case_file.load(str(path))
-    assert slips(case, build_boom(case)) == []
+    assert proportion_cautions(case, build_boom(case)) == []
 
 
 @pytest.mark.parametrize(
@@ -108,7 +108,7 @@ def test_weights_of_the_wrong_sign_are_told(tmp_path: Path) -> None:
     text = CASE.replace("load = -", "load = ").replace("[payload]\nmass = 500.0\n", "")
     path.write_text(text, encoding="utf-8")
     case = case_file.load(str(path))
-    assert slips(case, build_boom(case)) == [
+    assert proportion_cautions(case, build_boom(case)) == [
         "caution: the loads pull upwards, by 8650 N in all; those that pull down, as weights do, "
         "are negative"
     ]

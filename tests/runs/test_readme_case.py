@@ -7,7 +7,7 @@ from pathlib import Path
 
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.pipeline.proportions import slips
+from runs.pipeline.proportions import proportion_cautions
 
 README = Path(__file__).parents[2] / "README.md"
 
@@ -18,5 +18,5 @@ def test_the_boom_of_the_readme_has_no_slip(tmp_path: Path) -> None:
     path.write_text(section.split("```toml\n")[1].split("```")[0], encoding="utf-8")
     case = case_file.load(str(path))
     boom = build_boom(case)
-    assert slips(case, boom) == []
+    assert proportion_cautions(case, boom) == []
     assert boom.tip == 11.3

@@ -183,11 +183,13 @@ def test_a_boom_rests_where_a_hand_puts_it(name: str) -> None:
     boom = build_boom(case)
     rest, stiffness = rest_of(case, boom)
     pushed, _ = by_hand(boom, GRAVITY, 0.0)
-    for hold in rest.holds:
-        given = dict(pushed[hold.segment].forces)
-        if hold.segment > 0:
-            assert hold.force == pytest.approx(given[hold.x], rel=1e-3)
+    for one in rest.reactions:
+        given = dict(pushed[one.segment].forces)
+        if one.segment > 0:
+            assert one.force == pytest.approx(given[one.x], rel=1e-3)
     stations = {x for joint in boom.joints for x in joint.stations}
-    ground = sum(hold.force for hold in rest.holds if hold.segment == 0 and hold.x not in stations)
+    ground = sum(
+        hold.force for hold in rest.reactions if hold.segment == 0 and hold.x not in stations
+    )
     assert ground == pytest.approx(GRAVITY * sum(s.mass for s in boom.segments), rel=1e-3)
     assert rest.tip == pytest.approx(tip_by_hand(boom, stiffness), rel=1e-3)

@@ -14,7 +14,7 @@ from protractile.cases import change, run_case
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.design_results import DesignResults, PlayDifference, PlayEffect
-from runs.pipeline.pads import PressedPad
+from runs.pipeline.pads import PadLoad
 from runs.pipeline.results import Results
 from runs.pipeline.statics import Reaction
 from runs.pipeline.strength import COUNTS, Life, WallStress
@@ -171,7 +171,7 @@ def test_the_verdict_names_the_governing_utilisation_first(results: Results) -> 
 def test_the_verdict_names_pads_of_unknown_strength(results: Results) -> None:
     """Reference: by hand, a pad without an allowable pressure, and one that nothing presses."""
     of = {"model": PLAYED, "outer": "outer", "inner": "inner", "x": 10.0, "side": "below"}
-    pad = PressedPad(**of, force=2.7e3, pressure=27e6, utilisation=None)
+    pad = PadLoad(**of, force=2.7e3, pressure=27e6, utilisation=None)
     steel = change(results.case, **{"material.yield_strength": 355e6})
     told = with_stress(replace(results, case=steel), 300e6)
     unpressed, known = replace(pad, force=0.0, pressure=0.0), replace(pad, utilisation=1.35)

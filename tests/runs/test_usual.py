@@ -15,7 +15,7 @@ from runs.case.build import build_boom
 from runs.case.declared import Declared
 from runs.case.messages import BadInput
 from runs.check import print_check
-from runs.pipeline.proportions import slips
+from runs.pipeline.proportions import proportion_cautions
 from tests.runs.case_texts import STEEL, box, joint
 
 LIFT = f"""
@@ -177,7 +177,7 @@ def test_what_is_hardly_meant_is_told(
     """Each on its slip alone."""
     monkeypatch.chdir(tmp_path)
     case = case_file.load(written(tmp_path, old, new))
-    assert slips(case, build_boom(case)) == [f"caution: {line}"]
+    assert proportion_cautions(case, build_boom(case)) == [f"caution: {line}"]
 
 
 def test_a_run_shorter_than_a_swing_is_told(
