@@ -11,7 +11,7 @@ import multiprocessing
 import os
 import sys
 from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from importlib import import_module
 from pathlib import Path
@@ -175,18 +175,15 @@ def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
         folder: gets ``convergence.json`` and ``.md``, ``verification.md``, ``report.html``.
         console: for the tables.
     """
-    found: dict[str, Study] = {}
+    studies = []
     # FEniCSx does not outlive a fork, and a study's memory ends with its process.
     fresh = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(os.cpu_count(), fresh, show_notices, max_tasks_per_child=1) as pool:
-        running = {pool.submit(run, name): name for name in names}
-        for done in as_completed(running):
-            study, seconds = done.result()
-            found[running[done]] = study
+        for study, seconds in pool.map(run, names):
+            studies.append(study)
             for table in study.tables:
                 table.show(console)
             console.print(f"{study.title}: {seconds:.0f} s\n")
-    studies = [found[name] for name in names]
     proving = [study for study in studies if study.proofs]
     for study in proving:
         proof_table(study).show(console)

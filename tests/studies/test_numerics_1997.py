@@ -113,11 +113,6 @@ def test_what_gains_more_than_was_put_in_breaks(gained: float, breaks: float) ->
     assert diverges_near_7_s(sample(swing(), gained=gained, since=6.5)) == np.isfinite(breaks)
 
 
-def test_every_numerics_is_tried_once() -> None:
-    """Reference: three schemes, gaps iterated or lagged, three steps."""
-    assert len({*all_numerics()}) == 18
-
-
 @pytest.mark.parametrize("method", METHODS)
 def test_a_general_solver_swings_an_oscillator(method: str) -> None:
     """Reference: analytic, 1 − cos t."""
