@@ -51,7 +51,7 @@ gallery: $(REPORTS) $(SWINGS) ## the pictures of docs/gallery.md, from the verif
 bench: $(READY) ## what integrators and reductions cost, into runs/out/bench
 	$(BIN)/python -m studies.cost.bench
 
-convergence: $(READY) ## what proves the models: benchmarks, refinements, other codes; into runs/out/convergence
+convergence: $(READY) ## verification: benchmarks, refinements, other codes; into runs/out/convergence
 	$(BIN)/python -m studies.convergence
 
 validation: $(READY) ## measurements and other programs beside this one; part of `make convergence`
@@ -67,10 +67,10 @@ other-codes: build/other-codes/ready ## OpenSees and sectionproperties, beside w
 test: $(READY) ## all tests
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
-fuzz: $(READY) ## a thousand slips in cases, loads' files and command lines; fails if one is not told in a line
+fuzz: $(READY) ## a thousand errors in cases, load files and command lines; each must give one line
 	$(BIN)/python -m tests.fuzz
 
-torture: $(READY) ## full disks, kills, flipped bits, shared folders: what they cost, as a table
+torture: $(READY) ## full disks, kills, flipped bits, shared folders: losses, as a table
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m tests.torture
 
 quick: $(READY) ## the quick tests alone

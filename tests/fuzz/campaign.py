@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Many seeded slips, some at a time, each in a folder and a process of its own."""
+"""Many seeded errors in input, several at a time, each in a folder and a process of its own."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SHORT = "duration = 0.02"
 # Beams alone: a shell takes FEniCSx, whose import alone takes longer than a beam's run.
 WITHOUT_SHELLS = "kantorovich-5,beam-fe"
 
-# What a mutation is of, and its part of them all.
+# Kinds of input, and their shares of all errors.
 KINDS = {"case, checked": 0.6, "case, run": 0.1, "history": 0.12, "command line": 0.18}
 
 
@@ -27,7 +27,7 @@ def kind_of(seed: int) -> str:
 
 
 def prepare(seed: int, folder: Path) -> list[str]:
-    """Write the files of a seed's slip to a folder; the arguments of its command."""
+    """Write the files of a seed to a folder; return the arguments of its command."""
     random, kind = Random(seed), kind_of(seed)
     path = random.choice(sorted(CASES.glob("*.toml")))
     text = path.read_text(encoding="utf-8")
@@ -38,7 +38,7 @@ def prepare(seed: int, folder: Path) -> list[str]:
     if kind == "case, run":
         arguments = ["run", "case.toml", "--models", WITHOUT_SHELLS, "--out", "out"]
     if kind == "case, checked" or random.random() < 0.2:
-        text = cases.slip(text, random)
+        text = cases.mutate(text, random)
     elif kind == "case, run":
         text = cases.scaled(text, random)
     if kind == "history":
@@ -48,13 +48,13 @@ def prepare(seed: int, folder: Path) -> list[str]:
     if kind == "command line":
         text = (CASES / "coarse.toml").read_text(encoding="utf-8")
         text = text.replace("duration = 0.6", SHORT)
-        arguments = command_lines.slip(random)
+        arguments = command_lines.mutate(random)
     (folder / "case.toml").write_text(text, encoding="utf-8", errors="surrogateescape")
     return arguments
 
 
 def run(seeds: Iterable[int]) -> Iterator[tuple[int, contract.Ending]]:
-    """Run the slips of seeds on all cores; each seed and its ending, as they come."""
+    """Run seeds on all cores; yield each seed and its ending, as they end."""
     running: dict[int, tuple[int, Path]] = {}
     with TemporaryDirectory(prefix="protractile-fuzz-") as top:
         for seed in seeds:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Case files with slips: in a value, in a key, in a table, in the bytes."""
+"""Case files with errors in a value, in a key, in a table, in the bytes."""
 
 from __future__ import annotations
 
@@ -53,10 +53,10 @@ _TABLES = (
 )  # fmt: skip
 
 
-def slip(text: str, random: Random) -> str:
+def mutate(text: str, random: Random) -> str:
     """Return a case file with one error or a few."""
     for _ in range(random.choice((1, 1, 1, 2, 3))):
-        text = random.choices(_SLIPS, _WEIGHTS)[0](text, random)
+        text = random.choices(_MUTATIONS, _WEIGHTS)[0](text, random)
     return text
 
 
@@ -137,7 +137,7 @@ def _cut(text: str, random: Random) -> str:
     return text[: random.randrange(len(text) + 1)]
 
 
-_SLIPS: tuple[Callable[[str, Random], str], ...] = (
+_MUTATIONS: tuple[Callable[[str, Random], str], ...] = (
     _other_value, _other_number, _without_a_line, _one_more_key, _one_more_table, _tables_again,
     _tables_exchanged, _other_letters, _cut,
 )  # fmt: skip

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Command lines with slips."""
+"""Command lines with errors."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _RANGES = (
 )  # fmt: skip
 
 
-def slip(random: Random) -> list[str]:
+def mutate(random: Random) -> list[str]:
     """Return the arguments of a command that ends soon, or is invalid."""
     kind = random.random()
     if kind < 0.25:

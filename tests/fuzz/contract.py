@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What every command keeps to, whatever it is given, and a process that shows whether it does.
+"""Contract of every command for any input, and a process that checks it.
 
 Exit status 0, 1, 2 or 3; nothing on stderr but one line, shorter than 300 characters, printable,
-where it is not 0, besides how far it is; 4 GB; 60 s of CPU beyond what was announced.
+where it is not 0, besides progress; 4 GB; 60 s of CPU beyond what was announced.
 """
 
 from __future__ import annotations

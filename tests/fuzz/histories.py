@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Files of a load's history that hold something else."""
+"""Damaged and other files in place of a load history."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Values that nobody means, as a TOML file spells them."""
+"""Invalid and extreme values, as a TOML file spells them."""
 
 from __future__ import annotations
 
