@@ -73,7 +73,7 @@ def peak_errors(moved: Sequence[PointMotion], shell: Sequence[PointMotion]) -> A
 
 @dataclass(frozen=True, slots=True)
 class ModelComparison:
-    """All models of one type of contact."""
+    """Results of all models with one type of contact."""
 
     where: str  #: segments touch
     points: Sequence[Point]  #: of all motions

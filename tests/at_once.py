@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""In place of processes beside the tests' own: work is done when given, where patches hold."""
+"""A stand-in for worker processes: work is done at once in this process, where patches hold."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from runs.report.opengl import first_picture
 
 
 class AtOnce(Executor):
-    """Has done what it is given before it gives its future."""
+    """An executor that completes work before it returns the future."""
 
     def submit(self, work: Callable[..., Any], /, *given: Any, **named: Any) -> Future[Any]:
         done: Future[Any] = Future()
@@ -29,5 +29,5 @@ class AtOnce(Executor):
 
 @contextmanager
 def workers(*_: object) -> Iterator[Executor]:
-    """As :func:`runs.process.workers.workers`."""
+    """Stand in for :func:`runs.process.workers.workers`."""
     yield AtOnce()

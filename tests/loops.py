@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The compiled loops over time, for which most tests of motions would wait each by itself."""
+"""Compilation of the time loops that most tests of motions need."""
 
 from __future__ import annotations
 
@@ -10,6 +10,6 @@ from tests import rubbing
 
 
 def compile_loops(rubbed: Path) -> None:
-    """Move a system that rubs, told to a file, and one by the numerics of 1997."""
+    """Compile the time step, recorded in a file, and the schemes of 1997."""
     rubbing.compile_loop(rubbed)
     measured_root(NEWMARK, 0.1)

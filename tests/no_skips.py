@@ -13,13 +13,13 @@ Report = TypeVar("Report", pytest.CollectReport, pytest.TestReport)
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
-    """Of a module."""
+    """Fail a skipped module."""
     return _fail_if_skipped((yield))
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Of a test."""
+    """Fail a skipped test."""
     return _fail_if_skipped((yield))
 
 

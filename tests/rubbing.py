@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Motions told to the last bit, and whether a worker of the tests has compiled their loop."""
+"""Motions with friction to the last bit, and a record of the worker that compiled their loop."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from tests.dynamics.test_telescoping import lossy
 
 
 def compiled_in(factory: pytest.TempPathFactory) -> Path:
-    """Where a worker that has compiled the motion leaves what it tells, for all workers."""
+    """Return the file in which the worker that compiled the loop writes its motions."""
     return factory.getbasetemp().parent / "compiled-rubbing"
 
 
 def compile_loop(file: Path) -> None:
-    """Leave in a file what the motion tells, unless some of its loop had been compiled before."""
-    said = told()
+    """Write the motions to a file, unless their loop was compiled before."""
+    numbers = motion_numbers()
     if march.stats.cache_misses:
-        file.write_text(said, encoding="utf-8")
+        file.write_text(numbers, encoding="utf-8")
 
 
-def told() -> str:
-    """All numbers of motions that rub, telescope and carry axial forces along."""
+def motion_numbers() -> str:
+    """Return all numbers of motions with friction, telescoping and moving axial forces."""
     random = np.random.default_rng(3)
     rows = random.normal(size=(2, 12))
     system = GapSystem(
@@ -52,4 +52,4 @@ def told() -> str:
 
 
 if __name__ == "__main__":
-    print(told(), end="")
+    print(motion_numbers(), end="")

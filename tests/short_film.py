@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A film of few frames, whatever process draws it; how many it has is a matter of time alone."""
+"""A film of three frames in every process: the number of frames costs time alone."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from runs.report import snapshots
 
 
 def render_short_film(*given: Any) -> list[Path]:
-    """As :func:`runs.report.snapshots.render_film`."""
+    """Stand in for :func:`runs.report.snapshots.render_film`."""
     with patch.object(snapshots, "FRAMES", 3):
         return snapshots.render_film(*given)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""One figure a run, blank: what lays figures out and prints them takes longer than beams move."""
+"""One blank figure per run: layout and printing take longer than the motion of beams."""
 
 from __future__ import annotations
 
@@ -15,5 +15,5 @@ theme.Canvas.print_figure = blank
 
 
 def blank(canvas: object, filename: str, **_: object) -> None:
-    """In place of :meth:`runs.report.theme.Canvas.print_figure`."""
+    """Stand in for :meth:`runs.report.theme.Canvas.print_figure`."""
     Image.new("L", (8, 8)).save(filename, "png")

@@ -41,7 +41,7 @@ PROGRESS = re.compile(r".+: .+ (begins|is done|took \d+ s|\d+ %, \d+ s left)")
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """How a command ended.
+    """End of a command.
 
     Args:
         status: of its exit; negative for the signal that killed it.
@@ -81,7 +81,7 @@ def start(arguments: Sequence[str], folder: Path) -> int:
 
 
 def finish(folder: Path, pid: int, status: int, used: resource.struct_rusage) -> Ending:
-    """How a process that :func:`start` made and that is gone ended."""
+    """Return the end of a process of :func:`start` that has exited."""
     return Ending(
         os.waitstatus_to_exitcode(status),
         (folder / ERR).read_bytes(),
@@ -109,7 +109,7 @@ def _run(arguments: Sequence[str], folder: Path) -> int:
 
 
 def _announced(arguments: Sequence[str]) -> int:
-    """Seconds that a run was said to take."""
+    """Return the estimated duration of a run in s."""
     if arguments[:2] != ["run", "case.toml"]:
         return 0
     try:

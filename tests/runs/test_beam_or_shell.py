@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Where a beam may stand for the shell, as a sweep over play and load tells it."""
+"""Distance of beams from the shell in a sweep over play."""
 
 from __future__ import annotations
 

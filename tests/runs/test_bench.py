@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The benchmark compares like with like and leaves whole tables; no time is asserted."""
+"""The benchmark compares methods at equal error in complete tables; no time is asserted."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Scaling is measured in processes of their own and told whole; no time is asserted."""
+"""Scaling is measured in separate processes, with complete tables; no time is asserted."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a survey of numerics of 1997 makes of motions whose peaks and energies are known."""
+"""Outcomes of the numerics of 1997 for motions with given peaks and energies."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def test_a_general_solver_slides_against_friction() -> None:
 
 
 def survey(samples: Sequence[Sample], reached: float) -> Survey:
-    """All numerics with the same motions, and solvers that all come so far in s."""
+    """Return a survey: the same motions by all numerics, the same end time in s of all solvers."""
     case = case_file.load(str(WITHOUT)), case_file.load(str(WITH))
     examples = [Example(one, {}, CUTOFF, [sample(swing(), swing(), swing())]) for one in case]
     found = dict.fromkeys(all_numerics(), samples)

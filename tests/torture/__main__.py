@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The whole campaign, as a table; exit status 1 if anything was lost, or wrong and believed."""
+"""All campaigns as a table; exit status 1 if data is lost, or damaged data accepted."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def main(names: Sequence[str]) -> None:
             for name, tries, breaches, what in CAMPAIGNS[campaign].rows(Path(folder)):
                 found.append((name, str(tries), str(breaches), what))
                 print(f"{name}: {breaches} of {tries}", file=sys.stderr)
-    headings = "what was done", "tries", "breaches", "what was to be"
+    headings = "campaign", "tries", "breaches", "expected"
     Table.of_rows("torture", "Torture", headings, found).show(Console())
     sys.exit(any(breaches != "0" for _, _, breaches, _ in found))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Bits that a disk has flipped, in the cache and in the points of a sweep.
+"""Flipped bits in the cache and in the points of a sweep.
 
 Of each file as many as of any other, so that names and checksums are hit as often as numbers. What
 comes of it must be what comes without, to the last bit, and a notice must say that an entry was
@@ -49,7 +49,7 @@ def _flip(entries: Path, tries: int, compute: Callable[[], bytes]) -> tuple[int,
     random = np.random.default_rng(_SEED)
     notices = BufferingHandler(10**9)
     NOTICES.addHandler(notices)
-    wrong = untold = 0
+    wrong = silent = 0
     for _ in range(tries):
         path = random.choice(np.array(sorted(entries.glob("*.record"))))
         content = bytearray(path.read_bytes())
@@ -58,9 +58,9 @@ def _flip(entries: Path, tries: int, compute: Callable[[], bytes]) -> tuple[int,
         path.write_bytes(content)
         notices.buffer.clear()
         wrong += compute() != undisturbed
-        untold += len(notices.buffer) != 1
+        silent += len(notices.buffer) != 1
     NOTICES.removeHandler(notices)
-    return tries, wrong + untold, f"{wrong} results differ, {untold} were not told"
+    return tries, wrong + silent, f"{wrong} results differ, {silent} without a notice"
 
 
 def _shell(cache: Cache) -> bytes:

@@ -54,7 +54,7 @@ class Disk:
             raise OSError(self._number, os.strerror(self._number))
 
     def in_use(self) -> ExitStack:
-        """While this is open Python writes to this disk."""
+        """Return a context in which Python writes to this disk."""
         stack = ExitStack()
         for name in _CHANGES:
             stack.enter_context(patch.object(os, name, self._checked(getattr(os, name))))
@@ -81,7 +81,7 @@ class Disk:
 
 
 class _File:
-    """A file that asks the disk before it writes, and once it is all to be there."""
+    """A file that asks the disk before each write, and before it closes."""
 
     def __init__(self, file: Any, disk: Disk) -> None:
         self._file, self._disk = file, disk
@@ -166,7 +166,7 @@ def _torture(
 
 
 def _run(command: Sequence[str]) -> tuple[object, int]:
-    """Exit status and number of lines on stderr."""
+    """Return the exit status and the number of lines on stderr."""
 
     def refuse(*arguments: object) -> None:
         raise RenderingUnavailable("left out")
@@ -193,7 +193,7 @@ def _run(command: Sequence[str]) -> tuple[object, int]:
 
 
 def _left(place: Path) -> dict[str, bytes]:
-    """All files of a folder, by their paths in it, but for what counts the time that it took."""
+    """Return the files of a folder by their paths in it, without the content of timings."""
     return {
         str(path.relative_to(place)): path.read_bytes()
         if path.suffix in {".nc", ".csv", ".toml", ".png", ".manifest"}

@@ -52,7 +52,7 @@ COMMANDS: Sequence[tuple[str, Sequence[str]]] = (
 
 
 def rows(folder: Path, tries: int = 20) -> Iterator[Row]:
-    """All rows of this campaign, see :func:`killed` and :func:`terminated`."""
+    """Yield the rows of :func:`killed` and :func:`terminated`."""
     yield from killed(folder, tries)
     place = folder / "terminated"
     place.mkdir()
@@ -142,7 +142,7 @@ def _cold_shell(place: Path) -> subprocess.Popen[bytes]:
 
 
 def listens(process: subprocess.Popen[Any]) -> bool:
-    """Whether a process has a handler for SIGTERM."""
+    """Return whether a process has a handler for SIGTERM."""
     with suppress(OSError):
         status = Path(f"/proc/{process.pid}/status").read_text(encoding="utf-8")
         (caught,) = (line for line in status.splitlines() if line.startswith("SigCgt:"))
@@ -151,7 +151,7 @@ def listens(process: subprocess.Popen[Any]) -> bool:
 
 
 def _write_case(place: Path, duration: float) -> None:
-    """Write the coarse case for a duration."""
+    """Write the coarse case with a duration in s."""
     text = _COARSE.read_text(encoding="utf-8")
     text = text.replace("duration = 0.6", f"duration = {duration:g}")
     (place / "case.toml").write_text(text, encoding="utf-8")
@@ -176,7 +176,7 @@ def _start(
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
-    """All processes of its session, whatever group a launcher has put them in."""
+    """Kill all processes of the session of a process, in every process group."""
     while sessions := _of_session(process.pid):
         for pid in sessions:
             with suppress(ProcessLookupError):
@@ -187,7 +187,7 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 
 def _of_session(session: int) -> list[int]:
-    """Its processes that are alive."""
+    """Return the living processes of a session."""
     found = []
     for path in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):

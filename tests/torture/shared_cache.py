@@ -73,14 +73,14 @@ def _start(models: Sequence[str], out: Path, cache: Path) -> subprocess.Popen[st
 
 
 def _finish(processes: Sequence[subprocess.Popen[str]]) -> bool:
-    """Whether all end well without a word but of how far they are."""
+    """Return whether all exit with status 0 and print nothing but progress."""
     said = [line for process in processes for line in process.communicate()[1].splitlines()]
     silent = all(PROGRESS.fullmatch(line) for line in said)
     return silent and not any(process.returncode for process in processes)
 
 
 def left(folder: Path) -> dict[str, bytes]:
-    """Files of a folder but a sweep's points; of those that tell how long it took, the names."""
+    """Return the files of a folder without a sweep's points and the content of timings."""
     return {
         str(path.relative_to(folder)): path.read_bytes()
         if path.suffix in {".nc", ".csv", ".msh", ".vtu", ".pvd", ".toml"}
