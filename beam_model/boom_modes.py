@@ -17,7 +17,7 @@ from beam_model.component import (
     natural_modes,
 )
 from beam_model.telescoping import moving_axial_forces
-from dynamics.second_order import buckling_factor, softened
+from dynamics.second_order import buckling_factor, soften_modes
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.cylinder import ground_lines
@@ -59,7 +59,7 @@ class BoomModes:
             geometric = group.softening
             if geometric.any():
                 taken = modes.shapes.T @ geometric @ modes.shapes
-                softer, combination = softened(modes.omega2, taken)
+                softer, combination = soften_modes(modes.omega2, taken)
                 modes = Modes(softer, modes.shapes @ combination)
             columns = slice(first, first + modes.omega2.size)
             first = columns.stop

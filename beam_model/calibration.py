@@ -26,7 +26,7 @@ from beam_model.component import Component, SegmentModel, natural_modes
 from beam_model.finite_element import finite_element_segment
 from beam_model.segment_model import AT_PADS, gap_system
 from dynamics.gap_system import GapSystem
-from dynamics.reduction import resisting_rows, with_coordinates
+from dynamics.reduction import with_coordinates
 from geometry.arrays import Array
 from geometry.boom import Boom, Segment
 from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
@@ -63,7 +63,7 @@ class Calibration:
 
     Args:
         segments: their stiffness.
-        residual: (num_resisting, num_resisting) in m/N what contact rows, friction rows and
+        residual: (num_rows, num_rows) in m/N what contact rows, friction rows and
             dashpots deflect beyond the beam.
     """
 
@@ -101,19 +101,19 @@ def calibrate(
 
 
 def elastic_compliance(system: GapSystem) -> Array:
-    """Return B Ω⁻² Bᵀ (num_resisting, num_resisting) in m/N of contacts, friction, dashpots."""
+    """Return B Ω⁻² Bᵀ (num_rows, num_rows) in m/N of contacts, friction, dashpots."""
     elastic = system.omega2 > 0.0
-    rows = resisting_rows(system)[:, elastic]
+    rows = system.all_rows[:, elastic]
     return np.asarray(rows / system.omega2[elastic] @ rows.T)
 
 
 def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
-    """Return D (num_resisting, num_resisting) in m/N, which may be indefinite.
+    """Return D (num_rows, num_rows) in m/N, which may be indefinite.
 
     Raises:
         ValueError: the numbers of rows differ.
     """
-    if resisting_rows(coarse).shape[0] != resisting_rows(fine).shape[0]:
+    if len(coarse.all_rows) != len(fine.all_rows):
         raise ValueError("both models must have the same contact rows, friction rows and dashpots")
     return elastic_compliance(fine) - elastic_compliance(coarse)
 
@@ -121,7 +121,7 @@ def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
 def with_springs(system: GapSystem, residual: Array) -> GapSystem:
     """Return the system with springs: the positive part of a residual compliance.
 
-    The residual is (num_resisting, num_resisting) in m/N.
+    The residual is (num_rows, num_rows) in m/N.
     """
     sizes = np.sqrt(np.abs(np.diag(residual)))
     sizes[sizes == 0.0] = 1.0

@@ -112,7 +112,7 @@ def static_state(
     """
     elements = elements or Elements(boom)
     modes = BoomModes(boom, elements.segments)
-    system = undriven_system(boom, modes).gathered()
+    system = undriven_system(boom, modes).gather_loads()
     position = rest_at(system)
     reactions = [
         reaction
@@ -124,7 +124,7 @@ def static_state(
 
 def telescoping_system(boom: Boom) -> GapSystem:
     """Return the system of the beams of :func:`static_state`, with its drives."""
-    return gap_system(boom, Elements(boom).segments).gathered()
+    return gap_system(boom, Elements(boom).segments).gather_loads()
 
 
 def net_reactions(boom: Boom, reactions: Sequence[Reaction]) -> list[Reaction]:

@@ -14,7 +14,8 @@ import numpy as np
 
 from beam_model.component import BeamMember, SegmentModel
 from dynamics.drive.row_table import MovingAxialForce, RowTable
-from dynamics.drive.travel import HistorySum, Travel
+from dynamics.drive.travel import Travel
+from dynamics.excitation import HistorySum
 from dynamics.gap_builder import GapBuilder
 from geometry.arrays import Array
 from geometry.axial import borne, entry

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The force between two segments that touch across a play: laws, as sums of one-sided powers."""
+"""Forces between two segments that touch: contact laws as sums of one-sided powers, friction."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from dynamics.contact_term import (
     slope_of,
 )
 
-# In N: smaller than any force that matters; and the logarithm of an upper bound of penetrations.
-_LEAST, _DEEPEST = 1.0e-300, 300.0
+# In N: smaller than any force that matters; and logarithms of all penetrations that can be.
+_LEAST, _LOG_DEPTHS = 1.0e-300, np.linspace(-300.0, 300.0, 6001)
 
 
 class ContactLaw(ABC):
@@ -68,13 +68,6 @@ class ContactLaw(ABC):
         """Return the law with its clearances times a factor."""
         return self
 
-    @property
-    def play(self) -> float:
-        """Distance from one side to the other in m; twice the clearance of a one-sided law."""
-        onsets = self.onset(1.0), self.onset(-1.0)
-        whole = sum(onsets) if np.isfinite(onsets).all() else 2.0 * min(onsets)
-        return max(whole, 0.0)
-
     def onset(self, side: float) -> float:
         """Return the gap in m at which a side begins to touch; infinite where it never does."""
         return min((term.onset for term in self.terms if term.side == side), default=np.inf)
@@ -101,23 +94,15 @@ class ContactLaw(ABC):
 
     def slope_at(self, force: float) -> float:
         """Return dF/dy in N/m at a contact force in N, on the law's stiffer side."""
-        from scipy.optimize import brentq
-
         # A power law is linear in logarithms.
-        wanted = np.log(max(force, _LEAST))
-
-        def slope(side: float) -> float:
-            def excess(log_depth: float) -> float:
-                found = float(abs(self.force(np.array(side * np.exp(log_depth)))))
-                return float(np.log(max(found, _LEAST)) - wanted)
-
-            ends = excess(-_DEEPEST), excess(_DEEPEST)
-            depth = brentq(excess, -_DEEPEST, _DEEPEST) if ends[0] < 0.0 < ends[1] else 0.0
-            return float(self.slope(np.array(side * np.exp(depth))))
-
+        depths, slopes = np.exp(_LOG_DEPTHS), []
         # Overflow occurs only far beyond the force, where values do not matter.
         with np.errstate(over="ignore"):
-            return max(slope(side) for side in {term.side for term in self.terms})
+            for side in {term.side for term in self.terms}:
+                forces = np.log(np.maximum(np.abs(self.force(side * depths)), _LEAST))
+                depth = np.exp(np.interp(np.log(max(force, _LEAST)), forces, _LOG_DEPTHS))
+                slopes.append(float(self.slope(side * depth)))
+        return max(slopes)
 
     def _sum(self, of_term: OfTerm, y: Array) -> Array:
         gaps = np.asarray(y, dtype=np.float64)
@@ -245,6 +230,45 @@ class PowerContact(ContactLaw):
     def __str__(self) -> str:
         below = "" if self.below == self.stiffness else f", {self.below:g} below"
         return f"k {self.stiffness:g}{below}, n {self.exponent:g}"
+
+
+@dataclass(frozen=True, slots=True)
+class DryFriction:
+    """Coulomb's law on one sliding row: |R| ≤ μ N, and R = −μ N sign(ṡ) while it slides.
+
+    (28) of Rusiński and Wyciślok (1997) with a prescribed normal force; (11), where contact forces
+    of the other plane press.
+
+    >>> rubbed = replace(
+    ...     ball, load=np.zeros(1), friction_rows=np.ones((1, 1)),
+    ...     frictions=[DryFriction(coefficient=0.2, station=0, normal_force=10.0)],
+    ... )
+    >>> slid = simulate(rubbed, 1.0, position=[1.0], velocity=[-1.0])
+    >>> print(f"{float(slid.data['height'][-1]):.3f} m")
+    0.750 m
+
+    Args:
+        coefficient: μ, not negative.
+        station: position in the system's stations.
+        normal_force: the prescribed part of N in N, not negative.
+        pressed_by: contact rows whose |F| add to N.
+
+    Raises:
+        ValueError: an argument is negative or not finite.
+    """
+
+    coefficient: float
+    station: int
+    normal_force: float = 0.0
+    pressed_by: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.coefficient < np.inf:
+            raise ValueError(f"coefficient must be finite, not negative, got {self.coefficient}")
+        if not 0.0 <= self.normal_force < np.inf:
+            raise ValueError(
+                f"normal_force must be finite, not negative, got {self.normal_force} N"
+            )
 
 
 def contact_terms(laws: Sequence[ContactLaw]) -> Terms:

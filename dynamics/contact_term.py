@@ -3,7 +3,6 @@
 
 The formulas are here for both Python and the compiled loops. The potential is beside the force,
 because the energy balance of every trajectory is the first check of a contact simulation.
-contact simulation.
 """
 
 from __future__ import annotations

@@ -100,10 +100,10 @@ def with_ratio(system: GapSystem, ratio: float, rest: Array | None = None) -> Ga
         return system
     own = np.where(rigid, 0.5 * omega[0], system.omega)
     bent = np.where(rigid[:, None], 0.0, shapes)
-    asked = np.diag(omega) - (shapes - bent).T @ (own[:, None] * (shapes - bent))
+    required = np.diag(omega) - (shapes - bent).T @ (own[:, None] * (shapes - bent))
     found = bent.T @ (own[:, None] * bent)
-    share = 1.0 / max(1.0, eigh(found, asked, eigvals_only=True)[-1])
-    missing, directions = eigh(asked - share * found)
+    share = 1.0 / max(1.0, eigh(found, required, eigvals_only=True)[-1])
+    missing, directions = eigh(required - share * found)
     rates = 2.0 * ratio * np.where(rigid, own, share * own)
     needed = missing > _ROUND_OFF * omega[-1]
     strengths = np.sqrt(2.0 * ratio * missing[needed])

@@ -13,7 +13,7 @@ from scipy.linalg import LinAlgError, cholesky, solve_triangular
 
 from dynamics.arrays import Array
 from dynamics.contact import contact_terms
-from dynamics.contact_term import OfTerm, Terms, energy_of, force_of, slope_of
+from dynamics.contact_term import OfTerm, energy_of, force_of, slope_of
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 
@@ -70,16 +70,23 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     if system.softening.size:
         stiffness -= unscaled.T @ system.softening @ unscaled
 
+    def sum_terms(of_term: OfTerm, x: Array) -> Array:
+        """Return the sums (num_rows,); numba takes longer to load a loop over many."""
+        total, y = np.zeros(len(rows)), unit * rows @ x
+        for term in terms:
+            total[term["row"]] += of_term(term, y[term["row"]])
+        return total
+
     def energy(x: Array) -> float:
-        contact = _of_rows(energy_of, unit * rows @ x, terms).sum() / unit**2
+        contact = sum_terms(energy_of, x).sum() / unit**2
         return float(0.5 * x @ stiffness @ x - scaled_load @ x + contact)
 
     def unbalanced(x: Array) -> Array:
-        forces = _of_rows(force_of, unit * rows @ x, terms)
+        forces = sum_terms(force_of, x)
         return np.asarray(stiffness @ x - scaled_load + rows.T @ forces / unit)
 
     def tangent(x: Array) -> Array:
-        slopes = _of_rows(slope_of, unit * rows @ x, terms)
+        slopes = sum_terms(slope_of, x)
         return np.asarray(stiffness + (rows.T * slopes) @ rows)
 
     from scipy.optimize import minimize
@@ -105,15 +112,4 @@ def rest_at(system: GapSystem, time: float = 0.0) -> Array:
     Raises:
         NumericsError: nothing holds it against them.
     """
-    return equilibrium(system.standing(time), system.load_at(time))
-
-
-def _of_rows(of_term: OfTerm, y: Array, terms: Terms) -> Array:
-    """Return the sum (num_rows,) of a function over the terms of each row at its gap.
-
-    Finding a rest takes less time than numba does to load the loop over many.
-    """
-    total = np.zeros(y.size)
-    for term in terms:
-        total[term["row"]] += of_term(term, y[term["row"]])
-    return total
+    return equilibrium(system.at_time(time), system.load_at(time))

@@ -14,10 +14,9 @@ from typing import Generic, Literal, NamedTuple, TypeVar
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.contact import ContactLaw
-from dynamics.drive.travel import KINDS, Kind
-from dynamics.excitation import Excitation, History, Released, Thrown
-from dynamics.friction import DryFriction
+from dynamics.contact import ContactLaw, DryFriction
+from dynamics.drive.travel import Kind
+from dynamics.excitation import Excitation, History, InitialImpulse, ReleasedLoad
 from dynamics.gap_system import GapSystem, Observer
 
 R = TypeVar("R")
@@ -30,6 +29,10 @@ class Contact(NamedTuple, Generic[R]):
     law: ContactLaw
     station: int
 
+    def row(self, read: Callable[[R], Array]) -> Array:
+        """Return the row (num_modes,) in 1/√kg."""
+        return read(self.reading)
+
 
 class Friction(NamedTuple, Generic[R]):
     """Friction row: the slide that it reads, and its friction."""
@@ -37,12 +40,27 @@ class Friction(NamedTuple, Generic[R]):
     reading: R
     law: DryFriction
 
+    @property
+    def station(self) -> int:
+        """Position of its station."""
+        return self.law.station
+
+    def row(self, read: Callable[[R], Array]) -> Array:
+        """Return the row (num_modes,) in 1/√kg."""
+        return read(self.reading)
+
 
 class Dashpot(NamedTuple, Generic[R]):
     """Dashpot across a station: its coefficient in N·s/m, and weights and readings."""
 
     coefficient: float
+    station: int
     parts: list[tuple[float, R]]
+
+    def row(self, read: Callable[[R], Array]) -> Array:
+        """Return the row (num_modes,) in 1/√s."""
+        total = sum(part * read(reading) for part, reading in self.parts)
+        return np.asarray(np.sqrt(self.coefficient) * total)
 
 
 class Observed(NamedTuple, Generic[R]):
@@ -121,7 +139,7 @@ class GapBuilder(Generic[R]):
     ) -> None:
         """Add a dashpot in N·s/m against the mean speed of points, see :meth:`add_contact`."""
         if coefficient > 0.0:
-            dashpot = self.dashpots.setdefault(station, Dashpot(coefficient, []))
+            dashpot = self.dashpots.setdefault(station, Dashpot(coefficient, station, []))
             # The weights of each of two sides sum to one.
             parts = ((0.5 * part if side else part, reading) for side, part, reading in points)
             dashpot.parts.extend(parts)
@@ -131,37 +149,25 @@ class GapBuilder(Generic[R]):
         """All readings of dashpots."""
         return [reading for dashpot in self.dashpots.values() for _, reading in dashpot.parts]
 
+    @property
+    def rows(self) -> dict[Kind, Sequence[Contact[R] | Friction[R] | Dashpot[R]]]:
+        """All rows by their kinds, in the order of a gap system."""
+        dashpots = list(self.dashpots.values())
+        return {"rows": self.contacts, "friction_rows": self.frictions, "dashpots": dashpots}
+
     def moving(self, stations: Sequence[int]) -> list[tuple[Kind, int]]:
         """Return kinds and positions of the rows at some stations, in the order of a gap system."""
-        where = (
-            [contact.station for contact in self.contacts],
-            [friction.law.station for friction in self.frictions],
-            list(self.dashpots),
-        )
         return [
             (kind, position)
-            for kind, of_rows in zip(KINDS, where, strict=True)
-            for position, station in enumerate(of_rows)
-            if station in stations
+            for kind, of_kind in self.rows.items()
+            for position, one in enumerate(of_kind)
+            if one.station in stations
         ]
 
     def some_rows(self, moving: Sequence[tuple[Kind, int]], read: Callable[[R], Array]) -> Array:
         """Return the rows (num_moving, num_modes) of :meth:`moving`, each from its reading."""
-        dragged = self.dashpot_rows(read) if any(kind == "dashpots" for kind, _ in moving) else []
-        of_kind: dict[Kind, Callable[[int], Array]] = {
-            "rows": lambda position: read(self.contacts[position].reading),
-            "friction_rows": lambda position: read(self.frictions[position].reading),
-            "dashpots": lambda position: dragged[position],
-        }
-        return np.array([of_kind[kind](position) for kind, position in moving])
-
-    def dashpot_rows(self, read: Callable[[R], Array]) -> list[Array]:
-        """Return the dashpots' rows (num_modes,) across stations, in 1/√s, from their readings."""
-        return [
-            np.sqrt(dashpot.coefficient)
-            * sum(part * read(reading) for part, reading in dashpot.parts)
-            for dashpot in self.dashpots.values()
-        ]
+        rows = self.rows
+        return np.array([rows[kind][position].row(read) for kind, position in moving])
 
     def system(
         self,
@@ -170,7 +176,7 @@ class GapBuilder(Generic[R]):
         load: Array,
         places: Sequence[tuple[float, str]],
         observed: Mapping[str, Observed[R]],
-        loads: Sequence[tuple[Array, History | Released | Thrown]],
+        loads: Sequence[tuple[Array, History | ReleasedLoad | InitialImpulse]],
         lines: Sequence[tuple[str, Array, float, float]] = (),
         damping: Array | None = None,
     ) -> GapSystem:
@@ -191,11 +197,10 @@ class GapBuilder(Generic[R]):
         def stacked(rows: Iterable[Array]) -> Array:
             return np.array(list(rows)).reshape(-1, omega2.size)
 
-        def total(kind: type[Released | Thrown]) -> Array:
+        def total(kind: type[ReleasedLoad | InitialImpulse]) -> Array:
             pushes = (push for push, when in loads if isinstance(when, kind))
             return sum(pushes, np.zeros(omega2.size))
 
-        grounded = [(c, row) for _, row, _, c in lines if c > 0.0]
         seen = {
             name: Observer(read(one.reading), one.unit, one.derivative)
             for name, one in observed.items()
@@ -204,24 +209,27 @@ class GapBuilder(Generic[R]):
         return GapSystem(
             omega2=omega2,
             load=load,
-            rows=stacked(read(contact.reading) for contact in self.contacts),
+            rows=stacked(contact.row(read) for contact in self.contacts),
             laws=[contact.law for contact in self.contacts],
             station_of_row=np.array([contact.station for contact in self.contacts], dtype=np.int64),
             stations=[x for x, _ in places],
             observers=seen | pressed,
             damping=np.zeros(0) if damping is None else damping,
             dashpots=stacked(
-                [*self.dashpot_rows(read), *(np.sqrt(c) * row for c, row in grounded)]
+                [
+                    *(dashpot.row(read) for dashpot in self.dashpots.values()),
+                    *(np.sqrt(c) * row for _, row, _, c in lines if c > 0.0),
+                ]
             ),
-            friction_rows=stacked(read(friction.reading) for friction in self.frictions),
+            friction_rows=stacked(friction.row(read) for friction in self.frictions),
             frictions=[friction.law for friction in self.frictions],
             excitations=[
                 Excitation(push, when)
                 for push, when in loads
-                if not isinstance(when, Released | Thrown)
+                if not isinstance(when, ReleasedLoad | InitialImpulse)
             ],
-            released=total(Released),
-            thrown=total(Thrown),
+            released_load=total(ReleasedLoad),
+            initial_impulse=total(InitialImpulse),
             station_directions=[direction for _, direction in places],
             grounded=self.grounded,
         )

@@ -20,11 +20,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from dynamics.arrays import Array, Indices
-from dynamics.contact import ContactLaw
+from dynamics.contact import ContactLaw, DryFriction
 from dynamics.drive.travel import KINDS, Travel
 from dynamics.excitation import Excitation
-from dynamics.friction import DryFriction
-from dynamics.second_order import softened
+from dynamics.second_order import soften_modes
 
 
 class Observer(NamedTuple):
@@ -79,9 +78,9 @@ class GapSystem:
         excitations: loads that change with time.
         station_directions: the direction of each station's relative displacement; "z" for all
             unless given.
-        released: (num_modes,) modal load in N/√kg that acts before t = 0 and is removed at t = 0,
-            and
-        thrown: (num_modes,) modal impulse in N·s/√kg that is given then, for whoever starts a
+        released_load: (num_modes,) modal load in N/√kg that acts before t = 0, and is removed then;
+            zero unless given.
+        initial_impulse: (num_modes,) modal impulse in N·s/√kg at t = 0, for whoever starts a
             motion; zero unless given.
         grounded: positions in ``stations`` of those where the ground is touched, and no segment.
         travels: the extensions of segments over time, and the rows that they change; none unless
@@ -108,14 +107,14 @@ class GapSystem:
     excitations: Sequence[Excitation] = ()
     station_directions: Sequence[str] = ()
     grounded: Sequence[int] = ()
-    released: Array = field(default_factory=lambda: np.zeros(0))
-    thrown: Array = field(default_factory=lambda: np.zeros(0))
+    released_load: Array = field(default_factory=lambda: np.zeros(0))
+    initial_impulse: Array = field(default_factory=lambda: np.zeros(0))
     travels: Sequence[Travel] = ()
     softening: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __post_init__(self) -> None:
         n, m = self.omega2.size, len(self.laws)
-        of_modes = {name: (n,) for name in ("damping", "released", "thrown")}
+        of_modes = {name: (n,) for name in ("damping", "released_load", "initial_impulse")}
         empty = of_modes | {name: (0, n) for name in ("dashpots", "friction_rows")}
         for name, zeros in empty.items():
             if getattr(self, name).size == 0:
@@ -167,9 +166,9 @@ class GapSystem:
         return self.omega2.size
 
     @property
-    def observes_rates(self) -> bool:
-        """True if velocities are observed, and not coordinates alone."""
-        return any(seen.derivative for seen in self.observers.values())
+    def all_rows(self) -> Array:
+        """All rows (num_rows, num_modes): contacts, friction rows, dashpots."""
+        return np.concatenate([getattr(self, kind) for kind in KINDS])
 
     @property
     def stiffness(self) -> Array:
@@ -208,7 +207,7 @@ class GapSystem:
         changing = (x.load * x.history(np.array([time]))[0] for x in self.excitations)
         return sum(changing, self.load.copy())
 
-    def gathered(self) -> GapSystem:
+    def gather_loads(self) -> GapSystem:
         """Return the same system with all constant loads in ``load``."""
         constant = [x.load * x.history(np.zeros(())) for x in self.excitations if x.constant]
         changing = [x for x in self.excitations if not x.constant]
@@ -216,18 +215,18 @@ class GapSystem:
         moving = [travel for travel in self.travels if travel.moves]
         return replace(self, load=load, excitations=changing, travels=moving)
 
-    def standing(self, time: float) -> GapSystem:
+    def at_time(self, time: float) -> GapSystem:
         """Return the system at rest with the extension of a time in s."""
-        stands = {kind: getattr(self, kind).copy() for kind in KINDS}
+        rows_at = {kind: getattr(self, kind).copy() for kind in KINDS}
         softening = self.softening if self.softening.size else np.zeros((self.num_modes,) * 2)
         for travel in self.travels:
-            way = float(travel.history(np.array(time)))
-            rows = travel.table(way)
+            extension = float(travel.history(np.array(time)))
+            rows = travel.table(extension)
             for force in travel.axial_forces:
-                softening = softening + force.softening(way)
+                softening = softening + force.softening(extension)
             for (kind, position), row in zip(travel.moving, rows, strict=True):
-                stands[kind][position] = row
-        rows, friction_rows, dashpots = stands.values()
+                rows_at[kind][position] = row
+        rows, friction_rows, dashpots = rows_at.values()
         return replace(
             self,
             rows=rows,
@@ -241,9 +240,9 @@ class GapSystem:
         """Return the same motion in the modes that the softening leaves, which may move."""
         if not self.softening.size:
             return self
-        return self.transformed(*softened(self.omega2, self.softening))
+        return self.transform(*soften_modes(self.omega2, self.softening))
 
-    def transformed(self, omega2: Array, shapes: Array) -> GapSystem:
+    def transform(self, omega2: Array, shapes: Array) -> GapSystem:
         """Return the system in other coordinates b of a = Φ b, without travels and softening.
 
         Args:
@@ -262,8 +261,8 @@ class GapSystem:
             dashpots=self.dashpots @ shapes,
             friction_rows=self.friction_rows @ shapes,
             excitations=[replace(x, load=x.load @ shapes) for x in self.excitations],
-            released=self.released @ shapes,
-            thrown=self.thrown @ shapes,
+            released_load=self.released_load @ shapes,
+            initial_impulse=self.initial_impulse @ shapes,
             travels=(),
             softening=np.zeros((0, 0)),
         )

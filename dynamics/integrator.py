@@ -79,7 +79,7 @@ class StepSchedule:
         return cls(tuple(np.atleast_1d(attributes["substeps"]).tolist()), attributes["window"])
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
-        run = Integration.begin(_gathered(motion))
+        run = Integration.begin(motion)
         for number, (first, last) in enumerate(_windows(motion, self.window)):
             substeps = self.substeps[min(number, len(self.substeps) - 1)]
             run.advance(first, last, substeps, run.state, run.part(first, last))
@@ -155,12 +155,11 @@ class AdaptiveStep:
             raise ValueError(f"tolerance must be between 0 and 1, got {self.tolerance}")
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
-        motion = _gathered(motion)
         run, error = Integration.begin(motion), _WindowError.of(motion.system)
         outputs, output_step = motion.outputs, motion.output_step
         window = _whole_power(error.period / output_step, 1, _LONGEST)
-        histories = [x.history for x in motion.system.excitations]
-        histories += [travel.history for travel in motion.system.travels]
+        histories = [x.history for x in run.motion.system.excitations]
+        histories += [travel.history for travel in run.motion.system.travels]
         fastest = max((history.fastest for history in histories), default=0.0)
         fewest = _whole_power(2.0 * output_step * fastest / _HISTORY_PHASE, _FEWEST, MOST_STEPS)
         affordable = MOST_STEPS * np.sqrt(TOLERANCE / self.tolerance) / outputs
@@ -243,10 +242,6 @@ class _WindowError:
     def _read(self, states: Array) -> Array:
         # No product of BLAS, whose last bits depend on addresses in memory.
         return np.asarray(np.einsum("ti,ri->tr", states, self.rows))
-
-
-def _gathered(motion: Motion) -> Motion:
-    return replace(motion, system=motion.system.gathered())
 
 
 def _windows(motion: Motion, length: int) -> Iterator[tuple[int, int]]:

@@ -69,7 +69,7 @@ class Motion:
         return not (self.position.any() or self.velocity.any())
 
 
-def begin(
+def build_motion(
     system: GapSystem,
     duration: float,
     output_step: float,
@@ -98,14 +98,14 @@ def begin(
 def initial_state(system: GapSystem, at_rest: bool) -> tuple[GapSystem, Array, Array]:
     """Return the system from t = 0 on, and its initial a and ȧ, (num_modes,) each.
 
-    Arguments and errors as of :func:`begin`.
+    Arguments and errors as of :func:`build_motion`.
     """
-    system = system.gathered()
+    system = system.gather_loads()
     held = _held(system, at_rest)
     # Straight, though shims may press.
     straight = not at_rest and not held.any()
     position = np.zeros(system.num_modes) if straight else equilibrium(system, held)
-    return system, position, system.thrown
+    return system, position, system.initial_impulse
 
 
 def rest_of(system: GapSystem, at_rest: bool, position: Array) -> Array | None:
@@ -115,4 +115,4 @@ def rest_of(system: GapSystem, at_rest: bool, position: Array) -> Array | None:
 
 def _held(system: GapSystem, at_rest: bool) -> Array:
     """Return the load (num_modes,) in N/√kg that acts before t = 0."""
-    return system.released + system.load_at(0.0) if at_rest else system.released
+    return system.released_load + system.load_at(0.0) if at_rest else system.released_load

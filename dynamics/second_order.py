@@ -17,7 +17,7 @@ from dynamics.arrays import Array
 _ROUND_OFF = 1.0e-9
 
 
-def softened(omega2: Array, geometric: Array) -> tuple[Array, Array]:
+def soften_modes(omega2: Array, geometric: Array) -> tuple[Array, Array]:
     """Return ω² (num_modes,), rising, and the new modes (num_modes, num_modes) in the old ones.
 
     ``omega2`` is without axial forces, rigid motions exactly 0; ``geometric`` is G.

@@ -10,14 +10,14 @@ nothing is lost. The time loop is :func:`dynamics.kernels.march.march`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from dynamics.arrays import Array
 from dynamics.contact import contact_limits
-from dynamics.drive.stick_slip import OF_ELASTIC_DRIVES, follow
+from dynamics.drive.stick_slip import OF_ELASTIC_DRIVES, move_segment
 from dynamics.drive.travel import Travel
 from dynamics.energy import DRIVEN_ENERGIES, ENERGIES, check_energy
 from dynamics.excitation import History
@@ -40,7 +40,6 @@ from dynamics.kernels.telescoping import (
     add_axial_forces,
     moving_axial_forces,
     moving_rows,
-    stack_rows,
 )
 from dynamics.motion import Motion
 from dynamics.trajectory import OF_DRIVES, Output, Trajectory
@@ -58,7 +57,7 @@ class Integration:
     """A motion that is being computed.
 
     Args:
-        motion: its loads are gathered.
+        motion: with all constant loads in the ``load`` of its system.
         output: of all times; the first is that of the initial state.
         state: after the last output that is done.
     """
@@ -66,13 +65,15 @@ class Integration:
     motion: Motion
     output: Output
     state: State
+    _tables: dict[int, tuple[Flow, Array]] = field(default_factory=dict)
 
     @classmethod
     def begin(cls, motion: Motion) -> Integration:
-        """Return the run at t = 0."""
+        """Return the run at t = 0, with the constant loads gathered."""
+        motion = replace(motion, system=motion.system.gather_loads())
         system, laws = motion.system, motion.system.laws
         n, m, f = system.num_modes, len(laws), len(system.frictions)
-        a, v, rows = motion.position.copy(), motion.velocity.copy(), stack_rows(system)
+        a, v, rows = motion.position.copy(), motion.velocity.copy(), system.all_rows
         y, axial, softening = (rows * a).sum(axis=1), moving_axial_forces(system), np.zeros(n)
         extensions, stored, driven = np.zeros((3, len(system.travels)))
         add_axial_forces(extensions, axial, a, 1.0, softening)
@@ -87,7 +88,8 @@ class Integration:
             np.full(m, np.inf),
         )  # fmt: skip
         kinds = DRIVEN_ENERGIES if driven.size else ENERGIES
-        columns = (n, n if system.observes_rates else 0, len(kinds), m, m, m, f, driven.size)
+        rates = n if any(seen.derivative for seen in system.observers.values()) else 0
+        columns = (n, rates, len(kinds), m, m, m, f, driven.size)
         output = Output(*(np.zeros((motion.outputs + 1, count)) for count in columns))
         output.states[0], output.gaps[0] = a, y[:m]
         output.velocities[0] = v[: output.velocities.shape[1]]
@@ -101,9 +103,9 @@ class Integration:
     def _system(self) -> LoopSystem:
         system = self.motion.system
         loads = np.array([x.load for x in system.excitations]).reshape(-1, system.num_modes)
-        omega2, load = (np.ascontiguousarray(x) for x in (system.omega2, system.load))
         moving, axial = moving_rows(system), moving_axial_forces(system)
-        return LoopSystem(omega2, load, loads, row_laws(system), moving, axial)
+        load = np.ascontiguousarray(system.load)
+        return LoopSystem(load, loads, row_laws(system), moving, axial)
 
     @property
     def _flies(self) -> bool:
@@ -112,10 +114,6 @@ class Integration:
         others = len(system.excitations), len(system.travels), len(system.dashpots)
         rubbed = any(friction.normal_force for friction in system.frictions)
         return not (any(others) or rubbed or (system.omega2 < 0.0).any())
-
-    @cached_property
-    def _tables(self) -> dict[int, tuple[Flow, Array]]:
-        return {}
 
     def advance(
         self, first: int, last: int, substeps: int, state: State, output: Output | None = None
@@ -186,18 +184,18 @@ class Integration:
             motion.system,
             motion.output_step * np.arange(motion.outputs + 1),
             output,
-            step=step,
-            steps=int(tally[STEPS]),
-            first_contact=float(tally[FIRST_CONTACT]),
-            contact_changes=int(tally[CHANGES]),
-            least_energy=least,
+            {
+                "step": step,
+                "steps": int(tally[STEPS]),
+                "first_contact": float(tally[FIRST_CONTACT]),
+                "contact_changes": int(tally[CHANGES]),
+                "substeps": list(substeps),
+                "window": window,
+                "step_error": step_error,
+                "resolving_step": float(self.state.resolving.min(initial=np.inf)),
+            },
+            least,
         )
-        found.data.attrs |= {
-            "substeps": list(substeps),
-            "window": window,
-            "step_error": step_error,
-            "resolving_step": float(self.state.resolving.min(initial=np.inf)),
-        }
         return self._with_drives(found) if motion.system.travels else found
 
     def _with_drives(self, found: Trajectory) -> Trajectory:
@@ -216,10 +214,10 @@ class Integration:
             for (name, of), value in zip(OF_DRIVES.items(), values, strict=True):
                 added[f"{name}{travel.suffix}"] = ("time", value, of)
             if travel.elastic is not None:
-                followed = follow(travel.elastic, travel.history, found.time, friction)
-                stick_slip[f"drive_force{travel.suffix}"] = followed.told
-                for name, of in OF_ELASTIC_DRIVES.items():
-                    added[f"{name}{travel.suffix}"] = ("time", getattr(followed, name), of)
+                moved_by = move_segment(travel.elastic, travel.history, found.time, friction)
+                stick_slip[f"drive_force{travel.suffix}"] = moved_by.results
+                for name, value in moved_by.series.items():
+                    added[f"{name}{travel.suffix}"] = ("time", value, OF_ELASTIC_DRIVES[name])
         data = found.data.assign(added)
         data.attrs |= {"stick_slip": stick_slip} if stick_slip else {}
         return Trajectory(data, found.states)

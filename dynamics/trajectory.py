@@ -124,13 +124,12 @@ class Trajectory:
         data: dims ``time`` and ``station``; the output of each observer;
             ``contact_force`` in N, positive where the inner segment presses up, as the mean
             over the output interval that ends at the time (so that its sum is the impulse), at the
-            start as it is;
-            ``contact_force_peak``, the largest in that interval; ``friction_force`` in N, the
-            mean likewise, positive where it pushes the inner segment along its row; ``gap`` in m,
-            the mean of u − w over a station's rows; the energies in J. Coordinate ``direction``
-            (station). Attributes: ``step`` in s,
-            ``steps``, ``first_contact`` in s (NaN if none), ``contact_changes``,
-            ``energy_residual``.
+            start as it is; ``contact_force_peak``, the largest in that interval;
+            ``friction_force`` in N, the mean likewise, positive where it pushes the inner segment
+            along its row; ``gap`` in m, the mean of u − w over a station's rows; the energies in J.
+            Coordinate ``direction`` (station). Attributes: ``step`` in s, ``steps`` (joined ones
+            count as one), ``first_contact`` in s (NaN if none), ``contact_changes``: how often a
+            row opened or closed, ``energy_residual``.
         states: (num_times, num_modes) modal coordinates.
     """
 
@@ -143,11 +142,7 @@ class Trajectory:
         system: GapSystem,
         time: Array,
         output: Output,
-        *,
-        step: float,
-        steps: int,
-        first_contact: float,
-        contact_changes: int,
+        attributes: Mapping[str, object],
         least_energy: float = 0.0,
     ) -> Trajectory:
         """Label the output of an integrator; rows are gathered by station.
@@ -156,10 +151,8 @@ class Trajectory:
             system: that has moved.
             time: (num_times,) in s.
             output: at these times.
-            step: in s.
-            steps: their number; joined steps count as one.
-            first_contact: in s.
-            contact_changes: how often a row opened or closed.
+            attributes: of the data, ``step``, ``steps``, ``first_contact`` and ``contact_changes``
+                among them.
             least_energy: below which the energy put in is round-off, in J.
         """
         stations = np.arange(len(system.stations))
@@ -171,7 +164,9 @@ class Trajectory:
 
         def read(seen: Observer) -> Array:
             values = (output.velocities if seen.derivative else output.states) @ seen.row
-            return _mean_rate(time, values) if seen.derivative == 2 else values
+            if seen.derivative < 2:
+                return values
+            return np.concatenate([[0.0], np.diff(values) / np.diff(time)])
 
         variables: dict[str, tuple[Dims, Array, dict[str, str]]] = {
             name: ("time", read(seen), {"units": seen.unit})
@@ -204,16 +199,10 @@ class Trajectory:
                 ),
                 "direction": ("station", np.array(system.station_directions, dtype=str)),
             },
-            attrs={
-                "step": step,
-                "steps": steps,
-                "first_contact": first_contact,
-                "contact_changes": contact_changes,
-                "energy_residual": float(
-                    np.abs(energy_residual(output.energies, least_energy)).max()
-                ),
-            },
+            attrs=dict(attributes),
         )
+        residual = energy_residual(output.energies, least_energy)
+        data.attrs["energy_residual"] = float(np.abs(residual).max())
         return cls(data, output.states)
 
     @classmethod
@@ -245,10 +234,12 @@ class Trajectory:
             system,
             time,
             Output(states, velocities, energies, gaps, forces, forces, none, none),
-            step=float(time[1] - time[0]),
-            steps=time.size - 1,
-            first_contact=float(time[np.argmax(touching)]) if touching.any() else np.nan,
-            contact_changes=int(np.count_nonzero(np.diff(pressed, axis=0))),
+            {
+                "step": float(time[1] - time[0]),
+                "steps": time.size - 1,
+                "first_contact": float(time[np.argmax(touching)]) if touching.any() else np.nan,
+                "contact_changes": int(np.count_nonzero(np.diff(pressed, axis=0))),
+            },
         )
 
     @property
@@ -322,11 +313,6 @@ def _first_prominent(values: Array, prominence: float) -> int | None:
     after = values[start:]
     fallen = np.maximum.accumulate(after) - after >= prominence
     return start + int(after[: fallen.argmax()].argmax()) if fallen.any() else None
-
-
-def _mean_rate(time: Array, values: Array) -> Array:
-    """Return the mean rate (num_times,) of the interval that ends at each time, 0 at the start."""
-    return np.concatenate([[0.0], np.diff(values) / np.diff(time)])
 
 
 def mean_period(time: Array, tip: Array) -> float:

@@ -20,7 +20,7 @@ class RungeKutta:
     def __call__(
         self, motion: Motion, progress: Callable[[float], None] | None = None
     ) -> pt.Trajectory:
-        system = motion.system.gathered()
+        system = motion.system.gather_loads()
         n, rows, laws = system.num_modes, system.rows, system.laws
 
         def rates(time: float, state: np.ndarray) -> np.ndarray:

@@ -33,8 +33,8 @@ from dynamics.contact import restitution_damping as restitution_damping
 from dynamics.contact_table import TableContact as TableContact
 
 # Loads, and how they change over time
-from dynamics.drive.travel import SCurve as SCurve
-from dynamics.drive.travel import Stroke as Stroke
+from dynamics.excitation import SCurve as SCurve
+from dynamics.excitation import Stroke as Stroke
 from dynamics.excitation import Ramp as Ramp
 from dynamics.excitation import Sine as Sine
 from dynamics.excitation import Step as Step

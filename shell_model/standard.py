@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics.excitation import Excitation, Released, Step, Thrown
+from dynamics.excitation import Excitation, InitialImpulse, ReleasedLoad, Step
 from geometry.boom import Boom, Joint, Segment
 from geometry.load import Load
 from shell_model.reduced_shell import ReducedShell
@@ -85,7 +85,7 @@ def _unit_segment(segment: Segment) -> Segment:
 
 def _changing(load: Load) -> bool:
     """Return whether the load follows a history and is not over at t = 0."""
-    return not isinstance(load.history, Released | Thrown)
+    return not isinstance(load.history, ReleasedLoad | InitialImpulse)
 
 
 def _shimmed(joint: Joint) -> bool:

@@ -21,10 +21,11 @@ import numpy as np
 from mpi4py import MPI
 
 from dynamics.drive.row_table import MovingAxialForce, RowTable
-from dynamics.drive.travel import KINDS, HistorySum, Kind, Travel
+from dynamics.drive.travel import KINDS, Kind, Travel
+from dynamics.excitation import HistorySum
 from dynamics.gap_builder import GapBuilder
 from dynamics.gap_system import GapSystem
-from dynamics.reduction import fewer, with_coordinates
+from dynamics.reduction import reduce_modes, with_coordinates
 from geometry.arrays import Array, Mask
 from geometry.axial import borne, entry
 from geometry.boom import SAME_PLACE, Boom
@@ -236,7 +237,7 @@ class TelescopingShell:
         stays = self._full.pushed(number), self._full.columns(number, self._full.ties)
         pushes = [*(modal(some) for some in stays), observed, rows[staying]]
         modes = np.flatnonzero(slow), np.flatnonzero(~slow)
-        omega2, shapes = fewer(segment.omega2, np.vstack(pushes), *modes, MOMENTS)
+        omega2, shapes = reduce_modes(segment.omega2, np.vstack(pushes), *modes, MOMENTS)
         order = np.argsort(omega2, kind="stable")
         omega2, shapes = omega2[order], shapes[:, order]
         error = self._transfer_error((segment.omega2, rows, observed), (omega2, shapes))

@@ -15,9 +15,9 @@ from functools import partial
 
 import numpy as np
 
+from beam_model.section_fields import condense
 from dynamics.damping import pressed_modes
 from dynamics.gap_system import GapSystem
-from dynamics.reduction import condensed
 from geometry.arrays import Array
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.schema import Case, Model
@@ -163,7 +163,7 @@ def measure(case: Case, where: str, sizes: Sizes) -> ModelComparison:
     built = build_all(case, models)
     systems = {name: one.system for name, one in built.items()}
     for count in sizes.coordinates:
-        fewer, _ = condensed(systems[SHELL], count * len(case.segments))
+        fewer, _ = condense(systems[SHELL], count * len(case.segments))
         systems[f"section fields, {count} coordinates a segment"] = fewer
     points = Point.each(sizes.plays, sizes.loads)
     moved = move_all(systems, points, sizes.duration)

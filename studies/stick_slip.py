@@ -13,9 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.drive.stick_slip import DriveMotion, ElasticDrive, follow
-from dynamics.drive.travel import SCurve, Stroke
-from dynamics.excitation import PiecewiseLinear
+from dynamics.drive.stick_slip import DriveMotion, ElasticDrive, move_segment
+from dynamics.excitation import PiecewiseLinear, SCurve, Stroke
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.typography import TO_MILLI, TO_PERCENT
@@ -24,6 +23,7 @@ from runs import CASES
 from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.schema import Case
+from runs.pipeline.drives import critical_speed
 from runs.pipeline.models import MotionPlan, build
 from runs.report.tables import Table
 from studies.study import Criterion, Piece, Progress, Proof, define_study
@@ -66,7 +66,7 @@ def study(progress: Progress) -> Iterator[Piece]:
 
 def _follow_drive(pulled: ElasticDrive, speed: float, time: Array) -> DriveMotion:
     way = Stroke(2.0 * speed * float(time[-1]), speed)
-    return follow(pulled, way, time, np.full(time.size, FRICTION))
+    return move_segment(pulled, way, time, np.full(time.size, FRICTION))
 
 
 def _cycle() -> Iterator[Proof]:
@@ -77,9 +77,9 @@ def _cycle() -> Iterator[Proof]:
     period = 2.0 * slack / SPEED + slipping
     time = np.linspace(0.0, first + 9.99 * period, 40_001)
     found = _follow_drive(ROPE, SPEED, time)
-    still = found.drawn_speed == 0.0
+    still = found.series["drawn_speed"] == 0.0
     begins = time[1:][still[:-1] & ~still[1:]]
-    told = found.told
+    told = found.results
     for what, value, reference, unit, allowed in (
         ("period", (begins[9] - begins[0]) / 9.0, period, "s", 1.0e-3),
         ("slip", told.slip, 2.0 * radius, "m", 1.0e-4),
@@ -95,12 +95,12 @@ def _cycle() -> Iterator[Proof]:
 def _critical(ratio: float) -> Proof:
     """Check the speed below which sticking recurs, by bisection."""
     pulled = replace(ROPE, dashpot=2.0 * ratio * np.sqrt(STIFFNESS * MASS))
-    expected = pulled.critical_speed(FRICTION)
+    expected = critical_speed(pulled, FRICTION)
     low, high = 0.5 * expected, 2.0 * expected
     while high - low > 1.0e-5 * expected:
         middle = 0.5 * (low + high)
         lasting = 5.0 * FRICTION / STIFFNESS / middle + 20.0 * np.pi * np.sqrt(MASS / STIFFNESS)
-        sticks = _follow_drive(pulled, middle, np.linspace(0.0, lasting, 2001)).told.sticks
+        sticks = _follow_drive(pulled, middle, np.linspace(0.0, lasting, 2001)).results.sticks
         low, high = (middle, high) if sticks else (low, middle)
     criterion: Criterion = ("analytic", "the swing that just comes back to it", 1.0e-4)
     return Proof(f"critical speed at ζ = {ratio:g}", high, expected, "m/s", *criterion)
@@ -110,10 +110,10 @@ def _stiff() -> Proof:
     """Check the force of a drive of 1e9 N/m in the middle of an S-curve's first half."""
     way, time = SCurve(travel=2.0, duration=4.0), np.linspace(0.0, 1.0, 1001)
     pulled = ElasticDrive(MASS, 1.0e9, dashpot=0.2 * np.sqrt(1.0e9 * MASS))
-    found = follow(pulled, way, time, np.full(time.size, FRICTION))
+    found = move_segment(pulled, way, time, np.full(time.size, FRICTION))
     asked = FRICTION + MASS * 0.25 * np.pi
     criterion: Criterion = ("analytic", "friction and m s̈ of the drive", 1.0e-4)
-    force = float(found.drive_force[-1])
+    force = float(found.series["drive_force"][-1])
     return Proof("force of a stiff drive", force, float(asked), "N", *criterion)
 
 

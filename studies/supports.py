@@ -113,7 +113,7 @@ def _luffed(progress: Progress) -> Iterator[Proof]:
         ("a shell", shear, WALLS),
     ):
         progress(f"a luffed boom of {name}")
-        system = _MODELS[name](boom).gathered()
+        system = _MODELS[name](boom).gather_loads()
         at_rest = system.static_response(system.load)
         force, tip = (
             float(system.observers[one].row @ at_rest) for one in ("cylinder_force", "tip")

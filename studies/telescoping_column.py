@@ -17,7 +17,7 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
-from dynamics.drive.travel import SCurve
+from dynamics.excitation import SCurve
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, Joint, Segment
 from geometry.joint import Drive
@@ -89,7 +89,7 @@ def _proofs(name: str, build: Callable[[Boom], list[SegmentModel]]) -> Iterator[
         row = system.observers["head"].row
         # Of what one segment alone moves.
         own = np.flatnonzero(row)
-        stiffness = system.standing(time).stiffness[np.ix_(own, own)]
+        stiffness = system.at_time(time).stiffness[np.ix_(own, own)]
         head = float(row[own] @ np.linalg.solve(stiffness, row[own]))
         what = f"deflection of its head under {SHARE:g} P_cr over {x:g} m, {name}"
         yield Proof(what, head, _bent(x, SHARE * critical), "m/N", *criterion)

@@ -15,9 +15,8 @@ from scipy.optimize import brentq, least_squares
 
 from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system
-from dynamics.contact import Gap, PowerContact
+from dynamics.contact import DryFriction, Gap, PowerContact
 from dynamics.excitation import Excitation, Sine
-from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion

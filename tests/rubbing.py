@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.contact import PowerContact
-from dynamics.drive.travel import SCurve
-from dynamics.friction import DryFriction
+from dynamics.contact import DryFriction, PowerContact
+from dynamics.excitation import SCurve
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.kernels.march import march

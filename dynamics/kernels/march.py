@@ -46,13 +46,12 @@ class LoopSystem(NamedTuple):
     """The parts of a gap system that stay as they are.
 
     Args:
-        omega2, load: (num_modes,) ω² and the constant load.
+        load: (num_modes,) the constant load.
         excitations: (num_excitations, num_modes) loads that histories multiply.
         laws: of the rows.
         moving, axial: rows and axial forces that travels move.
     """
 
-    omega2: Array
     load: Array
     excitations: Array
     laws: Laws
@@ -221,17 +220,6 @@ def _set_loads(
             tilt[i] += then * system.excitations[e, i]
 
 
-@njit(**LOOP)
-def _agree(found: Array, used: Array) -> bool:
-    """Return whether forces (num_modes,) are those that were used; use the found ones."""
-    apart, size = 0.0, 0.0
-    for i in range(found.size):
-        apart = max(apart, abs(found[i] - used[i]))
-        size = max(size, abs(found[i]))
-        used[i] = found[i]
-    return apart <= _AGREED * size
-
-
 @njit(**SUMS)
 def free_time(system: LoopSystem, flow: Flow, state: State, longest: float) -> float:
     """Return a time in s within which no contact closes; 0 where one is closed.
@@ -339,7 +327,8 @@ def march(
                     a_mean = 0.5 * (a + end)
                     add_axial_forces(extension, axial, a_mean, 0.5, pull)
                     add_axial_forces(extension_end, axial, a_mean, 0.5, pull)
-                    converged = _agree(pull, softening)
+                    converged = np.abs(pull - softening).max() <= _AGREED * np.abs(pull).max()
+                    softening[:] = pull
                 if converged:
                     break
             joins = converged
@@ -399,7 +388,7 @@ def march(
             output.frictions[interval] = friction
             output.drives[interval] = driven
             energies = output.energies[interval]
-            energies[0], energies[1] = modal_energy(a, v, system.omega2)
+            energies[0], energies[1] = modal_energy(a, v, flow.omega2)
             if softens:
                 stored[:] = 0.0
                 add_axial_energies(extension_end, axial, a, 1.0, stored)

@@ -23,7 +23,7 @@ from dynamics.arrays import Array, Indices
 from dynamics.contact import contact_limits, contact_terms
 from dynamics.contact_term import Limits, Terms
 from dynamics.gap_system import GapSystem
-from dynamics.kernels.compiled import LOOP, PART
+from dynamics.kernels.compiled import LOOP
 from dynamics.kernels.terms import discrete_gradient
 
 # Iterations after which a step is halved. Two are usual.
@@ -114,15 +114,6 @@ def contact_response(
     return force, slope, elastic
 
 
-@njit(**PART)
-def _end(problem: Problem, compliance: Array, j: int) -> float:
-    """Return y₁ of row j in m."""
-    y: float = problem.free[j]
-    for i in range(problem.force.size):
-        y -= compliance[j, i] * problem.force[i]
-    return y
-
-
 @njit(**LOOP)
 def solve_rows(laws: Laws, problem: Problem, compliance: Array, start: Array, time: float) -> bool:
     """Find the forces of a step; return whether the iteration has converged.
@@ -151,20 +142,12 @@ def solve_rows(laws: Laws, problem: Problem, compliance: Array, start: Array, ti
             if c <= 0.0:
                 force[j] = 0.0
                 continue
-            y = _end(problem, compliance, j)
+            y = problem.free[j]
+            for i in range(force.size):
+                y -= compliance[j, i] * force[i]
             blur = _ROUND_OFF * (abs(y) + abs(start[j]) + abs(problem.free[j]))
             row = problem.jacobian[count]
-            if j < contacts:
-                wanted, slope, _ = contact_response(laws, j, start[j], y, time)
-                if wanted == 0.0 and force[j] == 0.0:
-                    continue
-                weight = 1.0 / (1.0 + slope * c)
-                for i in range(force.size):
-                    row[i] = weight * slope * compliance[j, i]
-                row[j] += weight
-                residual = weight * (wanted - force[j])
-                noise = weight * slope * blur
-            elif j < contacts + frictions:
+            if contacts <= j < contacts + frictions:
                 bound = problem.bound[j - contacts]
                 if bound == 0.0 and force[j] == 0.0:
                     continue
@@ -183,12 +166,17 @@ def solve_rows(laws: Laws, problem: Problem, compliance: Array, start: Array, ti
                     row[j] = 1.0
                     residual, noise = side * bound - force[j], 0.0
             else:
-                weight = 1.0 / (1.0 + c / time)
+                wanted, slope = (y - start[j]) / time, 1.0 / time
+                if j < contacts:
+                    wanted, slope, _ = contact_response(laws, j, start[j], y, time)
+                    if wanted == 0.0 and force[j] == 0.0:
+                        continue
+                weight = 1.0 / (1.0 + slope * c)
                 for i in range(force.size):
-                    row[i] = weight * compliance[j, i] / time
+                    row[i] = weight * slope * compliance[j, i]
                 row[j] += weight
-                residual = weight * ((y - start[j]) / time - force[j])
-                noise = weight * blur / time
+                residual = weight * (wanted - force[j])
+                noise = weight * slope * blur
             worst = max(worst, abs(residual) - noise)
             problem.residual[count] = residual
             problem.active[count] = j

@@ -61,11 +61,6 @@ class AxialForces(NamedTuple):
     passed: Array
 
 
-def stack_rows(system: GapSystem) -> Array:
-    """Return all rows (num_rows, num_modes) at t = 0: contacts, friction rows, dashpots."""
-    return np.concatenate([getattr(system, kind) for kind in KINDS])
-
-
 def moving_rows(system: GapSystem) -> MovingRows:
     """Return the rows of a system that travels move."""
     firsts = np.cumsum([0, *(len(getattr(system, kind)) for kind in KINDS)])

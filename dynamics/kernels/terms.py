@@ -32,14 +32,6 @@ def contact_energy(y: Array, terms: Terms) -> float:
 
 
 @njit(**LOOP)
-def contact_forces(y: Array, terms: Terms, force: Array) -> None:
-    """Set ``force`` (num_rows,) in N to the elastic forces at the gaps y (num_rows,) in m."""
-    force[:] = 0.0
-    for t in range(terms.size):
-        force[terms[t]["row"]] += term_force(terms[t], y[terms[t]["row"]])
-
-
-@njit(**LOOP)
 def discrete_gradient(term: np.void, before: float, after: float) -> tuple[float, float]:
     """Return (V(y₁) − V(y₀))/(y₁ − y₀) of a term's energy V in N, and its derivative by y₁ in N/m.
 

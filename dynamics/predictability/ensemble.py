@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor, as_completed
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -61,7 +61,7 @@ def perturbations(members: int, relative: float, seed: int) -> Array:
     return changes
 
 
-def changed(motion: Motion, vary: Vary, factor: float) -> Motion:
+def vary_motion(motion: Motion, vary: Vary, factor: float) -> Motion:
     """Return the motion with the varied data times ``factor``."""
     system = motion.system
     if vary == "load":
@@ -111,22 +111,18 @@ def run_members(
         NumericsError: a member cannot be computed.
     """
     threads = ThreadPoolExecutor(len(os.sched_getaffinity(0)))
+    runs = list[xr.Dataset]()
     with threads if executor is None else nullcontext(executor) as pool:
-        runs = [pool.submit(_run, member) for member in members]
-        try:
-            for done, run in enumerate(as_completed(runs), start=1):
-                run.result()
-                if progress is not None:
-                    progress(done / len(runs))
-        except BaseException:
-            for run in runs:
-                run.cancel()
-            raise
-    return [run.result() for run in runs]
+        # The iterator cancels what has not begun when it is left early.
+        for run in pool.map(_run, members):
+            runs.append(run)
+            if progress is not None:
+                progress(len(runs) / len(members))
+    return runs
 
 
 def _run(member: EnsembleMember) -> xr.Dataset:
-    run = member.integrator(changed(member.motion, member.vary, 1.0 + member.change))
+    run = member.integrator(vary_motion(member.motion, member.vary, 1.0 + member.change))
     return _kept(run, member.kept)
 
 

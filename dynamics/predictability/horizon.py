@@ -40,21 +40,15 @@ _PARTS = 0.25, 1.0
 _STAGE = 0.5 / len(_PARTS)
 
 
-def spread(members: Array) -> Array:
-    """Return half the distance (num_times,) of the largest and smallest member (…, num_times).
-
-    That is the largest error of the best single prediction. A standard deviation would be smaller
-    while most members are still together, and would give a horizon after some have diverged.
-    """
-    return np.asarray(0.5 * np.ptp(members, axis=0))
-
-
 def horizon(members: Array, time: Array, share: float) -> float:
     """Return the time in s at which members (num_members, num_times) first diverge; NaN if never.
 
-    Their spread then exceeds a share of the range of member 0.
+    Their spread then exceeds a share of the range of member 0: half the distance of the largest
+    and smallest member, the largest error of the best single prediction. A standard deviation
+    would be smaller while most members are together, and give a later horizon.
     """
-    passed = np.flatnonzero(spread(members) > share * np.ptp(members[0]))
+    spread = 0.5 * np.ptp(members, axis=0)
+    passed = np.flatnonzero(spread > share * np.ptp(members[0]))
     return float(time[passed[0]]) if passed.size else float("nan")
 
 
@@ -194,16 +188,16 @@ def measure_horizons(
     finer = [replace(one, integrator=one.integrator.finer())]
     whole, time = unchanged.data[observer].values, unchanged.time
 
-    def told(before: float, part: float) -> None:
+    def report(before: float, part: float) -> None:
         progress(before + _STAGE * part)
 
-    def parted(groups: Sequence[Sequence[EnsembleMember]], done: float) -> Array:
+    def measure(groups: Sequence[Sequence[EnsembleMember]], done: float) -> Array:
         """Return horizons (num_groups, num_shares) in s; ``done`` is the part done before."""
         found = np.full((len(groups), len(shares)), np.nan)
         for number, part in enumerate(_PARTS):
             left = [g for g in range(len(groups)) if np.isnan(found[g]).any()]
-            asked = [member.within(part) for g in left for member in groups[g]]
-            runs = iter(run_members(asked, executor, partial(told, done + number * _STAGE)))
+            requested = [member.within(part) for g in left for member in groups[g]]
+            runs = iter(run_members(requested, executor, partial(report, done + number * _STAGE)))
             for g in left:
                 tips = [next(runs)[observer].values for _ in groups[g]]
                 near = [np.append(tip, whole[tip.size :]) for tip in tips]
@@ -211,10 +205,10 @@ def measure_horizons(
         return found
 
     # The longest run first, so that none waits for it in the end.
-    of_step, of_largest = parted([finer, largest], 0.0)
+    of_step, of_largest = measure([finer, largest], 0.0)
     of_smaller = np.full((len(smaller), len(shares)), np.nan)
     if np.isfinite(of_largest[0]):
-        of_smaller = parted(smaller, 0.5)
+        of_smaller = measure(smaller, 0.5)
     progress(1.0)
     times = np.array([*of_smaller, of_largest])
     growth = [Growth.fit(sizes, t) for t in times.T]

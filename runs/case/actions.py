@@ -10,7 +10,15 @@ from typing import Any
 from scipy.special import cosdg, sindg
 
 from dynamics.contact import PowerContact
-from dynamics.excitation import History, PiecewiseLinear, Ramp, Released, Sine, Step, Thrown
+from dynamics.excitation import (
+    History,
+    InitialImpulse,
+    PiecewiseLinear,
+    Ramp,
+    ReleasedLoad,
+    Sine,
+    Step,
+)
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, BoomError, Direction, Segment, Stop, on_segments
 from geometry.fields import Distance, at
@@ -73,13 +81,13 @@ def _thrown(index: int, velocity: VelocityTable, segments: Sequence[Segment]) ->
     for direction, speed, turn in planes:
         if speed or turn:
             there = (speed - turn * x0) * segment.mass_per_length
-            given.append(Load(index, direction, there, None, Thrown(), inertial=True))
+            given.append(Load(index, direction, there, None, InitialImpulse(), inertial=True))
             given += [
-                Load(index, direction, (speed + turn * (p.x - x0)) * p.mass, p.x, Thrown())
+                Load(index, direction, (speed + turn * (p.x - x0)) * p.mass, p.x, InitialImpulse())
                 for p in segment.masses
             ]
         if turn:
-            given.append(Turn(index, direction, turn, None, Thrown()))
+            given.append(Turn(index, direction, turn, None, InitialImpulse()))
     return given
 
 
@@ -269,7 +277,7 @@ def called(where: str, name: str, segments: Sequence[Segment | SegmentTable]) ->
     return names.index(name)
 
 
-def _load_history(where: str, table: LoadTable) -> History | Released:
+def _load_history(where: str, table: LoadTable) -> History | ReleasedLoad:
     history = _history(where, table)
     if table.released and not isinstance(history, Step):
         raise BoomError(
@@ -277,7 +285,7 @@ def _load_history(where: str, table: LoadTable) -> History | Released:
             "a load that is let go has acted for ever, without ramp, frequency or table; leave "
             "one of them out",
         )
-    return Released() if table.released else history
+    return ReleasedLoad() if table.released else history
 
 
 def _history(where: str, table: HistoryTable) -> History:

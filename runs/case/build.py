@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from dynamics.drive.stick_slip import OF_ELASTIC_DRIVES
 from dynamics.energy import DRIVEN_ENERGIES
-from dynamics.excitation import Released, Thrown
+from dynamics.excitation import InitialImpulse, ReleasedLoad
 from dynamics.trajectory import OF_DRIVES, OF_STATIONS
 from geometry.axial import with_compression
 from geometry.boom import (
@@ -107,7 +107,9 @@ def _loaded(boom: Boom) -> bool:
     """Return whether a load acts from t = 0 on."""
     own = [segment.load for segment in boom.segments]
     own += [segment.lateral.load for segment in boom.segments if segment.lateral is not None]
-    lasting = [load for load in boom.loads if not isinstance(load.history, Released | Thrown)]
+    lasting = [
+        load for load in boom.loads if not isinstance(load.history, ReleasedLoad | InitialImpulse)
+    ]
     return any(own) or any(load.magnitude for load in lasting)
 
 

@@ -10,8 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from dynamics.arrays import Array
-from dynamics.drive.travel import SCurve, Stroke
-from dynamics.excitation import History, PiecewiseLinear
+from dynamics.excitation import History, PiecewiseLinear, SCurve, Stroke
 from geometry.boom import BoomError
 from geometry.fields import Distance, In, NotNegative, Number, Positive, described
 from geometry.joint import Carrier, Drive

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+# Bound of (R_s − R)/(v √(k m)) in the search for the critical speed.
+_FARTHEST = 1.0e6
+
 # Part of the smallest overlap. A larger lag moves the pads to other places.
 FAR_BEHIND = 0.01
 
@@ -61,20 +64,59 @@ class StickSlipEstimate:
 
     Args:
         inner: name of the segment.
-        pulled: data of the elastic drive.
+        elastic: data of the elastic drive.
         friction: largest friction R at rest in N.
         fastest: largest commanded speed in m/s.
     """
 
     inner: str
-    pulled: ElasticDrive
+    elastic: ElasticDrive
     friction: float
     fastest: float
 
     @property
     def critical(self) -> float:
         """Speed in m/s above which the segment does not stick again once it slips."""
-        return self.pulled.critical_speed(self.friction)
+        return critical_speed(self.elastic, self.friction)
+
+
+def critical_speed(drive: ElasticDrive, friction: float) -> float:
+    """Return the constant speed in m/s above which a segment slips without sticking again.
+
+    It is infinite without damping.
+
+    Args:
+        drive: moves the segment.
+        friction: R of sliding in N.
+    """
+    drop = (drive.sticking - 1.0) * friction
+    if drop == 0.0 or drive.damping_ratio >= 1.0:
+        return 0.0
+    if drive.damping_ratio == 0.0:
+        return np.inf
+    impedance = float(np.sqrt(drive.stiffness * drive.mass))
+    return drop / (_critical_drop(drive.damping_ratio) * impedance)
+
+
+def _critical_drop(ratio: float) -> float:
+    """Return (R_s − R)/(v √(k m)) up to which a slip at the damping ratio ζ does not end.
+
+    ż/v begins a slip with 1 and the slope −D, in units of 1/ω, swings freely, and is largest again,
+    for all ζ below 1, where it is √(1 − 2ζD + D²) e^{−ζ(θ + π)/√(1 − ζ²)},
+    θ = arg((ζD − 1)/√(1 − ζ²) + iD); it sticks where that is 1. At little damping D = √(4πζ).
+    """
+    from scipy.optimize import brentq
+
+    beat = np.sqrt(1.0 - ratio**2)
+
+    def beyond(drop: float) -> float:
+        angle = np.arctan2(drop, (ratio * drop - 1.0) / beat)
+        grown = 0.5 * np.log1p(drop * (drop - 2.0 * ratio))
+        return float(grown - ratio * (angle + np.pi) / beat)
+
+    if beyond(_FARTHEST) < 0.0:
+        return np.inf
+    return float(brentq(beyond, 2.0 * ratio, _FARTHEST, xtol=1e-14))
 
 
 def stick_slip_estimates(case: Case, boom: Boom) -> Iterator[StickSlipEstimate]:
@@ -84,11 +126,11 @@ def stick_slip_estimates(case: Case, boom: Boom) -> Iterator[StickSlipEstimate]:
         return
     system = with_elastic_drives(telescoping_system(boom_with_play(case, boom)), case, boom)
     travels = (travel for travel in system.travels if travel.elastic is not None)
-    for (number, pulled), travel in zip(joints.items(), travels, strict=True):
+    for (number, elastic), travel in zip(joints.items(), travels, strict=True):
         joint = boom.joints[number]
         assert joint.drive is not None
         name, friction = boom.segments[joint.inner].name, _friction(system, travel, case)
-        yield StickSlipEstimate(name, pulled, friction, fastest(joint.drive))
+        yield StickSlipEstimate(name, elastic, friction, fastest(joint.drive))
 
 
 def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
@@ -98,7 +140,7 @@ def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
     duration, most = case.time.duration, 0.0
     rests = positions(system, instants(system, duration)) | extended_positions(system, duration)
     for time, position in rests.items():
-        gaps = system.standing(time).rows @ position
+        gaps = system.at_time(time).rows @ position
         forces = [law.force(gap) for law, gap in zip(system.laws, gaps, strict=True)]
         most = max(most, float(axial_friction(system, travel, np.array([forces]))[0]))
     return most
@@ -114,9 +156,9 @@ def stick_slip_lines(found: Iterable[StickSlipEstimate], system: System) -> Iter
         else:
             slips = f"sticks and slips below {system.text(one.critical, 'm/s', 3)}"
         yield (
-            f"What the drive of {one.inner!r} draws, {system.text(one.pulled.mass, 'kg')}, swings "
-            f"at {one.pulled.frequency:.3g} Hz, damped by "
-            f"{TO_PERCENT * one.pulled.damping_ratio:.3g} %, and against "
+            f"What the drive of {one.inner!r} draws, {system.text(one.elastic.mass, 'kg')}, swings "
+            f"at {one.elastic.frequency:.3g} Hz, damped by "
+            f"{TO_PERCENT * one.elastic.damping_ratio:.3g} %, and against "
             f"{one.friction * TO_KILO:.3g} kN of friction, the most at rest, {slips}."
         )
 

@@ -12,13 +12,13 @@ import numpy as np
 from dynamics.failure import NUMERICS
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
-from dynamics.reduction import bonded_system
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.telescoping import drawn
 from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
+from runs.pipeline.bonded import bonded_system
 from runs.pipeline.design_results import DesignResults, ModelDesignResults, play_effects
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.model_quality import quality_notes, reference_of
@@ -88,7 +88,7 @@ def answer_model(
         trajectory: its motion.
         shell: its output besides the trajectory; None for a beam.
     """
-    system, shown = built.system.gathered(), boom.play_free if model.play_free else boom
+    system, shown = built.system.gather_loads(), boom.play_free if model.play_free else boom
     lines = with_cylinders(shown, system, model.lines(boom, built))
     played, times = _Model(shown, system, lines), instants(system, case.time.duration)
     found, farthest = positions(system, times), extended_positions(system, case.time.duration)
@@ -117,10 +117,10 @@ def _tied(boom: Boom, model: Model, played: _Model, found: Mapping[float, Array]
     """Return the same model without play."""
     without = boom.play_free
     if (own := model.without_play(boom)) is not None:
-        system = own[0].gathered()
+        system = own[0].gather_loads()
         return _Model(without, system, with_cylinders(without, system, own[1]))
     begun = [position for time, position in found.items() if _as_begun(boom, time)]
-    system, basis = bonded_system(played.system.standing(0.0), begun)
+    system, basis = bonded_system(played.system.at_time(0.0), begun)
     return _Model(without, system, [line.on(basis) for line in played.lines])
 
 

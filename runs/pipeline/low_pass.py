@@ -31,7 +31,7 @@ ORDER = 4
 PROMINENCE = 0.2
 
 
-def slow(signal: Array, output_step: float, cutoff: float) -> Array:
+def filter_low_pass(signal: Array, output_step: float, cutoff: float) -> Array:
     """Return the part of a signal below a cut-off, without phase shift.
 
     A Butterworth filter is applied forwards and backwards; its gain at the cut-off is ½. Within
@@ -70,7 +70,7 @@ def slow_peaks(signal: Array, time: Array, cutoff: float) -> tuple[Array, Array]
     """
     from scipy.signal import find_peaks
 
-    filtered = slow(signal, float(time[1] - time[0]), cutoff)
+    filtered = filter_low_pass(signal, float(time[1] - time[0]), cutoff)
     at, _ = find_peaks(filtered, prominence=PROMINENCE * np.ptp(filtered))
     return time[at], filtered[at]
 
@@ -80,7 +80,7 @@ class SlowPeaks:
     """Peaks that all members of an ensemble have.
 
     A spread is half the distance between the largest and the smallest member, as in
-    :func:`dynamics.predictability.horizon.spread`; values are the members' means.
+    :func:`dynamics.predictability.horizon.horizon`; values are the members' means.
 
     Args:
         time: (num_peaks,) in s.

@@ -152,7 +152,7 @@ def _places(boom: Boom) -> list[float]:
 def _modes(reduced: ReducedShell) -> dict[str, Any]:
     """Return the modes of the boom with closed contacts, each with a maximum of 1 m."""
     assert reduced.fields is not None
-    system = reduced.system.gathered()
+    system = reduced.system.gather_loads()
     rest = positions(system)
     if not rest:
         return {}

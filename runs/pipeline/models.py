@@ -11,7 +11,7 @@ import numpy as np
 
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
-from dynamics.motion import Motion, begin
+from dynamics.motion import Motion, build_motion
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs.case.elastic_drive import with_elastic_drives
@@ -55,7 +55,7 @@ def initial_motion(system: GapSystem, case: Case) -> Motion:
         NumericsError: there is no equilibrium to start from.
     """
     time, damping = case.time, case.damping
-    return begin(
+    return build_motion(
         system,
         time.duration,
         time.output_step,

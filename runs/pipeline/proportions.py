@@ -9,7 +9,7 @@ from math import isclose
 import numpy as np
 
 from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Ramp, Step, Thrown
+from dynamics.excitation import InitialImpulse, Ramp, Step
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
@@ -118,7 +118,7 @@ def _sizes(case: Case, boom: Boom) -> Iterator[str]:
     added = [
         load
         for load in boom.loads
-        if load.direction == "z" and not isinstance(load.history, Thrown)
+        if load.direction == "z" and not isinstance(load.history, InitialImpulse)
     ]
     forces = [segment.load * segment.length for segment in boom.segments]
     forces += [load.resultant(boom.segments[load.segment].length) for load in added]

@@ -103,7 +103,7 @@ def residual_vibration(
     except NUMERICS:
         return None
     stands = [
-        _standing(system.standing(when).in_own_modes(), case, model) for when in (0.0, max(ends))
+        _standing(system.at_time(when).in_own_modes(), case, model) for when in (0.0, max(ends))
     ]
     speed = max(_speed(travel) for travel in system.travels)
     return ResidualVibration(tip, time, speed, *stands)
@@ -181,7 +181,7 @@ def _standing(system: GapSystem, case: Case, model: Model) -> float | None:
     """Return the largest distance from equilibrium in m of the same boom without extension."""
     try:
         plan = MotionPlan.of(system, case, model)
-        changes = system.excitations or system.released.any() or plan.motion.velocity.any()
+        changes = system.excitations or system.released_load.any() or plan.motion.velocity.any()
         if case.start.state == "equilibrium" and not changes:
             return 0.0
         return farthest_from_rest(system, plan.trajectory())[0]

@@ -220,7 +220,7 @@ def static_result(
         time: time of the loads and of the extension in s.
         position: equilibrium (num_modes,).
     """
-    system, diagrams = system.standing(time), []
+    system, diagrams = system.at_time(time), []
     for number, line in enumerate(lines):
         carried = section_forces(boom, number, line, position, np.array(time))
         curves: dict[str, list[float]] = {name: rounded(values) for name, values in carried.items()}

@@ -19,7 +19,7 @@ from beam_model.calibration import Calibration, stiffened
 from beam_model.component import Component
 from beam_model.finite_element import finite_element_segment
 from dynamics.contact import ContactLaw
-from dynamics.excitation import Released, Thrown
+from dynamics.excitation import InitialImpulse, ReleasedLoad
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError
 from geometry.contact_places import Pad, pads
@@ -114,7 +114,10 @@ def _check(case: Case, joined: Joined) -> None:
         ("damping", any(case.damping.model_dump().values())),
         ("joint.restitution", any(joint.law("z").damping > 0.0 for joint in boom.joints)),
         ("start", case.start.state != "rest" or bool(case.start.velocity)),
-        ("load", any(isinstance(load.history, Released | Thrown) for load in boom.loads)),
+        (
+            "load",
+            any(isinstance(load.history, ReleasedLoad | InitialImpulse) for load in boom.loads),
+        ),
         (
             "joint.friction",
             any(joint.friction > 0.0 and not joint.normal_forces for joint in boom.joints),

@@ -9,7 +9,7 @@ import numpy as np
 from mpi4py import MPI
 from scipy.linalg import block_diag, eigh, null_space
 
-from dynamics.second_order import buckling_factor, softened
+from dynamics.second_order import buckling_factor, soften_modes
 from geometry.arrays import Array
 from geometry.cylinder import GroundLine
 from shell_model.reduction.segment import ReducedSegment
@@ -67,7 +67,7 @@ class BoomCoordinates:
             taken = tied.T @ geometric @ tied
             held = not (self.omega2 == 0.0).any()
             self.critical_factor = buckling_factor(np.diag(self.omega2), taken) if held else None
-            self.omega2, turn = comm.bcast(softened(self.omega2, taken))
+            self.omega2, turn = comm.bcast(soften_modes(self.omega2, taken))
             self._combination = tied @ turn
 
     def row(self, reading: Reading) -> Array:

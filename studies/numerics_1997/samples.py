@@ -17,7 +17,7 @@ import numpy as np
 from dynamics.energy import ENERGIES
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
-from dynamics.predictability.ensemble import changed, perturbations
+from dynamics.predictability.ensemble import perturbations, vary_motion
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from runs.case.build import build_boom
@@ -170,7 +170,7 @@ class Example:
         assert cutoff is not None
         runs = run_parallel(
             # As a run of the case moves the model.
-            lambda one: ModelRun.of(one[1].integrator(changed(one[1].motion, "load", one[0]))),
+            lambda one: ModelRun.of(one[1].integrator(vary_motion(one[1].motion, "load", one[0]))),
             [
                 (factor, MotionPlan.of(systems[name], case, model_of(case, name)))
                 for factor, name in product(factors(members), names)
@@ -221,7 +221,7 @@ def factors(members: int) -> Array:
 def _move(
     how: Numerics, duration: float, system: GapSystem, put_in: float, factor: float
 ) -> ModelRun:
-    motion = changed(Motion(system, duration, how.step), "load", factor)
+    motion = vary_motion(Motion(system, duration, how.step), "load", factor)
     run = integrate(motion, how.scheme, how.iterated)
     return ModelRun.of(run.trajectory, put_in, float(run.unconverged[: run.finite_steps].mean()))
 

@@ -22,7 +22,7 @@ from dynamics.contact_term import Terms
 from dynamics.energy import ENERGIES
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.kernels.compiled import LOOP
-from dynamics.kernels.terms import contact_energy, contact_forces, term_slope
+from dynamics.kernels.terms import contact_energy, term_force, term_slope
 from dynamics.motion import Motion
 from dynamics.trajectory import Output, Trajectory
 from studies.study import Proof
@@ -109,12 +109,22 @@ def integrate(motion: Motion, scheme: Scheme, iterated: bool) -> SchemeRun:
         Output(
             states, speeds, energies, gaps, forces, np.abs(forces), frictional, np.zeros((n + 1, 0))
         ),
-        step=h,
-        steps=finite_steps,
-        first_contact=h * int(np.argmax(pressed.any(axis=1))) if pressed.any() else np.nan,
-        contact_changes=int(np.count_nonzero(np.diff(pressed, axis=0))),
+        {
+            "step": h,
+            "steps": finite_steps,
+            "first_contact": h * int(np.argmax(pressed.any(axis=1))) if pressed.any() else np.nan,
+            "contact_changes": int(np.count_nonzero(np.diff(pressed, axis=0))),
+        },
     )
     return SchemeRun(trajectory, finite_steps, unconverged)
+
+
+@njit(**LOOP)
+def contact_forces(y: Array, terms: Terms, force: Array) -> None:
+    """Set ``force`` (num_rows,) in N to the elastic forces at the gaps y (num_rows,) in m."""
+    force[:] = 0.0
+    for t in range(terms.size):
+        force[terms[t]["row"]] += term_force(terms[t], y[terms[t]["row"]])
 
 
 @njit(**LOOP)

@@ -15,10 +15,9 @@ from collections.abc import Sequence
 import numpy as np
 from numba import njit
 
-from dynamics.contact import ContactLaw, contact_terms
+from dynamics.contact import ContactLaw, DryFriction, contact_terms
 from dynamics.contact_term import Terms
 from dynamics.failure import NumericsError
-from dynamics.friction import DryFriction
 from dynamics.kernels.compiled import LOOP
 from dynamics.kernels.terms import contact_energy
 from geometry.arrays import Array

@@ -20,8 +20,8 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
-from dynamics.drive.travel import SCurve
 from dynamics.equilibrium import equilibrium
+from dynamics.excitation import SCurve
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, Segment
 from geometry.joint import Drive

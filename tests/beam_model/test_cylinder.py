@@ -75,7 +75,7 @@ def luffed(beam: Beam, cylinder: Cylinder = CYLINDER) -> Boom:
 
 def rest(system: GapSystem) -> tuple[float, float]:
     """Force of the cylinder in N and deflection of the tip in m at rest."""
-    position = equilibrium(system, system.gathered().load)
+    position = equilibrium(system, system.gather_loads().load)
     force, tip = (system.observers[name].row @ position for name in ("cylinder_force", "tip"))
     return float(force), float(tip)
 

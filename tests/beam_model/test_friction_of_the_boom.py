@@ -11,8 +11,7 @@ import pytest
 
 from beam_model.component import SegmentModel
 from beam_model.segment_model import gap_system
-from dynamics.contact import PowerContact
-from dynamics.friction import DryFriction
+from dynamics.contact import DryFriction, PowerContact
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion

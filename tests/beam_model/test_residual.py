@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from beam_model.calibration import elastic_compliance, residual_compliance, with_springs
-from tests.dynamics.test_condensed import MODES, system
+from tests.beam_model.test_section_fields import MODES, system
 
 
 def test_springs_add_what_the_fine_model_gives_way() -> None:

@@ -133,7 +133,7 @@ def test_section_forces_are_those_of_statics(kind: str) -> None:
         if kind == "timoshenko"
         else kantorovich_segments(boom, [16], "complete", rotary_inertia=False)
     )
-    system = gap_system(boom, models).gathered()
+    system = gap_system(boom, models).gather_loads()
     (line,) = lines(boom, models)
     found = line.read(equilibrium(system, system.load))
     np.testing.assert_allclose(found["moment"], 1000.0 * (8.0 - line.x), atol=8.0)

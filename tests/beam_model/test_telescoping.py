@@ -19,9 +19,8 @@ from beam_model.kantorovich import kantorovich_segments
 from beam_model.segment_model import gap_system
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
-from dynamics.drive.travel import HistorySum, SCurve, Stroke
 from dynamics.equilibrium import equilibrium
-from dynamics.excitation import History, PiecewiseLinear
+from dynamics.excitation import History, HistorySum, PiecewiseLinear, SCurve, Stroke
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
@@ -71,7 +70,7 @@ def test_standing_on_the_way_is_the_boom_built_there(paper_boom: Boom, kind: str
     system = SYSTEMS[kind](telescope(paper_boom, 0.0, DRIVE))
     for way, time in ((0.0, 0.0), (2.0, 2.5), (4.0, 5.0)):
         there = SYSTEMS[kind](telescope(paper_boom, way))
-        assert tips(system.standing(time)) == pytest.approx(tips(there), rel=1e-7)
+        assert tips(system.at_time(time)) == pytest.approx(tips(there), rel=1e-7)
     assert tips(system)[0] < 0.5 * tips(there)[0]
 
 
@@ -84,7 +83,7 @@ def test_three_segments_a_stop_and_dashpots_on_the_way(paper_boom: Boom) -> None
     def built(ways: tuple[float, float], drives: Sequence[Drive | None]) -> GapSystem:
         return elements(touching(three(paper_boom, ways, drives), [LAW, LAW]))
 
-    system, there = built((0.0, 0.0), drives).standing(2.0), built((1.0, 2.0), (None, None))
+    system, there = built((0.0, 0.0), drives).at_time(2.0), built((1.0, 2.0), (None, None))
     assert [type(t.history) for t in built((0.0, 0.0), drives).travels] == [
         SCurve, SCurve, HistorySum,
     ]  # fmt: skip
@@ -101,7 +100,7 @@ def test_in_space_the_rows_turn_with_the_sections(spatial_boom: Boom) -> None:
         boom = telescope(spatial_boom, way, drive, friction=0.2)
         return elements(touching(boom, LAW, LAW), length=0.5)
 
-    system, there = built(0.0, DRIVE).standing(5.0), built(4.0, None)
+    system, there = built(0.0, DRIVE).at_time(5.0), built(4.0, None)
     for rows in ("rows", "friction_rows"):
         found, expected = ((r := getattr(s, rows)) @ r.T for s in (system, there))
         assert found == pytest.approx(expected, rel=1e-8, abs=1e-10)
@@ -119,7 +118,7 @@ def test_a_slow_drive_follows_the_statics(paper_boom: Boom) -> None:
     rest = equilibrium(system, system.load)
     run = FixedStep(1.0e-4)(Motion(system, 80.0, 0.1, position=rest))
     for time in np.linspace(0.0, 80.0, 9):
-        there = tips(system.standing(time))[0]
+        there = tips(system.at_time(time))[0]
         found = float(run.data["tip"].sel(time=time, method="nearest"))
         assert found == pytest.approx(there, rel=1.0e-3)
     assert float(run.data["tip"][-1]) > 2.0 * float(run.data["tip"][0])
@@ -295,7 +294,7 @@ def test_a_pressed_boom_on_the_way_is_the_boom_built_there(
         along = x + way if x is not None and carrier == "inner" else x
         still = pressed(paper_boom, way, None, along)
         there = gap_system(touching(still, LAW), build(still))
-        stands = system.standing(time)
+        stands = system.at_time(time)
         assert tips(stands) == pytest.approx(tips(there), rel=1e-6)
         assert frequencies(stands) == pytest.approx(frequencies(there), rel=1e-6)
         factors.append(critical_factor(still, build(still)))
@@ -305,7 +304,7 @@ def test_a_pressed_boom_on_the_way_is_the_boom_built_there(
     # Without the force that goes along it would rest elsewhere.
     first = replace(system, travels=[replace(t, axial_forces=()) for t in system.travels])
     moves = x is None or x > 4.0
-    off = abs(tips(first.standing(5.0))[0] / tips(there)[0] - 1.0)
+    off = abs(tips(first.at_time(5.0))[0] / tips(there)[0] - 1.0)
     assert (off > 3e-4) == moves
 
 
@@ -316,7 +315,7 @@ def test_in_space_both_planes_soften(spatial_boom: Boom) -> None:
         boom = pressed(spatial_boom, way, drive)
         return elements(touching(boom, LAW, LAW), length=0.5)
 
-    here, there = built(0.0, DRIVE).standing(5.0), built(4.0, None)
+    here, there = built(0.0, DRIVE).at_time(5.0), built(4.0, None)
     assert frequencies(here) == pytest.approx(frequencies(there), rel=1e-6)
     plain = replace(here, softening=np.zeros((0, 0)))
     assert (frequencies(plain) > 1.0005 * frequencies(there)).sum() >= 2

@@ -22,11 +22,11 @@ from dynamics.motion import Motion
 from dynamics.predictability.ensemble import (
     EnsembleMember,
     Vary,
-    changed,
     check_varied,
     integrate_ensemble,
     perturbations,
     run_members,
+    vary_motion,
 )
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
 
@@ -81,7 +81,7 @@ def test_plays_that_differ_vary_each_by_its_part(above: float, expected: float) 
     sided = law.law.behind(above, 0.012)
     motion = Motion(replace(CHAOTIC, laws=[sided]), 1.0)
     check_varied(motion, "clearance")
-    (found,) = changed(motion, "clearance", 1.001).system.laws
+    (found,) = vary_motion(motion, "clearance", 1.001).system.laws
     assert found.above == pytest.approx(expected, rel=1e-12)
     assert found.below == pytest.approx(0.012012, rel=1e-12)
 

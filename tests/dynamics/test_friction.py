@@ -13,9 +13,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from dynamics.arrays import Array
-from dynamics.contact import PowerContact
+from dynamics.contact import DryFriction, PowerContact
 from dynamics.excitation import Excitation, Sine
-from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion

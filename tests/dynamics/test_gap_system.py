@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.contact import PowerContact
+from dynamics.contact import DryFriction, PowerContact
 from dynamics.excitation import Excitation, PiecewiseLinear, Step
-from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 
 LAW = PowerContact(stiffness=1.0e6, exponent=1.0).behind(1.0e-3)

@@ -12,7 +12,7 @@ import pytest
 
 from dynamics.integrator import AdaptiveStep, FixedStep, Integrator
 from dynamics.motion import Motion
-from dynamics.predictability.ensemble import changed, integrate_ensemble
+from dynamics.predictability.ensemble import integrate_ensemble, vary_motion
 from dynamics.predictability.horizon import (
     EARLY,
     Growth,
@@ -89,7 +89,9 @@ def test_what_parts_early_is_not_run_to_the_end() -> None:
     motion, sizes = Motion(CHAOTIC, 20.0, 1e-2), [1e-8, 1e-6]
     way = FixedStep(1e-3)
     found = measure_horizons(motion, sizes, "load", 1, way)
-    tips = [way(changed(motion, "load", 1.0 + size)).data["tip"].values for size in (0.0, *sizes)]
+    tips = [
+        way(vary_motion(motion, "load", 1.0 + size)).data["tip"].values for size in (0.0, *sizes)
+    ]
     time = 1e-2 * np.arange(tips[0].size)
     expected = [
         [horizon(np.array([tips[0], tip]), time, share) for share in (EARLY, 0.01)]

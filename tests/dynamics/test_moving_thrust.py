@@ -12,9 +12,9 @@ from scipy.linalg import eigh
 
 from dynamics.contact import PowerContact
 from dynamics.drive.row_table import MovingAxialForce, RowTable
-from dynamics.drive.travel import SCurve, Travel
+from dynamics.drive.travel import Travel
 from dynamics.equilibrium import equilibrium
-from dynamics.excitation import PiecewiseLinear
+from dynamics.excitation import PiecewiseLinear, SCurve
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.kernels.telescoping import (
     add_axial_energies,
@@ -110,7 +110,7 @@ def test_the_loop_pushes_as_the_matrix(s: float) -> None:
 
 def test_as_it_stands_its_own_modes_are_those_of_the_softer_boom() -> None:
     """Reference: analytic, the eigenvalues of diag(ω²) − K_G, and the same rest in both."""
-    stands = pressed_along(SCurve(2.0, 1.0)).standing(1.0)
+    stands = pressed_along(SCurve(2.0, 1.0)).at_time(1.0)
     own = stands.in_own_modes()
     expected = eigh(np.diag(stands.omega2) - softer(2.0), eigvals_only=True)
     assert own.omega2 == pytest.approx(expected, rel=1e-6)

@@ -10,11 +10,10 @@ import pytest
 
 from dynamics import time_step
 from dynamics.arrays import Array
-from dynamics.contact import ContactLaw, PowerContact
+from dynamics.contact import ContactLaw, DryFriction, PowerContact
 from dynamics.contact_table import TableContact
 from dynamics.contact_term import TERM
 from dynamics.failure import NumericsError
-from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.kernels import march
@@ -94,7 +93,7 @@ def test_random_steps_meet_their_laws() -> None:
     random, solved = np.random.default_rng(5), 0
     for _ in range(400):
         system, time = random_system(random), 10.0 ** random.uniform(-5.0, -2.0)
-        stacked = np.concatenate([system.rows, system.friction_rows, system.dashpots])
+        stacked = system.all_rows
         compliance = 0.5 * time**2 * stacked @ stacked.T
         start = 2.0e-3 * random.normal(size=len(stacked))
         problem = row_problem(len(stacked), len(system.frictions))

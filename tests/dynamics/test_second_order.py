@@ -15,7 +15,7 @@ from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
-from dynamics.second_order import buckling_factor, softened
+from dynamics.second_order import buckling_factor, soften_modes
 
 MASS, NEGATIVE, STIFFNESS, CLEARANCE = 3.0, -48.0, 1.0e6, 0.01
 GROWTH = np.sqrt(-NEGATIVE / MASS)
@@ -35,7 +35,7 @@ def test_modes_soften_as_the_whole_stiffness_does() -> None:
     omega2 = np.array([0.0, 0.0, 4.0e2, 9.0e4])
     slope = np.array([[0.0, 0.3, 0.7, -0.2], [0.0, 0.5, -0.4, 0.6]])
     geometric = 20.0 * slope.T @ slope
-    found, shapes = softened(omega2, geometric)
+    found, shapes = soften_modes(omega2, geometric)
     expected = np.linalg.eigvals(np.diag(omega2) - geometric).real
     np.testing.assert_allclose(found, np.sort(expected), rtol=1e-9, atol=1e-9)
     assert np.count_nonzero(found == 0.0) == 1

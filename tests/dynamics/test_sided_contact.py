@@ -28,14 +28,6 @@ def test_each_side_has_its_own_clearance() -> None:
     assert (limits["low"], limits["high"]) == (-10.0e-3, 4.0e-3)
 
 
-def test_the_play_is_that_of_both_sides() -> None:
-    """Reference: by hand; a rigid segment falls across all of it."""
-    assert pytest.approx(14.0e-3) == LAW.play
-    near = POWER.behind(4.0e-3)
-    assert near.play == POWER.upper().behind(4.0e-3).play == 8.0e-3
-    assert PowerContact(1.0e6, 1.0).behind(-1.0e-3).play == 0.0
-
-
 def test_parts_are_those_of_its_law() -> None:
     y = np.linspace(-0.02, 0.02, 41)
     above = LAW.one_sided(1)

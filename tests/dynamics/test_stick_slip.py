@@ -12,9 +12,9 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from dynamics.arrays import Array
-from dynamics.drive.stick_slip import DriveMotion, ElasticDrive, follow
-from dynamics.drive.travel import SCurve, Stroke
-from dynamics.excitation import PiecewiseLinear
+from dynamics.drive.stick_slip import DriveMotion, ElasticDrive, move_segment
+from dynamics.excitation import PiecewiseLinear, SCurve, Stroke
+from runs.pipeline.drives import critical_speed
 
 MASS, STIFFNESS, FRICTION = 500.0, 1.0e5, 1000.0
 OMEGA = np.sqrt(STIFFNESS / MASS)
@@ -29,7 +29,7 @@ def drawn(pulled: ElasticDrive, speed: float, duration: float, outputs: int) -> 
     """At a constant speed against a constant friction."""
     time = np.linspace(0.0, duration, outputs + 1)
     friction = np.full(time.size, FRICTION)
-    return follow(pulled, Stroke(2.0 * speed * duration, speed), time, friction)
+    return move_segment(pulled, Stroke(2.0 * speed * duration, speed), time, friction)
 
 
 @pytest.mark.parametrize("speed", [0.01, 0.05, 0.3])
@@ -42,10 +42,12 @@ def test_cycles_of_sticking_and_slipping(speed: float) -> None:
     first = 1.5 * FRICTION / STIFFNESS / speed
     found = drawn(ROPE, speed, first + 9.99 * period, 21_000)
     time = np.linspace(0.0, first + 9.99 * period, 21_001)
-    begins = time[1:][(found.drawn_speed[:-1] == 0.0) & (found.drawn_speed[1:] > 0.0)]
+    begins = time[1:][
+        (found.series["drawn_speed"][:-1] == 0.0) & (found.series["drawn_speed"][1:] > 0.0)
+    ]
     assert begins[0] == pytest.approx(first, abs=2.0 * time[1])
     assert (begins[9] - begins[0]) / 9.0 == pytest.approx(period, rel=3e-4)
-    told = found.told
+    told = found.results
     assert told.sticks == 10
     assert told.peak == pytest.approx(FRICTION + STIFFNESS * radius, rel=1e-5)
     assert told.speed == pytest.approx(speed + OMEGA * radius, rel=1e-5)
@@ -57,11 +59,11 @@ def test_cycles_of_sticking_and_slipping(speed: float) -> None:
 def test_above_a_critical_speed_nothing_sticks(ratio: float) -> None:
     """Reference: analytic, the speed at which a damped swing just comes back to it."""
     pulled = damped(ratio)
-    critical = pulled.critical_speed(FRICTION)
+    critical = critical_speed(pulled, FRICTION)
     for part, sticks in ((0.999, True), (1.001, False)):
         speed = part * critical
         duration = 5.0 * FRICTION / STIFFNESS / speed + 40.0 * np.pi / OMEGA
-        assert (drawn(pulled, speed, duration, 2000).told.sticks > 1) == sticks
+        assert (drawn(pulled, speed, duration, 2000).results.sticks > 1) == sticks
 
 
 def test_little_damping_and_much_of_it() -> None:
@@ -69,12 +71,12 @@ def test_little_damping_and_much_of_it() -> None:
     sticks at every speed, and what creeps back never comes to stick again."""
     small = 1.0e-6
     limit = 0.5 * FRICTION / np.sqrt(4.0 * np.pi * small * STIFFNESS * MASS)
-    assert damped(small).critical_speed(FRICTION) == pytest.approx(limit, rel=1e-3)
-    assert damped(0.0).critical_speed(FRICTION) == np.inf
-    assert damped(1.0).critical_speed(FRICTION) == 0.0
-    assert damped(0.99).critical_speed(FRICTION) == 0.0
-    assert replace(ROPE, sticking=1.0).critical_speed(FRICTION) == 0.0
-    assert drawn(damped(1.0), 0.01, 30.0, 3000).told.sticks == 0
+    assert critical_speed(damped(small), FRICTION) == pytest.approx(limit, rel=1e-3)
+    assert critical_speed(damped(0.0), FRICTION) == np.inf
+    assert critical_speed(damped(1.0), FRICTION) == 0.0
+    assert critical_speed(damped(0.99), FRICTION) == 0.0
+    assert critical_speed(replace(ROPE, sticking=1.0), FRICTION) == 0.0
+    assert drawn(damped(1.0), 0.01, 30.0, 3000).results.sticks == 0
 
 
 def test_a_stiff_drive_follows() -> None:
@@ -87,10 +89,10 @@ def test_a_stiff_drive_follows() -> None:
     off = []
     for stiffness in (1.0e8, 1.0e9):
         pulled = ElasticDrive(MASS, stiffness, dashpot=0.4 * np.sqrt(MASS * stiffness))
-        found = follow(pulled, way, time, friction)
-        off.append(np.abs(found.drive_force[1:] - FRICTION - asked)[inside].max())
-        lag = found.drive_force[1:] / stiffness
-        assert found.drive_lag[1:][inside] == pytest.approx(lag[inside], rel=0.02)
+        found = move_segment(pulled, way, time, friction)
+        off.append(np.abs(found.series["drive_force"][1:] - FRICTION - asked)[inside].max())
+        lag = found.series["drive_force"][1:] / stiffness
+        assert found.series["drive_lag"][1:][inside] == pytest.approx(lag[inside], rel=0.02)
     assert off[0] < 2e-3 * FRICTION
     assert off[1] < 2e-4 * FRICTION
 
@@ -101,11 +103,11 @@ def test_other_drives_push() -> None:
     lift = Stroke(travel=2.0, speed=1.0, ramp=1.0)
     pulled = replace(ROPE, thrust=300.0, beside=((0.4 * MASS, lift),))
     time = np.linspace(0.0, 0.9, 901)
-    found = follow(pulled, SCurve(1e-9, 1.0, start=5.0), time, np.zeros(time.size))
+    found = move_segment(pulled, SCurve(1e-9, 1.0, start=5.0), time, np.zeros(time.size))
     behind = 0.4 * MASS / STIFFNESS * (1.0 - np.cos(OMEGA * time))
-    assert found.drive_lag == pytest.approx(behind, abs=2e-3 * behind.max())
-    assert found.told.peak == pytest.approx(300.0 + 0.8 * MASS, rel=1e-3)
-    assert found.drive_force[0] == 300.0
+    assert found.series["drive_lag"] == pytest.approx(behind, abs=2e-3 * behind.max())
+    assert found.results.peak == pytest.approx(300.0 + 0.8 * MASS, rel=1e-3)
+    assert found.series["drive_force"][0] == 300.0
 
 
 @pytest.mark.parametrize("start", [0.0, 0.1])
@@ -114,9 +116,9 @@ def test_another_drive_that_starts_at_once(start: float) -> None:
     pulled, which swings by m_b v/(m ω)."""
     pulled = replace(ROPE, beside=((0.4 * MASS, Stroke(2.0, 1.0, start=start)),))
     time = np.linspace(0.0, 0.9, 901)
-    found = follow(pulled, SCurve(1e-9, 1.0, start=5.0), time, np.zeros(time.size))
+    found = move_segment(pulled, SCurve(1e-9, 1.0, start=5.0), time, np.zeros(time.size))
     behind = 0.4 / OMEGA * np.sin(OMEGA * np.maximum(time - start, 0.0))
-    assert found.drive_lag == pytest.approx(behind, abs=0.01 * behind.max())
+    assert found.series["drive_lag"] == pytest.approx(behind, abs=0.01 * behind.max())
 
 
 Friction = Callable[[Array | float], Array]
@@ -174,10 +176,10 @@ def missed(ratio: float, friction: Friction, counts: Array) -> list[float]:
         time = np.linspace(0.0, 7.0, count + 1)
         within = time[1:, None] - (0.5 + np.arange(20)) / 20.0 * time[1]
         means = friction(within).mean(axis=1)
-        found = follow(pulled, way, time, np.concatenate([means[:1], means]))
-        assert found.told.sticks == sticks > 5
-        assert found.told.energy_residual < 1e-12
-        off.append(abs(float(way(time[-1])) - found.drive_lag[-1] - place))
+        found = move_segment(pulled, way, time, np.concatenate([means[:1], means]))
+        assert found.results.sticks == sticks > 5
+        assert found.results.energy_residual < 1e-12
+        off.append(abs(float(way(time[-1])) - found.series["drive_lag"][-1] - place))
     return off
 
 
@@ -203,10 +205,12 @@ def test_a_drive_that_goes_back_and_forth() -> None:
     way in; with nothing between sticking and slipping it neither overshoots nor swings."""
     way = PiecewiseLinear((0.0, 10.0, 20.0), (0.0, 0.5, 0.0))
     time = np.linspace(0.0, 20.0, 4001)
-    found = follow(replace(damped(0.3), sticking=1.0), way, time, np.full(time.size, FRICTION))
-    assert found.drive_lag[1900] == pytest.approx(FRICTION / STIFFNESS, rel=1e-6)
-    assert found.told.behind == pytest.approx(-FRICTION / STIFFNESS, rel=1e-6)
-    assert found.told.mean == pytest.approx(FRICTION, rel=0.03)
+    found = move_segment(
+        replace(damped(0.3), sticking=1.0), way, time, np.full(time.size, FRICTION)
+    )
+    assert found.series["drive_lag"][1900] == pytest.approx(FRICTION / STIFFNESS, rel=1e-6)
+    assert found.results.behind == pytest.approx(-FRICTION / STIFFNESS, rel=1e-6)
+    assert found.results.mean == pytest.approx(FRICTION, rel=0.03)
 
 
 @pytest.mark.parametrize(

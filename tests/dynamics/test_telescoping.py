@@ -12,12 +12,19 @@ import numpy as np
 import pytest
 
 from dynamics.arrays import Array
-from dynamics.contact import ContactLaw, PowerContact
+from dynamics.contact import ContactLaw, DryFriction, PowerContact
 from dynamics.drive.row_table import RowTable
-from dynamics.drive.travel import HistorySum, SCurve, Stroke, Travel
+from dynamics.drive.travel import Travel
 from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp
-from dynamics.friction import DryFriction
+from dynamics.excitation import (
+    Excitation,
+    History,
+    HistorySum,
+    PiecewiseLinear,
+    Ramp,
+    SCurve,
+    Stroke,
+)
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
@@ -144,7 +151,7 @@ def test_a_slow_drive_passes_through_places_of_rest() -> None:
     damping = np.append(0.2 * frequencies(8), 20.0)
     slow = rider(SCurve(2.5, 20.0), law, mass=20.0, weight=2.0e3, start=2.5, damping=damping)
     run = FixedStep(2e-3)(Motion(slow, 20.0, 0.1, equilibrium(slow, slow.load)))
-    rests = [slow.standing(time) for time in run.time]
+    rests = [slow.at_time(time) for time in run.time]
     tips = [one.observers["tip"].row @ equilibrium(one, one.load) for one in rests]
     assert np.abs(run.data["tip"] - tips).max() < 2e-3 * np.ptp(tips)
     compliance = [(sines(x, 8) ** 2 / frequencies(8) ** 2).sum() for x in (2.5, 5.0)]
@@ -226,7 +233,7 @@ def test_tables_hold_cubics_and_come_near_to_the_rest() -> None:
 
 def test_a_system_that_stands_as_it_is_drawn() -> None:
     """Reference: analytic, the sines at the place of the rider."""
-    there = lossy(SCurve(5.0, 0.4)).standing(0.4)
+    there = lossy(SCurve(5.0, 0.4)).at_time(0.4)
     row = np.append(-sines(7.0, 8), 1.0 / np.sqrt(20.0))
     assert there.travels == ()
     assert there.rows[0] == pytest.approx(row, abs=1e-9)

@@ -14,14 +14,12 @@ from scipy.linalg import eigh
 from scipy.special import gamma
 
 from dynamics.arrays import Array
-from dynamics.contact import ContactLaw, PowerContact
+from dynamics.contact import ContactLaw, DryFriction, PowerContact
 from dynamics.contact_table import TableContact
-from dynamics.drive.travel import SCurve, Stroke
 from dynamics.energy import check_energy
 from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Excitation, PiecewiseLinear, Sine
+from dynamics.excitation import Excitation, PiecewiseLinear, SCurve, Sine, Stroke
 from dynamics.failure import NumericsError
-from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion

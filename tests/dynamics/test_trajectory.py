@@ -11,9 +11,8 @@ import pytest
 import xarray as xr
 
 from dynamics.arrays import Array
-from dynamics.contact import PowerContact
+from dynamics.contact import DryFriction, PowerContact
 from dynamics.energy import ENERGIES, energy_residual
-from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion

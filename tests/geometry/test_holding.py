@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from dynamics.contact import PowerContact
-from dynamics.excitation import Ramp, Released, Step
+from dynamics.excitation import Ramp, ReleasedLoad, Step
 from geometry.boom import Boom, BoomError, Collar, Cylinder, Load, Material, Segment, Stop, Support
 from geometry.holding import check_pressed
 from geometry.observation import Observation
@@ -71,7 +71,7 @@ LOOSE = (
     "nothing holds '{}': give it two supports, a hinge and a cylinder whose line passes beside it, "
     "or a joint with two stations to a segment that is held"
 )
-PASSING = Load(1, "z", -1e5, 19.0, Ramp(1.0)), Load(1, "z", -1e5, 19.0, Released())
+PASSING = Load(1, "z", -1e5, 19.0, Ramp(1.0)), Load(1, "z", -1e5, 19.0, ReleasedLoad())
 
 
 @pytest.mark.parametrize("loads", [(), PASSING], ids=["none", "none that lasts"])

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from dynamics.drive.travel import SCurve
+from dynamics.excitation import SCurve
 from geometry.boom import (
     Boom,
     BoomError,

@@ -115,7 +115,7 @@ def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
     case = case.model_copy(update={"loads": (late,)})
     boom, model = build_boom(case), case.models[1]
     built = build(case, boom, model)
-    system, lines = built.system.gathered(), model.lines(boom, built)
+    system, lines = built.system.gather_loads(), model.lines(boom, built)
     found = positions(system, instants(system, case.time.duration))
     assert list(found) == [0.0, 6.0]
     assert list(extended_positions(system, case.time.duration)) == [5.0]

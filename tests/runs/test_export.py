@@ -112,7 +112,7 @@ def test_a_beam_rests_and_peaks_elsewhere_as_here(tmp_path: Path) -> None:
     script = tmp_path / "boom.py"
     write(case, "", None, script, None)
     system = build(case, build_boom(case), case.models[0]).system
-    at_first = replace(system.gathered(), excitations=())
+    at_first = replace(system.gather_loads(), excitations=())
     rest = at_first.observers["tip"].row @ equilibrium(at_first, at_first.load)
     assert run(script, "--static") == pytest.approx(float(rest), rel=1e-6)
     tip = np.asarray(move(system, 0.8).data["tip"].values)

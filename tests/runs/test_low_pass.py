@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from runs.pipeline.low_pass import SlowPeaks, slow, slow_peaks
+from runs.pipeline.low_pass import SlowPeaks, filter_low_pass, slow_peaks
 
 TIME = np.arange(10_001) * 1e-3
 CUTOFF = 1.7
@@ -24,7 +24,7 @@ def test_gain_is_that_of_the_filter_passed_twice() -> None:
     middle = slice(3000, 7000)
     for frequency in (0.5, 1.0, CUTOFF, 2.5, 8.0):
         wave = np.cos(2.0 * np.pi * frequency * TIME)
-        found = slow(wave, 1e-3, CUTOFF)[middle]
+        found = filter_low_pass(wave, 1e-3, CUTOFF)[middle]
         gain = 1.0 / (1.0 + (frequency / CUTOFF) ** 8)
         np.testing.assert_allclose(found, gain * wave[middle], atol=2e-3)
 
@@ -81,7 +81,7 @@ def test_a_motion_without_peaks_has_no_period() -> None:
 )
 def test_refuses_what_cannot_be_filtered(times: int, cutoff: float, message: str | None) -> None:
     if message is None:
-        assert slow(np.ones(times), 1e-3, cutoff) == pytest.approx(1.0)
+        assert filter_low_pass(np.ones(times), 1e-3, cutoff) == pytest.approx(1.0)
         return
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        slow(np.ones(times), 1e-3, cutoff)
+        filter_low_pass(np.ones(times), 1e-3, cutoff)

@@ -150,7 +150,7 @@ def test_fibres_of_a_taper_are_those_of_the_local_section() -> None:
     (arm,) = with_compression([arm], [], [Thrust(0, 8.0, 1e4)])
     boom = Boom((arm,), (), (Load(0, "z", -1.0, 8.0, Step()),))
     models = finite_element_segments(boom, 0.5, "euler-bernoulli", rotary_inertia=False)
-    system = gap_system(boom, models).gathered()
+    system = gap_system(boom, models).gather_loads()
     (line,) = lines(boom, models)
     fibres = Fibres.of(arm, line)
     assert fibres is not None

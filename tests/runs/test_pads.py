@@ -150,7 +150,7 @@ def test_at_rest_the_pad_that_bears_most_is_told(tmp_path: Path, shim: float) ->
     above = pad_on("above", 0.05, 0.02)
     case = case_with(tmp_path, several(above, *below))
     boom = build_boom(case)
-    system = build(case, boom, case.models[0]).system.gathered()
+    system = build(case, boom, case.models[0]).system.gather_loads()
     position = positions(system)[0.0]
     tail, head = station_loads(boom, system, position)
     of_rows = [

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure as Sheet
 
 from dynamics.contact import PowerContact
 from dynamics.drive.row_table import RowTable
-from dynamics.drive.travel import SCurve, Travel
-from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine
+from dynamics.drive.travel import Travel
+from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, SCurve, Sine
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import simulate

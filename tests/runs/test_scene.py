@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 from dynamics.contact import PowerContact
-from dynamics.drive.travel import SCurve
+from dynamics.excitation import SCurve
 from dynamics.line import Line
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Material, Segment, Stop, Support

@@ -78,7 +78,7 @@ def test_the_shear_force_is_that_of_where_axial_forces_have_come_to() -> None:
     force = 0.2 * np.pi**2 * STIFFNESS / (4.0 * LENGTH**2)
     boom = replace(column(force), loads=(Load(0, "z", -1.0e3, LENGTH, Step()),))
     models = finite_element_segments(boom, 0.25, "euler-bernoulli", False)
-    system = gap_system(touching(boom, LAW), models).gathered()
+    system = gap_system(touching(boom, LAW), models).gather_loads()
     outer = lines(boom, models)[0]
     found = section_forces(boom, 0, outer, rest_at(system, 1.0), np.array(1.0))
     before = outer.x < END

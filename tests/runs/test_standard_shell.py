@@ -48,7 +48,7 @@ def test_a_boom_that_its_weight_holds_down_becomes_a_shell(tmp_path: Path) -> No
     case = load(str(path))
     boom = build_boom(case)
     tools = Workshop(MPI.COMM_SELF)
-    system = build(case, boom, case.models[0], tools).system.gathered()
+    system = build(case, boom, case.models[0], tools).system.gather_loads()
     (gap,) = system.rows @ equilibrium(system, system.load)
     weight = 9.80665 * boom.segments[0].mass_per_length * 6.0
     assert system.laws[0].force(np.array(gap)) == pytest.approx(-weight * 3.0 / 5.0, rel=1e-6)
@@ -89,7 +89,7 @@ def test_axial_forces_turn_a_shared_shell_about_its_lowered_pin(tmp_path: Path) 
     case = load(str(path))
     boom = build_boom(case)
     assert boom.segments[0].mass_per_length == pytest.approx(80.0)
-    system = build(case, boom, case.models[0], Workshop(MPI.COMM_SELF)).system.gathered()
+    system = build(case, boom, case.models[0], Workshop(MPI.COMM_SELF)).system.gather_loads()
     position = equilibrium(system, system.load)
     force = system.observers["cylinder_force"].row @ position
     assert force == pytest.approx(55.89e3, rel=1e-3)

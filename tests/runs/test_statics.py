@@ -115,7 +115,7 @@ def test_series_weigh_and_swing_with_stiffeners_as_elements_do(tmp_path: Path) -
     text = STIFFENED.replace("}]", "}" + elements, 1).replace("[3]", "[12]")
     case = read_case(tmp_path, text)
     boom = build_boom(case)
-    series, beam = (build(case, boom, model).system.gathered() for model in case.models)
+    series, beam = (build(case, boom, model).system.gather_loads() for model in case.models)
     tips = [
         float(system.observers["tip"].row @ system.static_response(system.load))
         for system in (series, beam)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.drive.travel import SCurve
+from dynamics.excitation import SCurve
 from geometry.joint import Drive
 from runs.report import theme
 from runs.report.viewer import LEFT, View, few_shapes, packed, symbol_lines

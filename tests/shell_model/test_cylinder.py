@@ -53,7 +53,7 @@ def beam(boom: Boom) -> GapSystem:
 
 
 def at_rest(system: GapSystem) -> dict[str, float]:
-    position = equilibrium(system, system.gathered().load)
+    position = equilibrium(system, system.gather_loads().load)
     return {
         name: float(system.observers[name].row @ position) for name in ("cylinder_force", "tip")
     }
@@ -64,7 +64,7 @@ def test_walls_carry_what_the_cylinder_pushes_along() -> None:
     """Reference: by hand, its force times the slope of its line, from its lug to the hinge."""
     boom = luffed()
     made = reduce_boom(boom, ShellOptions(0.2, krylov=KrylovOptions(moments=2)), MPI.COMM_SELF)
-    position = equilibrium(made.system, made.system.gathered().load)
+    position = equilibrium(made.system, made.system.gather_loads().load)
     force = float(made.system.observers["cylinder_force"].row @ position)
     assert made.fields is not None
     state = ("time", "mode"), position[None].astype(np.float32)
@@ -141,7 +141,7 @@ def test_two_cylinders_hold_a_shell_in_space_as_a_beam() -> None:
     found, expected = (
         [float(system.observers[name].row @ system.static_response(load)) for name in names]
         for system in systems
-        for load in [system.gathered().load]
+        for load in [system.gather_loads().load]
     )
     assert abs(expected[1]) > 100.0
     assert found == pytest.approx(expected, rel=1.5e-2)
@@ -156,6 +156,6 @@ def test_a_shell_rests_on_a_hinge_and_a_stop() -> None:
     segment = replace(luffed().segments[0], supports=(Support(0.0),))
     boom = replace(luffed(), segments=(segment,), stops=(stop,), cylinders=())
     system = shell(boom)
-    gaps = system.rows @ equilibrium(system, system.gathered().load)
+    gaps = system.rows @ equilibrium(system, system.gather_loads().load)
     pressed = sum(float(law.force(gap)) for law, gap in zip(system.laws, gaps, strict=True))
     assert pressed == pytest.approx((-1500.0 * 10.0 * 5.0 - 5.0e3 * 10.0) / 6.0, rel=1e-6)

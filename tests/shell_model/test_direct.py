@@ -13,10 +13,9 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.linalg import eigh
 
-from dynamics.contact import PowerContact, contact_terms
+from dynamics.contact import DryFriction, PowerContact, contact_terms
 from dynamics.energy import energy_residual
 from dynamics.failure import NumericsError
-from dynamics.friction import DryFriction
 from dynamics.gap_builder import GapBuilder, Observed
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion

@@ -10,9 +10,8 @@ import pytest
 
 from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system
-from dynamics.contact import PowerContact
+from dynamics.contact import DryFriction, PowerContact
 from dynamics.excitation import Ramp, Step
-from dynamics.friction import DryFriction
 from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, Load, Stop

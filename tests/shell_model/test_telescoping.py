@@ -14,8 +14,8 @@ from scipy.linalg import eigh
 from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
-from dynamics.drive.travel import SCurve, Stroke
 from dynamics.equilibrium import equilibrium
+from dynamics.excitation import SCurve, Stroke
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
@@ -70,7 +70,7 @@ def standing(system: GapSystem, way: float) -> GapSystem:
     """Return the shell at its position after an extension by its drive in m."""
     (travel,) = system.travels
     times = np.linspace(0.0, 1.0, 20001)
-    return system.standing(float(np.interp(way, travel.history(times), times)))
+    return system.at_time(float(np.interp(way, travel.history(times), times)))
 
 
 def test_springs_give_way_and_weigh_as_what_they_stand_for() -> None:
@@ -128,7 +128,7 @@ def test_pads_of_a_boom_in_space_on_the_way() -> None:
         options = ShellOptions(2.0 * SIZE)
         return reduce_boom(touching(boom, LAW, LAW), options, MPI.COMM_WORLD).system
 
-    here, there = built(0.0, DRIVE).standing(1.0), built(2.0, None)
+    here, there = built(0.0, DRIVE).at_time(1.0), built(2.0, None)
     rests = [(one, equilibrium(one, one.load)) for one in (here, there)]
     for name in ("tip", "tip_lateral", "head", "head_lateral"):
         ends = [float(one.observers[name].row @ rest) for one, rest in rests]

@@ -10,7 +10,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from dynamics.friction import DryFriction
+from dynamics.contact import DryFriction
 from geometry.arrays import Array
 from runs.case import reading as case_file
 from studies.numerics_1997.samples import (

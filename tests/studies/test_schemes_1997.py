@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.contact import PowerContact
-from dynamics.friction import DryFriction
+from dynamics.contact import DryFriction, PowerContact
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
@@ -154,7 +153,7 @@ def test_the_lowest_modes_are_kept_in_their_order() -> None:
         oscillator(), omega2=np.array([9.0, 0.0, 4.0]), load=np.array([1.0, 2.0, 3.0]),
         rows=rows, laws=sprung().laws, station_of_row=np.array([0]), stations=[0.0],
         damping=np.zeros(3), dashpots=np.zeros((0, 3)), friction_rows=np.zeros((0, 3)),
-        released=np.zeros(3), thrown=np.zeros(3), observers={},
+        released_load=np.zeros(3), initial_impulse=np.zeros(3), observers={},
     )  # fmt: skip
     cut = lowest(system, 2)
     assert cut.omega2.tolist() == [0.0, 4.0]

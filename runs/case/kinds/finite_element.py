@@ -98,11 +98,11 @@ class BeamElements(CalibratedTable):
         return finite_element_segments(boom, self.element_length, self.theory, self.rotary_inertia)
 
     def moving(self, built: Built, shell: ReducedShell, boom: Boom) -> Built:
-        from dynamics.reduction import condensed
+        from beam_model.section_fields import condense
 
         if not self.section_fields:
             return super().moving(built, shell, boom)
-        system, shapes = condensed(shell.system, FIELDS * len(boom.segments))
+        system, shapes = condense(shell.system, FIELDS * len(boom.segments))
         along: list[Line] = []
         if shell.fields is not None:
             from shell_model.stress.lines import lines

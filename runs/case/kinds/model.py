@@ -325,9 +325,11 @@ class ModelTable(CaseTable):
             NumericsError: the motion cannot be computed.
         """
         from dynamics.integrator import AdaptiveStep, FixedStep
-        from dynamics.motion import begin
+        from dynamics.motion import build_motion
 
-        motion = begin(self.system(), duration, output_step, at_rest, damping_ratio, rayleigh)
+        motion = build_motion(
+            self.system(), duration, output_step, at_rest, damping_ratio, rayleigh
+        )
         return (AdaptiveStep(tolerance) if self.step is None else FixedStep(self.step))(motion)
 
     def _check_drives(self, where: str, boom: Boom) -> None:

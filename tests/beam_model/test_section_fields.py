@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from beam_model.calibration import elastic_compliance
-from dynamics.contact import PowerContact
-from dynamics.friction import DryFriction
+from beam_model.section_fields import condense
+from dynamics.contact import DryFriction, PowerContact
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.reduction import condensed
 
 MODES = 60
 
@@ -38,7 +37,7 @@ def system(num_modes: int = MODES) -> GapSystem:
 def test_a_condensed_system_answers_slow_forces_alike() -> None:
     """Reference: analytic, C(σ) = B (Ω² + σ)⁻¹ Bᵀ of the whole system."""
     whole = system()
-    few, shapes = condensed(whole, 20)
+    few, shapes = condense(whole, 20)
     np.testing.assert_allclose(shapes.T @ shapes, np.eye(20), atol=1e-12)
     assert few.num_modes == 20
     np.testing.assert_allclose(few.frequencies[:12], whole.frequencies[:12], rtol=1e-12, atol=1e-9)
@@ -61,7 +60,7 @@ def test_modes_that_are_pushed_are_kept_before_slower_ones_that_are_not() -> Non
     whole = system()
     signs = np.sign(np.vstack([whole.rows, whole.friction_rows, whole.load]))
     signs[:, 1::2] = 0.0
-    few, _ = condensed(replace(whole, rows=signs[:2], friction_rows=signs[2:3], load=signs[3]), 24)
+    few, _ = condense(replace(whole, rows=signs[:2], friction_rows=signs[2:3], load=signs[3]), 24)
     expected = whole.frequencies[np.r_[0, 1, 2, 4:30:2]]
     np.testing.assert_allclose(few.frequencies[:16], expected, rtol=1e-12, atol=1e-9)
 
@@ -76,7 +75,7 @@ def test_rigid_motions_stay_where_pushes_leave_no_room() -> None:
         laws=[PowerContact(1e7, 1.0).behind(0.01)] * 24,
         station_of_row=np.arange(24) % 2,
     )
-    few, _ = condensed(whole, 24)
+    few, _ = condense(whole, 24)
     assert few.omega2.min() == 0.0
     np.testing.assert_allclose(elastic_compliance(few), elastic_compliance(whole), rtol=1e-8)
 
@@ -84,10 +83,10 @@ def test_rigid_motions_stay_where_pushes_leave_no_room() -> None:
 def test_few_coordinates_are_left_as_they_are() -> None:
     """Reference: non-regression, the same object."""
     few = system(12)
-    assert condensed(few, 12)[0] is few
+    assert condense(few, 12)[0] is few
 
 
 def test_a_system_is_condensed_before_it_is_damped() -> None:
     damped = replace(system(), damping=np.ones(MODES))
     with pytest.raises(ValueError, match="a system is condensed before it is damped"):
-        condensed(damped, 20)
+        condense(damped, 20)

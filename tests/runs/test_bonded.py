@@ -12,7 +12,7 @@ from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Excitation, Step
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.reduction import bonded_system
+from runs.pipeline.bonded import bonded_system
 
 LAW = PowerContact(1e6, 1.0).behind(0.01)
 

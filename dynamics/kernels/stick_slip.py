@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A mass that a spring pulls against dry friction, from sticking to slipping and back.
+"""Steps of a mass that a spring pulls against dry friction, from sticking to slipping and back.
 
 Each stretch with linear data is exact. z = s_c − s is the lag of the mass behind the far end of the
 spring. While it slips, m z̈ + c ż + k z = σ R − p. While it sticks, z grows with that end, until
@@ -27,7 +27,7 @@ class SlidingMass(NamedTuple):
 
 
 class Leg(NamedTuple):
-    """The data of a straight stretch: ṡ_c in m/s, p at its start in N, its rise in N/s, R in N."""
+    """Data that are linear for a time: ṡ_c in m/s, p at its start in N, its rise in N/s, R in N."""
 
     rate: float
     push: float
@@ -49,8 +49,9 @@ HIGH, LOW, FASTEST, HARDEST, JUMP, STICKS = range(6)
 # Changes of phase within a leg after which it sticks to the end of it.
 _MOST_TURNS = 20
 
-# Bisections, which find a time to round-off.
-_HALVINGS = 60
+# Places in a leg at which the phase is checked, so that the speed at which it dips back is right to
+# 1e-5; and bisections, which find a time to round-off.
+_LOOKS, _HALVINGS = 16, 60
 
 # Lobatto's five places in a stretch, its ends among them, and their weights.
 _PLACES = np.array([0.0, 0.5 - np.sqrt(3.0 / 28.0), 0.5, 0.5 + np.sqrt(3.0 / 28.0), 1.0])
@@ -115,41 +116,28 @@ def stays(body: SlidingMass, state: Array, leg: Leg, time: float) -> bool:
 
 
 @njit(**LOOP)
-def slows(body: SlidingMass, state: Array, leg: Leg, time: float) -> bool:
-    """Return whether its slip becomes slower after a time in s."""
-    return bool(state[SIGN] * motion_after(body, state, leg, time)[2] < leg.friction)
-
-
-@njit(**LOOP)
-def end_of(slowing: bool, body: SlidingMass, state: Array, leg: Leg, high: float) -> float:
-    """Return the time in s, at most ``high``, at which the phase or its slowing ends."""
-    low = 0.0
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        if slows(body, state, leg, middle) if slowing else stays(body, state, leg, middle):
-            low = middle
-        else:
-            high = middle
-    return high
-
-
-@njit(**LOOP)
 def time_in_phase(body: SlidingMass, state: Array, leg: Leg, left: float) -> float:
     """Return for how many of the s left it stays in its phase, which a moment may end."""
-    if not stays(body, state, leg, 0.0):
-        return 0.0
-    slowest = left
-    turns = state[SIGN] != 0.0 and slows(body, state, leg, 0.0)
-    if turns and stays(body, state, leg, left) and not slows(body, state, leg, left):
-        slowest = end_of(True, body, state, leg, left)
-    return left if stays(body, state, leg, slowest) else end_of(False, body, state, leg, slowest)
+    low = 0.0
+    for place in range(_LOOKS + 1):
+        high = left * place / _LOOKS
+        if not stays(body, state, leg, high):
+            for _ in range(_HALVINGS):
+                middle = 0.5 * (low + high)
+                if stays(body, state, leg, middle):
+                    low = middle
+                else:
+                    high = middle
+            return high
+        low = high
+    return left
 
 
 @njit(**LOOP)
-def cover(
+def advance_leg(
     body: SlidingMass, state: Array, leg: Leg, time: float, sums: Array, largest: Array
 ) -> None:
-    """Advance through a time in s whose data are straight, from phase to phase."""
+    """Advance through a time in s of linear data, from phase to phase."""
     left, turns = time, 0
     while left > 0.0 and turns < _MOST_TURNS:
         turns += 1
@@ -169,16 +157,16 @@ def cover(
 
 
 @njit(**LOOP)
-def march_pulled(
-    body: SlidingMass, step: float, substeps: int, ways: Array, pushes: Array, frictions: Array,
+def march_stick_slip(
+    body: SlidingMass, step: float, substeps: int, commands: Array, pushes: Array, frictions: Array,
     recorded: Array, sums: Array, largest: Array,
 ) -> None:  # fmt: skip
     """Advance from output to output.
 
     Args:
         body: that is pulled.
-        step: between ways, in s; ``substeps`` of them make an output.
-        ways, pushes: (num_outputs · substeps + 1,) s_c in m and p in N.
+        step: between commands, in s; ``substeps`` of them make an output.
+        commands, pushes: (num_outputs · substeps + 1,) s_c in m and p in N.
         frictions: (num_outputs + 1,) R in N up to each output.
         recorded: (num_outputs + 1, 3) gets z in m, ṡ in m/s, s̈ in m/s².
         sums: (num_outputs + 1, 5), gets the sums up to then.
@@ -188,10 +176,10 @@ def march_pulled(
     for output in range(1, frictions.size):
         sums[output] = sums[output - 1]
         for number in range((output - 1) * substeps, output * substeps):
-            rate = (ways[number + 1] - ways[number]) / step
+            rate = (commands[number + 1] - commands[number]) / step
             rise = (pushes[number + 1] - pushes[number]) / step
             leg = Leg(rate, pushes[number], rise, frictions[output])
-            cover(body, state, leg, step, sums[output], largest)
+            advance_leg(body, state, leg, step, sums[output], largest)
         recorded[output, 0], recorded[output, 1] = state[LAG], state[SPEED]
         if state[SIGN] != 0.0:
             leg = Leg(leg.rate, pushes[output * substeps], leg.rise, leg.friction)

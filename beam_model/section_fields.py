@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Shells condensed to as few coordinates as a beam has: section fields.
+
+Some modes stay unchanged: a few as the slowest, the others as those whose inertia
+responds most to loads. Under a load b a mode deflects by b²/ω², its inertia by b²/ω⁴. Of the rest,
+the motions that forces excite are kept. They match ``MOMENTS`` derivatives at rest, so that statics
+is exact and the inertia of local deformation is accurate to the first orders (MacNeal 1971; Rubin
+1975, whose residual modes are the first block).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dynamics.gap_system import GapSystem
+from dynamics.reduction import independent_columns, reduce_modes
+from geometry.arrays import Array, Indices
+
+# Number of blocks Ω⁻²ᵏ Bᵀ of the load vectors.
+MOMENTS = 2
+# Blocks take no more than this part of the coordinates, unless one alone does.
+_OF_ALL = 1.0 / 3.0
+# Fraction of the coordinates for the slowest modes, whether loaded or not.
+_SLOWEST = 1.0 / 8.0
+
+
+def condense(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
+    """Return the system in ``most`` coordinates at most, and their shapes.
+
+    The shapes are (num_modes, num_coordinates). More coordinates remain where loads and rows alone
+    need them.
+
+    Args:
+        system: without modal damping, which a case adds later.
+        most: of all segments together.
+
+    Raises:
+        ValueError: the system has modal damping.
+    """
+    if system.damping.any():
+        raise ValueError("a system is condensed before it is damped")
+    if system.num_modes <= most:
+        return system, np.eye(system.num_modes)
+    pushes = _forces(system)
+    order = _order_modes(system.omega2, pushes, round(_SLOWEST * most))
+    count = len(independent_columns((pushes * (system.omega2 > 0.0)).T).T)
+    moments = int(np.clip(_OF_ALL * most // max(count, 1), 1, MOMENTS))
+    kept, rest = np.split(order, [max(most - moments * count, (system.omega2 <= 0.0).sum())])
+    kept, rest = (part[np.argsort(system.omega2[part], kind="stable")] for part in (kept, rest))
+    omega2, shapes = reduce_modes(system.omega2, pushes, kept, rest, moments)
+    return system.transform(omega2, shapes), shapes
+
+
+def _order_modes(omega2: Array, pushes: Array, slowest: int) -> Indices:
+    """Return positions (num_modes,): the slowest, then by b²/ω⁴ over a push's whole b²/ω²."""
+    elastic = omega2 > 0.0
+    gives = np.where(elastic, pushes**2 / np.where(elastic, omega2, 1.0), 0.0)
+    whole = gives.sum(axis=1, keepdims=True)
+    parts = (gives / np.where(whole > 0.0, whole, 1.0)).max(axis=0)
+    weights = np.where(elastic, parts / np.where(elastic, omega2, 1.0), np.inf)
+    weights[np.argsort(omega2, kind="stable")[:slowest]] = np.inf
+    return np.asarray(np.lexsort((omega2, -weights)))
+
+
+def _forces(system: GapSystem) -> Array:
+    """Return all forces (num_pushes, num_modes) that can act."""
+    constant = [system.load, system.released_load, system.initial_impulse]
+    excited = [excitation.load for excitation in system.excitations]
+    return np.vstack([system.all_rows, *constant, *excited])

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Models without play whose contacts are bonded.
+
+Contacts that press at rest are held where they touch without play; at stations where
+none does, all contacts are held. Under pressure they still deform, as with play: the wall of a
+shell, say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.linalg import eigh, null_space
+
+from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
+
+# Fraction of the least ω² of the segments: motions below it are rigid.
+_RIGID = 1.0e-6
+
+
+def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, Array]:
+    """Return the bonded system and its shapes (num_modes, num_tied_modes).
+
+    Its stations are those of the ground.
+
+    >>> from runs.pipeline.bonded import bonded_system
+    >>> pair = replace(ball, omega2=np.array([0.0, 4.0]), load=np.zeros(2), stations=[1.0],
+    ...     rows=np.array([[1.0, -1.0]]), observers={}, damping=np.zeros(2),
+    ...     released_load=np.zeros(2), initial_impulse=np.zeros(2), dashpots=np.zeros((0, 2)),
+    ...     friction_rows=np.zeros((0, 2)))
+    >>> bonded_system(pair, [np.zeros(2)])[0].omega2.round(6)
+    array([2.])
+
+    Args:
+        system: with its contacts.
+        rests: (num_modes,) rest positions under the loads that count.
+    """
+    on_ground = np.isin(system.station_of_row, system.grounded)
+    pressing = np.zeros(len(system.laws), dtype=bool)
+    for rest in rests:
+        gaps = system.rows @ rest
+        pressing |= [bool(law.force(y)) for law, y in zip(system.laws, gaps, strict=True)]
+    pressed = np.isin(system.station_of_row, system.station_of_row[pressing])
+    held = system.rows[~on_ground & (pressing | ~pressed)]
+    free = null_space(held) if held.size else np.eye(system.num_modes)
+    omega2, shapes = eigh(free.T @ system.stiffness @ free)
+    least = _RIGID * min(system.omega2[system.omega2 > 0.0], default=0.0)
+    omega2[np.abs(omega2) <= least] = 0.0
+    basis = free @ shapes
+    grounded = list(system.grounded)
+    stays = np.flatnonzero(on_ground)
+    found = replace(
+        system.transform(omega2, basis),
+        rows=system.rows[stays] @ basis,
+        laws=[system.laws[row] for row in stays],
+        station_of_row=np.array(
+            [grounded.index(system.station_of_row[row]) for row in stays], dtype=np.int64
+        ),
+        stations=[system.stations[station] for station in grounded],
+        station_directions=[system.station_directions[station] for station in grounded],
+        grounded=range(len(grounded)),
+        friction_rows=np.zeros((0, omega2.size)),
+        frictions=(),
+    )
+    return found, basis
