@@ -46,7 +46,7 @@ def test_a_segment_falls_on_its_contacts_and_bounces(inside: Boom) -> None:
     inner = inside.segments[1]
     mass, force = inner.mass_per_length * inner.length, -inner.load * inner.length
     gravity, omega = force / mass, np.sqrt(2.0 * LAW.law.stiffness / mass)
-    fall = np.sqrt(LAW.play / gravity)
+    fall = np.sqrt(2.0 * LAW.above / gravity)
     speed, sag = gravity * fall, force / (2.0 * LAW.law.stiffness)
     contact = 2.0 / omega * (np.pi - np.arctan(speed * omega / gravity))
     lowest = -LAW.above - sag - np.hypot(sag, speed / omega)

@@ -67,7 +67,7 @@ def flat_boom(friction: float = 0.0) -> Boom:
                 outer=0,
                 inner=1,
                 stations=(9.0, 10.0),
-                play=LAW.play,
+                play=2.0 * LAW.above,
                 friction=friction,
                 normal_forces=(4500.0, 5000.0) if friction > 0.0 else (),
             ),
@@ -88,7 +88,7 @@ def boom_in_space(friction: float = 0.0, sideways: float = 0.0) -> Boom:
         for segment in flat.segments
         if segment.lateral is not None
     )
-    joint = replace(flat.joints[0], lateral_play=LATERAL_LAW.play, friction=friction)
+    joint = replace(flat.joints[0], lateral_play=2.0 * LATERAL_LAW.above, friction=friction)
     return Boom(segments, (joint,))
 
 

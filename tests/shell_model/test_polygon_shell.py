@@ -180,7 +180,7 @@ def _spatial(outer: Section, inner: Section) -> Boom:
         for s in boom.segments
         if s.lateral
     ]
-    joint = replace(boom.joints[0], lateral_play=LATERAL_LAW.play)
+    joint = replace(boom.joints[0], lateral_play=2.0 * LATERAL_LAW.above)
     return replace(boom, segments=tuple(segments), joints=(joint,))
 
 

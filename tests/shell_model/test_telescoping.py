@@ -122,7 +122,7 @@ def test_pads_of_a_boom_in_space_on_the_way() -> None:
         flat = telescope(way, drive)
         outer, inner = boom.segments
         inner = replace(inner, start=6.0 + way, end=16.0 + way)
-        lateral = {"lateral_play": LATERAL_LAW.play, "friction": 0.2}
+        lateral = {"lateral_play": 2.0 * LATERAL_LAW.above, "friction": 0.2}
         joint = replace(flat.joints[0], **lateral)
         boom = replace(boom, segments=(outer, inner), joints=(joint,))
         options = ShellOptions(2.0 * SIZE)
