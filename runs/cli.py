@@ -119,7 +119,8 @@ def run(
     from runs.pipeline import estimates
     from runs.pipeline.context import RunContext
     from runs.pipeline.run import run_case
-    from runs.report import output
+    from runs.process import workers
+    from runs.report import opengl, output
     from runs.sweep.run import launched_world
 
     if not large:
@@ -137,13 +138,18 @@ def run(
         with (
             whole_folder(folder) as part,
             progress.display([model.name for model in effective.models]) as report_progress,
+            workers.helper(opengl.hush) as helper,
         ):
-            finished = run_case(effective, case, RunContext(comm, report_progress, cache, cache))
+            if helper and not no_pictures and any(model.meshed for model in effective.models):
+                # It imports what draws while this process meshes.
+                helper.submit(import_module, "runs.report.snapshots")
+            context = RunContext(comm, report_progress, cache, cache, helper)
+            finished = run_case(effective, case, context)
             assert finished is not None
             finished.evaluate()
             judged = judge(finished.results)
             report_progress("report", "pictures and figures", 0.0)
-            output.write(finished, judged, part, snapshots_now=not no_pictures)
+            output.write(finished, judged, part, not no_pictures, helper)
             report_progress("report", "pictures and figures", 1.0)
         print(printable(str(folder / output.REPORT)))
         status = _show({case: finished.results}, {case: judged})

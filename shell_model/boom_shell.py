@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
@@ -85,6 +86,7 @@ class BoomShell:
         observed: readings that a motion records.
         lines: (num_owned,) each, connections to the ground.
         pin_moments: of axial forces, see :func:`geometry.axial.pin_moments`.
+        helper: a process that takes part in the reduction.
     """
 
     comm: MPI.Comm
@@ -98,6 +100,7 @@ class BoomShell:
     observed: Mapping[str, Observed[Reading]]
     lines: Sequence[GroundLine] = ()
     pin_moments: Sequence[tuple[int, Array]] = ()
+    helper: Executor | None = None
 
     @cached_property
     def symmetries(self) -> Sequence[SymmetryReduction]:

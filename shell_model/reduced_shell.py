@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import BrokenExecutor, Executor
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -29,6 +31,7 @@ from shell_model.contact.rows import ties
 from shell_model.contact.surface import without_stiff_modes
 from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.segment import ReducedSegment, reduce_segment
+from shell_model.reduction.symmetry import outcome
 from shell_model.stages import Stages
 from shell_model.stress.fields import gather_fields
 from shell_model.telescoping import MOMENTS, TelescopingShell
@@ -77,6 +80,7 @@ def reduce_boom(
     options: ShellOptions,
     comm: MPI.Comm,
     progress: Callable[[str, float], None] | None = None,
+    helper: Executor | None = None,
 ) -> ReducedShell:
     """Mesh, assemble and reduce every segment. Collective.
 
@@ -85,12 +89,13 @@ def reduce_boom(
         options: mesh, contact points, reduction.
         comm: the ranks that share the work; the result is the same on each.
         progress: called with the stage and the part of it that is done.
+        helper: a process beside the only rank, which takes part in the work.
 
     Raises:
         BoomError: a segment has no section, or the contact line does not suit the boom.
     """
     stages = Stages(progress)
-    full = assemble_boom(boom, options, comm, stages)
+    full = replace(assemble_boom(boom, options, comm, stages), helper=helper)
     telescoping = None
     if boom.driven:
         fewer = replace(options, krylov=replace(options.krylov, moments=MOMENTS))
@@ -112,20 +117,18 @@ def reduce_boom(
         lost = telescoping.lost(len(system.laws))
     else:
         whole, lost = _contact_compliance(full, segments)
+    coarse = None
+    if helper is not None:
+        with suppress(BrokenExecutor):
+            coarse = helper.submit(_mesh_compliance, boom, options.coarser)
     with stages.stage("fields"):
         fields = gather_fields(boom, full.shells, segments, coordinates, system)
-    with stages.stage("mesh error"):
-        coarse = assemble_boom(boom, options.coarser, comm)
-        local, coarse_local = (
-            local_compliance(found, [row.law for row in rows], [row.station for row in rows])
-            for found, rows in (
-                (whole, full.rows.contacts),
-                (full_compliance(coarse.shells, coarse.rows.contacts), coarse.rows.contacts),
-            )
-        )
-        mesh_error = extrapolated_error(local, coarse_local, options.order)
     with stages.stage("unit responses"):
         responses = [probe_segment(boom, number, one) for number, one in enumerate(full.symmetries)]
+    with stages.stage("mesh error"):
+        local = _of_contacts(whole, full)
+        coarse_local = outcome(coarse, partial(_mesh_compliance, boom, options.coarser, comm))
+        mesh_error = extrapolated_error(local, coarse_local, options.order)
     return ReducedShell(
         system=system,
         num_dofs=full.num_dofs,
@@ -143,6 +146,18 @@ def reduce_boom(
         probe_responses=responses,
         own_loads=own_loads,
     )
+
+
+def _mesh_compliance(boom: Boom, options: ShellOptions, comm: MPI.Comm = MPI.COMM_SELF) -> Array:
+    """Return the local compliance (num_contacts,) in m/N of a mesh, unreduced. Collective."""
+    shell = assemble_boom(boom, options, comm)
+    return _of_contacts(full_compliance(shell.shells, shell.rows.contacts), shell)
+
+
+def _of_contacts(whole: Array, shell: BoomShell) -> Array:
+    """Return the local compliance (num_contacts,) from that of all contacts."""
+    rows = shell.rows.contacts
+    return local_compliance(whole, [row.law for row in rows], [row.station for row in rows])
 
 
 def _contact_compliance(full: BoomShell, segments: Sequence[ReducedSegment]) -> tuple[Array, Array]:
@@ -171,7 +186,7 @@ def _reduced(
     observed = full.columns(number, [seen.reading for seen in full.observed.values()])
     with stages.stage("reduction", number, len(full.shells)) as tell:
         forces = np.hstack([full.forces(number), *beside])
-        own = reduce_segment(full.symmetries[number], forces, krylov, tell, readings=observed)
+        own = reduce_segment(full.symmetries[number], forces, krylov, tell, observed, full.helper)
         if at_surface and joined.size:
             own = without_stiff_modes(full.comm, own, joined)
     return own

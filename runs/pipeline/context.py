@@ -10,6 +10,8 @@ from runs.folder.cache import Cache
 from runs.process.progress import Progress
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from mpi4py import MPI
 
 
@@ -27,12 +29,14 @@ class RunContext:
         progress: receives the progress of every stage.
         cache: cache of reduced shells.
         motions: store of completed motions, earlier ones and those of this run.
+        helper: a process beside the only rank, for shells and pictures.
     """
 
     comm: MPI.Intracomm | None = None
     progress: Progress = silent
     cache: Cache | None = None
     motions: Cache | None = None
+    helper: Executor | None = None
 
     @property
     def first_rank(self) -> bool:

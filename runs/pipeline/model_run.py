@@ -96,7 +96,8 @@ def run_model(
     begin, comm = perf_counter(), context.comm
     stages = Stages(partial(context.progress, model.name))
     if model.needs_shell or context.first_rank:
-        tools = None if comm is None else Workshop(comm, stages.tell, context.cache)
+        helper = context.helper if context.alone else None
+        tools = None if comm is None else Workshop(comm, stages.tell, context.cache, helper)
         try:
             built = build(case, boom, model, tools)
         except NUMERICS as error:

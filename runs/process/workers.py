@@ -66,6 +66,22 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
         os.environ.update(outside)
 
 
+@contextmanager
+def helper(prepare: Callable[[], object] = int) -> Iterator[Executor | None]:
+    """Give an executor of one process on another core; None where there is only one core.
+
+    The process starts with its first work, and ends with this one.
+
+    Args:
+        prepare: its first call.
+    """
+    if len(os.sched_getaffinity(0)) == 1:
+        yield None
+        return
+    with workers(1, prepare) as executor:
+        yield executor
+
+
 def end() -> None:
     """End all worker processes of this process, and wait until they have ended."""
     children = active_children()

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Sequence
+from concurrent.futures import Executor
 from io import StringIO
 from pathlib import Path
 
@@ -69,6 +70,7 @@ def write(
     addition: Addition,
     folder: Path,
     snapshots_now: bool = True,
+    helper: Executor | None = None,
 ) -> None:
     """Write all files of a run.
 
@@ -77,6 +79,7 @@ def write(
         addition: of a client.
         folder: an empty one.
         snapshots_now: whether they are drawn; else on request later.
+        helper: the process that draws them; a new one unless given.
     """
     results = run.results
     results.save(folder)
@@ -88,7 +91,8 @@ def write(
     later = LATER if files and not pictured else None
     results.summary.snapshots = Snapshots(written=[], skipped=later)
     try:
-        with snapshots.drawing(results, pictured, folder / TRAJECTORIES, folder) as gather:
+        motion = folder / TRAJECTORIES
+        with snapshots.drawing(results, pictured, motion, folder, helper=helper) as gather:
             write_csv(results.trajectories, folder / "trajectories.csv")
             for name, path in files.items():
                 prefix = path.name.removesuffix(FIELDS)

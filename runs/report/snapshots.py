@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Future
+from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -24,7 +24,7 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.pipeline.results import FIELDS, Results, read_fields
 from runs.pipeline.summary import Snapshots
-from runs.process.workers import workers
+from runs.process import workers
 from runs.report import opengl, theme
 from runs.report.boom_pictures import BoomView, draw_boom
 from runs.report.figure_context import Figure
@@ -234,8 +234,9 @@ def drawing(
     trajectories: Path,
     folder: Path,
     times: Times = None,
+    helper: Executor | None = None,
 ) -> Iterator[Callable[[], list[str]]]:
-    """Render the deformed shells of a run in processes beside this one.
+    """Render the deformed shells of a run in a process beside this one.
 
     Args:
         results: of the run.
@@ -243,6 +244,7 @@ def drawing(
         trajectories: file of all models.
         folder: of the run; pictures of other instants stay in it.
         times: in s; the characteristic ones unless given.
+        helper: the process; a new one unless given.
 
     The yielded function waits for the pictures, adds them to the summary, and returns their names.
     It raises RenderingUnavailable where no picture can be made.
@@ -250,7 +252,8 @@ def drawing(
     if not shells:
         yield list
         return
-    with TemporaryDirectory(dir=folder) as easel, workers(len(RENDERED), opengl.hush) as pool:
+    beside = workers.workers(1, opengl.hush) if helper is None else nullcontext(helper)
+    with TemporaryDirectory(dir=folder) as easel, beside as pool:
         first = pool.submit(opengl.first_picture)
         drawn = []
         for number, path in enumerate(sorted(shells)):

@@ -16,6 +16,7 @@ between the shifts.
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import Executor, Future
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,7 +25,7 @@ from scipy.linalg import block_diag
 from dynamics.failure import NumericsError
 from geometry.arrays import Array
 from shell_model.reduction.krylov import ClassCoordinates, KrylovOptions, reduce_class
-from shell_model.reduction.symmetry import Job, SymmetryReduction, share_jobs
+from shell_model.reduction.symmetry import Job, SymmetryCell, SymmetryReduction, share_jobs
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +61,7 @@ def reduce_segment(
     options: KrylovOptions,
     progress: Callable[[float], None] | None = None,
     readings: Array | None = None,
+    helper: Executor | None = None,
 ) -> ReducedSegment:
     """Reduce a segment to the space that its inputs excite. Collective.
 
@@ -70,6 +72,7 @@ def reduce_segment(
         options: shifts and moments, or a tolerance.
         progress: called with the part done, 0 to 1.
         readings: (num_owned, num_readings) rows whose response has to be accurate too.
+        helper: a process that reduces every second symmetry class of this rank.
 
     Raises:
         NumericsError: a compliance is not finite, all inputs are zero, or the tolerance is not met.
@@ -83,21 +86,24 @@ def reduce_segment(
     # Each symmetry class may have the same number of coordinates for each of its forces.
     counts = comm.bcast([np.count_nonzero(job.forces.any(axis=0)) for job in jobs])
 
-    def reduce_one(number: int, job: Job) -> ClassCoordinates:
-        mine = range(comm.rank, len(symmetry_classes), comm.size)
-        done, most = mine.index(number), options.most
-        return reduce_class(
-            job.shell(symmetry.cell),
-            job.forces,
-            job.readings,
-            replace(options, most=most and most * counts[number] // sum(counts)),
-            lambda part: tell((done + part) / len(mine)),
+    most = options.most
+    own = [replace(options, most=most and most * count // sum(counts)) for count in counts]
+    mine = range(comm.rank, len(symmetry_classes), comm.size)
+
+    def reduce_here(number: int, job: Job) -> ClassCoordinates:
+        done = mine.index(number)
+        return _reduce_job(
+            symmetry.cell, job, own[number], lambda part: tell((done + part) / len(mine))
         )
 
-    found = list(share_jobs(comm, jobs, reduce_one))
+    def reduce_there(number: int, job: Job) -> Future[ClassCoordinates]:
+        assert helper is not None
+        return helper.submit(_reduce_job, symmetry.cell, job, own[number])
+
+    found = list(share_jobs(comm, jobs, reduce_here, reduce_there if helper else None))
     parts = [
-        comm.bcast(None if own is None else own._replace(shapes=np.empty(0)), root)
-        for root, own in found
+        comm.bcast(None if one is None else one._replace(shapes=np.empty(0)), root)
+        for root, one in found
     ]
     omega2 = np.concatenate([part.omega2 for part in parts])
     right = np.concatenate([part.right for part in parts])
@@ -105,8 +111,8 @@ def reduce_segment(
     # The shapes of a class go to their places at once: a second block of all is large.
     shapes = np.empty((len(inputs), omega2.size), order="F")
     places = np.split(np.argsort(order), np.cumsum([part.omega2.size for part in parts])[:-1])
-    for symmetry_class, (root, own), columns in zip(symmetry_classes, found, places, strict=True):
-        on_cell = None if own is None else own.shapes
+    for symmetry_class, (root, one), columns in zip(symmetry_classes, found, places, strict=True):
+        on_cell = None if one is None else one.shapes
         shapes[:, columns] = symmetry.expand(on_cell, symmetry_class, root)
     tell(1.0)
     # Up to this frequency all are accurate.
@@ -122,3 +128,12 @@ def reduce_segment(
         frequency_limit=float(limit),
         geometric=block_diag(*(part.geometric for part in parts))[np.ix_(order, order)],
     )
+
+
+def _reduce_job(
+    cell: SymmetryCell,
+    job: Job,
+    options: KrylovOptions,
+    progress: Callable[[float], None] = lambda _: None,
+) -> ClassCoordinates:
+    return reduce_class(job.shell(cell), job.forces, job.readings, options, progress)

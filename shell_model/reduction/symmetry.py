@@ -10,6 +10,8 @@ Round-off that depended on the number of ranks would not do, since contact ampli
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import BrokenExecutor, Future
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any, NamedTuple, TypeVar
@@ -287,16 +289,40 @@ class SymmetryReduction:
 
 
 def share_jobs(
-    comm: MPI.Comm, jobs: Sequence[Job], compute: Callable[[int, Job], _Found]
+    comm: MPI.Comm,
+    jobs: Sequence[Job],
+    compute: Callable[[int, Job], _Found],
+    submit: Callable[[int, Job], Future[Any]] | None = None,
 ) -> Iterator[tuple[int, _Found | None]]:
-    """Compute each job of rank 0 on one rank; yield the rank and its result. Collective."""
+    """Compute each job of rank 0 on one rank; yield the rank and its result. Collective.
+
+    ``submit`` has a job computed by a process beside this rank, which takes every second one.
+    """
     roots = [number % comm.size for number in range(comm.bcast(len(jobs)))]
     mine = {number: job for number, job in enumerate(_sent(comm, jobs, roots)) if job is not None}
-    found = run_collectively(
-        comm, lambda: {number: compute(number, job) for number, job in mine.items()}
-    )
+    futures: dict[int, Future[Any]] = {}
+    if submit is not None:
+        # A process that has died leaves its jobs to this one.
+        with suppress(BrokenExecutor):
+            futures |= {number: submit(number, mine[number]) for number in list(mine)[1::2]}
+
+    def work() -> dict[int, _Found]:
+        here = {n: compute(n, job) for n, job in mine.items() if n not in futures}
+        there = {n: outcome(one, partial(compute, n, mine[n])) for n, one in futures.items()}
+        return here | there
+
+    found = run_collectively(comm, work)
     for number, root in enumerate(roots):
         yield root, found.pop(number, None)
+
+
+def outcome(future: Future[Any] | None, compute: Callable[[], _Found]) -> _Found:
+    """Return the result of a process beside this one; compute it without one, or if it has died."""
+    with suppress(BrokenExecutor):
+        if future is not None:
+            found: _Found = future.result()
+            return found
+    return compute()
 
 
 def run_collectively(comm: MPI.Comm, work: Callable[[], _Found]) -> _Found:

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
+from concurrent.futures import BrokenExecutor
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from mpi4py import MPI
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array
+from runs.process.workers import workers
 from shell_model.reduction.coordinates import exact_product
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import ReducedSegment, reduce_segment
@@ -84,6 +87,20 @@ def test_a_load_in_the_plane_of_bending_leaves_two_rigid_modes_exactly_zero(
     shell = box_shell(0.25)
     reduced = reduce_segment(SymmetryReduction(shell), _inputs(shell), KrylovOptions())
     assert np.count_nonzero(reduced.omega2 == 0.0) == 2
+
+
+@pytest.mark.slow
+def test_a_helper_changes_no_bit_and_may_die(box_shell: Shells) -> None:
+    """Reference: one process alone."""
+    shell, options = box_shell(0.5), KrylovOptions(moments=1)
+    inputs = np.column_stack([_inputs(shell), shell.unit_loads["y"]])
+    with workers(1) as helper:
+        found = [reduce_segment(SymmetryReduction(shell), inputs, options)]
+        found.append(reduce_segment(SymmetryReduction(shell), inputs, options, helper=helper))
+        with pytest.raises(BrokenExecutor):
+            helper.submit(os.abort).result()
+        found.append(reduce_segment(SymmetryReduction(shell), inputs, options, helper=helper))
+    assert len({one.omega2.tobytes() + one.shapes.tobytes() for one in found}) == 1
 
 
 def test_shapes_are_mass_orthonormal(box_shell: Shells) -> None:

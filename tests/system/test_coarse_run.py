@@ -41,7 +41,7 @@ BEAMS = [*SERIES, "beam-fe", "timoshenko", "beam-fe-tied"]
 def _short_film(monkeypatch: pytest.MonkeyPatch) -> None:
     """Shorten the film, which other tests check, though one run draws it in its own process."""
     monkeypatch.setattr("runs.report.snapshots.RENDERED", RENDERED)
-    monkeypatch.setattr("runs.report.snapshots.workers", at_once.workers)
+    monkeypatch.setattr("runs.process.workers.workers", at_once.workers)
 
 
 @pytest.fixture(scope="module")

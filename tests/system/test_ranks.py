@@ -30,10 +30,11 @@ Ranks = Callable[..., subprocess.CompletedProcess[str]]
 COMMAND = f"""
 {ONE_BLANK_FIGURE}
 from runs import cli
+from runs.process import workers
 from runs.report import snapshots
 from tests import at_once
 
-snapshots.workers = at_once.workers
+workers.workers = at_once.workers
 snapshots.render_files = lambda *_: []
 cli.main()
 """
@@ -72,7 +73,7 @@ def test_two_ranks_run_a_shell_as_one_does(
     text = Path(COARSE).read_text(encoding="utf-8")
     case.write_text(text.replace("duration = 0.6", "duration = 0.12"), encoding="utf-8")
     models = "kantorovich-4,shell"
-    monkeypatch.setattr("runs.report.snapshots.workers", at_once.workers)
+    monkeypatch.setattr("runs.process.workers.workers", at_once.workers)
     monkeypatch.setattr("runs.report.snapshots.render_files", lambda *arguments: [])
     monkeypatch.setattr(figures, "FIGURES", figures.FIGURES[-1:])
     options = ("--models", models, "--mesh-size", "1", "--no-cache", "--out")

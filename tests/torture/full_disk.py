@@ -181,7 +181,6 @@ def _run(command: Sequence[str]) -> tuple[object, int]:
             # Drawings and processes take all the time, and this disk is one process's.
             with (
                 patch("runs.report.snapshots.RENDERED", (refuse,)),
-                patch("runs.report.snapshots.workers", at_once.workers),
                 patch("runs.process.workers.workers", at_once.workers),
                 patch.object(Sheet, "savefig", dot),
             ):

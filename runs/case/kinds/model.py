@@ -20,6 +20,8 @@ from runs.case.contact import ContactTable
 from runs.case.limits import CaseTable
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from mpi4py import MPI
 
     from beam_model.calibration import Calibration
@@ -81,11 +83,13 @@ class Workshop:
         comm: the ranks that share the work.
         tell: called with the stage and the completed part of it.
         cache: cache of reduced shells; without one, every shell is computed.
+        helper: a process beside the only rank, which takes part in reductions.
     """
 
     comm: MPI.Comm
     tell: Callable[[str, float], None] = lambda *_: None
     cache: Cache | None = None
+    helper: Executor | None = None
 
     def remember(self, content: Sequence[Any], compute: Callable[[], ReducedShell]) -> ReducedShell:
         """Return the shell of a content from the cache, or compute it. Collective."""

@@ -34,6 +34,8 @@ _FLAT, _SPATIAL = 60, 210
 # zones, and of the smaller sizes inside; bytes for a dof, for a coordinate of it; s. Measured.
 _DOFS, _GRADED_DOFS, _DOFS_AT_SPOTS = 21.0, 42.0, 35.0
 _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 2000.0, 5.0, 1.0e-4
+# Dofs of a shell that one process alone reduces in a few seconds.
+_SMALL = 5.0e4
 # Elements of the longest segment of the beam that stands for a shell.
 _ELEMENTS = 20
 
@@ -123,8 +125,11 @@ class Shell(ModelTable):
 
         assert workshop is not None
         boom, options = standard_boom(joined.boom), self.options()
+        # It takes a second or two to import the libraries.
+        helper = workshop.helper if self.estimated_dofs(boom) > _SMALL else None
         made = workshop.remember(
-            (boom, options), partial(reduce_boom, boom, options, workshop.comm, workshop.tell)
+            (boom, options),
+            partial(reduce_boom, boom, options, workshop.comm, workshop.tell, helper),
         )
         shell = with_plays_and_loads(made, joined.boom)
         factor = shell.critical_factor
