@@ -69,7 +69,7 @@ class BoomView:
         heights = [moved[:, 2] for moved in scene.displacements(times)]
         low, high = min(0.0, np.min(heights)), max(0.0, np.max(heights))
         scale = scene.fitting_scale(times, displacement)
-        rest = surface(scene.drawn(np.zeros_like(scene.points), scale), scene.triangles)
+        rest = surface(scene.magnify(np.zeros_like(scene.points), scale), scene.triangles)
         begin, end = scene.reach(times)
         half = SECTION_DRAWN * scene.points[:, 2].max()
         off = max((symbol.clearance for symbol in scene.symbols), default=0.0)
@@ -89,7 +89,7 @@ class BoomView:
 
     def places(self, moved: Array, time: float) -> Array:
         """Return points (num_points, 3) in the picture, displaced by (num_points, 3) in m."""
-        places = self.scene.drawn(moved, self.scale)
+        places = self.scene.magnify(moved, self.scale)
         places[:, 0] += self.scene.along(time)
         return places
 

@@ -164,13 +164,13 @@ def _stick_slip(run: FigureContext, suffix: str, inner: str) -> Figure:
         "force of the drive (kN)": _of_models(run, f"drive_force{suffix}", TO_KILO),
         "speed (m/s)": _of_models(run, f"drawn_speed{suffix}", 1.0),
     }
-    told = [
+    records = [
         of for own in run.summary.values() if (of := own.stick_slip.get(f"drive_force{suffix}"))
     ]
-    sticks, slip = max(one.sticks for one in told), max(one.slip for one in told)
+    sticks, slip = max(one.sticks for one in records), max(one.slip for one in records)
     caption = (
-        f"Above the force of the drive of {inner!r} on its own stiffness, with friction and what "
-        "speeds up; below the speed at which the segment moves along, which is 0 where it sticks."
+        f"Above: force of the drive of {inner!r}, friction and inertia included. Below: speed of "
+        "the segment, which is 0 where it sticks."
     )
     title = f"Drive of {inner}: sticks {sticks} times, slips by up to {TO_MILLI * slip:.2g} mm"
     return _of_drive(run, f"stick-slip{suffix}", shown, "force (kN), speed (m/s)", title, caption)
@@ -189,10 +189,9 @@ def _drive(run: FigureContext, suffix: str, inner: str) -> Figure:
     }
     force = farthest([farthest(values) for values in shown["force against friction (kN)"].values()])
     caption = (
-        f"Above what the drive of {inner!r} pushes with against the friction of its pads along the "
-        "boom, the coefficient times all that presses them; below its power, with what contact "
-        "forces do on their slope as it is drawn and what presses along the boom, negative where "
-        "the boom would slide by itself. "
+        f"Above: force of the drive of {inner!r} against the friction of its pads, the coefficient "
+        "times their contact forces. Below: its power, that of contact forces on sloping segments "
+        "and of axial loads included; negative where the boom would slide by itself. "
         f"Means over {TO_MILLI * FORCE_WINDOW:g} ms."
     )
     title = f"Drive of {inner}: up to {fixed(force, 2)} kN against friction"
@@ -258,8 +257,8 @@ def stress_history(run: FigureContext) -> list[Figure]:
         caption = (
             f"Largest von Mises stress of {name} at either face within {stress.band:g} m of "
             f"each station and support, in every {run.time[-1] / time.size:.2g} s. Beside a line "
-            "of contact the stress of a triangle grows as the mesh refines, and tells where and "
-            "when alone; the mean over a patch of half a wall settles."
+            "of contact the stress of a triangle grows as the mesh refines, and shows place and "
+            "time alone; the mean over a patch of half a wall converges."
         )
         figures.append(run.finish(sheet, fullest, f"stress-{name}", title, caption))
     return figures

@@ -201,11 +201,11 @@ def buckling_table(results: Results) -> Table | None:
         Column("model", list(models)),
         Column("buckling factor", factors, ".4g"),
         Column("of the critical", [f and 1.0 / f for f in factors], ".3g", "%"),
-        Column("tip at rest, constant loads", tips, ".4g", "mm"),
+        Column("static tip, constant loads", tips, ".4g", "mm"),
     )
     notes = (
-        "Buckling factor: by what the axial forces would have to grow for the boom to buckle, its "
-        "joints pressed. Tip: the second order is in it.",
+        "Buckling factor: of the axial forces, at which the boom with closed joints buckles. The "
+        "tip includes second-order effects.",
     )
     return Table("Axial forces", columns, notes, "buckling")
 
@@ -241,9 +241,10 @@ def wall_table(results: Results) -> Table | None:
     )
     largest = [f"{name}: {_largest(results.case, stress)}" for name, stress in shells.items()]
     means = (
-        "Means over the row of elements at x, at a mesh line of that towards the tip. Axial forces "
-        "pull; shear forces act on the part before the section, along each wall, upwards where it "
-        "is steep and else towards larger y; moments about the section's y-axis pull at the top."
+        "Means over the row of elements beside x, on the side of the tip. Axial forces are "
+        "positive in tension; shear forces act on the part before the section, along each wall, "
+        "upwards where it is steep and else towards larger y; moments about the y-axis are "
+        "positive with tension at the top."
     )
     title = "Section forces of walls at the instant of the largest stress"
     return Table(title, columns, (*largest, means), "walls")
@@ -301,15 +302,17 @@ def _segments(card: CalibrationCard, names: str, count: int) -> Table:
     columns = [
         Column("segment", [beam.segment for beam in beams]),
         Column("bends along", along),
-        Column("E J", bending, ".4g", "MN m²"),
-        Column("of the section's", bending_part, ".2f", "%"),
-        Column("G A", shear, ".4g", "MN"),
-        Column("of the shear flow's", shear_part, ".1f", "%"),
+        Column("bending stiffness\nE I", bending, ".4g", "MN m²"),
+        Column("of the section", bending_part, ".2f", "%"),
+        Column("shear stiffness\nG A", shear, ".4g", "MN"),
+        Column("of the shear flow", shear_part, ".1f", "%"),
     ]
     if any(beam.torsion is not None for beam in beams):
-        columns.append(Column("G J", [beam.torsion for beam in beams], ".4g", "MN m²"))
-    notes = ("What makes a shear-flexible beam as compliant as the shell, far from pads.",)
-    title = f"The segments as beams, for {names}"
+        columns.append(
+            Column("torsional stiffness\nG I_T", [beam.torsion for beam in beams], ".4g", "MN m²")
+        )
+    notes = ("Stiffnesses of a Timoshenko beam that is as compliant as the shell far from pads.",)
+    title = f"Equivalent beam stiffnesses of the segments, for {names}"
     return Table(title, columns, notes, f"calibrated-segments-{count}")
 
 
@@ -320,8 +323,8 @@ def _springs(card: CalibrationCard, names: str, count: int) -> Table:
         Column("spring", [spring.stiffness for spring in card.springs], ".4g", "MN/m"),
     )
     notes = (
-        "In another program put each between the beams in series with its gap: it is the local "
-        "compliance of both walls there, beyond the beams above.",
+        "In another program put each spring in series with the gap of its station: it is the local "
+        "compliance of both walls, in addition to that of the beams above.",
     )
-    title = f"The springs of the stations, for {names}"
+    title = f"Local springs of the stations, for {names}"
     return Table(title, columns, notes, f"calibrated-springs-{count}")

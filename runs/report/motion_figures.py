@@ -172,8 +172,8 @@ def _sampled(run: FigureContext, place: str) -> str:
         if run.regular or run.ensembles is not None:
             return ""
         return (
-            " After the first presses a curve with play may be one sample of a chaotic motion; an "
-            "ensemble tells."
+            " After the first contacts a curve with play may be one sample of a chaotic motion; an "
+            "ensemble shows whether it is."
         )
     low, high = BAND
     band = (
@@ -230,9 +230,8 @@ def slow_peaks(run: FigureContext) -> list[Figure]:
     counts = [len(peaks.time) for peaks in found.values()]
     number = f"{min(counts)} to {max(counts)}" if min(counts) < max(counts) else f"{counts[0]}"
     caption = (
-        "Peaks of the tip's slow motion, each with half the distance between the first and the "
-        "last, the lowest and the highest of the ensemble's members. A model's points end where "
-        "not all its members have the next peak."
+        "Peaks of the slow motion of the tip: means of the members of the ensemble, with half "
+        "their range in time and height. Points end where not all members have the next peak."
     )
     title = f"Slow peaks: {number} are common to all members"
     return [run.finish(sheet, axes, "slow-peaks", title, caption, "horizons")]
@@ -262,9 +261,10 @@ def horizons(run: FigureContext) -> list[Figure]:
     axes.set(xlabel="log₁₀ of the relative change", ylabel="horizon (s)")
     axes.set_ylim(bottom=0.0)
     caption = (
-        "When ensembles whose data change by so much are parts of the tip's range apart. The "
-        "flatter a line, the less better data buy. Squares, at the smallest change: when a run "
-        "with a finer step is as far from the run; below the line's end a finer step would help."
+        "Time at which members of an ensemble differ by a part of the tip's range, over the "
+        "relative change of their data. The flatter a line, the less better data help. Squares: "
+        "the same for a run with a finer step; where they lie below the line, a finer step would "
+        "help."
     )
     title = "Horizons: how long a motion can be predicted"
     return [run.finish(sheet, axes, "horizons", title, caption, "horizons")]
@@ -320,8 +320,8 @@ def residuals(run: FigureContext) -> list[Figure]:
     axes.set_yscale("log")
     axes.set(xlabel="time (s)", ylabel="part of the work (–)", xlim=(0.0, run.time[-1]))
     caption = (
-        "Kinetic, strain and contact energy, plus what was lost, less the work of the load, over "
-        "the largest work: the largest so far. Without contact the motion is exact to round-off."
+        "Kinetic, strain and contact energy, plus losses, less the work of the loads, over the "
+        "largest work: running maximum. Without contact the motion is exact to round-off."
     )
     title = f"Unaccounted energy: up to {scientific(highest(worst), 2)} of the work"
     return [run.finish(sheet, axes, "energy-residual", title, caption, part="numerics")]

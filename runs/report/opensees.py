@@ -172,7 +172,7 @@ def _segment(boom: Boom, number: int, part: Part, model: BeamElements) -> dict[s
         "x": [float(x) for x in part.component.breaks],
         "E": material.youngs_modulus,
         "G": material.shear_modulus,
-        "J": segment.second_moment_of_area,
+        "I": segment.second_moment_of_area,
         # None: rigid in shear.
         "shear_area": None if shear is None else shear / material.shear_modulus,
         "mass_per_length": segment.mass_per_length,

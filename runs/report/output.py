@@ -29,7 +29,7 @@ from runs.report.viewer import VIEWER, viewer
 
 REPORT = "report.html"
 CALIBRATION = "calibration.json"
-LATER = "they were not asked for; protractile snapshot draws them"
+LATER = "not requested; protractile snapshot draws them"
 
 
 def prepare(out: str, file: str) -> Path:

@@ -167,7 +167,7 @@ class OverlapView:
 
     def places(self, time: float) -> Array:
         """Return displayed places (num_points, 3) of the points at a time (s), in m."""
-        return self.scene.drawn(self._beside(time), self.scale, 1.0)
+        return self.scene.magnify(self._beside(time), self.scale, 1.0)
 
     def _beside(self, time: float) -> Array:
         """Return displacements (num_points, 3) in m relative to the outer segment."""

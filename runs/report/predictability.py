@@ -32,18 +32,18 @@ LIMITS = {
 }
 # Format and unit of times.
 _TIME = ".2f", "s"
-VARIED = {"load": "loads", "clearance": "clearances", "velocity": "initial velocities"}
+VARIED_DATA = {"load": "loads", "clearance": "clearances", "velocity": "initial velocities"}
 
 
 def predictability_tables(results: Results) -> list[Table]:
     """Return the tables of each model's ensembles; empty without any."""
-    models, asked = results.summary.models, results.summary.ensemble
+    models, ensembles = results.summary.models, results.summary.ensemble
     sampled = {name: model for name, model in models.items() if model.ensemble}
     measured = {name: model.horizons for name, model in models.items() if model.horizons}
     peaks = {name: found for name, model in sampled.items() if (found := _slow_peaks(model))}
     tables = []
-    if asked is not None and sampled:
-        tables.append(_horizon_table(asked, sampled, results.case.time.duration))
+    if ensembles is not None and sampled:
+        tables.append(_horizon_table(ensembles, sampled, results.case.time.duration))
     if measured:
         tables.append(_growth_table(measured))
     if peaks:
@@ -71,7 +71,9 @@ def _slow_peaks(model: ModelSummary) -> SlowPeaks | None:
     return model.ensemble.slow_peaks if model.ensemble else None
 
 
-def _horizon_table(asked: Ensembles, sampled: Mapping[str, ModelSummary], duration: float) -> Table:
+def _horizon_table(
+    ensembles: Ensembles, sampled: Mapping[str, ModelSummary], duration: float
+) -> Table:
     models = list(sampled.values())
     peaks = [_slow_peaks(model) for model in models]
     periods = [_spread(one.period, one.period_spread, 3) if one else None for one in peaks]
@@ -82,13 +84,13 @@ def _horizon_table(asked: Ensembles, sampled: Mapping[str, ModelSummary], durati
         Column("period", periods, unit="s"),
     )
     notes = [
-        f"Ensembles of {asked.members} members, {VARIED[asked.vary]} changed by up to "
-        f"{scientific(asked.relative)} of themselves. Horizon: when the members are that part "
+        f"Ensembles of {ensembles.members} members, {VARIED_DATA[ensembles.vary]} changed by up to "
+        f"{scientific(ensembles.relative)} of themselves. Horizon: when the members are that part "
         "of the tip's range around one another."
     ]
-    if asked.slow_below is not None:
+    if ensembles.slow_below is not None:
         notes.append(
-            f"Slow peaks are those of the motion below {number(asked.slow_below)} Hz; common "
+            f"Slow peaks are those of the motion below {number(ensembles.slow_below)} Hz; common "
             "ones are those that all members have."
         )
     return Table("Horizons", columns, notes, "horizons")
@@ -110,14 +112,14 @@ def _growth_table(measured: Mapping[str, Predictability]) -> Table:
         Column("limited by", [LIMITS[found.limits[i]] for _, found, i in rows]),
     )
     notes = (
-        "When runs whose data differ by so much of themselves are that part of the tip's range "
-        "apart. They part like exp(growth · time): data a thousand times better buy "
-        "6.9 / growth.",
-        "Finer step: when a run with half the step is as far "
-        "from the run. Earlier than for the largest of these changes, the step is the limit and a "
-        "finer one would help; later, the motion itself is: data are not known as well as that.",
+        "Time at which runs differ by that part of the tip's range, for relative changes of the "
+        "data. Differences grow as exp(growth · time): data a thousand times better extend the "
+        "horizon by 6.9 / growth.",
+        "Finer step: the same for a run with half the step. Where this is earlier than for the "
+        "largest change, a finer step would help; where it is later, the motion itself is the "
+        "limit.",
     )
-    return Table("What better data would buy", columns, notes, "growth")
+    return Table("Growth of differences", columns, notes, "growth")
 
 
 def _peak_columns(peaks: Mapping[str, Sequence[str]]) -> list[Column]:

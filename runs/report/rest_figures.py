@@ -64,11 +64,9 @@ def at_rest(run: FigureContext) -> list[Figure]:
     if tied and not rests.keys() & set(run.play_free):
         lines["without play"] = _rest_lines(tied[0], "without play", theme.PLAY_FREE)
     caption = (
-        "Static under the maximum load: deflection and section forces. "
-        "Normal forces pull where they are positive, moments where they are pull at the top; "
-        "where segments overlap each has its own."
-        + of_start(run.case)
-        + of_rests(run.case, rests.values())
+        "Static under the maximum load: deflection and section forces. Positive normal forces are "
+        "tension, positive moments give tension at the top. In an overlap each segment has its own "
+        "curve." + of_start(run.case) + of_rests(run.case, rests.values())
     )
     far = max(rests.values(), key=lambda rest: abs(rest.tip)).tip
     title = (
@@ -92,8 +90,8 @@ def envelopes(run: FigureContext) -> list[Figure]:
         for name, several in found.items()
     }
     caption = (
-        "Between what the section forces of each segment are over the run: the lowest and the "
-        "highest at every place, whenever they are." + of_start(run.case)
+        "Minimum and maximum of the section forces of each segment over the run, at every place."
+        + of_start(run.case)
     )
     return _stacked(run, lines, "envelopes", "Section forces in motion", caption)
 
@@ -114,11 +112,11 @@ def mode_shapes(run: FigureContext) -> list[Figure]:
         axes.set_yticks([0.0])
     panels[-1].set_xlabel("x along the boom (m)")
     caption = (
-        f"The first modes of {name!r} at rest under the loads of t = 0, its joints pressed as they "
-        "are then. Each segment has its colour; the height is arbitrary."
+        f"First modes of {name!r} in the static state at t = 0, with the contacts that are closed "
+        "there. Each segment has its colour; the amplitude is arbitrary."
     )
     return [
-        run.finish(sheet, None, "modes", "Mode shapes with joints pressed", caption, part="rest")
+        run.finish(sheet, None, "modes", "Mode shapes with closed contacts", caption, part="rest")
     ]
 
 

@@ -54,7 +54,7 @@ def play_table(results: Results) -> Table | None:
         Column("play adds", added),
         Column("", [None if hardly(one) else one.share for one in rows], ".3g", "%"),
     )
-    notes = ("By their absolute values.",)
+    notes = ("Absolute values.",)
     return Table(f"What play adds: {found.model}", columns, notes, "play")
 
 
@@ -79,9 +79,9 @@ def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table | Non
         Column("model", [name for name, _ in tilts]),
         Column("joint", [f"{tilt.inner} in {tilt.outer}" for _, tilt in tilts]),
         Column("rotation", [tilt.rotation for _, tilt in tilts], ".3g", "mrad"),
-        Column("moves the tip", [tilt.tip for _, tilt in tilts], ".1f", "mm"),
+        Column("tip deflection by it", [tilt.tip for _, tilt in tilts], ".1f", "mm"),
     )
-    note = "By play and by what is pressed in: of a shell, also by its walls beside them."
+    note = "By play and contact compliance; of a shell, also by the local compliance of its walls."
     title = "Static under the maximum load: rotation of joints by play and local compliance"
     return Table(title, columns, (note + as_extended,), "tilts")
 
@@ -95,7 +95,7 @@ def _pressed_table(rests: dict[str, StaticResult], as_extended: str) -> Table | 
         forces = {one.place: one.force for one in rest.stations}
         if forces:
             columns.append(Column(name, [forces.get(place) for place in places], ".4g", "kN"))
-    note = "Forces of stations, positive where the inner segment presses up, or to larger y."
+    note = "Forces at stations, positive where the inner segment presses up, or towards larger y."
     title = "Static under the maximum load: contact forces"
     return Table(title, columns, (note + as_extended,), "pressed")
 
@@ -108,14 +108,14 @@ def _reaction_table(results: Results) -> Table | None:
     tied = {(one.segment, one.x): one.force for one in answers.reactions_bonded}
     beside = [tied.get((one.segment, one.x)) for one in found]
     columns = (
-        Column("holds", [f"{one.segment} at {one.x:g} m" for one in found]),
+        Column("support", [f"{one.segment} at {one.x:g} m" for one in found]),
         Column("force", [one.force for one in found], ".4g", "kN"),
         *_unless_none("along the boom", [one.along for one in found], ".4g", "kN"),
         *_unless_none("moment", [one.moment for one in found], ".3g", "kN m"),
-        Column("tied: force", beside, ".4g", "kN"),
+        Column("force, bonded joints", beside, ".4g", "kN"),
     )
     notes = (
-        "Of beam elements, under the loads of t = 0; positive upwards, along the boom towards its "
+        "Of beam elements, under the loads of t = 0. Positive upwards; along the boom towards the "
         "tip.",
     )
     return Table("Static at t = 0: support reactions", columns, notes, "reactions")
@@ -147,8 +147,8 @@ def mode_table(results: Results) -> Table | None:
     columns += [
         Column(name, [found.get(way) for way in rows], ".4g", "Hz") for name, found in of.items()
     ]
-    notes = ("Of the boom at rest under the loads of t = 0, its joints pressed as they are then.",)
-    return Table("Modes at rest at t = 0", columns, notes, "modes")
+    notes = ("In the static state at t = 0, with the contacts that are closed there.",)
+    return Table("Modes in the static state at t = 0", columns, notes, "modes")
 
 
 def peak_table(results: Results) -> Table | None:
@@ -160,14 +160,11 @@ def peak_table(results: Results) -> Table | None:
     rows = dict.fromkeys(where for found in of.values() for where in found)
     if not rows:
         return None
-    columns = [Column("at most", [_named(what, where) for what, where, _ in rows])]
+    columns = [Column("maximum", [_named(what, where) for what, where, _ in rows])]
     columns += [
         Column(name, [_peak_cell(found.get(where)) for where in rows]) for name, found in of.items()
     ]
-    notes = (
-        "By their absolute values. In brackets: how many times what is at rest under the largest "
-        "loads.",
-    )
+    notes = ("Absolute values. In brackets: ratio to the static value under the maximum load.",)
     return Table("Forces and deflections in motion", columns, notes, "peaks")
 
 
@@ -191,7 +188,7 @@ def _named(what: str, where: str) -> str:
     if what == "contact force":
         return f"{what}, x = {where} m"
     if what == "deflection at rest":
-        return "tip at rest, largest loads"
+        return "static tip deflection, maximum load"
     if what == "cylinder force":
         return where.replace("_", " ").replace("-", " ")
     return f"{what}, {where}" if where else what
@@ -218,8 +215,8 @@ def drive_table(results: Results) -> Table | None:
         Column("work", work, ".3g", "kJ"),
     )
     notes = (
-        "Against the friction of pads along the boom, while it is drawn; power and work with what "
-        "contact forces do on their slope, and against what presses along the boom.",
+        "Forces against the friction of the pads during telescoping. Power and work include those "
+        "of contact forces on sloping segments and of axial loads.",
     )
     return Table("Drives", columns, notes, "drives")
 
@@ -255,16 +252,15 @@ def stick_slip_table(results: Results) -> Table | None:
         Column("at most", [one.peak for one in found], ".3g", "kN"),
         Column("sticks", [one.sticks for one in found], unit="times"),
         Column("slips by at most", [one.slip for one in found], ".3g", "mm"),
-        Column("ends behind by", [one.behind for one in found], ".3g", "mm"),
+        Column("lag at the end", [one.behind for one in found], ".3g", "mm"),
         Column("at most", [one.speed for one in found], ".3g", "m/s"),
         Column("at most", [one.acceleration for one in found], ".3g", "m/s²"),
     )
     notes = (
-        "Force: against friction, with what weighs along and what is sped up. Sticks: how often it "
-        "comes to stand while it is drawn. Slips: how far it catches up with its drive in one "
-        "slip. Then its own speed and acceleration. The boom moves as it is drawn by a stiff one. "
-        "Friction is that of the mean force of each output step: where pads chatter faster than "
-        "that, it sticks at other times, and a smaller output_step tells.",
+        "Force: against friction, weight and inertia. Sticks: number of stops during telescoping. "
+        "Slips: largest advance in one slip. Then speed and acceleration of the segment. The boom "
+        "moves as with a rigid drive. Friction follows the mean contact force of each output step; "
+        "where pads chatter faster, use a smaller output_step.",
     )
     return Table("Elastic drives: stick-slip", columns, notes, "stick-slip")
 
@@ -294,8 +290,8 @@ def pad_table(results: Results) -> Table | None:
         Column("utilisation", [pad.utilisation for pad in pads], ".0f", "%"),
     )
     note = (
-        "Of one pad. Those of one side of a station share its force as they are stiff, those of a "
-        "pair evenly, and bear it evenly."
+        "Of one pad. Pads of one side of a station share its force by their stiffness, pads of a "
+        "pair evenly; the pressure is uniform."
     )
     return Table("Slide pads", columns, (note,), "pads")
 
@@ -323,8 +319,8 @@ def stress_table(results: Results) -> Table | None:
     if any(used):
         columns.append(Column("of the yield strength", used, ".3g", "%"))
     notes = (
-        "Outer fibre: along x, of section forces. Wall: von Mises, the mean over a patch of half a "
-        "wall near stations and supports, where plates bend besides.",
+        "Outer fibre: axial stress from section forces. Wall: von Mises, mean over a patch of "
+        "half a wall near stations and supports, plate bending included.",
     )
     return Table("Stress", columns, notes, "stress")
 

@@ -326,7 +326,7 @@ class Scene:
             )
         )
 
-    def drawn(self, moved: Array, scale: float, section: float = SECTION_DRAWN) -> Array:
+    def magnify(self, moved: Array, scale: float, section: float = SECTION_DRAWN) -> Array:
         """Return the displayed places (num_points, 3) of the points in m.
 
         A magnified section also rotates with its magnified height. Displacements along the line of

@@ -120,16 +120,16 @@ def play_effect(results: Results) -> str:
     for each in found.numbers:
         by_kind.setdefault(each.what, []).append(each)
     first = {what: max(several, key=lambda one: one.with_play) for what, several in by_kind.items()}
-    told = [(_SAID[what], one) for what, one in first.items() if what in _SAID]
-    more = [f"{_more(one)} to {what}" for what, one in told if not hardly(one)]
-    same = [what for what, one in told if hardly(one)]
-    said = [f"Play adds {listed(more)}."] if more else []
-    said += [f"It hardly changes {listed(same)}."] if same else []
+    kinds = [(_PHRASES[what], one) for what, one in first.items() if what in _PHRASES]
+    more = [f"{_more(one)} to {what}" for what, one in kinds if not hardly(one)]
+    same = [what for what, one in kinds if hardly(one)]
+    sentences = [f"Play adds {listed(more)}."] if more else []
+    sentences += [f"It hardly changes {listed(same)}."] if same else []
     frequency = first.get("first frequency")
     if frequency is not None and frequency.bonded and not hardly(frequency):
         both = f"{amount(frequency.with_play, 'Hz')} in place of {amount(frequency.bonded, 'Hz')}"
-        said.append(f"The first frequency is {both}.")
-    return " ".join(said)
+        sentences.append(f"The first frequency is {both}.")
+    return " ".join(sentences)
 
 
 def utilisation_verdict(results: Results) -> str:
@@ -155,7 +155,7 @@ def _not_given(results: Results, model: str) -> str:
     return "".join(f" No {what} {listed([*of])}." for what, of in missing.items() if of)
 
 
-_SAID = {
+_PHRASES = {
     "deflection at rest": "the static tip deflection (maximum load)",
     "deflection": "the maximum dynamic tip deflection",
     "stress": "the maximum bending stress",

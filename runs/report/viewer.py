@@ -119,10 +119,10 @@ def packed(view: View, angle: float) -> dict[str, Any]:
     """Return the numbers of a page, for a boom at an angle in degrees about y."""
     scene = view.scene
     scale = scene.fitting_scale(view.time.tolist())
-    rest = scene.drawn(np.zeros_like(scene.points), scale)
+    rest = scene.magnify(np.zeros_like(scene.points), scale)
     moved = np.array(
         [
-            scene.drawn(each, scale) - rest + scale * each * [0.0, 1.0, 0.0]
+            scene.magnify(each, scale) - rest + scale * each * [0.0, 1.0, 0.0]
             for each in scene.displacements(view.time.tolist())
         ]
     )

@@ -72,19 +72,19 @@ def measure(
     cases: Sequence[Case],
     comm: MPI.Intracomm | None,
     cache: Cache | None,
-    tell: Progress = silent,
+    progress: Progress = silent,
 ) -> Array:
     """Return first frequencies (num_cases, num_models, 2, MODES) in Hz. Collective.
 
     Args:
         cases: checked ones, of the same models.
         comm, cache: as of :func:`first_frequencies`.
-        tell: called with the progress.
+        progress: called with the progress.
     """
     found = []
     for case in cases:
         found.append([first_frequencies(case, model, comm, cache) for model in case.models])
-        tell(NAME, f"{len(cases)} points", len(found) / len(cases))
+        progress(NAME, f"{len(cases)} points", len(found) / len(cases))
     return np.array(found)
 
 

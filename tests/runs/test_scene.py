@@ -102,7 +102,7 @@ def test_contact_in_the_run_is_contact_in_the_picture(
     assert overlap == (0, 1, [0, 1], [9.0, 10.0], CLEARANCE)
     moved = np.zeros_like(shell.points)
     moved[shell.owner == 1, 2] = CLEARANCE
-    drawn = shell.drawn(moved, scale, section)
+    drawn = shell.magnify(moved, scale, section)
     for side, gap in ((1, 0.0), (-1, 2.0 * scale * CLEARANCE)):
         outer, inner = (drawn[shell.flange_in_plane(k, side), 2] for k in (0, 1))
         between = side * (outer[0] - inner[0]) - section * shell.wall(overlap)
@@ -256,7 +256,7 @@ def test_a_taper_is_drawn_and_stressed_as_it_is_there() -> None:
     x, one = np.linspace(0.0, 8.0, 5), np.ones((1, 5))
     moved = SegmentMotion(x, {"deflection": 0.0 * one, "moment": 1e3 * one})
     scene, stress = still(Boom((arm,), (), ()), BeamOutput(np.zeros(1), [moved]))
-    drawn = scene.drawn(np.zeros_like(scene.points), 1.0, 3.0)
+    drawn = scene.magnify(np.zeros_like(scene.points), 1.0, 3.0)
     for place, box in ((0.0, tail), (8.0, head)):
         there = scene.points[:, 0] == place
         assert np.ptp(drawn[there, 2]) == pytest.approx(3.0 * box.size("z"))
@@ -267,7 +267,7 @@ def test_a_taper_is_drawn_and_stressed_as_it_is_there() -> None:
 def test_play_stays_visible_between_beams(paper_boom: Boom) -> None:
     """Reference: the inner section is drawn lower than the outer one by more than both plays."""
     scene, _ = still(paper_boom, bent(paper_boom))
-    drawn = scene.drawn(np.zeros_like(scene.points), 10.0)
+    drawn = scene.magnify(np.zeros_like(scene.points), 10.0)
     outer, inner = (drawn[scene.owner == number, 2].max() for number in (0, 1))
     assert outer - inner > 5.0 * paper_boom.joints[0].play
 

@@ -32,7 +32,7 @@ def places(page: dict[str, Any]) -> np.ndarray:
 def test_a_page_shows_the_drawn_places_and_stresses(shown: View) -> None:
     """Reference: the scene's own places; 16 bits of each shape, 8 of the stress."""
     page, scene = packed(shown, 0.0), shown.scene
-    expected = [scene.drawn(moved, page["magnified"]) for moved in scene.displacements(FRAMES)]
+    expected = [scene.magnify(moved, page["magnified"]) for moved in scene.displacements(FRAMES)]
     largest = float(np.abs(np.subtract(expected, expected[0])).max())
     np.testing.assert_allclose(places(page), expected, atol=2.0 * LEFT * largest)
     assert 0.005 < (shown.stress > shown.end).mean() <= 0.01
@@ -65,7 +65,7 @@ def test_symbols_follow_the_boom_and_its_supports_stay(shown: View) -> None:
     load, in its plane of symmetry; hinges stand at 0 and 2 m."""
     scene = shown.scene
     scale = packed(shown, 0.0)["magnified"]
-    rest = scene.drawn(np.zeros_like(scene.points), scale)
+    rest = scene.magnify(np.zeros_like(scene.points), scale)
     by_color = {one.color: one for one in symbol_lines(scene, rest, np.eye(3), 0.0, scale)}
     hinges, arrows = by_color[theme.INK], by_color[theme.FORCE]
     assert (hinges.anchor == -1).all()

@@ -226,7 +226,7 @@ def test_pictures_can_be_left_to_later(
     monkeypatch.setattr("runs.report.snapshots.RENDERED", (refuse,))
     out = tmp_path / "out"
     assert protractile("run", COARSE, "--models", "shell", "--no-pictures", "--out", out) == 0
-    later = "they were not asked for; protractile snapshot draws them"
+    later = "not requested; protractile snapshot draws them"
     assert f"\nno snapshots: {later}\n" in capsys.readouterr().out
     summary = summary_of(out)
     assert summary["snapshots"] == {"written": [], "skipped": later}
