@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -100,7 +99,8 @@ def heads(run: FigureContext) -> list[Figure]:
 def _head(run: FigureContext, place: str) -> Figure:
     models = run.with_play or run.models
     # A single panel has room for the names of its axes.
-    sheet, panels = run.over_time(len(models), 1.1 + max(1.25 * len(models), 2.2))
+    height = 1.1 + max(1.25 * len(models), 2.2)
+    sheet, panels = run.over_time(len(models), height, share_y=True)
     curves = {name: TO_MILLI * run.of(name, place) for name in run.models}
     for axes, name in zip(panels, models, strict=True):
         for other in run.play_free:
@@ -109,7 +109,6 @@ def _head(run: FigureContext, place: str) -> Figure:
         run.line(axes, name, run.time, curves[name], linewidth=1.1, alone=True)
         _members(run, axes, name, place)
         axes.set_title(name, color=run.strokes[name].color)
-        axes.set_ylim(_limits(list(curves.values())))
     sheet.supylabel("deflection (mm)", fontsize=theme.RC["font.size"])
     number = int(place.partition("-")[2] or 1)
     which = run.case.joints[number - 1].outer if run.case.joints else run.case.segments[0].name
@@ -189,14 +188,6 @@ def _sampled(run: FigureContext, place: str) -> str:
         f"{band} Vertical lines: from when its members are {first} (dotted) and {last} (dashed) of "
         f"the tip's range around one another{beyond}."
     )
-
-
-def _limits(curves: Sequence[Array]) -> tuple[float, float]:
-    """Return limits of an axis that contain all curves."""
-    high = highest([highest(curve) for curve in curves])
-    low = -highest([highest(-curve) for curve in curves])
-    margin = 0.05 * (high - low) or 1.0
-    return low - margin, high + margin
 
 
 def slow_peaks(run: FigureContext) -> list[Figure]:

@@ -113,7 +113,8 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
 
 def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Path]:
     """Draw the initial motion of a shell, magnified as in :func:`render_stills`: ``motion.gif``."""
-    scene = views[0]
+    # In the direction that moves.
+    scene = max(views, key=lambda seen: float(np.ptp(seen.motion["tip"].values)))
     film, (begin, _) = _film(scene), _ends(scene)
     with rc_context(theme.PAGE_RC):
         view = BoomView.of(scene, [*_instants(views, _when(scene.motion, times)), *film])

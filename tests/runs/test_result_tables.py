@@ -108,7 +108,7 @@ def test_play_is_said_in_a_sentence(results: Results) -> None:
     assert rows["stress, inner"]["play adds"] == "−10 MPa"
     assert rows["stress, inner"]["%"] == "−10"
     assert rows["stress, inner"]["without play"] == "100 MPa"
-    assert rows["tip at rest, largest loads"]["with play"] == "150 mm"
+    assert rows["static tip deflection, maximum load"]["with play"] == "150 mm"
 
 
 def test_every_table_of_a_rest_says_under_which_loads(results: Results) -> None:
