@@ -21,7 +21,7 @@ from dynamics.second_order import buckling_factor, soften_modes
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.cylinder import ground_lines
-from geometry.telescoping import places, stands
+from geometry.telescoping import places, sampled_extensions
 
 # One component of one segment.
 _Part = tuple[int, Motion]
@@ -130,7 +130,7 @@ def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
             continue
         if (group.modes().omega2 == 0.0).any():
             return None
-        for extensions in stands(boom):
+        for extensions in sampled_extensions(boom):
             moving = (
                 force.softening(extensions[number])
                 for number, forces in passing.items()

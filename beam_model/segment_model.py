@@ -44,7 +44,7 @@ class ContactGeometry(NamedTuple):
 # At the stations, by the whole law on the axis.
 AT_STATIONS = ContactGeometry((0,), lambda pad: (pad.x, pad.x), lambda pad: (pad.inner, pad.outer))
 # At the pads of a shell, each side separately, like a shell's walls.
-AT_PADS = ContactGeometry((1, -1), lambda pad: (pad.middle, pad.slid), lambda pad: pad.covered)
+AT_PADS = ContactGeometry((1, -1), lambda pad: (pad.middle, pad.slide_x), lambda pad: pad.covered)
 
 
 def gap_system(
@@ -101,9 +101,9 @@ def _rows(
     """Return contact, friction and dashpot rows at the extensions of joints in m."""
     rows: GapBuilder[Array] = GapBuilder()
     for pad in pads(boom):
-        on_outer, on_inner = pad.ways(extensions.get(pad.number, 0.0))
+        on_outer, on_inner = pad.travels(extensions.get(pad.number, 0.0))
         law = pad.joint.law(pad.direction)
-        pressed, slid = contact.x(pad)
+        pressed, slide_x = contact.x(pad)
         joint = pad.joint
         # u − w of the pad's two points.
         approach, slide = (
@@ -111,7 +111,7 @@ def _rows(
             - modes.displacement(joint.outer, x + on_outer, direction, outer)
             for direction, x, (inner, outer) in (
                 (pad.direction, pressed, contact.offsets(pad)),
-                (pad.rubs, slid, (pad.inner, pad.outer)),
+                (pad.rubs, slide_x, (pad.inner, pad.outer)),
             )
         )
         sides = (pad.side,) if pad.side else contact.sides

@@ -18,9 +18,9 @@ from dynamics.drive.travel import Travel
 from dynamics.excitation import HistorySum
 from dynamics.gap_builder import GapBuilder
 from geometry.arrays import Array
-from geometry.axial import borne, entry
+from geometry.axial import joint_thrust, moving_force
 from geometry.boom import SAME_PLACE, Boom
-from geometry.telescoping import Course, courses, drives_below
+from geometry.telescoping import MovedStations, drives_below, moved_stations
 
 # Rows of the boom at the extension of each joint in m, by positions of joints.
 RowsAt = Callable[[Mapping[int, float]], GapBuilder[Array]]
@@ -33,7 +33,7 @@ def travels(
     members: Sequence[BeamMember],
 ) -> list[Travel]:
     """Return the motion of rows by drives: that of each joint, for stops of several together."""
-    return [_travel(boom, models, rows_at, members, course) for course in courses(boom)]
+    return [_travel(boom, models, rows_at, members, course) for course in moved_stations(boom)]
 
 
 def moving_axial_forces(
@@ -43,7 +43,7 @@ def moving_axial_forces(
 
     ``members`` are the segments in any coordinates.
     """
-    found = entry(boom.segments, boom.joints, joint)
+    found = moving_force(boom.segments, boom.joints, joint)
     drive = boom.joints[joint].drive
     if found is None or drive is None:
         return []
@@ -63,22 +63,22 @@ def _travel(
     models: Sequence[SegmentModel],
     rows_at: RowsAt,
     members: Sequence[BeamMember],
-    course: Course,
+    course: MovedStations,
 ) -> Travel:
     moving = rows_at({}).moving(course.stations)
 
     def rows(extension: float) -> Array:
-        return rows_at(course.ways(extension)).some_rows(moving, lambda row: row)
+        return rows_at(course.extensions(extension)).some_rows(moving, lambda row: row)
 
     table = RowTable.of(rows, _breaks(boom, models, course))
     alone = len(course.joints) == 1
     pressing = moving_axial_forces(boom, models, members, course.joints[0]) if alone else []
     history = HistorySum(tuple(drive.history for drive in course.drives))
-    against = borne(boom.segments, boom.joints, course.joints[0]) if alone else 0.0
+    against = joint_thrust(boom.segments, boom.joints, course.joints[0]) if alone else 0.0
     return Travel(history, table, moving, course.suffix, pressing, against)
 
 
-def _breaks(boom: Boom, models: Sequence[SegmentModel], course: Course) -> list[float]:
+def _breaks(boom: Boom, models: Sequence[SegmentModel], course: MovedStations) -> list[float]:
     """Return the extensions in m at which a node passes a station, and the ends of the reach."""
     joint = boom.joints[course.joints[-1]]
     outer, inner = (

@@ -83,7 +83,7 @@ def with_compression(
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class MovingForce:
     """A place on a segment at which an axial force moves along as another segment telescopes.
 
     At an extension s, P is larger by the force between x and the present place, x + direction · s;
@@ -109,19 +109,19 @@ class Entry:
         return np.asarray(self.force * (out.astype(float) - back))
 
 
-def borne(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:
+def joint_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:
     """Return the force in N of all that is inside a joint, where the joint carries it; else 0."""
     inner = joints[number].inner
     taken = _lock(joints, inner) is joints[number]
-    return segments[inner].compression.handed if taken else 0.0
+    return segments[inner].compression.transferred if taken else 0.0
 
 
-def on_foot(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:
+def foot_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:
     """Return the axial force in N on a segment's foot; 0 without one or where a joint takes it."""
     segment = segments[number]
     if segment.foot is None or _lock(joints, number) is not None:
         return 0.0
-    return segment.compression.handed
+    return segment.compression.transferred
 
 
 def pin_moments(
@@ -140,33 +140,37 @@ def pin_moments(
     for number, segment in enumerate(segments):
         foot = segment.foot
         if foot is not None and foot.depth != 0.0:
-            moment = foot.depth * on_foot(segments, joints, number)
+            moment = foot.depth * foot_thrust(segments, joints, number)
             yield number, moment * bodies[number].moment(foot.x, "z")
 
 
-def entry(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> Entry | None:
+def moving_force(
+    segments: Sequence[Segment], joints: Sequence[Joint], number: int
+) -> MovingForce | None:
     """Return the force that moves along with a telescoping joint; None where no axial force moves.
 
     A lock on the inner segment moves the force along the outer one. A lock on the outer segment
     removes it from the inner one progressively towards its tail, except for a foot below the tail.
     """
     joint = joints[number]
-    inner, force = segments[joint.inner], borne(segments, joints, number)
+    inner, force = segments[joint.inner], joint_thrust(segments, joints, number)
     if joint.drive is None or force == 0.0:
         return None
     locked = inner.start if joint.locked_at is None else joint.locked_at
     if joint.drive.locked == "inner":
-        return Entry(joint.outer, locked, 1, force)
-    return Entry(joint.inner, locked, -1, force) if locked >= inner.start else None
+        return MovingForce(joint.outer, locked, 1, force)
+    return MovingForce(joint.inner, locked, -1, force) if locked >= inner.start else None
 
 
-def passed_over(segments: Sequence[Segment], joints: Sequence[Joint], segment: int) -> set[float]:
+def moving_force_places(
+    segments: Sequence[Segment], joints: Sequence[Joint], segment: int
+) -> set[float]:
     """Return the x in m on a segment between which axial forces move along it."""
     return {
         found.x + found.direction * way
         for number, joint in enumerate(joints)
         if joint.drive is not None
-        and (found := entry(segments, joints, number)) is not None
+        and (found := moving_force(segments, joints, number)) is not None
         and found.segment == segment
         for way in (0.0, *joint.drive.reach)
     }
@@ -185,7 +189,7 @@ def carried(
     """
     total = np.broadcast_to(segments[number].compression(x), (*time.shape, x.size))
     for position, joint in enumerate(joints):
-        found = entry(segments, joints, position)
+        found = moving_force(segments, joints, position)
         if joint.drive is not None and found is not None and found.segment == number:
             total = total + found.more(x, joint.drive.history(time))
     return total
@@ -257,5 +261,5 @@ def _compression(
         hangs = everything if b <= held + near else 0.0
         pieces.append((first - hangs, last - hangs))
     if not any(force for piece in pieces for force in piece):
-        return replace(UNPRESSED, handed=everything)
+        return replace(UNPRESSED, transferred=everything)
     return Compression(tuple(places), tuple(pieces), everything)

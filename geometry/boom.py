@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TypeVar
 
-from geometry.axial import passed_over
+from geometry.axial import moving_force_places
 from geometry.boom_checks import check_boom
 from geometry.boom_error import BoomError
 from geometry.cylinder import Cylinder
@@ -172,7 +172,7 @@ class Boom:
         if drives := drives_of(self.joints, segment):
             moved = [stop.x for stop in self.stops if stop.segment == segment]
             found |= {x - way for x in moved for way in reach(drives)}
-        return tuple(sorted(found | passed_over(self.segments, self.joints, segment)))
+        return tuple(sorted(found | moving_force_places(self.segments, self.joints, segment)))
 
     def stations_of(self, segment: int) -> tuple[float, ...]:
         """Return the x of all places at which something acts on a segment, rising.

@@ -26,7 +26,7 @@ class Compression:
 
     places: tuple[float, ...] = ()
     ends: tuple[tuple[float, float], ...] = ()
-    handed: float = 0.0
+    transferred: float = 0.0
 
     def __bool__(self) -> bool:
         """Return whether there is any axial force."""

@@ -161,14 +161,14 @@ class Pad:
         """x in m of the middle of its area, through which its resultant goes."""
         return self.x if self.patch is None else 0.5 * (self.patch.start + self.patch.end)
 
-    def ways(self, way: float) -> tuple[float, float]:
+    def travels(self, way: float) -> tuple[float, float]:
         """Return its travel in m along the outer and the inner segment at the extension ``way``."""
         on_outer = way if self.carrier == "inner" else 0.0
         return on_outer, -way if self.carrier == "outer" else 0.0
 
-    def drawn(self, boom: Boom, way: float) -> Pad:
+    def extended(self, boom: Boom, way: float) -> Pad:
         """Return the pad where its joint is extended by ``way`` in m."""
-        on_outer, on_inner = self.ways(way)
+        on_outer, on_inner = self.travels(way)
         inner, outer = (
             stretch.moved(boom.segments[number], by)
             for stretch, number, by in zip(
@@ -181,7 +181,7 @@ class Pad:
         return replace(self, pressed=(inner, outer), moved=(on_inner, on_outer))
 
     @property
-    def slid(self) -> float:
+    def slide_x(self) -> float:
         """x in m where its slide is read: of a flat boom in its middle, in space at its corner."""
         return self.middle if self.joint.lateral_play is None else self.x
 
@@ -206,8 +206,8 @@ def pads(boom: Boom) -> list[Pad]:
             if joint.tied:
                 continue
             overlap = boom.overlap(joint)
-            drawn = 0.0 if joint.drive is None else joint.drive.reach[1]
-            length = joint.contact_length or _OF_OVERLAP * (overlap[1] - overlap[0] - drawn)
+            extended = 0.0 if joint.drive is None else joint.drive.reach[1]
+            length = joint.contact_length or _OF_OVERLAP * (overlap[1] - overlap[0] - extended)
             inner_segment, outer_segment = boom.segments[joint.inner], boom.segments[joint.outer]
             for k, x in enumerate(joint.stations):
                 normal_force = joint.normal_forces[k] if joint.normal_forces else None
@@ -272,7 +272,7 @@ _OF_HEIGHT = 0.2
 
 
 @dataclass(frozen=True, slots=True)
-class Rest:
+class StopPatch:
     """Place where a stop presses a segment's corners.
 
     Args:
@@ -287,21 +287,21 @@ class Rest:
     pressed: Stretch
     reach: tuple[float, float]
 
-    def drawn(self, boom: Boom, way: float) -> Rest:
+    def extended(self, boom: Boom, way: float) -> StopPatch:
         """Return the rest where its segment is extended by ``way`` in m."""
         pressed = self.pressed.moved(boom.segments[self.stop.segment], -way)
         return replace(self, pressed=pressed)
 
 
-def rests(boom: Boom) -> list[Rest]:
+def stop_patches(boom: Boom) -> list[StopPatch]:
     """Return every stop of a boom whose sections are known."""
     found = []
     for station, stop in boom.numbered_stops:
         segment = boom.segments[stop.segment]
         assert segment.section is not None
-        drawn = reach(drives_of(boom.joints, stop.segment))
+        extended = reach(drives_of(boom.joints, stop.segment))
         length = stop.contact_length or min(
             _OF_HEIGHT * segment.section_at(stop.x).size("z"), segment.length
         )
-        found.append(Rest(station, stop, Stretch.on(segment, stop.x, length), drawn))
+        found.append(StopPatch(station, stop, Stretch.on(segment, stop.x, length), extended))
     return found

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Graded meshes: fine where something presses, and coarser away from it.
 
-The first step makes rectangles: near a spot they are nearly square, far from all spots almost seven
+The first step makes rectangles: near a zone they are nearly square, far from all zones almost seven
 times as long along the boom as across. Large edges make the bending of walls across too stiff. This
 error is proportional to the square of the edges across and depends little on those along: halving
 both lowers the frequencies of walls by 0.2 to 0.4 %. The second step is newest-vertex bisection
@@ -21,8 +21,8 @@ import numpy as np
 
 from geometry.arrays import Array, Indices, Mask
 from geometry.mesh import SegmentMesh, mesh_segment
+from geometry.refinement import RefinementZone
 from geometry.section import COMPONENT, Direction, Section
-from geometry.spots import Spot
 
 # Lengths are compared in this fraction of a mesh's extent: below any edge, above round-off.
 _ROUNDED = 1.0e-9
@@ -31,7 +31,7 @@ _ROUNDED = 1.0e-9
 # shorter, and the weights of x, y and z.
 _NEARER, _BESIDE = 1.0e-6, np.array([0.0, 1.0, 1.6])
 
-# Rectangles as fractions of the mesh size: across everywhere, along the boom from spots outwards.
+# Rectangles as fractions of the mesh size: across everywhere, along the boom from zones outwards.
 _ACROSS = 0.3
 _ALONG = (0.5, 1.0, 2.0)
 
@@ -40,31 +40,33 @@ def graded_mesh(
     section: Section,
     breaks: Mapping[str, float],
     size: float,
-    spots: Sequence[Spot],
+    zones: Sequence[RefinementZone],
     closed: Sequence[str] = (),
 ) -> SegmentMesh:
-    """Mesh the walls of a segment as :func:`mesh_segment` does, fine at the spots.
+    """Mesh the walls of a segment as :func:`mesh_segment` does, fine in the refinement zones.
 
     Args:
         section, breaks, closed: see :func:`mesh_segment`.
-        size: edge length in m of squares that are as large as the rectangles far from all spots.
-        spots: where it is to be fine.
+        size: edge length in m of squares that are as large as the rectangles far from all zones.
+        zones: where it is to be fine.
 
     Raises:
         ValueError: as :func:`mesh_segment`.
     """
-    along = _along(breaks, size, spots)
+    along = _along(breaks, size, zones)
     mesh = _diagonals_first(mesh_segment(section, breaks, _ACROSS * size, closed, along))
-    while (cut := _too_large(mesh, section.mirrors, spots)).any():
+    while (cut := _too_large(mesh, section.mirrors, zones)).any():
         mesh = _bisected(mesh, cut)
     return mesh
 
 
-def _along(breaks: Mapping[str, float], size: float, spots: Sequence[Spot]) -> dict[float, float]:
+def _along(
+    breaks: Mapping[str, float], size: float, zones: Sequence[RefinementZone]
+) -> dict[float, float]:
     """Return x in m of outlines → length in m of rectangles from there on."""
     start, end = min(breaks.values()), max(breaks.values())
     fine, middle, coarse = (part * size for part in _ALONG)
-    ends = {x for spot in spots for length in (middle, coarse) for x in spot.reach(length)}
+    ends = {x for zone in zones for length in (middle, coarse) for x in zone.reach(length)}
     # No outline beside a break: it would only add slender triangles.
     apart = [x for x in ends if min(abs(x - place) for place in breaks.values()) > fine]
     found: dict[float, float] = {}
@@ -76,7 +78,7 @@ def _along(breaks: Mapping[str, float], size: float, spots: Sequence[Spot]) -> d
     for x, beyond in pairwise(places):
         here = 0.5 * (x + beyond)
         for length, longer in ((middle, coarse), (fine, middle)):
-            if any(low < here < high for low, high in (spot.reach(longer) for spot in spots)):
+            if any(low < here < high for low, high in (zone.reach(longer) for zone in zones)):
                 found[x] = length
     return found
 
@@ -98,14 +100,16 @@ def _edges(corners: Array) -> Array:
     return np.asarray(np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2))
 
 
-def _too_large(mesh: SegmentMesh, mirrors: Sequence[Direction], spots: Sequence[Spot]) -> Mask:
-    """Return (num_triangles,) which are larger than a spot allows at their nearest corner."""
+def _too_large(
+    mesh: SegmentMesh, mirrors: Sequence[Direction], zones: Sequence[RefinementZone]
+) -> Mask:
+    """Return (num_triangles,) which are larger than a zone allows at their nearest corner."""
     near = _ROUNDED * float(np.ptp(mesh.points[:, 0]))
     places = mesh.points.copy()
     mirrored = [COMPONENT[axis] for axis in mirrors]
     places[:, mirrored] = np.abs(places[:, mirrored])
     places = near * np.round(places / near)
-    allowed = np.min([spot.allowed(places) for spot in spots], axis=0, initial=np.inf)
+    allowed = np.min([zone.allowed(places) for zone in zones], axis=0, initial=np.inf)
     # Legs of the isosceles right triangle with the same longest edge.
     sides = _edges(places[mesh.triangles]).max(axis=1) / np.sqrt(2.0)
     return np.asarray(sides - allowed[mesh.triangles].min(axis=1) > near)

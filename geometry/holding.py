@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.axial import on_foot, pin_moments
+from geometry.axial import foot_thrust, pin_moments
 from geometry.boom_error import BoomError
 from geometry.cylinder import ground_lines
 from geometry.load import Member
@@ -169,7 +169,7 @@ class _RigidBody(Member):
 def _check_depths(boom: Boom) -> None:
     luffed = {cylinder.segment for cylinder in boom.cylinders}
     for number, segment in enumerate(boom.segments):
-        pushed = number in luffed or on_foot(boom.segments, boom.joints, number) != 0.0
+        pushed = number in luffed or foot_thrust(boom.segments, boom.joints, number) != 0.0
         for k, support in enumerate(segment.supports):
             if support.depth != 0.0 and not (pushed and support is segment.foot):
                 raise BoomError(

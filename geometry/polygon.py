@@ -21,7 +21,7 @@ from geometry.section import (
     SectionError,
     Side,
 )
-from geometry.shear_flow import ShearFlow, carriers
+from geometry.shear_flow import ShearFlow, shear_plates
 from geometry.walls import trapezoids
 
 # Places closer than this fraction of a section's size are one.
@@ -138,9 +138,9 @@ class PolygonSection(Section):
                 found.append(axis)
         return tuple(found)
 
-    def carriers(self, direction: Direction) -> tuple[tuple[int, float], ...]:
+    def shear_plates(self, direction: Direction) -> tuple[tuple[int, float], ...]:
         """Return the plates that carry a shear force, by the shear flow."""
-        return carriers(self.plates, direction)
+        return shear_plates(self.plates, direction)
 
     def __str__(self) -> str:
         sizes = " x ".join(f"{1e3 * self.size(axis):.4g}" for axis in ("z", "y"))

@@ -160,7 +160,7 @@ class Section(Protocol):
     def mirrors(self) -> tuple[Direction, ...]:
         """Directions, ``y`` before ``z``, in whose mirror the section is its own image."""
 
-    def carriers(self, direction: Direction) -> tuple[tuple[int, float], ...]:
+    def shear_plates(self, direction: Direction) -> tuple[tuple[int, float], ...]:
         """Return the numbers of the plates that carry a shear force in their own plane.
 
         Each with its force along its tangent under a unit force through the centroid.
@@ -380,7 +380,7 @@ class BoxSection(Section):
         alike: dict[Direction, bool] = {"y": not self.left_web, "z": not self.bottom_flange}
         return tuple(axis for axis, same in alike.items() if same)
 
-    def carriers(self, direction: Direction) -> tuple[tuple[int, float], ...]:
+    def shear_plates(self, direction: Direction) -> tuple[tuple[int, float], ...]:
         """Return the webs along z, the flanges along y, by the law of the lever."""
         y, z = self.centroid
         if direction == "z":

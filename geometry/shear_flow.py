@@ -93,7 +93,7 @@ def shear_centre(plates: Sequence[Plate]) -> Offset:
     return ShearFlow.of(plates, "z").moment, -ShearFlow.of(plates, "y").moment
 
 
-def carriers(plates: Sequence[Plate], direction: Direction) -> tuple[tuple[int, float], ...]:
+def shear_plates(plates: Sequence[Plate], direction: Direction) -> tuple[tuple[int, float], ...]:
     """Return the plates that carry a unit force through the axis: number, force along the tangent.
 
     This is the flow of the force, and that of the moment which moves it from the shear centre to

@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from geometry.boom import Boom
 
 # Number of times at which a telescoping boom is checked.
-_STANDS = 9
+_SAMPLES = 9
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
+class MovedStations:
     """Stations that the drives of some joints move together.
 
     Args:
@@ -48,19 +48,19 @@ class Course:
             return None
         return "" if self.joints[0] == 0 else f"-{self.joints[0] + 1}"
 
-    def ways(self, way: float) -> dict[int, float]:
+    def extensions(self, way: float) -> dict[int, float]:
         """Return position of a joint → extension in m; stops need the sum of several alone."""
         return {self.joints[0]: way}
 
 
-def courses(boom: Boom) -> list[Course]:
+def moved_stations(boom: Boom) -> list[MovedStations]:
     """Return the courses: the stations of each joint with a drive, for stops of several joints."""
     moved: dict[tuple[int, ...], list[int]] = {}
     for station, joints in _driven_stations(boom):
         if joints:
             moved.setdefault(joints, []).append(station)
     return [
-        Course(
+        MovedStations(
             joints,
             tuple(drive for n in joints if (drive := boom.joints[n].drive) is not None),
             tuple(stations),
@@ -90,7 +90,7 @@ def drives_below(joints: Sequence[Joint], segment: int) -> tuple[int, ...]:
     return ()
 
 
-def drawn(boom: Boom, segment: int, time: float) -> float:
+def travel(boom: Boom, segment: int, time: float) -> float:
     """Return the travel of a segment in m since the start, at a time in s."""
     return sum(float(one.history(np.array(time))) for one in drives_of(boom.joints, segment))
 
@@ -106,21 +106,23 @@ def reach(drives: Sequence[Drive]) -> tuple[float, float]:
     return sum(drive.reach[0] for drive in drives), sum(drive.reach[1] for drive in drives)
 
 
-def farthest(boom: Boom, segment: int) -> float:
+def farthest_travel(boom: Boom, segment: int) -> float:
     """Return the farthest travel of a segment in m: out, or in if its drives never move it out."""
     drives = [boom.joints[number].drive for number in drives_below(boom.joints, segment)]
     reaches = [drive.reach for drive in drives if drive is not None]
     return sum(high or low for low, high in reaches)
 
 
-def stands(boom: Boom) -> list[dict[int, float]]:
+def sampled_extensions(boom: Boom) -> list[dict[int, float]]:
     """Return extensions in m by positions of joints: at the start, farthest and between."""
     drives = {n: joint.drive for n, joint in enumerate(boom.joints) if joint.drive is not None}
     times = np.unique(np.concatenate([np.zeros(1), *(drive.times for drive in drives.values())]))
-    ways = np.array([drive.history(times) for drive in drives.values()]).reshape(-1, times.size)
-    between = np.linspace(0, times.size - 1, _STANDS).astype(int)
-    steps = np.unique([*between, *ways.argmin(axis=1), *ways.argmax(axis=1)])
-    return [dict(zip(drives, there.tolist(), strict=True)) for there in ways[:, steps].T]
+    extensions = np.array([drive.history(times) for drive in drives.values()]).reshape(
+        -1, times.size
+    )
+    between = np.linspace(0, times.size - 1, _SAMPLES).astype(int)
+    steps = np.unique([*between, *extensions.argmin(axis=1), *extensions.argmax(axis=1)])
+    return [dict(zip(drives, there.tolist(), strict=True)) for there in extensions[:, steps].T]
 
 
 def places(joint: Joint, way: float) -> list[tuple[float, float]]:

@@ -17,12 +17,12 @@ from beam_model.statics import StaticState
 from dynamics.damping import pressed_modes, pressed_ratios
 from dynamics.failure import NUMERICS
 from dynamics.motion import rest_of
-from geometry.axial import carried, passed_over
+from geometry.axial import carried, moving_force_places
 from geometry.boom import Boom, Direction, Joint
 from geometry.fit import room
 from geometry.typography import TO_MILLI
 from runs.case import actions
-from runs.case.declared import Declared
+from runs.case.checked_case import CheckedCase
 from runs.case.kinds.model import ModelTable
 from runs.case.schema import Case, Model
 from runs.case.units import System
@@ -61,7 +61,7 @@ _ROUND_OFF, _NO_MOMENT = 1.0e-12, 1.0e-3
 _BEAMS = "as beam elements"
 
 
-def print_check(declared: Declared, console: Console) -> None:
+def print_check(declared: CheckedCase, console: Console) -> None:
     """Print the tables of a checked case, and its static state in sentences at the end."""
     case, boom, preview = declared.case, declared.boom, Preview(declared)
     found = statics(case, boom)
@@ -257,7 +257,7 @@ def _extreme_axial_force(
         for k, cylinder in enumerate(boom.cylinders, start=1)
         if cylinder.segment == number and state is not None
     ]
-    jumps = {*segment.compression.places, *passed_over(boom.segments, boom.joints, number)}
+    jumps = {*segment.compression.places, *moving_force_places(boom.segments, boom.joints, number)}
     if cylinders and segment.foot is not None:
         jumps |= {segment.foot.x, *(cylinder.x for cylinder, _ in cylinders)}
     ends = [x + side * _BESIDE * segment.length for x in jumps for side in (-1.0, 1.0)]
@@ -274,11 +274,11 @@ def _extreme_axial_force(
     return largest, float(stresses.flat[np.abs(stresses).argmax()])
 
 
-def _critical_factor(declared: Declared, model: Model) -> float | None:
+def _critical_factor(declared: CheckedCase, model: Model) -> float | None:
     return model.coarsened(declared.boom).critical_factor(declared.joined(model))
 
 
-def _buckling(declared: Declared) -> Table:
+def _buckling(declared: CheckedCase) -> Table:
     """Return the table of the buckling factor of each model."""
     models = declared.case.models
     factors = [_critical_factor(declared, model) for model in models]

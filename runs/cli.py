@@ -284,10 +284,10 @@ def frequencies(
 @app.command()
 def check(case: CaseFile, picture: Picture = None) -> int:
     """Check a case file, and print what follows from it."""
-    from runs.case.reading import declared
+    from runs.case.reading import load_checked
     from runs.check import print_check
 
-    found = declared(case)
+    found = load_checked(case)
     if picture is not None:
         import_module("runs.report.boom_drawing").save_drawing(found.case, case, picture)
     print_check(found, Terminal())

@@ -15,14 +15,14 @@ from dynamics.gap_builder import GapBuilder, Observed
 from geometry.arrays import Array
 from geometry.axial import pin_moments
 from geometry.boom import Boom, BoomError, Direction
-from geometry.contact_places import ContactLine, pads, rests
+from geometry.contact_places import ContactLine, pads, stop_patches
 from geometry.cylinder import GroundLine, ground_lines
 from geometry.grading import graded_mesh
 from geometry.load import Load
 from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.observation import Quantity, Read
 from geometry.plating import PlatedMesh, plated, tapered_mesh
-from geometry.spots import spots
+from geometry.refinement import refinement_zones
 from shell_model.contact.rows import ShellContacts, ties
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.reduction.krylov import KrylovOptions
@@ -45,7 +45,7 @@ class ShellOptions:
         surface: its points and penalty, and its own shifts and moments of the reduction.
         krylov: the reduction.
         contact_tolerance: relative error of the local compliance where a force acts, which grades
-            the mesh (:mod:`geometry.spots`); uniform unless given, and at a surface.
+            the mesh (:mod:`geometry.refinement`); uniform unless given, and at a surface.
     """
 
     mesh_size: float = 0.1
@@ -219,7 +219,7 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
         mesh = mesh_segment(*box, closed=closed)
     else:
         tolerance, line = options.contact_tolerance, options.contact_line
-        fine = spots(boom, number, tolerance, line, rests(boom), pads(boom))
+        fine = refinement_zones(boom, number, tolerance, line, stop_patches(boom), pads(boom))
         mesh = graded_mesh(*box, fine, closed=closed)
     built = plated(segment, mesh)
     return built if segment.head_section is None else tapered_mesh(segment, built)

@@ -27,9 +27,9 @@ from dynamics.gap_builder import GapBuilder
 from dynamics.gap_system import GapSystem
 from dynamics.reduction import reduce_modes, with_coordinates
 from geometry.arrays import Array, Mask
-from geometry.axial import borne, entry
+from geometry.axial import joint_thrust, moving_force
 from geometry.boom import SAME_PLACE, Boom
-from geometry.telescoping import Course, courses
+from geometry.telescoping import MovedStations, moved_stations
 from shell_model.boom_shell import BoomShell
 from shell_model.reduction.coordinates import BoomCoordinates, exact_product
 from shell_model.reduction.pad_springs import SLOW, PadResponses, pad_responses, springs, squared
@@ -62,7 +62,7 @@ class _SampledRows:
         touching: contacts, friction and dashpots at each.
     """
 
-    course: Course | None
+    course: MovedStations | None
     moving: Sequence[tuple[Kind, int]]
     extensions: Array
     touching: Sequence[GapBuilder[Reading]]
@@ -107,13 +107,15 @@ class _SampledRows:
 def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]:
     """Sample all rows of a boom where stations pass the rings of a mesh of this size in m."""
     found = []
-    for course in courses(boom):
+    for course in moved_stations(boom):
         pieces = [
             np.linspace(start, end, max(round((end - start) / size), _FEWEST) + 1)
             for start, end in pairwise(sorted({*course.reach, 0.0}))
         ]
         moving, extensions = full.rows.moving(course.stations), np.unique(np.concatenate(pieces))
-        touching = [full.touching.rows(course.ways(extension)) for extension in extensions.tolist()]
+        touching = [
+            full.touching.rows(course.extensions(extension)) for extension in extensions.tolist()
+        ]
         found.append(_SampledRows(course, moving, extensions, touching))
     moved = {row for sampled in found for row in sampled.moving}
     counts = len(full.rows.contacts), len(full.rows.frictions), len(full.rows.dashpots)
@@ -197,7 +199,7 @@ class TelescopingShell:
                     _moving_axial_forces(
                         self._boom, self._full, coordinates, sampled.course, int(behind[-1])
                     ),
-                    borne(self._boom.segments, self._boom.joints, sampled.course.joints[0]),
+                    joint_thrust(self._boom.segments, self._boom.joints, sampled.course.joints[0]),
                 )
                 travels.append(travel)
         omega2 = np.concatenate([omega2 for omega2, _ in self._springs])
@@ -283,13 +285,13 @@ class TelescopingShell:
 
 
 def _moving_axial_forces(
-    boom: Boom, full: BoomShell, coordinates: BoomCoordinates, course: Course, behind: int
+    boom: Boom, full: BoomShell, coordinates: BoomCoordinates, course: MovedStations, behind: int
 ) -> list[MovingAxialForce]:
     """Return the axial force, if any, that moves along with a telescoping joint. Collective.
 
     The remaining coordinates, after these, do not move sections.
     """
-    found = entry(boom.segments, boom.joints, course.joints[0])
+    found = moving_force(boom.segments, boom.joints, course.joints[0])
     if found is None or len(course.joints) > 1:
         return []
     shell, lines = full.shells[found.segment], np.zeros(0)

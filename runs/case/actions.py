@@ -56,20 +56,22 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
     given = [_load(f"load[{number}]", table) for number, table in enumerate(case.loads, start=1)]
     last = len(segments) - 1
     if case.payload is not None and case.gravity is None:
-        weight = -case.payload.mass * _weighing(case.payload)
+        weight = -case.payload.mass * _payload_gravity(case.payload)
         if weight < 0.0:
             given.append(Load(last, "z", weight, segments[last].end, Step()))
     if case.gravity is not None:
-        given += _felt(-across(case.gravity), "z", Step(), segments)
+        given += _inertia_loads(-gravity_across(case.gravity), "z", Step(), segments)
     for number, base in enumerate(case.base, start=1):
         history = _history(f"base[{number}]", base)
-        given += _felt(-base.acceleration, base.direction, history, segments)
+        given += _inertia_loads(-base.acceleration, base.direction, history, segments)
     for name, velocity in case.start.velocity.items():
-        given += _thrown(called("start.velocity", name, segments), velocity, segments)
+        given += _initial_momentum(index_of("start.velocity", name, segments), velocity, segments)
     return tuple(given)
 
 
-def _thrown(index: int, velocity: VelocityTable, segments: Sequence[Segment]) -> list[Load]:
+def _initial_momentum(
+    index: int, velocity: VelocityTable, segments: Sequence[Segment]
+) -> list[Load]:
     """Return the momentum of a segment that moves as a rigid body."""
     segment = segments[index]
     x0 = segment.start if velocity.x is None else at(velocity.x, segment.start, segment.end)
@@ -91,7 +93,7 @@ def _thrown(index: int, velocity: VelocityTable, segments: Sequence[Segment]) ->
     return given
 
 
-def _felt(
+def _inertia_loads(
     acceleration: float, direction: Direction, history: History, segments: Sequence[Segment]
 ) -> list[Load]:
     """Return the inertia loads of all masses under a ground acceleration in m/s²."""
@@ -115,12 +117,12 @@ def _felt(
     ]
 
 
-def across(gravity: GravityTable) -> float:
+def gravity_across(gravity: GravityTable) -> float:
     """Return g cos θ in m/s², towards −z."""
     return gravity.acceleration * float(cosdg(gravity.angle))
 
 
-def along(gravity: GravityTable) -> float:
+def gravity_along(gravity: GravityTable) -> float:
     """Return g sin θ in m/s², towards the base."""
     return gravity.acceleration * float(sindg(gravity.angle))
 
@@ -145,8 +147,8 @@ def with_weight(
         thrusts: other axial forces, such as a hoist rope's.
     """
     gravity = GravityTable(acceleration=float(acceleration), angle=float(angle))
-    segments = with_compression(boom.segments, boom.joints, thrusts, along(gravity))
-    weights = _felt(-across(gravity), "z", Step(), segments)
+    segments = with_compression(boom.segments, boom.joints, thrusts, gravity_along(gravity))
+    weights = _inertia_loads(-gravity_across(gravity), "z", Step(), segments)
     return replace(boom, segments=segments, loads=(*boom.loads, *weights))
 
 
@@ -166,12 +168,12 @@ def thrusts(case: Case, segments: Sequence[Segment]) -> tuple[Thrust, ...]:
 def _thrust(where: str, table: AxialTable, case: Case, segments: Sequence[Segment]) -> Thrust:
     name: Any = segments[-1].name if table.segment is None else table.segment
     place: Any = Distance(head=0.0) if table.x is None else table.x
-    thrust = on_segments(Thrust(name, place, _pull(where, table, case)), where, segments)
+    thrust = on_segments(Thrust(name, place, _axial_force(where, table, case)), where, segments)
     segments[thrust.segment].check_place(f"{where}.x", thrust.x)
     return thrust
 
 
-def _pull(where: str, table: AxialTable, case: Case) -> float:
+def _axial_force(where: str, table: AxialTable, case: Case) -> float:
     """Return the compressive force in N."""
     if table.force is not None:
         for key in ("falls", "mass"):
@@ -189,11 +191,11 @@ def _pull(where: str, table: AxialTable, case: Case) -> float:
             f"{where}.mass",
             "missing, and there is no payload; it is the mass in kg that the rope carries",
         )
-    gravity = _weighing(case.payload) if case.gravity is None else case.gravity.acceleration
+    gravity = _payload_gravity(case.payload) if case.gravity is None else case.gravity.acceleration
     return mass * gravity / table.falls
 
 
-def _weighing(payload: PayloadTable | None) -> float:
+def _payload_gravity(payload: PayloadTable | None) -> float:
     """Return the acceleration in m/s² of a payload with its own gravity."""
     if payload is None or payload.gravity is None:
         return STANDARD_GRAVITY
@@ -265,7 +267,7 @@ def values(table: Any, part: type) -> dict[str, Any]:
     return {field.name: getattr(table, field.name) for field in fields(part)}
 
 
-def called(where: str, name: str, segments: Sequence[Segment | SegmentTable]) -> int:
+def index_of(where: str, name: str, segments: Sequence[Segment | SegmentTable]) -> int:
     """Return the index of the segment with a name.
 
     Raises:

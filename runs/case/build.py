@@ -64,7 +64,7 @@ def build_boom(case: Case) -> Boom:
     segments = tuple(
         _segment(case, number, section, ends[number]) for number, section in enumerate(sections)
     )
-    along = 0.0 if case.gravity is None else actions.along(case.gravity)
+    along = 0.0 if case.gravity is None else actions.gravity_along(case.gravity)
     segments = with_compression(segments, joints, actions.thrusts(case, segments), along)
     boom = Boom(
         segments,
@@ -148,7 +148,7 @@ def _check_joined(case: Case) -> None:
     for index, table in enumerate(case.joints):
         where = f"joint[{index + 1}]"
         for end in ("outer", "inner"):
-            actions.called(f"{where}.{end}", getattr(table, end), case.segments)
+            actions.index_of(f"{where}.{end}", getattr(table, end), case.segments)
         if table.outer == table.inner:
             raise BoomError(f"{where}.inner", "must be another segment than the outer one")
         for number, other in enumerate(case.joints[:index], start=1):

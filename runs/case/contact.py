@@ -15,7 +15,7 @@ from geometry.fields import PART, In, NotNegative, Number, Positive
 from geometry.joint import BareJoint
 from geometry.section import Side
 from runs.case.drive import DriveTable
-from runs.case.limits import CaseTable, Exponent, Text, fault_at, left_out
+from runs.case.limits import CaseTable, Exponent, Text, error_at, superfluous
 
 if TYPE_CHECKING:
     from dynamics.contact import ContactLaw
@@ -73,14 +73,14 @@ def _check_law(table: ContactTable, of_power: Sequence[str]) -> None:
     if given is None:
         if table.stiffness is None and getattr(table, "pad", None) is not None:
             what = {"what": PAD_WITHOUT_STIFFNESS}
-            raise fault_at(table, PydanticCustomError("unsuitable", "{what}", what), "pad")
+            raise error_at(table, PydanticCustomError("unsuitable", "{what}", what), "pad")
         if table.stiffness is None:
-            raise fault_at(table, "missing", "stiffness")
+            raise error_at(table, "missing", "stiffness")
         return
     others = tables if pad else tables[1:]
     keys = others + [key for key in of_power if getattr(table, key) is not None]
     if keys:
-        raise left_out(table, given, *keys)
+        raise superfluous(table, given, *keys)
 
 
 Forces = Annotated[
@@ -162,7 +162,7 @@ class JointTable(ContactTable, BareJoint):
     @model_validator(mode="after")
     def _pads_or_pad(self) -> Self:
         if self.pads and self.pad is not None:
-            raise left_out(self, "pads", "pad")
+            raise superfluous(self, "pads", "pad")
         return self
 
     @model_validator(mode="after")
@@ -171,9 +171,9 @@ class JointTable(ContactTable, BareJoint):
         lateral = () if self.lateral_stiffness else ("lateral_exponent",)
         _check_law(self, (*_OF_POWER, *lateral))
         if self.pads and self.lateral_stiffness:
-            raise left_out(self, "pads", "lateral_stiffness")
+            raise superfluous(self, "pads", "lateral_stiffness")
         if self.lateral_exponent and not self.lateral_stiffness and not self.pads:
-            raise fault_at(self, "missing", "lateral_stiffness")
+            raise error_at(self, "missing", "lateral_stiffness")
         return self
 
     def exponent_of(self, key: str) -> float | None:

@@ -11,7 +11,7 @@ from dynamics.drive.stick_slip import ElasticDrive
 from dynamics.drive.travel import Travel
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, BoomError
-from geometry.telescoping import courses, drives_below
+from geometry.telescoping import drives_below, moved_stations
 from runs.case.contact import JointTable
 from runs.case.drive import DriveTable
 from runs.case.schema import Case
@@ -33,7 +33,7 @@ def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
             drive.stiffness,
             drive.dashpot,
             _sticking(joint, drive),
-            boom.segments[boom.joints[number].inner].compression.handed,
+            boom.segments[boom.joints[number].inner].compression.transferred,
             tuple(
                 (_moved_mass(boom, number, other), beside.drive.history)
                 for other, beside in enumerate(boom.joints)
@@ -48,7 +48,7 @@ def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
 def with_elastic_drives(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
     """Return a model's system with the data of its elastic drives."""
     found = elastic_drives(case, boom)
-    suffixes = {course.suffix: found.get(course.joints[0]) for course in courses(boom)}
+    suffixes = {course.suffix: found.get(course.joints[0]) for course in moved_stations(boom)}
 
     def pulling(travel: Travel) -> Travel:
         return replace(travel, elastic=None if travel.suffix is None else suffixes[travel.suffix])

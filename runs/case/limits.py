@@ -47,21 +47,21 @@ def units_of(table: Any, key: str, exponent: float = 2.0) -> tuple[str, ...]:
     return tuple(reduce(lambda unit, power: unit.replace(*power), powers, u) for u in declared)
 
 
-def fault_in(table: Any, fault: str | PydanticCustomError, *at: tuple[Any, ...]) -> ValidationError:
+def errors_in(table: Any, kind: str | PydanticCustomError, *at: tuple[Any, ...]) -> ValidationError:
     """Return errors for validators of a whole table: each a path of keys, and the value there."""
-    errors = [InitErrorDetails(type=fault, loc=path, input=value) for path, value in at]
+    errors = [InitErrorDetails(type=kind, loc=path, input=value) for path, value in at]
     return ValidationError.from_exception_data(type(table).__name__, errors)
 
 
-def fault_at(table: Any, fault: str | PydanticCustomError, *keys: str) -> ValidationError:
+def error_at(table: Any, kind: str | PydanticCustomError, *keys: str) -> ValidationError:
     """Return errors at keys of a table, for validators of a whole table."""
-    return fault_in(table, fault, *(((key,), getattr(table, key)) for key in keys))
+    return errors_in(table, kind, *(((key,), getattr(table, key)) for key in keys))
 
 
-def left_out(table: Any, given: str, *keys: str) -> ValidationError:
+def superfluous(table: Any, given: str, *keys: str) -> ValidationError:
     """Return a validator's error for keys that repeat another one."""
     what = {"what": f"{given} is given; leave one of them out"}
-    return fault_at(table, PydanticCustomError("unsuitable", "{what}", what), *keys)
+    return error_at(table, PydanticCustomError("unsuitable", "{what}", what), *keys)
 
 
 # A Hertz contact has 3/2; the upper limit excludes input errors.

@@ -84,7 +84,7 @@ class BadInput(Exception):
         return cls(file, re.sub(r"\.start$", ".span", key), error.what)
 
 
-def first_fault(error: ValidationError) -> str:
+def first_error(error: ValidationError) -> str:
     """Return place and description of the first fault of a file that the program has written."""
     fault = error.errors(include_url=False)[0]
     return "".join(f"{step}: " for step in fault["loc"]) + fault["msg"]

@@ -17,17 +17,17 @@ from geometry.boom import BoomError
 from geometry.fields import described
 from geometry.typography import choices
 from runs.case.build import build_boom, check_names, check_varied
+from runs.case.checked_case import CheckedCase
 from runs.case.columns import Column, read_pairs
 from runs.case.contact import ContactTable, JointTable, table_law
 from runs.case.conversion import in_si
-from runs.case.declared import Declared
 from runs.case.kinds.shell import check_mesh_size
 from runs.case.limits import MOST_MEMBERS, units_of
 from runs.case.messages import BadInput
+from runs.case.sanity import check_ranges
 from runs.case.schema import Case, EnsembleTable, HistoryTable, Model, TimeTable
 from runs.case.units import System
 from runs.case.user_files import read_text
-from runs.case.usual import check_usual
 
 # Limit of output times: a netCDF file cannot hold more, and the run would take too long.
 MOST_OUTPUTS = 10_000_000
@@ -50,10 +50,10 @@ def load(path: str) -> Case:
     Raises:
         BadInput: the file cannot be read, or its content is invalid.
     """
-    return declared(path).case
+    return load_checked(path).case
 
 
-def declared(path: str) -> Declared:
+def load_checked(path: str) -> CheckedCase:
     """Return the boom and models of a case file; raise the errors of :func:`load`."""
     try:
         case = in_si(_read_tables(Case.model_validate(_read(path)), path))
@@ -65,13 +65,13 @@ def declared(path: str) -> Declared:
     return check(case, path)
 
 
-def check(case: Case, path: str) -> Declared:
+def check(case: Case, path: str) -> CheckedCase:
     """Check a case beyond its schema, and return its boom and models.
 
     Raises:
         BadInput: the case is invalid.
     """
-    found = Declared(case)
+    found = CheckedCase(case)
     try:
         _check_time(case.time)
         _check_boom(found)
@@ -312,10 +312,10 @@ def _check_time(time: TimeTable) -> None:
         )
 
 
-def _check_boom(found: Declared) -> None:
+def _check_boom(found: CheckedCase) -> None:
     """Check that the boom is valid, and that its models suit it."""
     case, boom = found.case, found.boom
-    check_usual(case, boom)
+    check_ranges(case, boom)
     check_names("model", [model.name for model in case.models])
     for number, model in enumerate(case.models, start=1):
         where = f"model[{number}]"

@@ -44,8 +44,8 @@ from runs.case.limits import (
     Exponent,
     Part,
     Text,
-    fault_at,
-    fault_in,
+    error_at,
+    errors_in,
 )
 from runs.case.segment import SegmentTable
 from runs.case.units import System, SystemName
@@ -115,7 +115,7 @@ class HistoryTable(CaseTable):
     def _has_an_amount(self) -> Self:
         # A file that gives its unit needs no such key.
         if self.file is None and self.amount not in self.model_fields_set:
-            raise fault_at(self, "missing", self.amount)
+            raise error_at(self, "missing", self.amount)
         return self
 
 
@@ -344,7 +344,7 @@ class Case(CaseKeys, CaseHeading):
                 for key in ("outer", "inner", "segment"):
                     name = getattr(part, key, "")
                     if not isinstance(name, str):
-                        raise fault_in(self, "string_type", ((group, number, key), name))
+                        raise errors_in(self, "string_type", ((group, number, key), name))
         return self
 
     @model_validator(mode="after")

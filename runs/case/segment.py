@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, model_validator
 from geometry.fields import End, Few, In, Length, Name, NotNegative, Number, Positive, is_number
 from geometry.segment import Collar, Diaphragm, Material, PointMass
 from geometry.support import Support
-from runs.case.limits import CaseTable, fault_at, left_out
+from runs.case.limits import CaseTable, error_at, superfluous
 from runs.case.sections import AnySection
 
 
@@ -78,7 +78,7 @@ class SegmentTable(CaseTable):
     @model_validator(mode="after")
     def _has_a_place(self) -> Self:
         if self.span is None and self.length is None:
-            raise fault_at(self, "missing", "span")
+            raise error_at(self, "missing", "span")
         if self.span is not None and self.length is not None:
-            raise left_out(self, "span", "length")
+            raise superfluous(self, "span", "length")
         return self

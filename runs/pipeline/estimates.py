@@ -17,7 +17,7 @@ import numpy as np
 
 from dynamics.failure import NUMERICS
 from dynamics.motion import MOST_STEPS, Motion
-from runs.case.declared import Declared
+from runs.case.checked_case import CheckedCase
 from runs.case.kinds.model import ModelTable
 from runs.case.messages import BadInput
 from runs.case.schema import Case, Model
@@ -71,7 +71,7 @@ class Preview:
         declared: the case with its boom and models.
     """
 
-    declared: Declared
+    declared: CheckedCase
     _motions: list[tuple[ModelTable, Motion]] = field(default_factory=list, init=False, repr=False)
 
     def motion(self, model: Model, beam: ModelTable) -> Motion:
@@ -95,7 +95,7 @@ class Preview:
 
 def run_cost(case: Case) -> Cost:
     """Return the cost of a run of a checked case."""
-    return preview_cost(Preview(Declared(case)))
+    return preview_cost(Preview(CheckedCase(case)))
 
 
 def preview_cost(preview: Preview) -> Cost:

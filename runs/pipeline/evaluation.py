@@ -15,7 +15,7 @@ from dynamics.line import Line
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom
-from geometry.telescoping import drawn
+from geometry.telescoping import travel
 from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
 from runs.pipeline.bonded import bonded_system
@@ -153,7 +153,7 @@ def _beside_tied(
 
 def _as_begun(boom: Boom, time: float) -> bool:
     """Return whether drives have all segments in their initial positions at a time in s."""
-    return not any(drawn(boom, segment, time) for segment in range(len(boom.segments)))
+    return not any(travel(boom, segment, time) for segment in range(len(boom.segments)))
 
 
 def answer_run(

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from dynamics.trajectory import Pointwise
-from geometry.axial import entry
+from geometry.axial import moving_force
 from geometry.boom import Boom
 from geometry.typography import TO_PERCENT, listed
 from runs.case.actions import series_notes
@@ -150,7 +150,7 @@ def quality_notes(
                 f"{name}: at contacts its local compliance is within "
                 f"{_percent(model.mesh_error)} of that of an infinitely fine mesh.",
             )
-    name, worst = max(models.items(), key=lambda entry: entry[1].energy_residual)
+    name, worst = max(models.items(), key=lambda moving_force: moving_force[1].energy_residual)
     yield QualityNote(
         "energy",
         f"Energy is accounted for within {worst.energy_residual:.1g} of the work done in every "
@@ -246,7 +246,7 @@ def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
 def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
     """Yield the limits of the wall stresses of shells where axial forces change along the boom."""
     numbers = range(len(boom.joints))
-    if any(entry(boom.segments, boom.joints, number) for number in numbers):
+    if any(moving_force(boom.segments, boom.joints, number) for number in numbers):
         for name in (name for name, one in summary.models.items() if one.stress is not None):
             yield (
                 f"caution: the walls of {name} bear the axial forces of the start: their stresses, "

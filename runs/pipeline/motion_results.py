@@ -12,7 +12,7 @@ import numpy as np
 from dynamics.line import Line, Quantity
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
-from geometry.axial import on_foot
+from geometry.axial import foot_thrust
 from geometry.boom import Boom, Segment
 from geometry.cylinder import forces
 from geometry.section import Direction
@@ -211,7 +211,7 @@ def _reactions(motions: Motions, number: int) -> Iterator[Peak]:
         if "torque" in line.rows:
             yield _peak("torque at the support", where, "N m", time, *jump("torque", support.x))
         if support is segment.foot and (segment.compression or "normal" in line.rows):
-            foot = on_foot(motions.boom.segments, motions.boom.joints, number)
+            foot = foot_thrust(motions.boom.segments, motions.boom.joints, number)
             along = [foot + each for each in jump("normal", support.x)]
             yield _peak("reaction along the boom", where, "N", time, *along)
             whole = [np.linalg.norm(parts, axis=0) for parts in zip(*across, along, strict=True)]

@@ -13,9 +13,9 @@ from dynamics.excitation import InitialImpulse, Ramp, Step
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
-from runs.case.actions import STANDARD_GRAVITY, across
+from runs.case.actions import STANDARD_GRAVITY, gravity_across
+from runs.case.sanity import usual_ranges
 from runs.case.schema import Case
-from runs.case.usual import usual_numbers
 
 # Angle in degrees up to which a boom may be called level.
 LEVEL = 0.1
@@ -39,8 +39,8 @@ SAME, ALIKE = 0.01, 0.05
 
 def proportion_cautions(case: Case, boom: Boom) -> list[str]:
     """Return suspicious inputs, a line each."""
-    unusual = (one for one in usual_numbers(case, boom) if one.unusual)
-    found = [f"{one.key}: {one.said(case.system)}" for one in unusual]
+    unusual = (one for one in usual_ranges(case, boom) if one.unusual)
+    found = [f"{one.key}: {one.text(case.system)}" for one in unusual]
     found += [
         *_sizes(case, boom),
         *_given_twice(case, boom),
@@ -168,7 +168,7 @@ def _given_twice(case: Case, boom: Boom) -> Iterator[str]:
             if table in tables[:number]:
                 first = tables.index(table) + 1
                 yield f"{name}[{number + 1}]: is {name}[{first}] once more; leave one of them out"
-    weighing = (STANDARD_GRAVITY, *([] if case.gravity is None else [across(case.gravity)]))
+    weighing = (STANDARD_GRAVITY, *([] if case.gravity is None else [gravity_across(case.gravity)]))
 
     def weighs(force: float, mass: float) -> bool:
         return any(isclose(-force, g * mass, rel_tol=SAME) for g in weighing)

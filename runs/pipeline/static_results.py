@@ -23,7 +23,7 @@ from dynamics.line import Line
 from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.cylinder import forces
-from geometry.telescoping import drawn, places
+from geometry.telescoping import places, travel
 from runs.case.drive import resolving_times
 from runs.pipeline.pads import SIGNS, largest_pad_force, side_force
 from runs.pipeline.section_forces import rounded, section_forces
@@ -267,10 +267,10 @@ def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> 
     for joint in (joint for joint in boom.joints if not joint.tied):
         own = [float(gaps[system.station_of_row == next(numbers)].mean()) for _ in joint.stations]
         if len(own) > 1:
-            before = drawn(boom, joint.outer, time)
-            way = drawn(boom, joint.inner, time) - before
+            before = travel(boom, joint.outer, time)
+            way = travel(boom, joint.inner, time) - before
             on_outer = [x for x, _ in places(joint, way)] if joint.drive else joint.stations
-            tip = boom.tip + drawn(boom, len(boom.segments) - 1, time) - before
+            tip = boom.tip + travel(boom, len(boom.segments) - 1, time) - before
             rotation = (own[-1] - own[0]) / (on_outer[-1] - on_outer[0])
             inner, outer = (boom.segments[number].name for number in (joint.inner, joint.outer))
             yield Tilt(inner, outer, rotation, own[0] + rotation * (tip - on_outer[0]))

@@ -11,7 +11,7 @@ import numpy as np
 
 from beam_model.statics import Elements, StaticState, net_reactions, static_state
 from dynamics.failure import NUMERICS
-from geometry.axial import on_foot
+from geometry.axial import foot_thrust
 from geometry.boom import Boom
 from geometry.cylinder import force_name
 from runs.case.schema import Case
@@ -115,7 +115,7 @@ def _along(state: StaticState) -> dict[tuple[int, float], float]:
     found: dict[tuple[int, float], float] = defaultdict(float)
     for number, segment in enumerate(boom.segments):
         if segment.foot is not None:
-            found[number, segment.foot.x] = on_foot(boom.segments, boom.joints, number)
+            found[number, segment.foot.x] = foot_thrust(boom.segments, boom.joints, number)
     for number, cylinder in enumerate(boom.cylinders, start=1):
         push = cylinder.direction[0] * cylinder_force(state, number)
         foot = boom.segments[cylinder.segment].foot

@@ -22,7 +22,7 @@ from matplotlib.typing import HashableList
 from geometry.arrays import Array
 from geometry.boom import Boom, Cylinder, Joint
 from geometry.section import Plate, Section
-from geometry.telescoping import farthest
+from geometry.telescoping import farthest_travel
 from geometry.typography import signed
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
@@ -254,7 +254,7 @@ def _draw_segment(panel: Panel, number: int) -> None:
     tail, head = segment.ends
     box = [(tail, bottom), (head, last_bottom), (head, last_top), (tail, top)]
     panel.outline(box, facecolor=(*theme.tint(color, 0.25), 0.75), edgecolor=color, linewidth=1.0)
-    if travel := farthest(boom, number):
+    if travel := farthest_travel(boom, number):
         dashed: dict[str, Any] = {"linewidth": 0.9, "linestyle": "--"}
         panel.outline(np.add(box, [travel, 0.0]), facecolor="none", edgecolor=color, **dashed)
         panel.meanings["extended position"] = Line2D([], [], color=theme.PLAY_FREE, **dashed)
@@ -307,7 +307,7 @@ def _extent(boom: Boom, angle: float) -> tuple[Array, Array]:
 
 def _farthest(boom: Boom) -> float:
     """Return the maximum extension of the tip beyond its initial position, in m."""
-    return max(0.0, farthest(boom, len(boom.segments) - 1))
+    return max(0.0, farthest_travel(boom, len(boom.segments) - 1))
 
 
 def _larger(boom: Boom) -> float:
@@ -373,7 +373,7 @@ def _thick(plate: Plate) -> Array:
 
 def _walls(section: Section) -> str:
     """Return thicknesses in mm, by name where webs (shear along z) and flanges differ."""
-    webs = {number for number, _ in section.carriers("z")}
+    webs = {number for number, _ in section.shear_plates("z")}
     thick = [round(1e3 * plate.thickness, 1) for plate in section.plates]
     web, flange = (
         ", ".join(f"{t:g}" for t in sorted({t for i, t in enumerate(thick) if (i in webs) == one}))

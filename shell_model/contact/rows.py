@@ -21,7 +21,7 @@ import numpy as np
 
 from dynamics.gap_builder import Contact, GapBuilder
 from geometry.boom import Boom, BoomError, Direction
-from geometry.contact_places import ContactLine, Pad, Patch, pads, rests
+from geometry.contact_places import ContactLine, Pad, Patch, pads, stop_patches
 from geometry.section import Offset, Section, Side
 from geometry.telescoping import drives_below
 from shell_model.contact.surface import SurfaceOptions, SurfacePoint, surface_points
@@ -160,7 +160,7 @@ class ShellContacts:
         rows = GapBuilder([Contact(point.reading, point.law, point.station) for point in points])
         for pad in pads(boom):
             touch = _touch(
-                pad.drawn(boom, extensions.get(pad.number, 0.0)),
+                pad.extended(boom, extensions.get(pad.number, 0.0)),
                 self.corners,
                 self.walls,
                 self.line,
@@ -174,10 +174,10 @@ class ShellContacts:
             rows.add_friction(
                 pad.station, pad.joint.friction, touch.slide, pad.normal_force, pressing
             )
-        for rest in rests(boom):
+        for rest in stop_patches(boom):
             segment, drives = rest.stop.segment, drives_below(boom.joints, rest.stop.segment)
             extension = sum(extensions.get(number, 0.0) for number in drives)
-            pressed, lines = rest.drawn(boom, extension).pressed, self.corners[segment]
+            pressed, lines = rest.extended(boom, extension).pressed, self.corners[segment]
             # It meets a flange above its webs, both at once.
             flanges = [
                 (side, 1.0, Reading({segment: lines.deflection(pressed, "z", 0.0, side)}))

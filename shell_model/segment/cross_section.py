@@ -138,7 +138,7 @@ class Outline:
         Each plate moves in its plane, with a weight by the force that it carries: such a force
         bends none.
         """
-        carriers = self.section.carriers(direction)
+        carriers = self.section.shear_plates(direction)
         plates = self.section.plates
         return sum((force * self._slide(plates[n]) for n, force in carriers), Row())
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from dynamics.excitation import PiecewiseLinear
-from geometry.axial import Entry, Thrust, carried, entry, with_compression
+from geometry.axial import MovingForce, Thrust, carried, moving_force, with_compression
 from geometry.boom import (
     Boom,
     BoomError,
@@ -124,15 +124,15 @@ def test_a_lock_is_on_the_outer_segment_and_not_beyond_the_inner_one() -> None:
 @pytest.mark.parametrize(
     ("carrier", "locked", "entered"),
     [
-        ("inner", None, Entry(0, 6.0, 1, 1000.0 + 40.0 * LIGHT)),
-        ("inner", 7.0, Entry(0, 7.0, 1, 1000.0 + 40.0 * LIGHT)),
-        ("outer", 8.0, Entry(1, 8.0, -1, 1000.0 + 40.0 * LIGHT)),
-        ("outer", 6.0, Entry(1, 6.0, -1, 1000.0 + 40.0 * LIGHT)),
+        ("inner", None, MovingForce(0, 6.0, 1, 1000.0 + 40.0 * LIGHT)),
+        ("inner", 7.0, MovingForce(0, 7.0, 1, 1000.0 + 40.0 * LIGHT)),
+        ("outer", 8.0, MovingForce(1, 8.0, -1, 1000.0 + 40.0 * LIGHT)),
+        ("outer", 6.0, MovingForce(1, 6.0, -1, 1000.0 + 40.0 * LIGHT)),
         ("outer", 5.0, None),
     ],
 )
 def test_drawn_out_a_force_goes_along(
-    carrier: Carrier, locked: float | None, entered: Entry | None
+    carrier: Carrier, locked: float | None, entered: MovingForce | None
 ) -> None:
     """Reference: other code path, the forces of the boom whose fly lies 1 m farther out or in, in
     the places of the material.
@@ -141,7 +141,7 @@ def test_drawn_out_a_force_goes_along(
     rope, drive = [Thrust(1, 14.0, 1000.0)], Drive(ways, ("inner", "outer"), 0.0, carrier)
     joint = replace(JOINT, drive=drive, locked_at=locked)
     own = with_compression(segments(), [joint], rope, gravity=5.0)
-    found = entry(own, [joint], 0)
+    found = moving_force(own, [joint], 0)
     if found is not None:
         found = replace(found, force=round(found.force, 6))
     assert found == (None if entered is None else replace(entered, force=round(entered.force, 6)))

@@ -14,13 +14,13 @@ from geometry.boom import Boom, Collar, Diaphragm, PadSize
 from geometry.contact_places import pads
 from geometry.grading import graded_mesh
 from geometry.mesh import SegmentMesh, mesh_segment
+from geometry.refinement import RefinementZone, refinement_zones
 from geometry.section import BoxSection
-from geometry.spots import Spot, spots
 
 BOX = BoxSection(height=0.4, width=0.3, flange=0.006, web=0.005)
 BREAKS = {"start": 0.0, "middle": 2.0, "end": 5.0}
-CORNER = Spot((2.0, 0.15, 0.2), (2.1, 0.15, 0.2), 0.02, 0.5)
-PAD = Spot((4.9, 0.05, 0.2), (5.0, 0.11, 0.2), 0.015, 0.3)
+CORNER = RefinementZone((2.0, 0.15, 0.2), (2.1, 0.15, 0.2), 0.02, 0.5)
+PAD = RefinementZone((4.9, 0.05, 0.2), (5.0, 0.11, 0.2), 0.015, 0.3)
 
 
 @pytest.fixture(scope="module", name="mesh")
@@ -107,19 +107,19 @@ def test_spots_are_what_acts_on_a_segment(paper_boom: Boom) -> None:
     b, h = 0.5 * outer.section.width, 0.5 * outer.section.height
     stiff = replace(outer, collars=(Collar((8.0, 8.5), 0.01),), diaphragms=(Diaphragm(5.0, 0.01),))
     boom = replace(paper_boom, segments=(stiff, inner))
-    found = spots(boom, 0, 0.01, "near webs", [], pads(boom))
-    assert [spot.low[0] for spot in found[:-2]] == [0.0, 2.0, 8.0, 8.5, 5.0]
-    assert all(spot.low[1:] == (0.0, 0.0) and spot.high[1:] == (b, h) for spot in found[:-2])
-    for spot, start in zip(found[-2:], (8.95, 9.9), strict=True):
-        assert spot.low == pytest.approx((start, b, h))
-        assert spot.high == pytest.approx((start + 0.1, b, h))
-        assert spot.size == pytest.approx(0.02)
-    loose = spots(boom, 0, 0.04, "near webs", [], pads(boom))
-    assert [spot.size for spot in loose] == pytest.approx([2.0 * spot.size for spot in found])
+    found = refinement_zones(boom, 0, 0.01, "near webs", [], pads(boom))
+    assert [zone.low[0] for zone in found[:-2]] == [0.0, 2.0, 8.0, 8.5, 5.0]
+    assert all(zone.low[1:] == (0.0, 0.0) and zone.high[1:] == (b, h) for zone in found[:-2])
+    for zone, start in zip(found[-2:], (8.95, 9.9), strict=True):
+        assert zone.low == pytest.approx((start, b, h))
+        assert zone.high == pytest.approx((start + 0.1, b, h))
+        assert zone.size == pytest.approx(0.02)
+    loose = refinement_zones(boom, 0, 0.04, "near webs", [], pads(boom))
+    assert [zone.size for zone in loose] == pytest.approx([2.0 * zone.size for zone in found])
     (joint,) = boom.joints
     padded = replace(boom, joints=(replace(joint, pad=PadSize(0.1, 0.06)),))
     near = 0.5 * inner.section.width
-    of_pads = spots(padded, 0, 0.01, "near webs", [], pads(padded))[-2:]
-    for spot, start in zip(of_pads, (9.0, 9.9), strict=True):
-        assert spot.low == pytest.approx((start, near - 0.06, h))
-        assert spot.high == pytest.approx((start + 0.1, near, h))
+    of_pads = refinement_zones(padded, 0, 0.01, "near webs", [], pads(padded))[-2:]
+    for zone, start in zip(of_pads, (9.0, 9.9), strict=True):
+        assert zone.low == pytest.approx((start, near - 0.06, h))
+        assert zone.high == pytest.approx((start + 0.1, near, h))

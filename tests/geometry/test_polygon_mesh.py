@@ -13,8 +13,8 @@ from geometry.arrays import Array
 from geometry.grading import graded_mesh
 from geometry.mesh import SegmentMesh, mesh_segment
 from geometry.plating import plain_thickness
+from geometry.refinement import RefinementZone
 from geometry.section import COMPONENT, Section
-from geometry.spots import Spot
 from tests.geometry.test_polygon import ALL, regular
 
 SECTIONS = ALL | {"regular": regular(6, 0.25, 0.006)}
@@ -29,10 +29,10 @@ def areas(mesh: SegmentMesh) -> Array:
 
 def meshes(section: Section) -> list[SegmentMesh]:
     """Even, and graded towards the diaphragm."""
-    spot = Spot((1.0, 0.0, -1.0), (1.0, 1.0, 1.0), 0.03, 0.5)
+    zone = RefinementZone((1.0, 0.0, -1.0), (1.0, 1.0, 1.0), 0.03, 0.5)
     return [
         mesh_segment(section, BREAKS, 0.06, closed=("plate",)),
-        graded_mesh(section, BREAKS, 0.2, [spot], closed=("plate",)),
+        graded_mesh(section, BREAKS, 0.2, [zone], closed=("plate",)),
     ]
 
 

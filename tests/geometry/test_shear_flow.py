@@ -45,7 +45,7 @@ def test_carriers_hold_a_force_through_the_axis(name: str, direction: Direction)
     about the axis.
     """
     section = ALL[name]
-    found = section.carriers(direction)
+    found = section.shear_plates(direction)
     forces = sum(force * section.plates[n].tangent for n, force in found)
     assert forces == pytest.approx([1.0, 0.0] if direction == "y" else [0.0, 1.0], abs=1e-12)
     arms = [np.linalg.det([section.plates[n].middle, section.plates[n].tangent]) for n, _ in found]
@@ -56,8 +56,8 @@ def test_carriers_hold_a_force_through_the_axis(name: str, direction: Direction)
 
 def test_flats_carry_nothing_along_z_and_the_inclined_plates_alike() -> None:
     """Reference: symmetry."""
-    assert [n for n, _ in HEXAGON.carriers("z")] == [1, 2, 4, 5]
-    right, left = (dict(HEXAGON.carriers("z"))[n] for n in (1, 5))
+    assert [n for n, _ in HEXAGON.shear_plates("z")] == [1, 2, 4, 5]
+    right, left = (dict(HEXAGON.shear_plates("z"))[n] for n in (1, 5))
     assert right == pytest.approx(-left, rel=1e-12)
 
 

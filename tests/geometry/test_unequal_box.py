@@ -90,7 +90,7 @@ def test_faces_count_from_the_centroid() -> None:
 
 def test_a_force_through_the_centroid_goes_to_the_flanges_by_the_lever() -> None:
     """Reference: analytic. The parts sum to one, and their resultant is in the centroid."""
-    forces = [(n, part * BOX.plates[n].tangent[0]) for n, part in BOX.carriers("y")]
+    forces = [(n, part * BOX.plates[n].tangent[0]) for n, part in BOX.shear_plates("y")]
     assert sum(force for _, force in forces) == pytest.approx(1.0, rel=1e-15)
     arms = [force * BOX.plates[number].middle[1] for number, force in forces]
     assert sum(arms) == pytest.approx(0.0, abs=1e-16)

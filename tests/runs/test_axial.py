@@ -12,7 +12,7 @@ from geometry.section import BoxSection
 from protractile.cases import run_case
 from runs import CASES
 from runs.case.build import build_boom
-from runs.case.declared import Declared
+from runs.case.checked_case import CheckedCase
 from runs.check import print_check
 from runs.report.formatting import number
 from runs.report.model_tables import buckling_table
@@ -120,7 +120,7 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
     assert table is not None
     factor = results.summary.models["tied"].critical_factor
     assert factor is not None
-    shown = printed(print_check, Declared(case), width=120)
+    shown = printed(print_check, CheckedCase(case), width=120)
     words = [line.replace("│", " ").split() for line in shown.splitlines()]
     assert ["mast", "40", number(0.04 / MAST.area, 4)] in words
     assert number(factor, 4) in shown
@@ -145,7 +145,7 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
 def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | None) -> None:
     """Each on its slip, none on what is in proportion."""
     case = read_case(tmp_path, (LIFT + text + TIED).replace("= 0.05", "= 0.5"))
-    checked = printed(print_check, Declared(case), width=200).splitlines()
+    checked = printed(print_check, CheckedCase(case), width=200).splitlines()
     told = run_case(case, models=["tied"]).summary.cautions
     if caution is None:
         assert told == []
@@ -199,7 +199,7 @@ def test_a_tapered_boom_is_pressed_most_where_it_is_drawn_to(tmp_path: Path) -> 
     own = inner[inner.index("mass_per_length") : inner.index("load")]
     parts = head, outer.replace(numbers, TAPERED), inner.replace(own, box).partition("[[model]]")[0]
     case = read_case(tmp_path, "[[segment]]\n".join(parts) + PRESSED)
-    told = printed(print_check, Declared(case), width=120)
+    told = printed(print_check, CheckedCase(case), width=120)
     rows = [line.replace("│", " ").split() for line in told.splitlines()]
     stress = 300e3 / (2.0 * (0.3 + 0.52) * 6.6e-3) / 1e6
     assert ["outer", "300", number(stress, 4)] in rows

@@ -11,7 +11,7 @@ import pytest
 from geometry.boom import Boom, Cylinder, Support
 from protractile.cases import run_case
 from runs.case.build import build_boom
-from runs.case.declared import Declared
+from runs.case.checked_case import CheckedCase
 from runs.case.schema import Case
 from runs.case.toml import dumps
 from runs.check import print_check
@@ -103,7 +103,7 @@ def test_every_model_stands_on_its_cylinder(case: Case) -> None:
 def test_check_tells_the_cylinder_and_how_far_its_dashpot_damps(case: Case) -> None:
     """Reference: analytic, the arm of its line about the pin, the moment of the weights, and
     the component along the boom between pin and lug."""
-    told = printed(print_check, Declared(case), width=200)
+    told = printed(print_check, CheckedCase(case), width=200)
     row = next(line for line in told.split("cylinder of")[1].splitlines() if "base" in line)
     _, x, length, arm, force = row.split()
     assert x == "3"

@@ -19,7 +19,7 @@ from dynamics.excitation import PiecewiseLinear
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
-from runs.case.declared import Declared
+from runs.case.checked_case import CheckedCase
 from runs.case.drive import resolving_times
 from runs.case.elastic_drive import elastic_drives
 from runs.case.messages import BadInput
@@ -366,7 +366,7 @@ def test_a_check_tells_what_a_drive_does() -> None:
     """Reference: the case, and analytic: an S-curve is twice as fast as it is in the mean."""
     case = load(str(CASES / "drawn-out.toml"))
     shown = StringIO()
-    print_check(Declared(case), Console(file=shown, width=200))
+    print_check(CheckedCase(case), Console(file=shown, width=200))
     assert (
         "A drive draws 'inner' 4 m out of 'outer' from 0 to 5 s, at 1.6 m/s at most; 1 m of "
         "overlap are left.\n"

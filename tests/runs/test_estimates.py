@@ -161,7 +161,7 @@ def test_a_check_of_short_elements_is_soon_done(name: str) -> None:
             edited += "\n[damping]\nmass = 0.1\n"
         Path("case.toml").write_text(edited, encoding="utf-8")
         begin = process_time()
-        told.append(printed(print_check, case_file.declared("case.toml"), width=200))
+        told.append(printed(print_check, case_file.load_checked("case.toml"), width=200))
     assert process_time() - begin < 20.0
     numbers = [[float(x) for x in re.findall(r"([\d.]+) (?:%|Hz)", text)] for text in told]
     assert len(numbers[0]) > 10

@@ -13,7 +13,7 @@ from dynamics.motion import initial_state
 from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.declared import Declared
+from runs.case.checked_case import CheckedCase
 from runs.case.schema import Case
 from runs.check import print_check
 from runs.pipeline.models import MotionPlan, build
@@ -66,7 +66,8 @@ def test_a_play_may_be_more_above_than_below(tmp_path: Path) -> None:
 
 def test_check_tells_both_sides(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     print_check(
-        Declared(case_with(tmp_path, "stiffness = 1e9\nplay_above = 0.004\n")), Console(width=200)
+        CheckedCase(case_with(tmp_path, "stiffness = 1e9\nplay_above = 0.004\n")),
+        Console(width=200),
     )
     assert "4 above, 10 below" in capsys.readouterr().out
 

@@ -19,9 +19,9 @@ from geometry.fields import declared_units, described, fields_of
 from protractile.cases import change
 from runs.case import reading, toml
 from runs.case.build import build_boom
+from runs.case.checked_case import CheckedCase
 from runs.case.contact import ContactTable, JointTable
 from runs.case.conversion import in_si
-from runs.case.declared import Declared
 from runs.case.messages import BadInput
 from runs.case.schema import Case, case_schema
 from runs.case.units import System, Unit
@@ -258,7 +258,7 @@ def test_a_models_own_contact_has_an_exponent_of_its_own() -> None:
 def test_check_shows_the_units_of_the_case() -> None:
     """Reference: the numbers of the case file."""
     shown = io.StringIO()
-    print_check(Declared(in_mm()), Console(file=shown, width=200))
+    print_check(CheckedCase(in_mm()), Console(file=shown, width=200))
     text = shown.getvalue()
     lines = [" ".join(line.split()) for line in text.splitlines()]
     assert "segment mm t/mm mm⁴ t mm mm" in lines

@@ -116,14 +116,14 @@ def test_the_pin_bears_what_goes_along(answers: DesignResults) -> None:
     assert lug.along == pytest.approx(0.8 * FORCE, rel=1e-3)
     moved = answers.models["beam"].motion
     assert moved is not None
-    borne = {peak.what: peak for peak in moved.peaks if "reaction" in peak.what}
+    joint_thrust = {peak.what: peak for peak in moved.peaks if "reaction" in peak.what}
     for what, force in (
         ("reaction", across),
         ("reaction along the boom", along),
         ("reaction, across and along", np.hypot(along, across)),
     ):
-        assert borne[what].largest == pytest.approx(abs(force), rel=2e-3)
-        assert borne[what].at_rest == pytest.approx(abs(force), rel=2e-3)
+        assert joint_thrust[what].largest == pytest.approx(abs(force), rel=2e-3)
+        assert joint_thrust[what].at_rest == pytest.approx(abs(force), rel=2e-3)
 
 
 def test_the_pin_bears_a_mass_that_sits_on_it(tmp_path: Path) -> None:
@@ -139,8 +139,8 @@ def test_a_pin_at_the_very_end_bears_the_same(tmp_path: Path) -> None:
     force = ACROSS * 9.0 * 4.5 / (0.6 * 3.0)
     moved = answers_of(read_case(tmp_path, text)).models["beam"].motion
     assert moved is not None
-    (borne,) = (peak for peak in moved.peaks if peak.what == "reaction along the boom")
-    assert borne.largest == pytest.approx(0.8 * force - 9.0 * ALONG, rel=2e-3)
+    (joint_thrust,) = (peak for peak in moved.peaks if peak.what == "reaction along the boom")
+    assert joint_thrust.largest == pytest.approx(0.8 * force - 9.0 * ALONG, rel=2e-3)
 
 
 def test_the_fibre_feels_the_normal_force(answers: DesignResults) -> None:

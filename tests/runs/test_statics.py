@@ -13,7 +13,7 @@ from geometry.fields import Distance
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.declared import Declared
+from runs.case.checked_case import CheckedCase
 from runs.case.schema import Case, StopTable
 from runs.check import print_check
 from runs.pipeline.models import build
@@ -22,7 +22,7 @@ from tests.runs.summaries import printed
 
 
 def told(case: Case) -> list[str]:
-    shown = printed(print_check, Declared(case), width=200)
+    shown = printed(print_check, CheckedCase(case), width=200)
     return [" ".join(line.replace("−", "-").split()) for line in shown.split("\n")]
 
 

@@ -13,7 +13,7 @@ from matplotlib import rc_context
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
-from runs.case.declared import Declared
+from runs.case.checked_case import CheckedCase
 from runs.case.elastic_drive import elastic_drives
 from runs.case.reading import load
 from runs.case.schema import Case
@@ -130,7 +130,7 @@ def test_a_drive_holds_what_weighs_along(tmp_path: Path) -> None:
 def test_a_check_tells_whether_it_will_stick_and_slip(tmp_path: Path) -> None:
     """Reference: by hand. The lever rule presses pads of 1 m of overlap by 27 and 21.6 kN; 550.7 kg
     on 200 kN/m swing at 3.03 Hz, damped by 500/2√(k m), and the critical speed from the formula."""
-    shown = printed(print_check, Declared(drawn_by(tmp_path, ROPE)), width=300)
+    shown = printed(print_check, CheckedCase(drawn_by(tmp_path, ROPE)), width=300)
     assert (
         "What the drive of 'inner' draws, 550.7 kg, swings at 3.03 Hz, damped by 2.38 %, and "
         "against 9.72 kN of friction, the most at rest, sticks and slips below 0.791 m/s.\n"
@@ -153,7 +153,7 @@ def test_a_check_warns_of_it(tmp_path: Path, rope: str, caution: str) -> None:
     slow = {"time = 5.0": "time = 40.0", "duration = 7.0": "duration = 41.0"}
     assert (
         f"caution: the drive of 'inner' lets it stick and slip all the way: it draws at {caution}\n"
-    ) in printed(print_check, Declared(drawn_by(tmp_path, rope, **slow)), width=300)
+    ) in printed(print_check, CheckedCase(drawn_by(tmp_path, rope, **slow)), width=300)
 
 
 @pytest.mark.slow

@@ -12,9 +12,9 @@ import numpy as np
 from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
 from geometry.boom import Boom, BoomError
-from geometry.contact_places import pads, rests
+from geometry.contact_places import pads, stop_patches
 from geometry.fields import In, Length, Positive
-from geometry.spots import spots
+from geometry.refinement import refinement_zones
 from runs.case.kinds.model import BeamTable, Built, Joined, ModelTable, StandIn, Workshop
 from runs.case.limits import ContactTolerance, Count, Modes, Part
 
@@ -32,7 +32,7 @@ MOST_POINTS = 256
 _FLAT, _SPATIAL = 60, 210
 # Dofs for each square of the mesh size, of a uniform mesh and of a graded one outside refinement
 # zones, and of the smaller sizes inside; bytes for a dof, for a coordinate of it; s. Measured.
-_DOFS, _GRADED_DOFS, _DOFS_AT_SPOTS = 21.0, 42.0, 35.0
+_DOFS, _GRADED_DOFS, _DOFS_AT_ZONES = 21.0, 42.0, 35.0
 _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 2000.0, 5.0, 1.0e-4
 # Dofs of a shell that one process alone reduces in a few seconds.
 _SMALL = 5.0e4
@@ -185,12 +185,12 @@ class Shell(ModelTable):
         squares = _surface(boom) / self.mesh_size**2
         if self.contact_tolerance == "any" or self.contact_line == "surface":
             return _DOFS * squares
-        pressed = self.contact_line, rests(boom), pads(boom)
-        return _GRADED_DOFS * squares + _DOFS_AT_SPOTS * sum(
-            (1 << len(segment.section.mirrors)) * spot.squares(self.mesh_size)
+        pressed = self.contact_line, stop_patches(boom), pads(boom)
+        return _GRADED_DOFS * squares + _DOFS_AT_ZONES * sum(
+            (1 << len(segment.section.mirrors)) * zone.squares(self.mesh_size)
             for number, segment in enumerate(boom.segments)
             if segment.section is not None
-            for spot in spots(boom, number, self.contact_tolerance, *pressed)
+            for zone in refinement_zones(boom, number, self.contact_tolerance, *pressed)
         )
 
     def _krylov(self) -> KrylovOptions:

@@ -28,7 +28,7 @@ _TAKEN_FOR = {
 _HEIGHT_OVER_GYRATION = 2.5
 
 
-class Usual(NamedTuple):
+class UsualRange(NamedTuple):
     """A number of a case, and its usual range.
 
     Args:
@@ -58,7 +58,7 @@ class Usual(NamedTuple):
         """True if the number is impossible for a boom."""
         return not self.least / self.margin <= self.value <= self.most * self.margin
 
-    def said(self, system: System) -> str:
+    def text(self, system: System) -> str:
         """Return the number, its usual range and the unit that the user may have meant, as text."""
         limits = [
             f"{word} {system.of(limit, self.unit):.3g}"
@@ -67,26 +67,26 @@ class Usual(NamedTuple):
         ]
         label = "" if self.unit == "1" else f" {system.label(self.unit)}"
         given = system.of(self.value, self.unit)
-        said = f"{self.what} is {given:.5g}{label}, usual is {' '.join(limits)}{label}"
+        text = f"{self.what} is {given:.5g}{label}, usual is {' '.join(limits)}{label}"
         for name in _TAKEN_FOR.get(self.unit, ()):
             meant = given * Unit.of(name).factor
             if self.least <= meant <= self.most:
-                return f"{said}; if it is in {name}, give {system.of(meant, self.unit):.5g}{label}"
-        return f"{said}; check the number and its unit"
+                return f"{text}; if it is in {name}, give {system.of(meant, self.unit):.5g}{label}"
+        return f"{text}; check the number and its unit"
 
 
-def check_usual(case: Case, boom: Boom) -> None:
+def check_ranges(case: Case, boom: Boom) -> None:
     """Refuse a number that is impossible for a boom.
 
     Raises:
         BoomError: a number is impossible.
     """
-    for one in usual_numbers(case, boom):
+    for one in usual_ranges(case, boom):
         if one.impossible:
-            raise BoomError(one.key, one.said(case.system))
+            raise BoomError(one.key, one.text(case.system))
 
 
-def usual_numbers(case: Case, boom: Boom) -> Iterator[Usual]:
+def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
     """Yield all numbers of a case with a known usual range.
 
     The limits are wide: laboratory booms of 1 m and cranes of 60 m are within them.
@@ -98,18 +98,18 @@ def usual_numbers(case: Case, boom: Boom) -> Iterator[Usual]:
         yield from _of_joint(case, boom, number)
     for number, cylinder in enumerate(boom.cylinders, start=1):
         where, what = f"cylinder[{number}].ground", f"the length of cylinder {number}"
-        yield Usual(where, what, cylinder.length, "m", 0.02 * boom.length, boom.length, 10.0)
+        yield UsualRange(where, what, cylinder.length, "m", 0.02 * boom.length, boom.length, 10.0)
     weight = STANDARD_GRAVITY * sum(segment.mass for segment in boom.segments)
     for number, axial in enumerate(case.axial, start=1):
         if axial.force is not None:
             where, what = f"axial[{number}].force", "the size of the force along the boom"
-            yield Usual(where, what, abs(axial.force), "N", 0.0, 100.0 * weight, 100.0)
+            yield UsualRange(where, what, abs(axial.force), "N", 0.0, 100.0 * weight, 100.0)
     if (category := case.life.detail_category) is not None:
         what = "the detail category after EN 1993-1-9, in N/mm^2,"
-        yield Usual("life.detail_category", what, category, "1", 36.0, 160.0, 10.0)
+        yield UsualRange("life.detail_category", what, category, "1", 36.0, 160.0, 10.0)
 
 
-def _of_materials(case: Case) -> Iterator[Usual]:
+def _of_materials(case: Case) -> Iterator[UsualRange]:
     """Yield the material data: solids for booms, from plastics to tungsten, with a margin."""
     tables = {f"segment[{i}].material": one.material for i, one in enumerate(case.segments, 1)}
     for where, table in {"material": case.material, **tables}.items():
@@ -121,32 +121,34 @@ def _of_materials(case: Case) -> Iterator[Usual]:
             ("yield_strength", "the yield strength", "Pa", (1.0e7, 4.0e9, 10.0)),
         ):
             if (value := getattr(table, key)) is not None:
-                yield Usual(f"{where}.{key}", what, value, unit, *limits)
+                yield UsualRange(f"{where}.{key}", what, value, unit, *limits)
 
 
-def _of_section(where: str, segment: Segment) -> Iterator[Usual]:
+def _of_section(where: str, segment: Segment) -> Iterator[UsualRange]:
     name, length, section = repr(segment.name), segment.length, segment.section
     low, high = length / 500.0, length / 5.0
     if section is None:
         area = segment.mass_per_length / segment.material.density
         least, most = (area * (height / _HEIGHT_OVER_GYRATION) ** 2 for height in (low, high))
         where, what = f"{where}.second_moment_of_area", f"the second moment of area of {name}"
-        yield Usual(where, what, segment.second_moment_of_area, "m^4", least, most, 25.0)
+        yield UsualRange(where, what, segment.second_moment_of_area, "m^4", least, most, 25.0)
         return
     height = max(segment.section_at(x).size("z") for x in segment.ends)
-    yield Usual(f"{where}.section", f"the height of {name}", height, "m", low, high, 5.0)
+    yield UsualRange(f"{where}.section", f"the height of {name}", height, "m", low, high, 5.0)
     walls = [wall for x in segment.ends for wall in segment.section_at(x).plates]
     wall = min(walls, key=lambda wall: wall.thickness / wall.length)
     what = f"the thickness of the {wall.name} of {name}"
-    yield Usual(f"{where}.section", what, wall.thickness, "m", wall.length / 1e3, np.inf, 100.0)
+    yield UsualRange(
+        f"{where}.section", what, wall.thickness, "m", wall.length / 1e3, np.inf, 100.0
+    )
     if segment.head_section is None:
         own, given = section.second_moment_of_area, segment.second_moment_of_area
         where, what = f"{where}.second_moment_of_area", "the second moment of area"
         what = f"{what} beside the plates of {name}"
-        yield Usual(where, what, given, "m^4", 0.5 * own, 2.0 * own, 50.0)
+        yield UsualRange(where, what, given, "m^4", 0.5 * own, 2.0 * own, 50.0)
 
 
-def _of_joint(case: Case, boom: Boom, number: int) -> Iterator[Usual]:
+def _of_joint(case: Case, boom: Boom, number: int) -> Iterator[UsualRange]:
     table, joint, where = case.joints[number], boom.joints[number], f"joint[{number + 1}]"
     inner = boom.segments[joint.inner]
     yield from _of_contacts(where, table)
@@ -155,13 +157,13 @@ def _of_joint(case: Case, boom: Boom, number: int) -> Iterator[Usual]:
         what, least = f"the overlap of {inner.name!r}", 0.03 * inner.length
         if joint.drive is not None:
             key, what = ".drive", f"{what} that the drive leaves"
-        yield Usual(where + key, what, boom.overlap_left(joint), "m", least, np.inf, 100.0)
+        yield UsualRange(where + key, what, boom.overlap_left(joint), "m", least, np.inf, 100.0)
     if joint.drive is not None:
         what = f"the largest speed at which {inner.name!r} is drawn"
-        yield Usual(f"{where}.drive", what, fastest(joint.drive), "m/s", 0.0, 5.0, 200.0)
+        yield UsualRange(f"{where}.drive", what, fastest(joint.drive), "m/s", 0.0, 5.0, 200.0)
 
 
-def _of_contacts(where: str, table: JointTable) -> Iterator[Usual]:
+def _of_contacts(where: str, table: JointTable) -> Iterator[UsualRange]:
     tables: dict[str, Any] = {where: table, f"{where}.pad": table.pad}
     tables |= {f"{where}.pads[{i}]": pad for i, pad in enumerate(table.pads, start=1)}
     tables[f"{where}.drive"] = table.drive
@@ -175,4 +177,4 @@ def _of_contacts(where: str, table: JointTable) -> Iterator[Usual]:
     ):
         for path, part in tables.items():
             if (value := getattr(part, key, None)) is not None:
-                yield Usual(f"{path}.{key}", what, value, unit, *limits)
+                yield UsualRange(f"{path}.{key}", what, value, unit, *limits)

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.declared import Declared
+from runs.case.checked_case import CheckedCase
 from runs.case.messages import BadInput
 from runs.check import print_check
 from runs.pipeline.proportions import proportion_cautions
@@ -186,7 +186,7 @@ def test_a_run_shorter_than_a_swing_is_told(
     """Reference: the frequency that stands above it."""
     monkeypatch.chdir(tmp_path)
     shown = io.StringIO()
-    declared = case_file.declared(written(tmp_path, "duration = 3.0", "duration = 0.2"))
+    declared = case_file.load_checked(written(tmp_path, "duration = 3.0", "duration = 0.2"))
     print_check(declared, Console(file=shown, width=200))
     line = (
         "caution: time.duration: the run of 0.2 s is shorter than one swing as beam elements, "
@@ -258,5 +258,5 @@ def test_booms_have_none(tmp_path: Path, text: str) -> None:
     path = tmp_path / "case.toml"
     path.write_text(text, encoding="utf-8")
     shown = io.StringIO()
-    print_check(Declared(case_file.load(str(path))), Console(file=shown, width=200))
+    print_check(CheckedCase(case_file.load(str(path))), Console(file=shown, width=200))
     assert "caution" not in shown.getvalue()

@@ -16,7 +16,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.boom import Boom
-from geometry.contact_places import ContactLine, Pad, Rest, Stretch
+from geometry.contact_places import ContactLine, Pad, StopPatch, Stretch
 from geometry.section import Direction, Face, Section
 
 # The tolerance at which the fractions below were measured.
@@ -30,7 +30,7 @@ _WALLS, _WALLS_GROWTH = 0.1, 0.5
 
 
 @dataclass(frozen=True, slots=True)
-class Spot:
+class RefinementZone:
     """A refinement zone of a segment's mesh, with all its mirror images.
 
     Args:
@@ -57,7 +57,7 @@ class Spot:
     def squares(self, size: float) -> float:
         """Return the number of squares of the allowed edge length around it, if below ``size``.
 
-        On an infinite flat wall: the spot itself, the stretches along its sides, its corners.
+        On an infinite flat wall: the zone itself, the stretches along its sides, its corners.
         """
         if self.size >= size:
             return 0.0
@@ -68,14 +68,14 @@ class Spot:
         return float(length * width / self.size**2 + sides + corners)
 
 
-def spots(
+def refinement_zones(
     boom: Boom,
     number: int,
     tolerance: float,
     line: ContactLine,
-    rests: Sequence[Rest],
+    stop_patches: Sequence[StopPatch],
     pads: Sequence[Pad],
-) -> list[Spot]:
+) -> list[RefinementZone]:
     """Return the refinement zones of a segment with known plates.
 
     Args:
@@ -83,12 +83,15 @@ def spots(
         number: its position in ``Boom.segments``.
         tolerance: relative error of the local compliance.
         line: where walls touch.
-        rests, pads: of the boom.
+        stop_patches, pads: of the boom.
     """
     finer = float(np.sqrt(tolerance / MEASURED_AT))
     # Zones on several sides, or in mirror images, are one.
-    measured = dict.fromkeys(_measured(boom, number, line, rests, pads))
-    return [Spot(low, high, finer * size, finer * growth) for low, high, size, growth in measured]
+    measured = dict.fromkeys(_measured(boom, number, line, stop_patches, pads))
+    return [
+        RefinementZone(low, high, finer * size, finer * growth)
+        for low, high, size, growth in measured
+    ]
 
 
 _Place = tuple[float, float, float]
@@ -96,9 +99,13 @@ _Measured = tuple[_Place, _Place, float, float]
 
 
 def _measured(
-    boom: Boom, number: int, line: ContactLine, rests: Sequence[Rest], pads: Sequence[Pad]
+    boom: Boom,
+    number: int,
+    line: ContactLine,
+    stop_patches: Sequence[StopPatch],
+    pads: Sequence[Pad],
 ) -> Iterator[_Measured]:
-    """Yield ends, size and growth of each spot at the tolerance ``MEASURED_AT``."""
+    """Yield ends, size and growth of each zone at the tolerance ``MEASURED_AT``."""
     segment = boom.segments[number]
     section = segment.widest
     lowest, high = section.bounds
@@ -109,16 +116,16 @@ def _measured(
     across = min(section.size("y"), section.size("z"))
     for x in _walls(boom, number):
         yield (x, low_y, low_z), (x, *high), _WALLS * across, _WALLS_GROWTH
-    for rest in rests:
+    for rest in stop_patches:
         if rest.stop.segment == number:
-            drawn = [rest.drawn(boom, way) for way in rest.reach]
+            extended = [rest.extended(boom, way) for way in rest.reach]
             for face in _faces(section, "z"):
-                yield _swept(_corner(one.pressed, face) for one in drawn)
+                yield _swept(_corner(one.pressed, face) for one in extended)
     for pad in pads:
         for end, of in enumerate((pad.joint.inner, pad.joint.outer)):
             if of == number:
                 for face in _faces(section, pad.direction):
-                    telescoping_pads = (pad.drawn(boom, way) for way in pad.reach)
+                    telescoping_pads = (pad.extended(boom, way) for way in pad.reach)
                     yield _swept(_pressed(boom, one, end, face, line) for one in telescoping_pads)
 
 

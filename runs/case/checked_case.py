@@ -13,7 +13,7 @@ from runs.case.schema import Case, Model
 
 
 @dataclass(frozen=True)
-class Declared:
+class CheckedCase:
     """A case, and its boom and joined models, built on first use."""
 
     case: Case  #: a case with a valid boom
