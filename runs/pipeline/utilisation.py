@@ -38,12 +38,12 @@ class Utilisation(NamedTuple):
     value: float | None
 
     def __str__(self) -> str:
-        """Return value, place and verdict; only with a value."""
+        """Return value, place and comparison with 1; only with a value."""
         assert self.value is not None
-        verdict = "exceeds" if self.value > 1.0 else "below"
+        relation = "exceeds" if self.value > 1.0 else "below"
         return (
             f"{signed(f'{self.value:.3g}')} at {self.part}, {self.segment} segment, "
-            f"x = {self.x:.4g} m: {verdict} {LIMITS[self.part]}"
+            f"x = {self.x:.4g} m: {relation} {LIMITS[self.part]}"
         )
 
 

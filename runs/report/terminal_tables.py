@@ -45,7 +45,7 @@ def print_models(results: Results, console: Console) -> None:
 
 
 def print_results(results: Results, console: Console) -> None:
-    """Print the governing design results of each model, the verdict of the leading one last."""
+    """Print the governing design results of each model, the utilisation of the leading one last."""
     if not results.summary.design.models:
         return
     result_table(results).show(console)
