@@ -463,7 +463,7 @@ def _check_temporary_folder(file: str) -> None:
 
 
 def _show(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
-    """Print models and numerics, judgements, and last the results of runs; return the exit status."""
+    """Print models, numerics, judgements and results of runs; return the exit status."""
     from runs.client import show
     from runs.report.terminal_tables import print_models, print_results
 
