@@ -44,17 +44,15 @@ def drive_lines(boom: Boom, system: System) -> Iterator[str]:
         if joint.drive is None:
             continue
         kinks, (low, high) = joint.drive.history.kinks, joint.drive.reach
-        ways = [
-            f"{system.text(way, 'm')} {word}"
-            for way, word in ((high, "out"), (-low, "in"))
-            if way > 0.0
+        travels = [
+            f"{verb} {boom.segments[joint.inner].name!r} by {system.text(travel, 'm')}"
+            for travel, verb in ((high, "extends"), (-low, "retracts"))
+            if travel > 0.0
         ]
         yield (
-            f"A drive draws {boom.segments[joint.inner].name!r} {' and '.join(ways)} of "
-            f"{boom.segments[joint.outer].name!r} from {max(0.0, min(kinks)):g} "
-            f"to {max(kinks):g} s, at {system.text(fastest(joint.drive), 'm/s')} at most; "
-            f"{system.text(boom.overlap_left(joint), 'm')} of overlap "
-            "are left."
+            f"A drive {' and '.join(travels)} from {max(0.0, min(kinks)):g} to {max(kinks):g} s, "
+            f"at {system.text(fastest(joint.drive), 'm/s')} at most; the least overlap is "
+            f"{system.text(boom.overlap_left(joint), 'm')}."
         )
 
 
@@ -150,16 +148,16 @@ def stick_slip_lines(found: Iterable[StickSlipEstimate], system: System) -> Iter
     """Yield a sentence for each drive of finite stiffness."""
     for one in found:
         if one.critical == 0.0:
-            slips = "slips on once it slips"
+            slips = "does not stick again once it slips"
         elif one.critical == np.inf:
             slips = "sticks and slips at any speed"
         else:
             slips = f"sticks and slips below {system.text(one.critical, 'm/s', 3)}"
         yield (
-            f"What the drive of {one.inner!r} draws, {system.text(one.elastic.mass, 'kg')}, swings "
-            f"at {one.elastic.frequency:.3g} Hz, damped by "
-            f"{TO_PERCENT * one.elastic.damping_ratio:.3g} %, and against "
-            f"{one.friction * TO_KILO:.3g} kN of friction, the most at rest, {slips}."
+            f"The drive of {one.inner!r} moves {system.text(one.elastic.mass, 'kg')}, with a "
+            f"frequency of {one.elastic.frequency:.3g} Hz and a damping ratio of "
+            f"{TO_PERCENT * one.elastic.damping_ratio:.3g} %; against the largest static friction "
+            f"of {one.friction * TO_KILO:.3g} kN it {slips}."
         )
 
 
@@ -168,15 +166,15 @@ def stick_slip_cautions(found: Iterable[StickSlipEstimate], system: System) -> I
     for one in found:
         if one.critical <= one.fastest:
             continue
-        remedy = "nothing damps what swings on it; give it a dashpot"
+        remedy = "has no damping; give it a dashpot"
         if one.critical < np.inf:
             remedy = (
-                f"{system.text(one.critical, 'm/s', 3)} would be smooth; draw faster, or by what "
-                "is stiffer or damped more"
+                f"moves smoothly from {system.text(one.critical, 'm/s', 3)} on; increase the "
+                "speed, the stiffness or the damping"
             )
         yield (
-            f"caution: the drive of {one.inner!r} lets it stick and slip all the way: it draws at "
-            f"{system.text(one.fastest, 'm/s', 3)} at most, and {remedy}"
+            f"caution: the drive of {one.inner!r} sticks and slips along its whole travel: it "
+            f"moves at {system.text(one.fastest, 'm/s', 3)} at most, and {remedy}"
         )
 
 
@@ -198,5 +196,5 @@ def lag_cautions(boom: Boom, data: xr.Dataset, system: System) -> Iterator[str]:
                 f"caution: {boom.segments[joint.inner].name!r} lags up to "
                 f"{system.text(lag, 'm')} behind its drive, more than "
                 f"{TO_PERCENT * FAR_BEHIND:g} % of the {system.text(overlap, 'm')} of overlap: "
-                "the motion across the boom, which goes by the drive, does not feel that"
+                "the motion across the boom follows the drive and neglects the lag"
             )

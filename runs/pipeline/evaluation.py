@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -23,19 +24,18 @@ from runs.pipeline.design_results import DesignResults, ModelDesignResults, play
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.model_quality import quality_notes, reference_of
 from runs.pipeline.models import MotionPlan
-from runs.pipeline.modes import Mode, ModeComparison, matched, modes
-from runs.pipeline.motion_results import MotionResult, Motions, evaluate_motion
+from runs.pipeline.modes import ModeComparison, matched, modes
+from runs.pipeline.motion_results import Motions, evaluate_motion
 from runs.pipeline.residual_vibration import residual_vibration
 from runs.pipeline.section_forces import with_cylinders
 from runs.pipeline.static_results import (
-    StaticResult,
     extended_positions,
     instants,
     positions,
     static_result,
 )
 from runs.pipeline.statics import reactions, statics
-from runs.pipeline.strength import COUNTS, Life, life, wall_stresses
+from runs.pipeline.strength import COUNTS, life, wall_stresses
 from runs.pipeline.summary import Summary
 
 
@@ -46,31 +46,35 @@ class _Model(NamedTuple):
     system: GapSystem
     lines: Sequence[Line]
 
-    def static(self, found: Mapping[float, Array]) -> list[StaticResult]:
-        """Return the static states at equilibria (num_modes,) by their time in s."""
-        return [static_result(*self, time, position) for time, position in found.items()]
+    def at_rest(
+        self, found: Mapping[float, Array], extended: Mapping[float, Array] = MappingProxyType({})
+    ) -> ModelDesignResults:
+        """Return the static states at equilibria (num_modes,) by their time in s, and the modes."""
+        static, static_extended = (
+            [static_result(*self, time, position) for time, position in positions.items()]
+            for positions in (found, extended)
+        )
+        first = modes(*self, found[0.0]) if found else []
+        return ModelDesignResults(static=static, static_extended=static_extended, modes=first)
 
-    def modes(self, found: Mapping[float, Array]) -> list[Mode]:
-        """Return the first modes at the equilibrium of t = 0."""
-        return modes(*self, found[0.0]) if found else []
-
-    def motion(
+    def with_motion(
         self,
-        trajectory: Trajectory,
+        own: ModelDesignResults,
         found: Mapping[float, Array],
-        rests: Sequence[StaticResult],
+        trajectory: Trajectory,
         case: Case,
         model: Model,
-    ) -> tuple[MotionResult, list[Life]]:
-        """Return the largest values of a motion beside those at rest, and the fatigue life."""
+    ) -> ModelDesignResults:
+        """Return static results with those of a motion, and the fatigue life."""
         still = np.array([*found.values()]).reshape(-1, self.system.num_modes)
-        smooth = model.smooth
-        motions = Motions(self.boom, self.lines, trajectory, still, rests, jumps=not smooth)
-        moved, varying = evaluate_motion(motions)
-        return moved, [life(one, case.life) for one in varying] if COUNTS else []
+        static, jumps = [*own.static, *own.static_extended], not model.smooth
+        motions = Motions(self.boom, self.lines, trajectory, still, static, jumps)
+        motion, varying = evaluate_motion(motions)
+        lives = [life(one, case.life) for one in varying] if COUNTS else []
+        return replace(own, motion=motion, life=lives)
 
 
-def answer_model(
+def evaluate_model(
     boom: Boom,
     case: Case,
     model: Model,
@@ -91,72 +95,57 @@ def answer_model(
     system, shown = built.system.gather_loads(), boom.play_free if model.play_free else boom
     lines = with_cylinders(shown, system, model.lines(boom, built))
     played, times = _Model(shown, system, lines), instants(system, case.time.duration)
-    found, farthest = positions(system, times), extended_positions(system, case.time.duration)
-    rests, drawn = played.static(found), played.static(farthest)
-    moved, lives = played.motion(trajectory, found | farthest, [*rests, *drawn], case, model)
-    walls = [] if shell is None else wall_stresses(shown, shell.stresses)
-    answers = ModelDesignResults(
-        static=rests,
-        static_extended=drawn,
-        modes=played.modes(found),
-        motion=replace(moved, walls=walls),
-        life=lives,
-        residual_vibration=residual_vibration(system, trajectory, case, model),
-    )
+    found, extended = positions(system, times), extended_positions(system, case.time.duration)
+    own = played.at_rest(found, extended)
+    own = played.with_motion(own, found | extended, trajectory, case, model)
+    if shell is not None and own.motion is not None:
+        walls = wall_stresses(shown, shell.stresses)
+        own = replace(own, motion=replace(own.motion, walls=walls))
+    own = replace(own, residual_vibration=residual_vibration(system, trajectory, case, model))
     if model.play_free or not boom.joints:
-        return answers
+        return own
     try:
-        tied = _tied(boom, model, played, found)
-        return _beside_tied(answers, tied, positions(tied.system, times), boom, model, case)
+        bonded = _bonded(boom, model, played, found)
+        found = positions(bonded.system, times)
+        other = bonded.at_rest(found)
     except NUMERICS:
         # For example, rigid segments without play leave no degree of freedom.
-        return answers
+        return own
+    own = replace(
+        own,
+        static_bonded=[state for state in other.static if _at_initial_extension(boom, state.time)],
+        # Their shapes look the same as those of the boom with play.
+        modes_bonded=[replace(mode, shapes=[]) for mode in other.modes],
+    )
+    if boom.driven:
+        # The boom without play cannot extend.
+        return own
+    try:
+        motion = MotionPlan.of(bonded.system, case, model).trajectory()
+        other = bonded.with_motion(other, found, motion, case, model)
+    except NUMERICS:
+        # The static states remain available.
+        return own
+    return replace(own, motion_bonded=other.motion, life_bonded=other.life)
 
 
-def _tied(boom: Boom, model: Model, played: _Model, found: Mapping[float, Array]) -> _Model:
+def _bonded(boom: Boom, model: Model, played: _Model, found: Mapping[float, Array]) -> _Model:
     """Return the same model without play."""
     without = boom.play_free
     if (own := model.without_play(boom)) is not None:
         system = own[0].gather_loads()
         return _Model(without, system, with_cylinders(without, system, own[1]))
-    begun = [position for time, position in found.items() if _as_begun(boom, time)]
-    system, basis = bonded_system(played.system.at_time(0.0), begun)
+    initial = [position for time, position in found.items() if _at_initial_extension(boom, time)]
+    system, basis = bonded_system(played.system.at_time(0.0), initial)
     return _Model(without, system, [line.on(basis) for line in played.lines])
 
 
-def _beside_tied(
-    answers: ModelDesignResults,
-    tied: _Model,
-    found: Mapping[float, Array],
-    boom: Boom,
-    model: Model,
-    case: Case,
-) -> ModelDesignResults:
-    rests = tied.static(found)
-    answers = replace(
-        answers,
-        static_bonded=[rest for rest in rests if _as_begun(boom, rest.time)],
-        # Their shapes look the same as those of the boom with play.
-        modes_bonded=[replace(mode, shapes=[]) for mode in tied.modes(found)],
-    )
-    if boom.driven:
-        # The boom without play cannot extend.
-        return answers
-    try:
-        motion = MotionPlan.of(tied.system, case, model).trajectory()
-        moved, lives = tied.motion(motion, found, rests, case, model)
-    except NUMERICS:
-        # The static states remain available.
-        return answers
-    return replace(answers, motion_bonded=moved, life_bonded=lives)
-
-
-def _as_begun(boom: Boom, time: float) -> bool:
+def _at_initial_extension(boom: Boom, time: float) -> bool:
     """Return whether drives have all segments in their initial positions at a time in s."""
     return not any(travel(boom, segment, time) for segment in range(len(boom.segments)))
 
 
-def answer_run(
+def evaluate_run(
     boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelDesignResults]
 ) -> DesignResults:
     """Return the design results of all models of a run.
@@ -173,13 +162,13 @@ def answer_run(
         models=dict(models),
         reactions=[] if found is None else reactions(found.with_play),
         reactions_bonded=[] if found is None else reactions(found.bonded),
-        modes=_beside(boom, ran, models),
+        modes=_compared_modes(boom, ran, models),
         play=play_effects(ran, models) if boom.joints else [],
     )
     return replace(answers, quality_notes=[*quality_notes(summary, answers, case.time.duration)])
 
 
-def _beside(
+def _compared_modes(
     boom: Boom, ran: Sequence[Model], models: Mapping[str, ModelDesignResults]
 ) -> ModeComparison | None:
     with_modes = [model for model in ran if models[model.name].modes]
@@ -188,6 +177,5 @@ def _beside(
     if reference is None or not others:
         return None
     own = models[reference].modes
-    return ModeComparison(
-        reference, {name: matched(boom, own, models[name].modes) for name in others}
-    )
+    matches = {name: matched(boom, own, models[name].modes) for name in others}
+    return ModeComparison(reference, matches)

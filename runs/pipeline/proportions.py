@@ -219,8 +219,8 @@ def period_cautions(where: str, frequency: float, case: Case) -> list[str]:
     if case.time.duration * frequency >= 1.0:
         return []
     return [
-        f"caution: time.duration: the run of {case.time.duration:g} s is shorter than one swing "
-        f"{where}, {1.0 / frequency:.3g} s; usual are three swings at least"
+        f"caution: time.duration: the run of {case.time.duration:g} s is shorter than one period "
+        f"{where}, {1.0 / frequency:.3g} s; usual are three periods at least"
     ]
 
 

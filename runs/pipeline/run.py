@@ -19,7 +19,7 @@ from runs.folder.versions import versions
 from runs.pipeline import members
 from runs.pipeline.context import RunContext
 from runs.pipeline.design_results import ModelDesignResults
-from runs.pipeline.evaluation import answer_model, answer_run
+from runs.pipeline.evaluation import evaluate_model, evaluate_run
 from runs.pipeline.model_output import BeamOutput, ShellOutput
 from runs.pipeline.model_quality import compare_models
 from runs.pipeline.model_run import (
@@ -69,7 +69,7 @@ class Run:
             own = summary.models[name]
             with ran.stages.stage("design results"), np.errstate(all="ignore"):
                 try:
-                    answers[name] = answer_model(
+                    answers[name] = evaluate_model(
                         boom, case, ran.model, ran.built, ran.motion.trajectory, ran.shell
                     )
                     check_finite(answers[name])
@@ -80,7 +80,7 @@ class Run:
                     )
             own.seconds = ran.stages.seconds
             own.wall_time = (own.wall_time or 0.0) + own.seconds["design results"]
-        summary.design = answer_run(boom, case, summary, answers)
+        summary.design = evaluate_run(boom, case, summary, answers)
         self.results.conclude()
         check_finite(summary)
 

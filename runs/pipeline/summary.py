@@ -47,7 +47,7 @@ class FirstPeak(NamedTuple):
 
 
 class EnsembleSummary(SummaryTable):
-    """What a model's ensemble tells.
+    """Summary of a model's ensemble.
 
     ``horizons`` has the time in s from which the members are a part of the tip's range apart, by
     that part; ``energy_residual`` is the largest of all members.
@@ -63,7 +63,7 @@ class EnsembleSummary(SummaryTable):
 
 
 class Predictability(SummaryTable):
-    """When changes of several sizes have grown to parts of the tip's range.
+    """Times at which changes of several sizes have grown to parts of the tip's range.
 
     ``times`` (relatives, shares) and ``of_step`` (shares) in s; ``rate`` (shares) in 1/s;
     ``limits`` (shares) as :class:`dynamics.predictability.horizon.Horizons` has them.
@@ -88,7 +88,7 @@ class Trial(SummaryTable):
 
 
 class StepsForPeaks(SummaryTable):
-    """How few steps keep so many slow peaks ``within`` a part; ``duration`` in s.
+    """Fewest steps that keep a number of slow peaks ``within`` a part; ``duration`` in s.
 
     ``fewest`` is None where no trial holds.
     """
@@ -101,9 +101,10 @@ class StepsForPeaks(SummaryTable):
 
 
 class BeamStiffness(SummaryTable):
-    """A segment as the beam that its shell acts as: E J in N·m² and G A_s in N, along z and in
-    space along y, G J_t in N·m² in space; ``bending_part`` and ``shear_part`` are these over what
-    the section's numbers make, ``torsion_part`` likewise.
+    """Stiffness of a segment as a beam, taken from its shell.
+
+    E I in N·m² and G A_s in N, along z and in space along y, and G J_t in N·m² in space; parts are
+    ratios to the stiffness that follows from the section.
     """
 
     segment: str
@@ -128,14 +129,14 @@ class StationSpring(SummaryTable):
 
 
 class CalibrationCard(SummaryTable):
-    """What a calibrated beam has read from its shell, for whoever computes the boom elsewhere."""
+    """Stiffness that a calibrated beam takes from its shell, for other programs."""
 
     segments: list[BeamStiffness]
     springs: list[StationSpring]
 
 
 class ModelSummary(SummaryTable):
-    """What one model has found: ``frequencies`` in Hz, ``seconds`` of wall time by the stage.
+    """Results of one model: ``frequencies`` in Hz, ``seconds`` of wall time by the stage.
 
     ``wall_time`` in s is what has passed without the compilation of the time loop, while a stage
     whose results earlier runs have kept has the seconds that it took then.
@@ -214,7 +215,7 @@ class Comparisons(SummaryTable):
 
 
 class Ensembles(EnsembleTable):
-    """What the case asks of ensembles, and the cut-off of the slow motion in Hz."""
+    """Ensembles as the case requests them, and the cut-off of the slow motion in Hz."""
 
     slow_below: float | None
 
@@ -227,10 +228,10 @@ class Snapshots(SummaryTable):
 
 
 class Summary(SummaryTable):
-    """What ``summary.json`` holds; ``models`` those that ran, ``failures`` why others did not.
+    """Content of ``summary.json``: ``models`` that ran, ``failures`` with the reasons of others.
 
-    ``pads`` are those of all models and stations, ``cautions`` lines that say what the results are
-    not worth.
+    ``pads`` are those of all models and stations, ``cautions`` lines on the limits of the
+    results.
     """
 
     title: str

@@ -368,8 +368,8 @@ def test_a_check_tells_what_a_drive_does() -> None:
     shown = StringIO()
     print_check(CheckedCase(case), Console(file=shown, width=200))
     assert (
-        "A drive draws 'inner' 4 m out of 'outer' from 0 to 5 s, at 1.6 m/s at most; 1 m of "
-        "overlap are left.\n"
+        "A drive extends 'inner' by 4 m from 0 to 5 s, at 1.6 m/s at most; the least overlap is "
+        "1 m.\n"
     ) in shown.getvalue()
 
 

@@ -101,7 +101,7 @@ def test_a_model_that_nothing_answers_for_keeps_its_motion(
     def singular(*_: object) -> ModelDesignResults:
         raise np.linalg.LinAlgError("Singular matrix")
 
-    monkeypatch.setattr("runs.pipeline.run.answer_model", singular)
+    monkeypatch.setattr("runs.pipeline.run.evaluate_model", singular)
     again = replace(run, results=replace(run.results, summary=run.results.summary.model_copy()))
     again.results.summary.failures = {}
     again.evaluate()
@@ -132,8 +132,8 @@ def test_a_folder_of_before_gets_its_cautions(run: Run, folder: Path) -> None:
         again
         == short
         == (
-            "caution: time.duration: the run of 0.05 s is shorter than one swing in kantorovich-4, "
-            "0.427 s; usual are three swings at least"
+            "caution: time.duration: the run of 0.05 s is shorter than one period in "
+            "kantorovich-4, 0.427 s; usual are three periods at least"
         )
     )
     assert told == (

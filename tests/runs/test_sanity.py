@@ -189,8 +189,8 @@ def test_a_run_shorter_than_a_swing_is_told(
     declared = case_file.load_checked(written(tmp_path, "duration = 3.0", "duration = 0.2"))
     print_check(declared, Console(file=shown, width=200))
     line = (
-        "caution: time.duration: the run of 0.2 s is shorter than one swing as beam elements, "
-        "0.553 s; usual are three swings at least"
+        "caution: time.duration: the run of 0.2 s is shorter than one period as beam elements, "
+        "0.553 s; usual are three periods at least"
     )
     assert line in shown.getvalue().splitlines()
     (frequency,) = re.findall(r"joints pressed, as beam elements: ([0-9.]+) Hz", shown.getvalue())

@@ -132,8 +132,9 @@ def test_a_check_tells_whether_it_will_stick_and_slip(tmp_path: Path) -> None:
     on 200 kN/m swing at 3.03 Hz, damped by 500/2√(k m), and the critical speed from the formula."""
     shown = printed(print_check, CheckedCase(drawn_by(tmp_path, ROPE)), width=300)
     assert (
-        "What the drive of 'inner' draws, 550.7 kg, swings at 3.03 Hz, damped by 2.38 %, and "
-        "against 9.72 kN of friction, the most at rest, sticks and slips below 0.791 m/s.\n"
+        "The drive of 'inner' moves 550.7 kg, with a frequency of 3.03 Hz and a damping ratio of "
+        "2.38 %; against the largest static friction of 9.72 kN it sticks and slips below 0.791 "
+        "m/s.\n"
     ) in shown
     assert "caution" not in shown
 
@@ -142,17 +143,18 @@ def test_a_check_tells_whether_it_will_stick_and_slip(tmp_path: Path) -> None:
     ("rope", "caution"),
     [
         (ROPE,
-         "0.2 m/s at most, and 0.791 m/s would be smooth; draw faster, or by what is stiffer or "
-         "damped more"),
+         "0.2 m/s at most, and moves smoothly from 0.791 m/s on; increase the speed, the stiffness "
+         "or the damping"),
         (ROPE.replace("dashpot = 500.0, ", ""),
-         "0.2 m/s at most, and nothing damps what swings on it; give it a dashpot"),
+         "0.2 m/s at most, and has no damping; give it a dashpot"),
     ],
 )  # fmt: skip
 def test_a_check_warns_of_it(tmp_path: Path, rope: str, caution: str) -> None:
     """Reference: the line that a user reads, and the speeds above."""
     slow = {"time = 5.0": "time = 40.0", "duration = 7.0": "duration = 41.0"}
     assert (
-        f"caution: the drive of 'inner' lets it stick and slip all the way: it draws at {caution}\n"
+        f"caution: the drive of 'inner' sticks and slips along its whole travel: it moves at "
+        f"{caution}\n"
     ) in printed(print_check, CheckedCase(drawn_by(tmp_path, rope, **slow)), width=300)
 
 
@@ -277,5 +279,5 @@ def test_a_report_warns_where_it_lags_far_behind(tmp_path: Path) -> None:
     assert 0.09 < lag < 0.15
     assert results.summary.cautions[-1] == (
         f"caution: 'inner' lags up to {lag:.4g} m behind its drive, more than 1 % of the 1 m of "
-        "overlap: the motion across the boom, which goes by the drive, does not feel that"
+        "overlap: the motion across the boom follows the drive and neglects the lag"
     )
