@@ -31,11 +31,13 @@ READY := .venv/ready-$(RELEASE)
 SPHINX := .venv/sphinx-$(RELEASE)
 endif
 
-.PHONY: help verify snapshots gallery bench convergence validation validity other-codes test fuzz torture quick lint docs matrix clean distclean debian-packages
+.PHONY: help install verify snapshots gallery bench convergence validation validity other-codes test fuzz torture quick lint docs matrix clean distclean debian-packages
 .DELETE_ON_ERROR:
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 12
+
+install: $(READY) ## install what runs need, into .venv or the active conda environment
 
 # As many cases at a time as there are cores, of which nproc tells no more than OMP_NUM_THREADS.
 verify: $(READY) ## run the cases where they are not up to date, print the verdicts
