@@ -7,8 +7,9 @@ by the transcendental determinant of Euler-Bernoulli spans.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from scipy.optimize import brentq
@@ -166,14 +167,17 @@ def tied_determinant(boom: Boom, omega: float) -> float:
 
 def tied_frequencies(boom: Boom, highest: float) -> Array:
     """Exact natural frequencies of the play-free boom in Hz up to ``highest``."""
-    grid = 2.0 * np.pi * np.arange(0.5, highest, 0.25)
-    values = np.array([tied_determinant(boom, omega) for omega in grid])
+    lowest, largest = 2.0 * np.pi * 0.5, 2.0 * np.pi * highest
+    found = roots(partial(tied_determinant, boom), lowest, largest)
+    return np.array(found) / (2.0 * np.pi)
+
+
+def roots(function: Callable[[float], float], low: float, high: float) -> list[float]:
+    """Return the roots of a function between two places, rising, none closer than a 600th of it."""
+    grid = np.linspace(low, high, 600)
+    values = np.array([function(place) for place in grid])
     (changes,) = np.nonzero(np.sign(values[:-1]) != np.sign(values[1:]))
-    roots = [
-        brentq(lambda omega: tied_determinant(boom, omega), grid[k], grid[k + 1], rtol=1e-12)
-        for k in changes
-    ]
-    return np.array(roots) / (2.0 * np.pi)
+    return [float(brentq(function, grid[k], grid[k + 1], xtol=1e-13)) for k in changes]
 
 
 def frequencies(model: Component) -> Array:

@@ -63,17 +63,6 @@ def test_frequencies_converge_at_order_four(
     assert errors[-1][0] < 5.0e-7
 
 
-def test_rotary_inertia_of_two_pinned_ends(beam: Beam) -> None:
-    """Reference: analytic, Rayleigh: ω² = (E J k⁴/m̄)/(1 + I_p k²/m̄)."""
-    segment = beam(supports=(3.0, 8.0))
-    model = bending(segment, 0.1, (), "euler-bernoulli", True)
-    k = np.array(PINNED_PINNED) / 5.0
-    share = segment.rotary_inertia * k**2 / segment.mass_per_length
-    assert share[0] > 0.01
-    expected = angular_frequencies(segment, PINNED_PINNED) / np.sqrt(1.0 + share)
-    np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=1e-5)
-
-
 @pytest.mark.parametrize("rotary_inertia", [False, True])
 def test_shear_flexible_frequencies_of_two_pinned_ends(beam: Beam, rotary_inertia: bool) -> None:
     """Reference: analytic. w = W sin kx, θ = Θ cos kx in Timoshenko's equations.
@@ -193,14 +182,6 @@ def test_mass_of_one_element(beam: Beam) -> None:
     )
     expected *= beam().mass_per_length * h / 420.0
     np.testing.assert_allclose(model.mass, expected, rtol=1e-12)
-
-
-def test_viscous_damping_is_its_share_of_the_mass(beam: Beam) -> None:
-    """Reference: analytic, (25) against (24): C = (μ̄/m̄) M."""
-    segment = beam(viscous_damping=88.0)
-    model = bending(segment, 0.5, (), "euler-bernoulli", False)
-    expected = 88.0 / segment.mass_per_length * model.mass
-    np.testing.assert_allclose(model.damping, expected, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -117,45 +117,25 @@ def test_complete_and_pinned_are_one_space_on_pinned_supports(paper_boom: Boom, 
     np.testing.assert_allclose(complete, pinned, rtol=1e-7)
 
 
-def test_two_pinned_ends(beam: Beam) -> None:
-    """Reference: analytic, βL = k π."""
-    segment = beam(supports=(3.0, 8.0))
-    model = kantorovich_bending(segment, 14, "pinned", rotary_inertia=False)
-    expected = angular_frequencies(segment, PINNED_PINNED)
-    np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=1e-9)
-
-
-def test_two_free_ends(beam: Beam) -> None:
-    """Reference: analytic, βL = 4.730041, 7.853205, 10.995608.
-
-    The printed inner functions lack one (see above); the complete ones do not.
-    """
-    segment = beam()
-    model = kantorovich_bending(segment, 14, "complete", rotary_inertia=False)
-    expected = angular_frequencies(segment, FREE_FREE)
-    np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=1e-6)
-
-
 @pytest.mark.parametrize(
-    ("base", "numbers"), [("pinned", PINNED_FREE), ("as printed", CLAMPED_FREE)]
+    ("base", "supports", "numbers"),
+    [
+        ("pinned", (3.0, 8.0), PINNED_PINNED),
+        # The printed inner functions lack one (see above); the complete ones do not.
+        ("complete", (), FREE_FREE),
+        ("pinned", (3.0,), PINNED_FREE),
+        # As printed the base has no slope: a cantilever, without rigid mode.
+        ("as printed", (3.0,), CLAMPED_FREE),
+    ],
 )
-def test_one_support(beam: Beam, base: Base, numbers: tuple[float, ...]) -> None:
-    """Reference: analytic. As printed the base has no slope: a cantilever, without rigid mode."""
-    segment = beam(supports=(3.0,))
+def test_frequencies_of_plain_beams(
+    beam: Beam, base: Base, supports: tuple[float, ...], numbers: tuple[float, ...]
+) -> None:
+    """Reference: analytic βL."""
+    segment = beam(supports=supports)
     model = kantorovich_bending(segment, 14, base, rotary_inertia=False)
     expected = angular_frequencies(segment, numbers)
     np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=1e-6)
-
-
-def test_rotary_inertia_of_two_pinned_ends(beam: Beam) -> None:
-    """Reference: analytic, Rayleigh: ω² = (E J k⁴/m̄)/(1 + I_p k²/m̄)."""
-    segment = beam(supports=(3.0, 8.0))
-    model = kantorovich_bending(segment, 14, "pinned", rotary_inertia=True)
-    k = np.array(PINNED_PINNED) / 5.0
-    share = segment.rotary_inertia * k**2 / segment.mass_per_length
-    assert share[0] > 0.01
-    expected = angular_frequencies(segment, PINNED_PINNED) / np.sqrt(1.0 + share)
-    np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=1e-9)
 
 
 @pytest.mark.parametrize("base", ["as printed", "pinned", "complete"])
@@ -223,16 +203,6 @@ def test_place_of_the_origin_does_not_matter(paper_boom: Boom) -> None:
             kantorovich_bending(s, 5, "as printed", rotary_inertia=True) for s in (segment, moved)
         )
         np.testing.assert_allclose(frequencies(there), frequencies(here), rtol=1e-10)
-
-
-@pytest.mark.parametrize("supports", [(), (3.0, 5.0)])
-def test_viscous_damping_is_its_share_of_the_mass(beam: Beam, supports: tuple[float, ...]) -> None:
-    """Reference: analytic, (25) against (24): C = (μ̄/m̄) M."""
-    segment = beam(supports=supports, viscous_damping=88.0)
-    model = kantorovich_bending(segment, 6, "as printed", rotary_inertia=False)
-    np.testing.assert_allclose(
-        model.damping, 88.0 / segment.mass_per_length * model.mass, rtol=1e-12
-    )
 
 
 def test_load_is_the_work_of_a_uniform_force(beam: Beam) -> None:

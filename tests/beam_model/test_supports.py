@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
 from beam_model.component import Component, SegmentModel, natural_modes
 from beam_model.finite_element import finite_element_segment
@@ -21,23 +20,31 @@ from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Load, PointMass, Segment, Stop, Support
-from tests.beam_model.exact import CLAMPED_FREE, OverhangingBeam, angular_frequencies, frequencies
+from tests.beam_model.exact import (
+    CLAMPED_FREE,
+    FREE_FREE,
+    PINNED_FREE,
+    PINNED_PINNED,
+    OverhangingBeam,
+    angular_frequencies,
+    frequencies,
+    roots,
+)
 from tests.touching import touching
 
 Beam = Callable[..., Segment]
 Models = Callable[..., list[SegmentModel]]
 
-# βL (Blevins 1979).
-CLAMPED_PINNED = (3.926602312047919, 7.068582745628732, 10.210176122813031)
-CLAMPED_CLAMPED = (4.730040744862704, 7.853204624095838, 10.995607838001671)
+# The same βL with the ends exchanged, and of free ends.
+CLAMPED_PINNED, CLAMPED_CLAMPED = PINNED_FREE, FREE_FREE
 
 
-def elements(segment: Segment) -> Component:
-    return finite_element_segment(segment, 0.1, (), "euler-bernoulli", False).components["z"]
+def elements(segment: Segment, rotary: bool = False) -> Component:
+    return finite_element_segment(segment, 0.1, (), "euler-bernoulli", rotary).components["z"]
 
 
-def terms(segment: Segment) -> Component:
-    return kantorovich_bending(segment, 16, "complete", rotary_inertia=False)
+def terms(segment: Segment, rotary: bool = False) -> Component:
+    return kantorovich_bending(segment, 16, "complete", rotary)
 
 
 KINDS = pytest.mark.parametrize("model_of", [elements, terms])
@@ -86,11 +93,32 @@ def tip_frequencies(segment: Segment, hold: Callable[[float], float]) -> Array:
         share = hold(omega(beta)) / (stiffness * beta**3)
         return float(1.0 / np.cosh(number) + cosine - share * turned)
 
-    grid = np.linspace(0.1, 12.0, 400)
-    values = np.array([defect(number) for number in grid])
-    (changes,) = np.nonzero(np.sign(values[:-1]) != np.sign(values[1:]))
-    roots = [brentq(defect, grid[k], grid[k + 1], xtol=1e-13) for k in changes]
-    return np.array([omega(root / length) for root in roots])
+    return np.array([omega(root / length) for root in roots(defect, 0.1, 12.0)])
+
+
+@KINDS
+def test_rotary_inertia_of_two_pinned_ends(
+    beam: Beam, model_of: Callable[[Segment, bool], Component]
+) -> None:
+    """Reference: analytic, Rayleigh: ω² = (E J k⁴/m̄)/(1 + I_p k²/m̄)."""
+    segment = beam(supports=(3.0, 8.0))
+    k = np.array(PINNED_PINNED) / 5.0
+    share = segment.rotary_inertia * k**2 / segment.mass_per_length
+    assert share[0] > 0.01
+    expected = angular_frequencies(segment, PINNED_PINNED) / np.sqrt(1.0 + share)
+    np.testing.assert_allclose(frequencies(model_of(segment, True))[:3], expected, rtol=1e-5)
+
+
+@KINDS
+@pytest.mark.parametrize("supports", [(), (3.0, 5.0)])
+def test_viscous_damping_is_its_share_of_the_mass(
+    beam: Beam, model_of: Callable[[Segment], Component], supports: tuple[float, ...]
+) -> None:
+    """Reference: analytic, (25) against (24): C = (μ̄/m̄) M."""
+    segment = beam(supports=supports, viscous_damping=88.0)
+    model = model_of(segment)
+    expected = 88.0 / segment.mass_per_length * model.mass
+    np.testing.assert_allclose(model.damping, expected, rtol=1e-12, atol=1e-12)
 
 
 @KINDS
@@ -125,11 +153,7 @@ def test_a_hinge_that_resists_rotation(
         turned = np.sin(number) - np.cos(number) * np.tanh(number)
         return float(share * (1.0 / np.cosh(number) + np.cos(number)) - number * turned)
 
-    grid = np.linspace(0.05, 11.0, 600)
-    values = np.array([defect(number) for number in grid])
-    (changes,) = np.nonzero(np.sign(values[:-1]) != np.sign(values[1:]))
-    roots = [brentq(defect, grid[k], grid[k + 1], xtol=1e-13) for k in changes]
-    expected = angular_frequencies(segment, roots[:3])
+    expected = angular_frequencies(segment, roots(defect, 0.05, 11.0)[:3])
     rigid = np.sqrt(3.0 * stiffness / (segment.mass_per_length * segment.length**3))
     assert (abs(expected[0] / rigid - 1.0) < 0.01) == (stiffness < 1.0e7)
     np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=3e-5)
