@@ -30,8 +30,8 @@ class Component:
         stiffness, mass, damping: (num_dofs, num_dofs).
         load: (num_dofs,) the segment's own uniform load.
         unit_load: (num_dofs,) a uniform load of one N/m (of one N for the twist).
-        felt: (num_dofs,) an acceleration of the mass per length which a segment feels as 1 N/m, on
-            average where it tapers; ``unit_load`` unless given.
+        inertia_load: (num_dofs,) inertia of the mass per length under an acceleration that makes it
+            1 N/m, on average where it tapers; ``unit_load`` unless given.
         at: x in m → (num_dofs,) row that reads the deflection or twist there.
         rotation: x in m → (num_dofs,) row that reads the rotation of the cross-section there, the
             slope of a beam that is rigid in shear; none of a twist.
@@ -57,7 +57,7 @@ class Component:
     turning: Array = field(default_factory=lambda: np.zeros(0))
     breaks: Array = field(default_factory=lambda: np.zeros(0))
     geometric: Array | None = None
-    felt: Array | None = None
+    inertia_load: Array | None = None
 
     @property
     def softening(self) -> Array:
@@ -67,7 +67,7 @@ class Component:
     @property
     def inertia(self) -> Array:
         """Load vector (num_dofs,) of an acceleration of the mass per length, for any component."""
-        return self.unit_load if self.felt is None else self.felt
+        return self.unit_load if self.inertia_load is None else self.inertia_load
 
     def rotation_at(self, x: float) -> Array:
         """Return the row (num_dofs,) that reads the rotation of the cross-section at x in m."""

@@ -82,7 +82,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
     """Return the component of deflection along z; unknowns w and θ of each node."""
     num_dofs = 2 * nodes.size
     stiffness, mass, damping, geometric = (np.zeros((num_dofs, num_dofs)) for _ in range(4))
-    unit_load, turning, felt = np.zeros((3, num_dofs))
+    unit_load, turning, inertia_load = np.zeros((3, num_dofs))
     points, weights = _GAUSS
     for k, h in enumerate(np.diff(nodes)):
         dofs = slice(2 * k, 2 * k + 4)
@@ -101,7 +101,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         damping[dofs, dofs] += segment.viscous_damping * products(w, weight)
         geometric[dofs, dofs] += products(slope, weight * segment.compression(x))
         unit_load[dofs] += w @ weight
-        felt[dofs] += w @ heavy
+        inertia_load[dofs] += w @ heavy
 
     held = []
     for support in segment.supports:
@@ -120,7 +120,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
     for point in segment.stiffener_masses:
         dof = 2 * _nearest(nodes, point.x)
         turning[dof] += point.mass * point.x
-        felt[dof] += point.mass / segment.mass_per_length
+        inertia_load[dof] += point.mass / segment.mass_per_length
     free = np.setdiff1d(np.arange(num_dofs), held)
 
     def read(shapes: str, x: float) -> Array:
@@ -137,7 +137,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         damping=damping[block],
         load=segment.load * unit_load[free],
         unit_load=unit_load[free],
-        felt=felt[free],
+        inertia_load=inertia_load[free],
         at=partial(read, "deflection"),
         rotation=partial(read, "rotation"),
         curvature=partial(read, "curvature"),

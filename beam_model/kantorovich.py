@@ -51,31 +51,28 @@ def check_base(boom: Boom, base: Base) -> None:
         BoomError: clamped or elastic supports, or a cylinder, with another base than the complete
             one.
     """
-    if base == "complete":
-        return
     for segment in boom.segments:
         _check_supports(segment, base)
         if boom.spatial:
             _check_supports(segment.turned(), base)
-    for cylinder in boom.cylinders:
-        raise _no_form(boom.segments[cylinder.segment], "a cylinder", base)
+    if boom.cylinders and base != "complete":
+        raise _no_form(boom.segments[boom.cylinders[0].segment], "a cylinder", base)
 
 
 def _check_supports(segment: Segment, base: Base) -> None:
-    if any(
-        support.kind == "clamped"
-        or support.stiffness is not None
-        or support.rotation_stiffness is not None
+    elastic = (
+        support.kind == "clamped" or (support.stiffness, support.rotation_stiffness) != (None, None)
         for support in segment.supports
-    ):
+    )
+    if base != "complete" and any(elastic):
         raise _no_form(segment, "clamped or elastic supports", base)
 
 
-def _no_form(segment: Segment, what: str, base: Base) -> BoomError:
+def _no_form(segment: Segment, feature: str, base: Base) -> BoomError:
     return BoomError(
         "segment",
-        f"{segment.name!r} has {what}, for which the functions {base!r} have no form; use base = "
-        "'complete'",
+        f"{segment.name!r} has {feature}, for which the functions {base!r} have no form; use base ="
+        " 'complete'",
     )
 
 
@@ -129,11 +126,11 @@ def kantorovich_bending(
     for point in (*segment.masses, *segment.stiffener_masses):
         row = basis.at(point.x)
         mass += point.mass * np.outer(row, row)
-    felt = basis.value @ heavy
+    inertia_load = basis.value @ heavy
     for point in segment.stiffener_masses:
         row = basis.at(point.x)
         turning += point.mass * point.x * row
-        felt += point.mass / segment.mass_per_length * row
+        inertia_load += point.mass / segment.mass_per_length * row
     return Component(
         stiffness=stiffness,
         mass=mass,
@@ -146,7 +143,7 @@ def kantorovich_bending(
         turning=turning,
         rigid_modes=min(max(0, segment.rigid_modes - printed), terms),
         geometric=_geometric(segment.compression, basis.functions),
-        felt=felt,
+        inertia_load=inertia_load,
     )
 
 

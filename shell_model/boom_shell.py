@@ -124,8 +124,8 @@ class BoomShell:
 
     def forces(self, number: int) -> Array:
         """Return all forces that act on a segment (num_owned, num_forces), contacts first."""
-        dragged = self.columns(number, self.rows.dashpot_readings)
-        return np.column_stack([self.joined(number), dragged, self.pushed(number)])
+        dashpots = self.columns(number, self.rows.dashpot_readings)
+        return np.column_stack([self.joined(number), dashpots, self.pushed(number)])
 
     def pushed(self, number: int) -> Array:
         """Return the load vectors (num_owned, num_pushes) that act on a segment at fixed places."""

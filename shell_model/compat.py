@@ -58,9 +58,9 @@ def _compile_one_at_a_time(compile_form: Callable[..., Any]) -> Callable[..., An
             # Some disks of clusters have no locks.
             with suppress(OSError):
                 fcntl.flock(lock, fcntl.LOCK_EX)
-            for begun in folder.glob("*.c"):
-                if not begun.with_suffix(".c.cached").exists():
-                    begun.unlink()
+            for source in folder.glob("*.c"):
+                if not source.with_suffix(".c.cached").exists():
+                    source.unlink()
             return compile_form(comm, *arguments, **options)
 
     return compiled

@@ -15,7 +15,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
@@ -39,34 +38,49 @@ _POINTS = 4
 _Point = tuple[Side, float, Reading]
 
 
-class _PadContact(NamedTuple):
-    """Pairs of points of a pad, and the sliding of the pad."""
-
-    points: Sequence[_Point]
-    slide: Reading
-
-
 @dataclass(frozen=True, slots=True)
 class _PadReadings:
     """Relative displacements u − w of the two segments of a pad.
 
     Args:
         pad: the pad.
-        corners, walls: those of its inner and its outer segment; no walls unless they are read.
+        corners, walls: those of all segments; no walls unless they are read.
     """
 
     pad: Pad
     corners: Sequence[CornerLines]
     walls: Sequence[WallPoints]
 
+    def contact(self, line: ContactLine) -> tuple[list[_Point], Reading]:
+        """Return the pairs of points of the pad, and its sliding. Collective."""
+        pad = self.pad
+        if pad.joint.lateral_play is not None:
+            if pad.patch is None:
+                approach = self.at_corners(pad.direction, pad.inner, pad.outer)
+            else:
+                approach = self.over_patch(pad.patch, pad.side, pad.half)
+            slide = self.at_corners(pad.rubs, pad.inner, pad.outer)
+            return [(pad.side, pad.weight, approach)], slide
+        if pad.patch is not None:
+            points = []
+            for side in (pad.side,) if pad.side else _SIDES:
+                right, left = (self.over_patch(pad.patch, side, half) for half in (1, -1))
+                points.append((side, pad.weight, 0.5 * right + 0.5 * left))
+            if pad.side:
+                return points, points[0][2]
+        elif line == "across":
+            points = list(self.across())
+        else:
+            offsets = [(side, (0.0, side)) for side in _SIDES]
+            points = [(side, 1.0, self.at_corners("z", at, at)) for side, at in offsets]
+        # Both flanges together slide as their mean does.
+        first, *others = (0.5 * weight * approach for _, weight, approach in points)
+        return points, sum(others, first)
+
     def at_corners(self, direction: Direction, inner: Offset, outer: Offset) -> Reading:
         """Return the approach along the corners at offsets (y, z) in m."""
-        rows = (
-            lines.deflection(stretch, direction, *offset)
-            for lines, stretch, offset in zip(
-                self.corners, self.pad.pressed, (inner, outer), strict=True
-            )
-        )
+        places = zip(self._ends, self.pad.pressed, (inner, outer), strict=True)
+        rows = (self.corners[n].deflection(at, direction, *offset) for n, at, offset in places)
         return self._approach(*rows)
 
     def across(self) -> Iterator[_Point]:
@@ -76,12 +90,13 @@ class _PadReadings:
             across, shares = gauss(-0.5 * width, 0.5 * width, 8)
             for y, share in zip(across[across > 0.0], 2.0 * shares[across > 0.0], strict=True):
                 rows = []
-                for walls, stretch in zip(self.walls, self.pad.pressed, strict=True):
+                for number, stretch in zip(self._ends, self.pad.pressed, strict=True):
                     # At ±y along the stretch, with weights that sum to one.
                     x, weights = gauss(stretch.start, stretch.end, _POINTS)
                     force = 0.5 * weights * (stretch.end - stretch.start) * stretch.density(x)
                     places = np.column_stack([np.tile(x, 2), np.repeat([y, -y], x.size)])
-                    rows.append(walls.mean(Wall("z", side), places, np.tile(force, 2), "z"))
+                    mean = self.walls[number].mean
+                    rows.append(mean(Wall("z", side), places, np.tile(force, 2), "z"))
                 yield side, share, self._approach(*rows)
 
     def over_patch(self, patch: Patch, side: Side, half: int) -> Reading:
@@ -96,15 +111,20 @@ class _PadReadings:
         weights = np.outer(along, over).ravel()
         wall = Wall(self.pad.direction, side)
         rows = (
-            walls.mean(wall, places + np.array([by, 0.0]), weights, self.pad.direction)
-            for walls, by in zip(self.walls, self.pad.moved, strict=True)
+            self.walls[n].mean(wall, places + np.array([by, 0.0]), weights, self.pad.direction)
+            for n, by in zip(self._ends, self.pad.moved, strict=True)
         )
         return self._approach(*rows)
 
     @property
     def _touching(self) -> Section:
         """Section of the inner segment at the pad."""
-        return self.walls[0].segment.section_at(self.pad.x + self.pad.moved[0])
+        inner = self.walls[self.pad.joint.inner].segment
+        return inner.section_at(self.pad.x + self.pad.moved[0])
+
+    @property
+    def _ends(self) -> tuple[int, int]:
+        return self.pad.joint.inner, self.pad.joint.outer
 
     def _approach(self, inner: Row, outer: Row) -> Reading:
         return Reading({self.pad.joint.inner: inner, self.pad.joint.outer: -outer})
@@ -159,21 +179,15 @@ class ShellContacts:
         boom, points = self.boom, self.points
         rows = GapBuilder([Contact(point.reading, point.law, point.station) for point in points])
         for pad in pads(boom):
-            touch = _touch(
-                pad.extended(boom, extensions.get(pad.number, 0.0)),
-                self.corners,
-                self.walls,
-                self.line,
-            )
+            extended = pad.extended(boom, extensions.get(pad.number, 0.0))
+            touching, slide = _PadReadings(extended, self.corners, self.walls).contact(self.line)
             if self.line == "surface":
                 pressing = tuple(i for i, point in enumerate(points) if point.presses(pad))
             else:
                 law = pad.joint.law(pad.direction)
-                pressing = rows.add_contact(pad.station, law, touch.points, pad.raised)
-            rows.add_dashpot(pad.station, pad.joint.dashpot, touch.points)
-            rows.add_friction(
-                pad.station, pad.joint.friction, touch.slide, pad.normal_force, pressing
-            )
+                pressing = rows.add_contact(pad.station, law, touching, pad.raised)
+            rows.add_dashpot(pad.station, pad.joint.dashpot, touching)
+            rows.add_friction(pad.station, pad.joint.friction, slide, pad.normal_force, pressing)
         for rest in stop_patches(boom):
             segment, drives = rest.stop.segment, drives_below(boom.joints, rest.stop.segment)
             extension = sum(extensions.get(number, 0.0) for number in drives)
@@ -205,37 +219,6 @@ def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
                 inner, outer = (read(outline) for outline in outlines)
                 found.append(Reading({joint.inner: inner, joint.outer: -outer}))
     return found
-
-
-def _touch(
-    pad: Pad, corners: Sequence[CornerLines], walls: Sequence[WallPoints], line: ContactLine
-) -> _PadContact:
-    """Return the rows of a pad. Collective."""
-    ends = pad.joint.inner, pad.joint.outer
-    read = _PadReadings(
-        pad, [corners[number] for number in ends], [walls[number] for number in ends if walls]
-    )
-    if pad.joint.lateral_play is not None:
-        slide = read.at_corners(pad.rubs, pad.inner, pad.outer)
-        if pad.patch is None:
-            approach = read.at_corners(pad.direction, pad.inner, pad.outer)
-        else:
-            approach = read.over_patch(pad.patch, pad.side, pad.half)
-        return _PadContact([(pad.side, pad.weight, approach)], slide)
-    if pad.patch is not None:
-        points = []
-        for side in (pad.side,) if pad.side else _SIDES:
-            right, left = (read.over_patch(pad.patch, side, half) for half in (1, -1))
-            points.append((side, pad.weight, 0.5 * right + 0.5 * left))
-        if pad.side:
-            return _PadContact(points, points[0][2])
-    elif line == "across":
-        points = list(read.across())
-    else:
-        points = [(side, 1.0, read.at_corners("z", (0.0, side), (0.0, side))) for side in _SIDES]
-    # Both flanges together slide as their mean does.
-    first, *others = (0.5 * weight * approach for _, weight, approach in points)
-    return _PadContact(points, sum(others, first))
 
 
 def _check_line(boom: Boom, line: ContactLine) -> None:

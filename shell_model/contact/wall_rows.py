@@ -24,7 +24,7 @@ from shell_model.segment.cross_section import Row, quadratic
 from shell_model.segment.segment_shell import SegmentShell
 
 
-class _Line(NamedTuple):
+class _CornerLine(NamedTuple):
     """Displacement nodes along a corner: ends and middles of its edges alternate.
 
     Args:
@@ -53,7 +53,7 @@ class CornerLines:
 
     def __init__(self, shell: SegmentShell) -> None:
         self._segment = shell.segment
-        self._lines: list[_Line] = []
+        self._lines: list[_CornerLine] = []
         along = WallsAlong(shell.segment, shell.nodes[:, 0])
         for number in range(len(shell.section.plates)):
             off = np.abs(shell.nodes[:, 1:] - along.starts(number)).max(axis=1)
@@ -61,7 +61,7 @@ class CornerLines:
             x = np.concatenate(shell.comm.allgather(shell.nodes[on, 0]))
             dofs = np.concatenate(shell.comm.allgather(shell.node_dofs[on]))
             order = np.argsort(x)
-            self._lines.append(_Line(x[order], dofs[order]))
+            self._lines.append(_CornerLine(x[order], dofs[order]))
 
     def deflection(self, stretch: Stretch, direction: Direction, y: float, z: float) -> Row:
         """Return u_z or u_y of a face in m, on the straight line through its two corners.

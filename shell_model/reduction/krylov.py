@@ -21,7 +21,7 @@ from shell_model.segment.solver import ShiftedSolver, times
 _DEPENDENT = 1.0e-9
 
 # Blocks at each shift; a tolerance that is not met with these is not met with more.
-_MOST_MOMENTS = 12
+_MAX_MOMENTS = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ class KrylovOptions:
         """
         if self.tolerance is None and self.most is None:
             return chain.from_iterable(repeat(shift, self.moments) for shift in self.shifts)
-        rounds = self.moments if self.tolerance is None else _MOST_MOMENTS
+        rounds = self.moments if self.tolerance is None else _MAX_MOMENTS
         return chain.from_iterable(repeat(self.shifts, rounds))
 
     @property
@@ -69,7 +69,7 @@ class ClassCoordinates(NamedTuple):
         omega2: (num_modes,) in rad²/s², rising, rigid motions first and exactly 0.
         shapes: (num_rows, num_modes) in 1/√kg.
         compliance_error, reading_error, lost_compliance: see ``ReducedSegment``.
-        right: (num_modes,) whether some natural frequency is within 0.1 %.
+        accurate: (num_modes,) whether some natural frequency is within 0.1 %.
         geometric: (num_modes, num_modes) K_G, reduction of diag(ω²) by axial forces.
     """
 
@@ -78,7 +78,7 @@ class ClassCoordinates(NamedTuple):
     compliance_error: float
     reading_error: float
     lost_compliance: Array
-    right: Mask
+    accurate: Mask
     geometric: Array
 
 
@@ -110,7 +110,7 @@ def reduce_class(
     basis = _Basis(shell, forces, options.most)
     solve = ShiftedSolver(shell, order[0] if options.tolerance is None else tests[0])
     if options.tolerance is not None:
-        full = [_Full.at(frequency, solve, forces, rows) for frequency in tests]
+        full = [_FullResponse.at(frequency, solve, forces, rows) for frequency in tests]
     for done, frequency in enumerate(order, start=1):
         solve.move(frequency)
         grown = basis.grow(solve)
@@ -122,9 +122,9 @@ def reduce_class(
     if shell.geometric is not None:
         # Behind the others, whose moments go from block to block.
         solve.move(order[0])
-        basis.follow(shell.geometric, solve)
+        basis.add_axial_responses(shell.geometric, solve)
     if options.tolerance is None:
-        full = [_Full.at(frequency, solve, forces, rows) for frequency in tests]
+        full = [_FullResponse.at(frequency, solve, forces, rows) for frequency in tests]
     errors = basis.errors(full, rows)
     if not np.isfinite(errors).all():
         raise NumericsError("the reduced compliance is not finite; check the mesh and the material")
@@ -137,16 +137,16 @@ def reduce_class(
     lost = basis.lost(full, forces.T @ inputs)
     omega2, shapes = basis.modes()
     solve.move(tests[-1])
-    right = _right(shell, omega2, shapes, solve)
+    accurate = _find_accurate(shell, omega2, shapes, solve)
     solve.destroy()
     progress(1.0)
     geometric = np.zeros((omega2.size, omega2.size))
     if shell.geometric is not None:
         geometric = shapes.T @ times(shell.geometric, shapes)
-    return ClassCoordinates(omega2, shapes, *errors, lost, right, geometric)
+    return ClassCoordinates(omega2, shapes, *errors, lost, accurate, geometric)
 
 
-class _Full(NamedTuple):
+class _FullResponse(NamedTuple):
     """Responses of the full model at a frequency, with their scales.
 
     Args:
@@ -164,7 +164,9 @@ class _Full(NamedTuple):
     transfer_scale: Array
 
     @classmethod
-    def at(cls, frequency: float, solve: ShiftedSolver, forces: Array, rows: Array) -> _Full:
+    def at(
+        cls, frequency: float, solve: ShiftedSolver, forces: Array, rows: Array
+    ) -> _FullResponse:
         solve.move(frequency)
         moved = solve(forces)
         compliance = forces.T @ moved
@@ -203,27 +205,27 @@ class _Basis:
         self._pushes = times(self._shell.mass, block)
         return bool(block.shape[1])
 
-    def follow(self, geometric: PETSc.Mat, solve: ShiftedSolver) -> None:
+    def add_axial_responses(self, geometric: PETSc.Mat, solve: ShiftedSolver) -> None:
         """Add the responses of the rigid motions and the first block to axial forces."""
         pushes = times(geometric, self._vectors[:, : self._rigid + self._pushed])
         sizes = np.linalg.norm(pushes, axis=0)
         # Only round-off excites a motion that translates or twists.
         self._append(solve(pushes[:, sizes > _DEPENDENT * sizes.max(initial=0.0)]))
 
-    def errors(self, full: Sequence[_Full], rows: Array) -> tuple[float, float]:
+    def errors(self, full: Sequence[_FullResponse], rows: Array) -> tuple[float, float]:
         """Return the relative errors of the compliance and of the transfer to the readings."""
         gains, read = self._vectors.T @ self._forces, self._vectors.T @ rows
         compliance = transfer = 0.0
-        for answer in full:
-            shifted = self._stiffness + answer.sigma * np.eye(self.size)
+        for response in full:
+            shifted = self._stiffness + response.sigma * np.eye(self.size)
             moved = np.linalg.solve(shifted, gains)
-            off = np.abs(gains.T @ moved - answer.compliance) / answer.scale
+            off = np.abs(gains.T @ moved - response.compliance) / response.scale
             compliance = float(np.maximum(compliance, off.max()))
-            off = np.abs(read.T @ moved - answer.transfer) / answer.transfer_scale
+            off = np.abs(read.T @ moved - response.transfer) / response.transfer_scale
             transfer = float(np.maximum(transfer, off.max(initial=0.0)))
         return compliance, transfer
 
-    def lost(self, full: Sequence[_Full], parts: Array) -> Array:
+    def lost(self, full: Sequence[_FullResponse], parts: Array) -> Array:
         """Return the largest loss of compliance (num_inputs,) against the full model, in m/N.
 
         Args:
@@ -232,9 +234,9 @@ class _Basis:
         """
         gains = self._vectors.T @ self._forces @ parts
         lost = np.zeros(parts.shape[1])
-        for answer in full:
-            shifted = self._stiffness + answer.sigma * np.eye(self.size)
-            own = np.einsum("ij,ij->j", parts, answer.compliance @ parts)
+        for response in full:
+            shifted = self._stiffness + response.sigma * np.eye(self.size)
+            own = np.einsum("ij,ij->j", parts, response.compliance @ parts)
             reduced = np.einsum("ij,ij->j", gains, np.linalg.solve(shifted, gains))
             lost = np.maximum(lost, own - reduced)
         return lost
@@ -299,21 +301,21 @@ def _independent(block: Array) -> Array:
     return found
 
 
-def _right(shell: Shell, omega2: Array, shapes: Array, solve: ShiftedSolver) -> Mask:
+def _find_accurate(shell: Shell, omega2: Array, shapes: Array, solve: ShiftedSolver) -> Mask:
     """Return whether each ω is within 0.1 % of a natural one, up to the first that may not be.
 
     With the residual r = (K − ω² M) x of a mass-normalised x, some eigenvalue λ satisfies
     (λ − ω²)² / (λ + σ) ≤ rᵀ (K + σ M)⁻¹ r (expand r in eigenvectors). It is a bound: the
     error itself is of the order of its square.
     """
-    right = np.asarray(omega2 == 0.0)
-    for i in np.flatnonzero(~right):
+    accurate = np.asarray(omega2 == 0.0)
+    for i in np.flatnonzero(~accurate):
         shape = shapes[:, i : i + 1]
         residual = times(shell.stiffness, shape) - omega2[i] * times(shell.mass, shape)
         residual[~shell.free] = 0.0
         bound2 = float((residual.T @ solve(residual))[0, 0])
         off = np.sqrt(max(bound2, 0.0) * (omega2[i] + solve.sigma))
-        right[i] = off <= 2.0e-3 * omega2[i]
-        if not right[i]:
+        accurate[i] = off <= 2.0e-3 * omega2[i]
+        if not accurate[i]:
             break
-    return right
+    return accurate

@@ -40,9 +40,9 @@ class SymmetryClass(NamedTuple):
 
     @property
     def signs(self) -> Array:
-        """Factors (4, 6) of the components in each quarter relative to the positive part.
+        """Factors (4, 6) of the components in each image relative to the cell.
 
-        Rows are the quarters (see :func:`image_of`), columns the components of the displacement,
+        Rows are the images (see :func:`image_of`), columns the components of the displacement,
         which mirrors as an arrow, then those of the rotation, which mirrors as an axis.
         """
         signs = np.ones((4, 6))
@@ -54,7 +54,7 @@ class SymmetryClass(NamedTuple):
             signs[_BEYOND[axis]] *= parity * image
         return signs
 
-    def held(self, axis: int) -> list[tuple[int, int]]:
+    def fixed_components(self, axis: int) -> list[tuple[int, int]]:
         """Return the components that are zero in a mirror.
 
         They are (0, i) of the displacement and (1, i) of the rotation.
@@ -63,7 +63,7 @@ class SymmetryClass(NamedTuple):
         return [(int(i) // 3, int(i) % 3) for i in np.flatnonzero(signs < 0.0)]
 
 
-# Quarters at negative y, and at negative z.
+# Images at negative y, and at negative z.
 _BEYOND: Final = {1: [1, 3], 2: [2, 3]}
 
 BREATHING, ALONG_Z, ALONG_Y, TWISTING = (
@@ -81,7 +81,7 @@ def symmetry_classes(mirrors: Sequence[Direction]) -> list[SymmetryClass]:
 
 
 def image_of(places: Array, mirrors: Sequence[Direction]) -> Indices:
-    """Return the quarter (num_places,): 1 at negative y, 2 at negative z, 3 at both, 0 at neither.
+    """Return the image (num_places,): 1 at negative y, 2 at negative z, 3 at both, 0 at neither.
 
     Of the mirrors' axes alone: without that of z there are the halves 0 and 1.
     """

@@ -106,7 +106,7 @@ def reduce_segment(
         for root, one in found
     ]
     omega2 = np.concatenate([part.omega2 for part in parts])
-    right = np.concatenate([part.right for part in parts])
+    accurate = np.concatenate([part.accurate for part in parts])
     order = np.argsort(omega2, kind="stable")
     # The shapes of a class go to their places at once: a second block of all is large.
     shapes = np.empty((len(inputs), omega2.size), order="F")
@@ -116,9 +116,11 @@ def reduce_segment(
         shapes[:, columns] = symmetry.expand(on_cell, symmetry_class, root)
     tell(1.0)
     # Up to this frequency all are accurate.
-    right = right[order]
-    first_wrong = right.size if right.all() else int(np.argmin(right))
-    limit = np.sqrt(omega2[order][first_wrong - 1]) / (2.0 * np.pi) if first_wrong else 0.0
+    accurate = accurate[order]
+    first_inaccurate = accurate.size if accurate.all() else int(np.argmin(accurate))
+    limit = (
+        np.sqrt(omega2[order][first_inaccurate - 1]) / (2.0 * np.pi) if first_inaccurate else 0.0
+    )
     return ReducedSegment(
         omega2=omega2[order],
         shapes=shapes,

@@ -164,7 +164,7 @@ class Job:
         conditions = [
             dirichlet_condition(cell.plates.space, kind, component, partial(on_plane, axis=axis))
             for axis in (COMPONENT[mirror] for mirror in cell.mirrors)
-            for kind, component in self.symmetry_class.held(axis)
+            for kind, component in self.symmetry_class.fixed_components(axis)
         ]
         conditions = [*cell.plates.supports, *conditions]
         return _ClassShell(MPI.COMM_SELF, cell.plates, conditions, self.springs, self.masses, cell)

@@ -234,9 +234,9 @@ def lines_around(spans: Array) -> Array:
     """Return x in m, rising, of mesh lines that no triangle's span (num_triangles, 2) crosses."""
     first, last = np.sort(spans[:, 0]), np.sort(spans[:, 1])
     lines = np.unique(spans.round(6))
-    begun = np.searchsorted(first, lines - SAME_LINE)
+    started = np.searchsorted(first, lines - SAME_LINE)
     ended = np.searchsorted(last, lines + SAME_LINE)
-    return np.asarray(lines[begun == ended])
+    return np.asarray(lines[started == ended])
 
 
 def _geometry(points: Array, triangles: Indices) -> dict[str, Array]:

@@ -252,7 +252,7 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: SymmetryClass) -> 
     nodes, _ = plates.nodes[0]
     free = np.ones(nodes.shape, dtype=bool)
     for axis in (1, 2):
-        for part, component in family.held(axis):
+        for part, component in family.fixed_components(axis):
             if part == 0:
                 free[on_plane(nodes, axis), component] = False
     for support in segment.supports:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -27,6 +29,7 @@ from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, box_segment
 from tests.touching import touching
 
 
+@cache
 def at_rest(boom: Boom, options: ShellOptions) -> list[tuple[Line, Array]]:
     """Along each segment of a shell, with its modal coordinates at rest."""
     lateral = [LATERAL_LAW] if boom.spatial else []

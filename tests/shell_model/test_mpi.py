@@ -22,10 +22,14 @@ from studies.reference_models.unreduced import integrate_directly
 from tests.conftest import ranks_in
 from tests.shell_model.booms import HELD, LATERAL_LAW, LAW, boom_in_space, flat_boom
 from tests.shell_model.conftest import box_shell
+from tests.shell_model.test_stiffeners import short_box
 from tests.shell_model.test_surface_contact import compliances
 from tests.touching import touching
 
 pytestmark = pytest.mark.slow
+
+# Edge lengths of boxes of 0.3 m, in m.
+SHORT_SIZES = 0.3, 0.1
 
 
 # Tells what a function below gives on rank 0.
@@ -48,6 +52,7 @@ def everything(comm: MPI.Comm) -> dict[str, Any]:
         "pressed": compliances(comm),
         "stresses": stresses(comm),
         "moved": moved(comm),
+        "dofs": [short_box(comm, size).num_dofs for size in SHORT_SIZES],
         "told": failure(comm),
     }
 
@@ -194,6 +199,14 @@ def test_two_ranks_give_the_serial_motion_of_all(
     tip = np.array(found["tip"])
     assert np.abs(tip - serial_motion["tip"]).max() < 1.0e-9 * np.ptp(tip)
     assert found["residual"] == pytest.approx(serial_motion["residual"], rel=1.0e-3)
+
+
+def test_ranks_share_an_edge_of_three_walls(two_ranks: dict[str, Any]) -> None:
+    """Reference: analytic, three displacements at vertices and edges, three rotations at edges,
+    each once, however the ranks part the triangles on an edge.
+    """
+    serial = [short_box(MPI.COMM_SELF, size).num_dofs for size in SHORT_SIZES]
+    assert two_ranks["dofs"] == serial == [780, 2220]
 
 
 def test_what_fails_on_one_rank_fails_on_all(two_ranks: dict[str, Any]) -> None:

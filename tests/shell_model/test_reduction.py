@@ -20,7 +20,7 @@ from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import ReducedSegment, reduce_segment
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell
-from shell_model.segment.solver import ShiftedSolver
+from shell_model.segment.solver import ShiftedSolver, times
 from studies.reference_models.single_segment import natural_frequencies
 from tests.shell_model.booms import HELD
 
@@ -42,28 +42,8 @@ def test_compliance_is_that_of_full_solves_far_from_the_shifts(box_shell: Shells
     shell = box_shell(0.25, supports=HELD)
     inputs = _inputs(shell)
     reduced = reduce_segment(SymmetryReduction(shell), inputs, KrylovOptions())
-    gains = reduced.shapes.T @ inputs
-    for frequency in (0.1, 20.0, 120.0, 700.0):
-        solve = ShiftedSolver(shell, frequency)
-        full = inputs.T @ solve(inputs)
-        solve.destroy()
-        sigma = (2.0 * np.pi * frequency) ** 2
-        approximate = gains.T @ (gains / (reduced.omega2 + sigma)[:, None])
-        scale = np.sqrt(np.outer(np.diag(full), np.diag(full)))
-        assert np.abs((approximate - full) / scale).max() < 1.0e-6
+    assert _measured(shell, reduced, inputs, inputs[:, :1]) < 1.0e-6
     assert reduced.compliance_error < 1.0e-6
-
-
-@pytest.mark.slow
-def test_a_poorer_basis_reports_a_larger_error(box_shell: Shells) -> None:
-    shell = box_shell(0.25, supports=HELD)
-    inputs = _inputs(shell)
-    rich = reduce_segment(SymmetryReduction(shell), inputs, KrylovOptions())
-    poor = reduce_segment(
-        SymmetryReduction(shell), inputs, KrylovOptions(shifts=(5.0, 300.0), moments=1)
-    )
-    assert poor.omega2.size < rich.omega2.size
-    assert poor.compliance_error > 1.0e3 * rich.compliance_error
 
 
 @pytest.mark.slow
@@ -106,13 +86,7 @@ def test_a_helper_changes_no_bit_and_may_die(box_shell: Shells) -> None:
 def test_shapes_are_mass_orthonormal(box_shell: Shells) -> None:
     shell = box_shell(0.25)
     reduced = reduce_segment(SymmetryReduction(shell), _inputs(shell), KrylovOptions(moments=2))
-    right, left = shell.mass.createVecs()
-    product = np.empty_like(reduced.shapes)
-    for column, shape in enumerate(reduced.shapes.T):
-        right.array[:] = shape
-        shell.mass.mult(right, left)
-        product[:, column] = left.array
-    gram = reduced.shapes.T @ product
+    gram = reduced.shapes.T @ times(shell.mass, reduced.shapes)
     assert np.abs(gram - np.eye(len(gram))).max() < 1.0e-9
 
 
@@ -135,7 +109,7 @@ def test_a_segment_that_nothing_acts_on_has_no_motion(box_shell: Shells) -> None
         reduce_segment(SymmetryReduction(shell), np.zeros((shell.free.size, 2)), KrylovOptions())
 
 
-FREQUENCIES = (1.0, 20.0, 120.0, 400.0, 700.0)
+FREQUENCIES = (0.1, 20.0, 120.0, 400.0, 700.0)
 TOLERANCES = (1.0e-3, 1.0e-6, 1.0e-9)
 
 

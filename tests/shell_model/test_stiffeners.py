@@ -3,9 +3,6 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -180,36 +177,11 @@ def test_a_diaphragm_stops_the_breathing_of_the_section(x: float) -> None:
     assert rows[1] < stretched
 
 
-_TWO_RANKS = """
-import json
-from mpi4py import MPI
-from tests.shell_model.test_stiffeners import short_box
-comm = MPI.COMM_WORLD
-counts = [short_box(comm, size).num_dofs for size in (0.3, 0.1)]
-if comm.rank == 0:
-    print(json.dumps({"ranks": comm.size, "dofs": counts}))
-"""
-
-
 def short_box(comm: MPI.Comm, size: float) -> SegmentShell:
     """So short that ranks part in the midst of its diaphragms."""
     plates = tuple(Diaphragm(x, 0.008) for x in (0.0, 0.1, 0.2, 0.3))
     segment = replace(box_segment("box", 0.0, 0.3, BOX), diaphragms=plates)
     return assemble_segment(comm, segment, meshed(segment, size) if comm.rank == 0 else None)
-
-
-def test_ranks_share_an_edge_of_three_walls(
-    two_ranks: Callable[..., subprocess.CompletedProcess[str]],
-) -> None:
-    """Reference: analytic, three displacements at vertices and edges, three rotations at edges,
-    each once, however the ranks part the triangles on an edge.
-    """
-    done = two_ranks(_TWO_RANKS)
-    assert done.returncode == 0, done.stderr
-    answer = json.loads(done.stdout.strip().splitlines()[-1])
-    assert answer["ranks"] == 2
-    serial = [short_box(MPI.COMM_WORLD, size).num_dofs for size in (0.3, 0.1)]
-    assert answer["dofs"] == serial == [780, 2220]
 
 
 @pytest.mark.slow
