@@ -78,10 +78,7 @@ def test_rigid_motions_carry_the_mass_of_the_stiffeners() -> None:
     inertia = shell.rigid_motions().T @ times(shell.mass, shell.rigid_motions())
     perimeter, opening = 2.0 * (BOX.height + BOX.width), BOX.height * BOX.width
     parts = [(BOX.area * 10.0, 0.0)]
-    parts += [
-        (perimeter * (one.end - one.start) * one.thickness, 0.5 * (one.start + one.end) - 5.0)
-        for one in COLLARS
-    ]
+    parts += [(perimeter * one.length * one.thickness, one.middle - 5.0) for one in COLLARS]
     parts += [(opening * one.thickness, one.x - 5.0) for one in PLATES]
     mass = STEEL.density * sum(volume for volume, _ in parts)
     moment = STEEL.density * sum(volume * arm for volume, arm in parts)
