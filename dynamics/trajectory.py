@@ -57,8 +57,6 @@ OF_DRIVES: Mapping[str, Mapping[str, str]] = {
 
 # A peak below this part of the deflection is the round-off of something at rest.
 STILL = 1.0e-6
-# Main peaks stand out by this part of the range.
-MAIN_PEAK = 0.2
 
 
 class Output(NamedTuple):
@@ -313,20 +311,3 @@ def _first_prominent(values: Array, prominence: float) -> int | None:
     after = values[start:]
     fallen = np.maximum.accumulate(after) - after >= prominence
     return start + int(after[: fallen.argmax()].argmax()) if fallen.any() else None
-
-
-def mean_period(time: Array, tip: Array) -> float:
-    """Return the mean time between main peaks in s; NaN where there are fewer than two.
-
-    Args:
-        time: (num_times,) in s.
-        tip: (num_times,) in m, which sets out from its first value.
-    """
-    from scipy.signal import find_peaks
-
-    if tip.size < 3:
-        return float("nan")
-    off = tip - tip[0]
-    side = np.sign(off[np.abs(off).argmax()])
-    peaks, _ = find_peaks(side * tip, prominence=MAIN_PEAK * np.ptp(tip))
-    return float(np.diff(time[peaks]).mean()) if peaks.size > 1 else float("nan")

@@ -75,6 +75,23 @@ def slow_peaks(signal: Array, time: Array, cutoff: float) -> tuple[Array, Array]
     return time[at], filtered[at]
 
 
+def mean_period(time: Array, tip: Array) -> float:
+    """Return the mean time between main peaks in s; NaN where there are fewer than two.
+
+    Args:
+        time: (num_times,) in s.
+        tip: (num_times,) in m, which sets out from its first value.
+    """
+    from scipy.signal import find_peaks
+
+    if tip.size < 3:
+        return float("nan")
+    off = tip - tip[0]
+    side = np.sign(off[np.abs(off).argmax()])
+    peaks, _ = find_peaks(side * tip, prominence=PROMINENCE * np.ptp(tip))
+    return float(np.diff(time[peaks]).mean()) if peaks.size > 1 else float("nan")
+
+
 @dataclass(frozen=True, slots=True)
 class SlowPeaks:
     """Peaks that all members of an ensemble have.

@@ -8,10 +8,10 @@ from math import log, pi
 
 import numpy as np
 
-from dynamics.trajectory import mean_period
 from geometry.arrays import Array
 from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
 from runs.pipeline.design_results import ModelDesignResults, PlayDifference
+from runs.pipeline.low_pass import mean_period
 from runs.pipeline.model_quality import off_at_rest
 from runs.pipeline.motion_results import Peak
 from runs.pipeline.pads import PadLoad

@@ -16,13 +16,13 @@ import numpy as np
 from dynamics.failure import NumericsError
 from dynamics.predictability.ensemble import EnsembleMember, Vary, run_members
 from dynamics.predictability.horizon import SHARES, horizon
-from dynamics.trajectory import mean_period
 from geometry.arrays import Array
 from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT
 from runs.case.build import build_boom
 from runs.case.kinds.model import Workshop
 from runs.case.schema import Case, Model
 from runs.pipeline.design_results import ModelDesignResults
+from runs.pipeline.low_pass import mean_period
 from runs.pipeline.metrics import Metric, metrics, records
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results

@@ -70,9 +70,10 @@ def test_studies_leave_a_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 
 def test_every_documented_value_is_proven() -> None:
     """docs/verification.md is what the last run of all studies has written."""
+    _, _, sections = DOCUMENT.read_text(encoding="utf-8").partition("\n## ")
     rows = [
         line.strip("|").split("|")
-        for line in DOCUMENT.read_text(encoding="utf-8").splitlines()
+        for line in sections.splitlines()
         if line.startswith("| ") and not line.startswith(("| what", "| :--"))
     ]
     assert len(rows) > 50

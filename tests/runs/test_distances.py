@@ -14,12 +14,12 @@ from matplotlib.figure import Figure as Sheet
 from rich.console import Console
 
 from dynamics.predictability.horizon import measure_horizons
-from dynamics.trajectory import mean_period
 from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.folder.cache import Cache
+from runs.pipeline.low_pass import mean_period
 from runs.pipeline.models import MotionPlan, build
 from runs.sweep import output
 from runs.sweep.points import Plan, plan
