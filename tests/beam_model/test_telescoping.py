@@ -84,9 +84,8 @@ def test_three_segments_a_stop_and_dashpots_on_the_way(paper_boom: Boom) -> None
         return elements(touching(three(paper_boom, ways, drives), [LAW, LAW]))
 
     system, there = built((0.0, 0.0), drives).at_time(2.0), built((1.0, 2.0), (None, None))
-    assert [type(t.history) for t in built((0.0, 0.0), drives).travels] == [
-        SCurve, SCurve, HistorySum,
-    ]  # fmt: skip
+    histories = [travel.history for travel in built((0.0, 0.0), drives).travels]
+    assert [len(one.parts) for one in histories if isinstance(one, HistorySum)] == [1, 1, 2]
     assert tips(system) == pytest.approx(tips(there), rel=1e-8)
     for rows in ("rows", "dashpots"):
         found, expected = ((r := getattr(s, rows)) @ r.T for s in (system, there))
