@@ -112,11 +112,11 @@ def _s2(run: RunQuery) -> Finding:
     run.last_until(INTERVAL)
     four, five = run.members(run.four_terms(), run.five_terms())
     apart = apart_at_the_end(four, five, run.time >= run.time[-1] - 1.0)
-    mean, doubt = _mean(apart)
+    mean, margin = _mean(apart)
     return Finding(
-        _above(mean, DIVERGENCE, doubt),
+        _above(mean, DIVERGENCE, margin),
         f"Largest difference of the tips in the last second, in the mean of {apart.size} members, "
-        f"which is known to within {doubt:.2f}; from {apart.min():.2f} to {apart.max():.2f} in "
+        f"which is known to within {margin:.2f}; from {apart.min():.2f} to {apart.max():.2f} in "
         f"single ones, above {DIVERGENCE:g} in {100.0 * (apart > DIVERGENCE).mean():.0f} %.",
         mean,
         DIVERGENCE,
@@ -154,12 +154,12 @@ def _s3(run: RunQuery) -> Finding:
         raise MissingData(f"No member has a peak within {CONFORMITY:g} s.")
     if not late:
         raise MissingData(f"No member has a peak after {CONFORMITY:g} s.")
-    conform, conform_doubt = _share(np.array(early) <= DIVERGENCE)
-    stratify, stratify_doubt = _share(np.array(late) > DIVERGENCE)
-    parting = [float(time[apart > DIVERGENCE].min(initial=np.inf)) for time, apart in found]
-    middle = sorted(parting)[len(parting) // 2]
+    conform, conform_margin = _share(np.array(early) <= DIVERGENCE)
+    stratify, stratify_margin = _share(np.array(late) > DIVERGENCE)
+    divergence = [float(time[apart > DIVERGENCE].min(initial=np.inf)) for time, apart in found]
+    middle = sorted(divergence)[len(divergence) // 2]
     return Finding(
-        _all_of(_above(conform, MOST, conform_doubt), _above(stratify, MOST, stratify_doubt)),
+        _all_of(_above(conform, MOST, conform_margin), _above(stratify, MOST, stratify_margin)),
         f"Members of {len(early)} whose slow peaks conform for {CONFORMITY:g} s, within "
         f"{100.0 * DIVERGENCE:g} % in all models; {100.0 * stratify:.0f} % of {len(late)} have "
         f"peaks further apart later. {_half_part(middle)} {_horizons(run, models)}",
@@ -390,9 +390,9 @@ def _find(rule: Callable[[RunQuery], Finding], run: RunQuery) -> Finding:
         return Finding("undecided", str(missing))
 
 
-def _above(value: float, threshold: float, doubt: float) -> Judgement:
-    """Return the judgement of a value above a threshold, both known to within ``doubt``."""
-    if abs(value - threshold) <= doubt:
+def _above(value: float, threshold: float, margin: float) -> Judgement:
+    """Return the judgement of a value above a threshold, both known to within ``margin``."""
+    if abs(value - threshold) <= margin:
         return "undecided"
     return "reproduced" if value > threshold else "contradicted"
 

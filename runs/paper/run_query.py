@@ -82,31 +82,31 @@ class RunQuery:
 
     def horizon(self, model: Model, share: float) -> float | None:
         """Return when members of a model differ by a share of the tip's range (s), or None."""
-        return _there(model, "ensemble", self.found(model).ensemble).horizon(share)
+        return _require(model, "ensemble", self.found(model).ensemble).horizon(share)
 
     def first_contact(self, model: Model) -> float:
         """Return the time of the first contact in s."""
-        return _there(model, "first contact", self.found(model).first_contact)
+        return _require(model, "first contact", self.found(model).first_contact)
 
     def peak_time(self, model: Model) -> float:
         """Return the time of the tip's first peak in s."""
-        return _there(model, "first peak", self.found(model).first_peak["tip"].time)
+        return _require(model, "first peak", self.found(model).first_peak["tip"].time)
 
     def peak_height(self, model: Model) -> float:
         """Return the height of the tip's first peak in m."""
-        return _there(model, "first peak", self.found(model).first_peak["tip"].height)
+        return _require(model, "first peak", self.found(model).first_peak["tip"].height)
 
     def fewest_steps(self, model: Model) -> int:
         """Return the fewest steps that preserve the first slow peaks."""
         needed = self.found(model).steps_for_peaks
-        return _there(model, "steps for peaks", needed.fewest if needed else None)
+        return _require(model, "steps for peaks", needed.fewest if needed else None)
 
     def slow_below(self) -> float:
         """Return the cut-off of the slow motion in Hz."""
-        asked = self.results.summary.ensemble
-        if asked is None or asked.slow_below is None:
+        requested = self.results.summary.ensemble
+        if requested is None or requested.slow_below is None:
             raise MissingData("The run is too coarsely reported for a slow motion.")
-        return asked.slow_below
+        return requested.slow_below
 
     def one(self, what: str, fits: Callable[[Model], bool]) -> Model:
         """Return the matching model; of several the one named ``what``, else the first."""
@@ -170,7 +170,7 @@ class RunQuery:
             raise MissingData(f"The run ends at {self.time[-1]:g} s; it takes {end:g} s.")
 
 
-def _there(model: Model, what: str, value: _Found | None) -> _Found:
+def _require(model: Model, what: str, value: _Found | None) -> _Found:
     if value is None:
         raise MissingData(f"{model.name!r} has no {what}.")
     return value

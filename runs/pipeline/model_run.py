@@ -152,15 +152,15 @@ def _move(
     motion, system = plan.motion, plan.motion.system
     with stages.stage("compilation"):
         plan.warm()
-    with stages.stage("motion") as told:
-        trajectory = plan.trajectory(told)
+    with stages.stage("motion") as report_progress:
+        trajectory = plan.trajectory(report_progress)
     summary = _summary(model, system, trajectory, built.num_dofs)
     if summary.step_error is None and system.frictions and case.regular:
-        with stages.stage("twice the step") as told:
-            summary.step_error = plan.step_error(trajectory, told)
+        with stages.stage("twice the step") as report_progress:
+            summary.step_error = plan.step_error(trajectory, report_progress)
     ensemble = None
     if table is not None and system.laws:
-        with stages.stage("ensemble") as told:
+        with stages.stage("ensemble") as report_progress:
             ensemble = integrate_ensemble(
                 motion,
                 table.members,
@@ -169,15 +169,15 @@ def _move(
                 table.vary,
                 plan.integrator,
                 executor,
-                told,
+                report_progress,
                 trajectory,
             )
         tips, time = ensemble["tip"].values, ensemble["time"].values
         peaks = None if cutoff is None else SlowPeaks.of(tips, time, cutoff)
         summary.ensemble = members.summarise_ensemble(ensemble, peaks)
-        with stages.stage("horizons") as told:
+        with stages.stage("horizons") as report_progress:
             summary.horizons = members.measure_predictability(
-                motion, plan.integrator, table.vary, trajectory, executor, told
+                motion, plan.integrator, table.vary, trajectory, executor, report_progress
             )
         if cutoff is not None and peaks is not None and motion.from_rest:
             with stages.stage("step counts"):

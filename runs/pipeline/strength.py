@@ -225,7 +225,7 @@ def largest_stresses(
         found.append(Varying(segment.name, at, stress[:, widest].copy()))
         at_rest.append(np.abs(fibres.stress(fibre, still)).max(initial=0.0))
     fibre, at_step, at_place = where
-    told = FibreStress(
+    largest_stress = FibreStress(
         segment=segment.name,
         x=float(fibres.x[at_place]),
         y=float(fibres.y[fibre, at_place]),
@@ -235,7 +235,7 @@ def largest_stresses(
         utilisation=utilisation(segment, largest),
         at_rest=float(max(at_rest)) if len(still["moment"]) else None,
     )
-    return told, max(found, key=lambda one: float(np.ptp(one.stress)))
+    return largest_stress, max(found, key=lambda one: float(np.ptp(one.stress)))
 
 
 def utilisation(segment: Segment, stress: float) -> float | None:
