@@ -98,7 +98,13 @@ class Boom:
     def __post_init__(self) -> None:
         if not self.segments:
             raise BoomError("segments", "a boom needs at least one segment")
-        self._find_segments()
+        object.__setattr__(self, "segments", tuple(self.segments))
+        for group in [field.name for field in fields(self)][1:]:
+            parts = tuple(
+                on_segments(part, f"{group}[{number}]", self.segments)
+                for number, part in enumerate(getattr(self, group))
+            )
+            object.__setattr__(self, group, parts)
         check_boom(self)
 
     @property
@@ -228,16 +234,6 @@ class Boom:
             for name, (segment, x) in self.observed.items()
             for what in quantities
         ]
-
-    def _find_segments(self) -> None:
-        """Replace names of segments by positions, places by x, and lists by tuples."""
-        object.__setattr__(self, "segments", tuple(self.segments))
-        for group in [field.name for field in fields(self)][1:]:
-            parts = tuple(
-                on_segments(part, f"{group}[{number}]", self.segments)
-                for number, part in enumerate(getattr(self, group))
-            )
-            object.__setattr__(self, group, parts)
 
 
 def on_segments(part: _Part, where: str, segments: Sequence[Segment]) -> _Part:

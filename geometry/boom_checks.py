@@ -46,7 +46,9 @@ def check_boom(boom: Boom) -> None:
         _check_contact_length(boom, f"joints[{number}]", joint)
     _check_loads(boom)
     _check_stops(boom)
-    _check_cylinders(boom)
+    for number, cylinder in enumerate(boom.cylinders):
+        boom.segments[cylinder.segment].check_place(f"cylinders[{number}].x", cylinder.x)
+        cylinder.check(f"cylinders[{number}]", boom.spatial)
     _check_observations(boom)
     check_held(boom)
     check_drives(boom)
@@ -198,13 +200,6 @@ def _check_observations(boom: Boom) -> None:
                 "the boom is flat, and nothing moves along 'y' or twists; give another "
                 "quantity, or the joints lateral_play",
             )
-
-
-def _check_cylinders(boom: Boom) -> None:
-    for number, cylinder in enumerate(boom.cylinders):
-        where = f"cylinders[{number}]"
-        boom.segments[cylinder.segment].check_place(f"{where}.x", cylinder.x)
-        cylinder.check(where, boom.spatial)
 
 
 def _check_joint(boom: Boom, where: str, joint: Joint) -> None:

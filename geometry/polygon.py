@@ -258,7 +258,7 @@ def _plates(corners: Array, thicknesses: Array) -> tuple[Plate, ...]:
 
 def _names(corners: Array) -> list[str]:
     """Return the names: bottom and top where such plates exist, right or left for the others."""
-    ends, low, high = np.roll(corners, -1, axis=0), *(_reach(corners))
+    ends, low, high = np.roll(corners, -1, axis=0), corners[:, 1].min(), corners[:, 1].max()
     near = _SAME * (high - low)
     sides = []
     for (_, start), (_, end) in zip(corners, ends, strict=True):
@@ -274,10 +274,6 @@ def _names(corners: Array) -> list[str]:
         upwards = count - before if side == "left" else before + 1
         names.append(side if count == 1 else f"{side}-{upwards}")
     return names
-
-
-def _reach(corners: Array) -> tuple[float, float]:
-    return float(corners[:, 1].min()), float(corners[:, 1].max())
 
 
 def _twice_enclosed(corners: Array) -> float:

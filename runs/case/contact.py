@@ -183,7 +183,11 @@ class JointTable(ContactTable, BareJoint):
     def law(self, direction: Direction) -> ContactLaw | None:
         """Return the contact law of each station along a direction; None without pads there."""
         if self.pads:
-            above, below = (self._of_side(direction, side) for side in BOTH)
+            above, below = (
+                PADS_OF_SIDE
+                * sum(pad.stiffness for pad in self.pads if pad.touches(direction, side))
+                for side in BOTH
+            )
             return _law(self, above, below, 1.0) if above or below else None
         of_pads = PADS_OF_SIDE * self.pad.stiffness if self.pad and self.pad.stiffness else None
         exponent = self.exponent if of_pads is None or self.stiffness else 1.0
@@ -191,11 +195,6 @@ class JointTable(ContactTable, BareJoint):
             return _law(self, self.stiffness or of_pads, self.stiffness_below, exponent)
         stiffness = self.lateral_stiffness or self.stiffness or of_pads
         return _law(self, stiffness, None, self.lateral_exponent or exponent)
-
-    def _of_side(self, direction: Direction, side: Side) -> float:
-        """Return the stiffness of all pads on a side in N/m."""
-        pads = (pad for pad in self.pads if pad.touches(direction, side))
-        return PADS_OF_SIDE * sum(pad.stiffness for pad in pads)
 
 
 def _law(

@@ -6,13 +6,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import fields, replace
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any
 
 from runs.case.limits import CaseTable, is_table, units_of
 from runs.case.schema import Case
 from runs.case.units import System, scaled
-
-_Table = TypeVar("_Table")
 
 
 def in_si(case: Case) -> Case:
@@ -35,23 +33,23 @@ def in_si(case: Case) -> Case:
         own = [] if model.contact is None else [model.contact.exponent_of("stiffness")]
         models.append(_converted(model, system, next(iter([*own, *laws]), None) or 2.0))
     shown = {"units": "SI", "shown_units": case.shown_units or case.units, "models": tuple(models)}
-    return _converted(case, system).model_copy(update=shown)
+    found: Case = _converted(case, system).model_copy(update=shown)
+    return found
 
 
-def _converted(table: _Table, system: System, exponent: float = 2.0) -> _Table:
+def _converted(table: Any, system: System, exponent: float = 2.0) -> Any:
     # Defaults are in SI units.
-    keys = table.model_fields_set if isinstance(table, CaseTable) else _changed(table)
+    if isinstance(table, CaseTable):
+        keys = table.model_fields_set
+    else:
+        keys = {one.name for one in fields(table) if getattr(table, one.name) != one.default}
     changed = {}
     for key in keys:
         sizes = [system.size(unit) for unit in units_of(table, key, exponent)]
         changed[key] = _scaled(getattr(table, key), sizes, system, exponent)
     if isinstance(table, CaseTable):
         return table.model_copy(update=changed)
-    return replace(table, **changed)  # type: ignore[type-var]
-
-
-def _changed(part: Any) -> list[str]:
-    return [field.name for field in fields(part) if getattr(part, field.name) != field.default]
+    return replace(table, **changed)
 
 
 def _scaled(value: Any, sizes: Sequence[Fraction], system: System, exponent: float) -> Any:

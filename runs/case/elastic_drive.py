@@ -32,7 +32,7 @@ def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
             _moved_mass(boom, number),
             drive.stiffness,
             drive.dashpot,
-            _sticking(joint, drive),
+            1.0 if drive.static_friction is None else drive.static_friction / joint.friction,
             boom.segments[boom.joints[number].inner].compression.transferred,
             tuple(
                 (_moved_mass(boom, number, other), beside.drive.history)
@@ -121,8 +121,3 @@ def _moved_mass(boom: Boom, *joints: int) -> float:
         for number, segment in enumerate(boom.segments)
         if set(joints) <= set(drives_below(boom.joints, number))
     )
-
-
-def _sticking(joint: JointTable, drive: DriveTable) -> float:
-    """Return the ratio of static to sliding friction."""
-    return 1.0 if drive.static_friction is None else drive.static_friction / joint.friction

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,17 +14,16 @@ from dynamics.contact import PowerContact
 from geometry.boom import (
     Boom,
     BoomError,
-    Joint,
     Load,
     Material,
     PointMass,
-    Segment,
     Stop,
     Support,
 )
 from geometry.walls import free_room
 
-Fault = Callable[[Segment, Segment, Joint], tuple[tuple[Segment, ...], tuple[Joint, ...]]]
+# What changes of the outer segment, of the inner one and of the joint.
+Changes = dict[str, dict[str, Any]]
 
 
 def test_numbers_of_a_segment(paper_boom: Boom) -> None:
@@ -107,158 +107,140 @@ def test_places_where_something_acts(paper_boom: Boom, spatial_boom: Boom) -> No
     assert tied.stations_of(0) == (9.0, 10.0)
 
 
-FAULTS: dict[str, tuple[str, str, Fault]] = {
-    "no segment": (
-        "segments",
-        "a boom needs at least one segment",
-        lambda outer, inner, joint: ((), ()),
-    ),
+FAULTS: dict[str, tuple[str, str, Changes]] = {
     "span reversed": (
         "segments[1].start",
         "must run from a smaller to a larger x, got [19, 9] m",
-        lambda outer, inner, joint: ((outer, replace(inner, start=19.0, end=9.0)), (joint,)),
+        {"inner": {"start": 19.0, "end": 9.0}},
     ),
     "span not a number": (
         "segments[0].start",
         "must run from a smaller to a larger x, got [0, nan] m",
-        lambda outer, inner, joint: ((replace(outer, end=float("nan")), inner), (joint,)),
+        {"outer": {"end": float("nan")}},
     ),
     "support outside": (
         "segments[0].supports",
         "10.5 m lies outside 'outer'; it must be between 0 and 10 m",
-        lambda outer, inner, joint: (
-            (replace(outer, supports=(Support(0.0), Support(10.5))), inner),
-            (joint,),
-        ),
+        {"outer": {"supports": (Support(0.0), Support(10.5))}},
     ),
     "support twice": (
         "segments[0].supports",
         "two are within 0.001 m of one another; give one, or move them farther apart",
-        lambda outer, inner, joint: (
-            (replace(outer, supports=(Support(2.0), Support(2.0))), inner),
-            (joint,),
-        ),
+        {"outer": {"supports": (Support(2.0), Support(2.0))}},
     ),
     "support twice but for round-off": (
         "segments[0].supports",
         "two are within 0.001 m of one another; give one, or move them farther apart",
-        lambda outer, inner, joint: (
-            (replace(outer, supports=(Support(0.3), Support(0.1 + 0.2))), inner),
-            (joint,),
-        ),
+        {"outer": {"supports": (Support(0.3), Support(0.1 + 0.2))}},
     ),
     "supports too near to hold the rotation": (
         "segments[0].supports",
         "two are within 0.001 m of one another; give one, or move them farther apart",
-        lambda outer, inner, joint: (
-            (replace(outer, supports=(Support(2.0), Support(2.0 + 1e-5))), inner),
-            (joint,),
-        ),
+        {"outer": {"supports": (Support(2.0), Support(2.0 + 1e-5))}},
     ),
     "a clamped support that gives way": (
         "segments[0].supports",
         "a clamped support is rigid, and the one at 2 m has a stiffness; leave it out, or make "
         "the support pinned",
-        lambda outer, inner, joint: (
-            (replace(outer, supports=(Support(0.0), Support(2.0, "clamped", 1e6))), inner),
-            (joint,),
-        ),
+        {"outer": {"supports": (Support(0.0), Support(2.0, "clamped", 1e6))}},
     ),
     "mass outside": (
         "segments[1].masses",
         "20 m lies outside 'inner'; it must be between 9 and 19 m",
-        lambda outer, inner, joint: (
-            (outer, replace(inner, masses=(PointMass(20.0, 5.0),))),
-            (joint,),
-        ),
+        {"inner": {"masses": (PointMass(20.0, 5.0),)}},
     ),
     "no overlap": (
         "joints[0]",
         "'outer' ends at 8.5 m before 'inner' starts at 9 m; the segments of a joint must overlap",
-        lambda outer, inner, joint: ((replace(outer, end=8.5), inner), (joint,)),
+        {"outer": {"end": 8.5}},
     ),
     "station outside the overlap": (
         "joints[0].stations",
         "8 m lies outside the overlap of 'outer' and 'inner'; it must be between 9 and 10 m",
-        lambda outer, inner, joint: ((outer, inner), (replace(joint, stations=(8.0, 10.0)),)),
+        {"joint": {"stations": (8.0, 10.0)}},
     ),
     "stations falling": (
         "joints[0].stations",
         "must rise from the base to the tip, each given once",
-        lambda outer, inner, joint: ((outer, inner), (replace(joint, stations=(10.0, 9.0)),)),
-    ),
-    "segments from the tip": (
-        "segments[1].start",
-        "must start and end beyond 'inner'; give the segments from the base to the tip",
-        lambda outer, inner, joint: ((inner, outer), (replace(joint, outer=1, inner=0),)),
+        {"joint": {"stations": (10.0, 9.0)}},
     ),
     "outer and inner exchanged": (
         "joints[0]",
         "'outer' is nearer to the base than 'inner'; exchange inner and outer",
-        lambda outer, inner, joint: (
-            (replace(outer, section=None), replace(inner, section=None)),
-            (replace(joint, outer=1, inner=0),),
-        ),
+        {"outer": {"section": None}, "inner": {"section": None}, "joint": {"outer": 1, "inner": 0}},
     ),
     "station twice": (
         "joints[0].stations",
         "must rise from the base to the tip, each given once",
-        lambda outer, inner, joint: ((outer, inner), (replace(joint, stations=(9.0, 9.0)),)),
+        {"joint": {"stations": (9.0, 9.0)}},
     ),
     "station twice but for round-off": (
         "joints[0].stations",
         "must rise from the base to the tip, each given once",
-        lambda outer, inner, joint: (
-            (outer, inner),
-            (replace(joint, stations=(9.0, 9.0 + 1e-12, 10.0)),),
-        ),
+        {"joint": {"stations": (9.0, 9.0 + 1e-12, 10.0)}},
     ),
     "inner box too high": (
         "joints[0].play",
         "'inner' does not fit in 'outer': 0.014 m of height and 0.0399939 m of width are free, "
         "and a play of 0.028 m is asked for; make the inner section or the play smaller",
-        lambda outer, inner, joint: ((outer, inner), (replace(joint, play=0.028),)),
+        {"joint": {"play": 0.028}},
     ),
     "friction without what presses": (
         "joints[0].normal_forces",
         "missing, and the joint has friction; give normal_forces, one in N for each station, "
         "since in a flat boom no other plane presses",
-        lambda outer, inner, joint: ((outer, inner), (replace(joint, friction=0.2),)),
+        {"joint": {"friction": 0.2}},
     ),
     "normal forces and stations": (
         "joints[0].normal_forces",
         "must have one number for each of the 2 stations, got 3",
-        lambda outer, inner, joint: (
-            (outer, inner),
-            (replace(joint, friction=0.2, normal_forces=(1.0, 2.0, 3.0)),),
-        ),
+        {"joint": {"friction": 0.2, "normal_forces": (1.0, 2.0, 3.0)}},
     ),
     "in space without lateral numbers": (
         "segments[0].lateral",
         "missing; with lateral play the segments bend along y and twist",
-        lambda outer, inner, joint: ((outer, inner), (replace(joint, lateral_play=0.002),)),
+        {"joint": {"lateral_play": 0.002}},
     ),
     "outer not held": (
         "segments[0]",
         "nothing holds 'outer': give it two supports, a hinge and a cylinder whose line passes "
         "beside it, or a joint with two stations to a segment that is held",
-        lambda outer, inner, joint: ((replace(outer, supports=(Support(0.0),)), inner), (joint,)),
+        {"outer": {"supports": (Support(0.0),)}},
     ),
     "inner not held": (
         "segments[1]",
         "nothing holds 'inner': give it two supports, a hinge and a cylinder whose line passes "
         "beside it, or a joint with two stations to a segment that is held",
-        lambda outer, inner, joint: ((outer, inner), (replace(joint, stations=(9.5,)),)),
+        {"joint": {"stations": (9.5,)}},
     ),
 }
 
 
-@pytest.mark.parametrize(("where", "what", "fault"), FAULTS.values(), ids=FAULTS.keys())
-def test_refuses_what_is_no_boom(paper_boom: Boom, where: str, what: str, fault: Fault) -> None:
+@pytest.mark.parametrize(("where", "what", "changes"), FAULTS.values(), ids=FAULTS.keys())
+def test_refuses_what_is_no_boom(paper_boom: Boom, where: str, what: str, changes: Changes) -> None:
+    names = ("outer", "inner", "joint")
+    parts = zip((*paper_boom.segments, *paper_boom.joints), names, strict=True)
+    *segments, joint = (replace(part, **changes.get(name, {})) for part, name in parts)
     with pytest.raises(BoomError) as caught:
-        Boom(*fault(*paper_boom.segments, *paper_boom.joints))
+        Boom(segments, [joint])
     assert (caught.value.where, caught.value.what) == (where, what)
     assert str(caught.value) == f"{where}: {what}"
+
+
+def test_refuses_a_boom_without_segments_or_from_the_tip(paper_boom: Boom) -> None:
+    (outer, inner), (joint,) = paper_boom.segments, paper_boom.joints
+    for segments, joints, line in (
+        ((), (), "segments: a boom needs at least one segment"),
+        (
+            (inner, outer),
+            (replace(joint, outer=1, inner=0),),
+            "segments[1].start: must start and end beyond 'inner'; give the segments from the base "
+            "to the tip",
+        ),
+    ):
+        with pytest.raises(BoomError) as caught:
+            Boom(segments, joints)
+        assert str(caught.value) == line
 
 
 Change = Callable[[Boom], Boom]

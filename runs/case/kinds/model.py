@@ -226,7 +226,9 @@ class ModelTable(CaseTable):
                     f"segment[{number}].section",
                     f"missing, and {self.name!r} needs it; give section or height_to_width",
                 )
-        self._check_drives(where, joined.boom)
+        driven = [i for i, j in enumerate(joined.boom.joints, start=1) if j.drive is not None]
+        if driven and self.cannot_telescope is not None:
+            raise BoomError(where, f"{self.cannot_telescope}, or joint[{driven[0]}].drive")
         factor = self.coarsened(joined.boom).critical_factor(joined)
         if factor is not None and factor <= 1.0:
             raise BoomError(
@@ -335,11 +337,6 @@ class ModelTable(CaseTable):
             self.system(), duration, output_step, at_rest, damping_ratio, rayleigh
         )
         return (AdaptiveStep(tolerance) if self.step is None else FixedStep(self.step))(motion)
-
-    def _check_drives(self, where: str, boom: Boom) -> None:
-        driven = [i for i, joint in enumerate(boom.joints, start=1) if joint.drive is not None]
-        if driven and self.cannot_telescope is not None:
-            raise BoomError(where, f"{self.cannot_telescope}, or joint[{driven[0]}].drive")
 
     @abstractmethod
     def critical_factor(self, joined: Joined) -> float | None:
