@@ -29,7 +29,6 @@ from runs.case import actions
 from runs.case.actions import values
 from runs.case.contact import JointTable
 from runs.case.elastic_drive import check_elastic_drives
-from runs.case.extension import spans
 from runs.case.schema import Case
 from runs.case.segment import SegmentTable
 
@@ -58,7 +57,7 @@ def build_boom(case: Case) -> Boom:
     _check_flat(case)
     _check_joined(case)
     _check_observations(case)
-    ends = spans(case.segments, case.joints)
+    ends = _spans(case.segments, case.joints)
     joints = tuple(_joint(case, number, ends) for number in range(len(case.joints)))
     sections = _sections(case, joints)
     segments = tuple(
@@ -399,3 +398,68 @@ def _infer(case: Case, index: int, hint: float | tuple[Section, float]) -> Secti
         if any(model.needs_plates for model in case.models):
             raise BoomError(f"segment[{index + 1}].section", str(error)) from None
         return None
+
+
+def _spans(
+    segments: Sequence[SegmentTable], joints: Sequence[JointTable]
+) -> list[tuple[float, float]]:
+    """Return the x of the ends of each segment in m.
+
+    Args:
+        segments: segments with a name each; the first one starts at 0 if it has a length only.
+        joints: joints of these segments.
+
+    Raises:
+        BoomError: a segment has no position, or two.
+    """
+    lengths = {segment.name: segment.length for segment in segments}
+    ends = {segment.name: segment.span for segment in segments if segment.span is not None}
+    extended = [
+        (f"joint[{i}].extension", j) for i, j in enumerate(joints, 1) if j.extension is not None
+    ]
+    for number, (where, joint) in enumerate(extended):
+        if lengths[joint.inner] is None:
+            raise BoomError(
+                where,
+                f"{joint.inner!r} has a span, which says how far it is out; give it by its length, "
+                "or leave extension out",
+            )
+        for other, before in extended[:number]:
+            if before.inner == joint.inner:
+                raise BoomError(
+                    where, f"{joint.inner!r} has its place by {other}; leave one of them out"
+                )
+    first = segments[0]
+    if first.length is not None and first.name not in {joint.inner for _, joint in extended}:
+        ends[first.name] = 0.0, first.length
+    # One pass per joint places the segments, in any order of the joints.
+    for _ in extended:
+        for where, joint in extended:
+            if joint.outer in ends and joint.inner not in ends:
+                length = lengths[joint.inner]
+                assert length is not None
+                ends[joint.inner] = _inner_span(where, joint, ends[joint.outer], length)
+    for number, segment in enumerate(segments, start=1):
+        if segment.name not in ends:
+            raise BoomError(
+                f"segment[{number}].length",
+                f"nothing says where {segment.name!r} is; give an extension to the joint in which "
+                "it slides, or a span to the segment",
+            )
+    return [ends[segment.name] for segment in segments]
+
+
+def _inner_span(
+    where: str, joint: JointTable, outer: tuple[float, float], length: float
+) -> tuple[float, float]:
+    """Return the ends of an inner segment in m."""
+    start, end = outer
+    assert joint.extension is not None
+    least = max(0.0, length - (end - start))
+    if not least <= joint.extension < length:
+        raise BoomError(
+            where,
+            f"must be at least {least:g} m and below {length:g} m, so that {joint.inner!r} begins "
+            f"in {joint.outer!r}, got {joint.extension:g} m",
+        )
+    return end + joint.extension - length, end + joint.extension
