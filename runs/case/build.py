@@ -369,18 +369,15 @@ def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
         for joint in joints:
             outer = sections[joint.outer]
             if sections[joint.inner] is None and outer is not None:
-                _check_plain(case, joint)
+                around = case.segments[joint.outer]
+                if around.head_section is not None:
+                    raise BoomError(
+                        f"segment[{joint.inner + 1}].section",
+                        f"missing, and none is inferred within {around.name!r}, which tapers; "
+                        "give it",
+                    )
                 sections[joint.inner] = _infer(case, joint.inner, (outer, 0.5 * joint.play))
     return sections
-
-
-def _check_plain(case: Case, joint: Joint) -> None:
-    outer = case.segments[joint.outer]
-    if outer.head_section is not None:
-        raise BoomError(
-            f"segment[{joint.inner + 1}].section",
-            f"missing, and none is inferred within {outer.name!r}, which tapers; give it",
-        )
 
 
 def _infer(case: Case, index: int, hint: float | tuple[Section, float]) -> Section | None:
