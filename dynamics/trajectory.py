@@ -305,7 +305,7 @@ def _first_prominent(values: Array, prominence: float) -> int | None:
     It is the first peak of ``scipy.signal.find_peaks``, whose import takes half a second.
     """
     risen = values - np.minimum.accumulate(values) >= prominence
-    if not risen.any():
+    if prominence == 0.0 or not risen.any():
         return None
     start = int(risen.argmax())
     after = values[start:]
