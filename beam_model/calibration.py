@@ -24,7 +24,7 @@ from scipy.optimize import least_squares
 
 from beam_model.component import Component, SegmentModel, natural_modes
 from beam_model.finite_element import finite_element_segment
-from beam_model.segment_model import AT_PADS, gap_system
+from beam_model.segment_model import EACH_SIDE, gap_system
 from dynamics.gap_system import GapSystem
 from dynamics.reduction import with_coordinates
 from geometry.arrays import Array
@@ -95,7 +95,7 @@ def calibrate(
         for segment, far in zip(boom.segments, probe_responses, strict=True)
     ]
     stiff = stiffened(boom, found)
-    beam = gap_system(stiff, segments(stiff), AT_PADS)
+    beam = gap_system(stiff, segments(stiff), EACH_SIDE)
     residual = residual_compliance(beam, shell)
     return with_springs(beam, residual), Calibration(found, residual)
 

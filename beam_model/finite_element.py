@@ -18,6 +18,7 @@ from beam_model.component import Component, Motion, SegmentModel, products
 from beam_model.elements import Theory, element
 from geometry.arrays import Array
 from geometry.boom import SAME_PLACE, Boom, BoomError, Segment
+from geometry.contact_places import pressed_places
 from geometry.segment import APART
 
 # Exact for products of the cubics.
@@ -37,7 +38,7 @@ def finite_element_segments(
     """
     return [
         finite_element_segment(
-            segment, element_length, boom.stations_of(number), theory, rotary_inertia
+            segment, element_length, pressed_places(boom, number), theory, rotary_inertia
         )
         for number, segment in enumerate(boom.segments)
     ]

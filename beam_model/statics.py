@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -19,11 +20,13 @@ from beam_model.boom_modes import BoomModes
 from beam_model.component import Component, SegmentModel
 from beam_model.elements import Theory
 from beam_model.finite_element import finite_element_segment, finite_element_segments
-from beam_model.segment_model import gap_system, undriven_system
+from beam_model.segment_model import EACH_SIDE, gap_system, undriven_system
+from beam_model.wall_compliance import with_wall_springs
 from dynamics.equilibrium import rest_at
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom
+from geometry.contact_places import contact_centres
 
 # Elements of the longest segment, where axial forces soften it.
 COMPRESSED_ELEMENTS = 20
@@ -100,24 +103,28 @@ class Elements:
 def static_state(
     boom: Boom,
     elements: Elements | None = None,
+    walls: float = 1.0,
 ) -> StaticState:
     """Return the static state of a boom of beam elements, Timoshenko's if all sections are known.
+
+    Walls bend under pads, see :mod:`beam_model.wall_compliance`.
 
     Args:
         boom: with its loads.
         elements: of its segments, if they are known from the same boom with play or without.
+        walls: factor of the compliance of walls under pads, 0 for rigid walls.
 
     Raises:
         NumericsError: it has no rest.
     """
     elements = elements or Elements(boom)
     modes = BoomModes(boom, elements.segments)
-    system = undriven_system(boom, modes).gather_loads()
+    system = with_wall_springs(undriven_system(boom, modes, EACH_SIDE), boom, walls).gather_loads()
     position = rest_at(system)
     reactions = [
         reaction
         for number, component in enumerate(elements.unsupported)
-        for reaction in _reactions(boom, number, component, modes, position)
+        for reaction in _reactions(boom, number, component, modes, position[: modes.omega2.size])
     ]
     return StaticState(boom, system, position, reactions)
 
@@ -139,7 +146,7 @@ def net_reactions(boom: Boom, reactions: Sequence[Reaction]) -> list[Reaction]:
     """
     whole = {reaction[:2]: reaction for reaction in reactions}
     for joint in sorted(boom.joints, key=lambda joint: -joint.inner):
-        for x in joint.stations:
+        for x in chain.from_iterable(contact_centres(boom, joint).values()):
             inner, outer = whole[joint.inner, x], whole[joint.outer, x]
             whole[joint.outer, x] = outer._replace(
                 force=outer.force + inner.force, moment=outer.moment + inner.moment
@@ -153,7 +160,9 @@ def _reaction_places(boom: Boom, number: int) -> set[float]:
     places |= {stop.x for stop in boom.stops if stop.segment == number}
     places |= {jack.x for jack in boom.cylinders if jack.segment == number}
     joints = (joint for joint in boom.joints if number in (joint.outer, joint.inner))
-    return places | {x for joint in joints for x in joint.stations}
+    return places | {
+        x for joint in joints for at in contact_centres(boom, joint).values() for x in at
+    }
 
 
 def _reactions(

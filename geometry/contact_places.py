@@ -247,6 +247,29 @@ def pads(boom: Boom) -> list[Pad]:
     return found
 
 
+def contact_centres(boom: Boom, joint: Joint) -> dict[float, tuple[float, ...]]:
+    """Return the x in m of the middles of the pads along z at each station; without, the station.
+
+    The keys are the stations' x in m.
+    """
+    overlap = boom.overlap(joint)
+    sizes = [size for side in _SIDES for size, _, _ in joint.pads_of("z", side)]
+    known = boom.segments[joint.inner].section is not None
+    return {
+        x: tuple(
+            sorted({0.5 * sum(size.span(x, overlap)) if size and known else x for size in sizes})
+        )
+        for x in joint.stations
+    }
+
+
+def pressed_places(boom: Boom, number: int) -> tuple[float, ...]:
+    """Return the x in m at which something acts on a segment, middles of pads among them."""
+    joints = (joint for joint in boom.joints if number in (joint.outer, joint.inner))
+    middles = (x for joint in joints for at in contact_centres(boom, joint).values() for x in at)
+    return tuple(sorted({*boom.stations_of(number), *middles}))
+
+
 def _points(
     boom: Boom, joint: Joint, direction: Direction, x: float
 ) -> Iterator[tuple[Side, Offset, Offset, float, Face | None]]:

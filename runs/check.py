@@ -33,6 +33,7 @@ from runs.pipeline.drives import (
     stick_slip_lines,
 )
 from runs.pipeline.estimates import Preview, preview_cost
+from runs.pipeline.pad_walls import pad_wall_lines
 from runs.pipeline.proportions import (
     buckling_cautions,
     period_cautions,
@@ -381,5 +382,6 @@ def _static_lines(case: Case, boom: Boom, found: Statics | None) -> Iterator[str
             f"Play rotates {tilt.inner!r} by {number(TO_MILLI * tilt.rotation, 4)} mrad in "
             f"{tilt.outer!r}, which moves the tip by {number(TO_MILLI * tilt.tip, 4)} mm."
         )
+    yield from pad_wall_lines(state.boom, state.tip)
     yield from tip_cautions(_BEAMS, state.tip, boom)
     yield from period_cautions(_BEAMS, hertz, case)

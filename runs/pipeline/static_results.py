@@ -22,6 +22,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.line import Line
 from geometry.arrays import Array
 from geometry.boom import Boom
+from geometry.contact_places import contact_centres
 from geometry.cylinder import forces
 from geometry.telescoping import places, travel
 from runs.case.drive import resolving_times
@@ -270,6 +271,12 @@ def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> 
             before = travel(boom, joint.outer, time)
             way = travel(boom, joint.inner, time) - before
             on_outer = [x for x, _ in places(joint, way)] if joint.drive else joint.stations
+            # Pads press at their middles.
+            middles = contact_centres(boom, joint)
+            on_outer = [
+                x + sum(middles[at]) / len(middles[at]) - at
+                for x, at in zip(on_outer, joint.stations, strict=True)
+            ]
             tip = boom.tip + travel(boom, len(boom.segments) - 1, time) - before
             rotation = (own[-1] - own[0]) / (on_outer[-1] - on_outer[0])
             inner, outer = (boom.segments[number].name for number in (joint.inner, joint.outer))

@@ -13,6 +13,7 @@ from beam_model.statics import Elements, StaticState, net_reactions, static_stat
 from dynamics.failure import NUMERICS
 from geometry.axial import foot_thrust
 from geometry.boom import Boom
+from geometry.contact_places import contact_centres
 from geometry.cylinder import force_name
 from runs.case.schema import Case
 from runs.pipeline.static_results import station_loads
@@ -81,8 +82,13 @@ def reactions(state: StaticState) -> list[Reaction]:
 
 
 def _between_segments(boom: Boom) -> set[tuple[int, float]]:
-    """Return the stations of joints by the inner segment and x in m."""
-    return {(joint.inner, x) for joint in boom.joints for x in joint.stations}
+    """Return the places where joints press, by the inner segment and x in m."""
+    return {
+        (joint.inner, x)
+        for joint in boom.joints
+        for at in contact_centres(boom, joint).values()
+        for x in at
+    }
 
 
 def contact_and_support_reactions(state: StaticState) -> dict[tuple[int, float], Reaction]:
@@ -129,13 +135,19 @@ def _depths(state: StaticState) -> dict[tuple[int, float], float]:
     """Return the compression in m of stations along z, by the inner segment and x in m."""
     boom = state.boom
     joints = [joint for joint in boom.joints if not joint.tied]
-    inner = [one.inner for _ in boom.directions for one in joints for _ in one.stations]
-    owners = [*inner, *(stop.segment for stop in boom.stops)]
+    inner = [
+        (joint.inner, middles)
+        for _ in boom.directions
+        for joint in joints
+        for middles in contact_centres(boom, joint).values()
+    ]
+    owners = [*inner, *((stop.segment, (stop.x,)) for stop in boom.stops)]
     found = station_loads(boom, state.system, state.position)
     return {
-        (number, one.x): one.depth
-        for number, one in zip(owners, found, strict=True)
+        (number, x): one.depth
+        for (number, middles), one in zip(owners, found, strict=True)
         if one.direction == "z"
+        for x in middles
     }
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from beam_model.calibration import Calibration, Stiffness
 from beam_model.finite_element import finite_element_segments
-from beam_model.segment_model import AT_PADS, gap_system
+from beam_model.segment_model import EACH_SIDE, gap_system
 from dynamics.contact import PowerContact
 from runs.case.build import build_boom
 from runs.pipeline.model_run import calibration_card
@@ -21,7 +21,7 @@ def test_it_tells_stiffness_and_springs() -> None:
     boom = build_boom(friction_case())
     law = PowerContact(1.0e9, 1.0).behind(0.007)
     system = gap_system(
-        touching(boom, law, ()), finite_element_segments(boom, 2.0, "timoshenko", True), AT_PADS
+        touching(boom, law, ()), finite_element_segments(boom, 2.0, "timoshenko", True), EACH_SIDE
     )
     assert len(system.laws) == 4
     residual = np.diag([2.0e-9, 4.0e-9, 5.0e-9, -1.0e-12, 1.0e-9, 1.0e-9])

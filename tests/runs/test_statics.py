@@ -130,3 +130,20 @@ def test_a_boom_without_rest_says_so() -> None:
     segments = tuple(s.model_copy(update={"load": 1.0e300}) for s in case.segments)
     lines = told(case.model_copy(update={"segments": segments}))
     assert "No rest under the loads of t = 0 is found." in lines
+
+
+def test_walls_under_pads_lower_the_tip_as_in_the_shell() -> None:
+    """Reference: other code, the shell of the lift at rest, −229.12 mm (−190.18 mm of its beam)."""
+    lines = told(case_file.load(str(CASES / "lift.toml")))
+    (tip,) = (line for line in lines if line.startswith("Static tip deflection"))
+    assert float(tip.split(": ")[1].split()[0]) == pytest.approx(-229.12, rel=0.01)
+    (share,) = (line for line in lines if line.startswith("Walls bend under pads"))
+    assert share == (
+        "Walls bend under pads, which moves the tip by -32.83 mm, 14 % of its deflection (estimate "
+        "from plates)."
+    )
+    (remedy,) = (line for line in lines if line.startswith("Remedies"))
+    assert remedy == (
+        "Remedies, with the deflection of the tip: walls twice as thick by collars at the pads "
+        "(206.9 mm)."
+    )

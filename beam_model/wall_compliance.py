@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Local compliance of walls under slide pads, without a shell.
+
+A wall that a pad presses bends as a plate. Its folds stay in place, since each lies in the plane of
+a neighbouring wall, which is stiff there. So the unfolded walls of a segment are one plate that
+continues over line supports at the folds and has a free edge where the segment ends. The conforming
+rectangles of Bogner, Fox and Schmit (1965) discretise it: products of cubic Hermite polynomials
+along the boom and around the section, whose matrices are Kronecker products.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+from scipy.linalg import block_diag
+from scipy.sparse import csc_matrix, kron
+from scipy.sparse.linalg import splu
+
+from beam_model.calibration import with_springs
+from beam_model.segment_model import EACH_SIDE
+from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
+from geometry.boom import Boom
+from geometry.contact_places import Pad, pads
+from geometry.section import Direction, Side
+from geometry.segment import Segment
+
+# Length of wall beyond a pad, over the larger side of the section: deformations end before it.
+_REACH = 1.5
+# Length of elements over the smaller side of the section, and its growth beyond a pad.
+_LENGTH, _GROWTH = 0.2, 1.6
+
+# Gauss's rule, exact for products of cubic polynomials.
+_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+
+class PressedArea(NamedTuple):
+    """Area of a wall that a pad, or a pair of pads, presses evenly.
+
+    Args:
+        start, end: x in m.
+        direction, side: of the wall's outward normal.
+        spans: intervals across the wall in m, from the segment's axis.
+    """
+
+    start: float
+    end: float
+    direction: Direction
+    side: Side
+    spans: tuple[tuple[float, float], ...]
+
+
+class _Axis:
+    """Cubic Hermite elements between nodes in m; the last node of a closed axis is the first."""
+
+    def __init__(self, nodes: Array, closed: bool) -> None:
+        self.nodes = nodes
+        num_dofs = 2 * (self.nodes.size - closed)
+        identity = np.eye(num_dofs)[np.arange(2 * self.nodes.size) % num_dofs]
+        self._shapes = CubicHermiteSpline(self.nodes, identity[::2], identity[1::2])
+        self._sums = self._shapes.antiderivative()
+
+    def integrals(self, weights: Array) -> list[csc_matrix]:
+        """Return ∫ φφ, ∫ φ′φ′, ∫ φ″φ″ and ∫ φφ″, each (num_dofs, num_dofs).
+
+        Args:
+            weights: (num_elements,) factor of each element.
+        """
+        lengths = np.diff(self.nodes)[:, None]
+        x = (self.nodes[:-1, None] + 0.5 * lengths * (1.0 + _PLACES)).ravel()
+        scale = (0.5 * lengths * weights[:, None] * _WEIGHTS).ravel()[:, None]
+        value, slope, curvature = (self._shapes(x, order) for order in range(3))
+        pairs = (value, value), (slope, slope), (curvature, curvature), (value, curvature)
+        return [csc_matrix((scale * left).T @ right) for left, right in pairs]
+
+    def mean(self, start: float, end: float) -> Array:
+        """Return the row (num_dofs,) that reads the mean between two places in m."""
+        return np.asarray((self._sums(end) - self._sums(start)) / (end - start))
+
+
+def with_wall_springs(system: GapSystem, boom: Boom, factor: float = 1.0) -> GapSystem:
+    """Return a beam with springs that are as compliant as the walls under its pads.
+
+    Args:
+        system: with a contact row for each side, ``beam_model.segment_model.EACH_SIDE``.
+        boom: the boom.
+        factor: of the compliance, 0 for rigid walls.
+    """
+    walls = factor * contact_compliance(boom) if factor else np.zeros(0)
+    if not walls.any():
+        return system
+    rest = len(system.frictions) + len(system.dashpots)
+    return with_springs(system, block_diag(walls, np.zeros((rest, rest))))
+
+
+def contact_compliance(boom: Boom) -> Array:
+    """Return the local compliance (num_rows, num_rows) in m/N of walls at a boom's contact rows.
+
+    Pads of a given size bend walls; the compliance of other contacts, at corners, is left out.
+
+    Args:
+        boom: its rows are those of beams with a row for each side,
+            ``beam_model.segment_model.EACH_SIDE``.
+    """
+    rows = [
+        (pad, side)
+        for pad in pads(boom)
+        for side in ((pad.side,) if pad.side else EACH_SIDE)
+        if pad.joint.law(pad.direction).one_sided(side) is not None
+    ]
+    stops = sum(len(stop.sides) for _, stop in boom.numbered_stops)
+    found = np.zeros((len(rows) + stops,) * 2)
+    for station in {pad.station for pad, _ in rows if pad.patch is not None}:
+        at = [i for i, (pad, _) in enumerate(rows) if pad.station == station]
+        joint, sides = rows[at[0]][0].joint, np.array([rows[i][1] for i in at])
+        inner = boom.segments[joint.inner]
+        areas = [_pressed_area(*rows[i], inner) for i in at]
+        for segment in (inner, boom.segments[joint.outer]):
+            # A row reads displacements along its direction, areas those along outward normals.
+            outward = wall_compliance(segment, areas)
+            found[np.ix_(at, at)] += np.outer(sides, sides) * outward
+    return found
+
+
+def _pressed_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
+    """Return the area of a pad in space, or of a mirrored pair of a flat boom."""
+    assert pad.patch is not None
+    near, far = pad.patch.across(inner.section_at(pad.x).face(pad.direction, side))
+    halves = (1, -1) if pad.face is None else (pad.half,)
+    spans = tuple((half * near, half * far) for half in halves)
+    return PressedArea(pad.patch.start, pad.patch.end, pad.direction, side, spans)
+
+
+def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
+    """Return the compliance (num_areas, num_areas) in m/N of a segment's walls at pressed areas.
+
+    It is the mean displacement of each area along its outward normal under a unit force on another.
+
+    Args:
+        segment: with a known section, and its collars and diaphragms.
+        areas: near each other along the segment.
+    """
+    start, end = min(area.start for area in areas), max(area.end for area in areas)
+    section = segment.section_at(0.5 * (start + end))
+    reach = _REACH * max(section.size("y"), section.size("z"))
+    low, high = max(segment.start, start - reach), min(segment.end, end + reach)
+    length = _LENGTH * min(section.size("y"), section.size("z"))
+
+    # Around the section from the first fold, with nodes at folds and at edges of pads.
+    folds = np.concatenate([[0.0], np.cumsum([plate.length for plate in section.plates])])
+    spans = []
+    for area in areas:
+        face = section.face(area.direction, area.side)
+        plate, across = section.plates[face.plate], 0 if area.direction == "z" else 1
+        along = np.sign(plate.end[across] - plate.start[across])
+        places = folds[face.plate] + along * (np.array(area.spans) - plate.start[across])
+        spans.append(np.sort(places, axis=1))
+    edges = np.unique(np.concatenate([folds, *(span.ravel() for span in spans)]))
+    around = _Axis(_divided(edges, length, (0.0, folds[-1])), closed=True)
+    plates = np.searchsorted(folds, around.nodes[:-1], side="right") - 1
+
+    closed_at = [one.x for one in segment.diaphragms if low < one.x < high]
+    cuts = [low, high, *(x for area in areas for x in (area.start, area.end))]
+    ends = [x for collar in segment.collars for x in collar.span if low < x < high]
+    along_x = _Axis(
+        _divided(np.unique([*cuts, *closed_at, *ends]), length, (start, end)), closed=False
+    )
+    middles = 0.5 * (along_x.nodes[:-1] + along_x.nodes[1:])
+    doubled = np.zeros(middles.size)
+    for collar in segment.collars:
+        doubled += collar.thickness * (np.abs(middles - collar.middle) < 0.5 * collar.length)
+
+    modulus, ratio = segment.material.youngs_modulus, segment.material.poissons_ratio
+    walls = np.array([section.plates[number].thickness for number in plates])
+    stiffness = 0.0
+    for more in np.unique(doubled):
+        rigidity = modulus * (walls + more) ** 3 / (12.0 * (1.0 - ratio**2))
+        x0, x1, x2, x02 = along_x.integrals((doubled == more).astype(float))
+        s0, s1, s2, s02 = around.integrals(rigidity)
+        stiffness = (
+            stiffness
+            + kron(x2, s0)
+            + kron(x0, s2)
+            + ratio * (kron(x02, s02.T) + kron(x02.T, s02))
+            + 2.0 * (1.0 - ratio) * kron(x1, s1)
+        )
+    # Values on folds and diaphragms are zero; slopes are free.
+    free = np.ones((along_x.nodes.size, 2, around.nodes.size - 1, 2), dtype=bool)
+    free[:, :, np.isin(around.nodes[:-1], folds), 0] = False
+    free[np.isin(along_x.nodes, closed_at), 0] = False
+    rows = np.array(
+        [
+            np.kron(
+                along_x.mean(area.start, area.end),
+                np.mean([around.mean(*span) for span in places], axis=0),
+            )[free.ravel()]
+            for area, places in zip(areas, spans, strict=True)
+        ]
+    )
+    # Symmetric and positive definite: no pivots, and an ordering that keeps the symmetry.
+    factor = splu(
+        csc_matrix(stiffness)[free.ravel()][:, free.ravel()],
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    return np.asarray(rows @ factor.solve(rows.T))
+
+
+def _divided(cuts: Array, length: float, fine: tuple[float, float]) -> Array:
+    """Return nodes in m at cuts, with elements of a length that grow outside an interval."""
+    count = int(np.ceil((fine[1] - fine[0]) / length))
+    beyond = length * np.cumsum(_GROWTH ** np.arange(1, 30))
+    nodes = np.concatenate([fine[0] - beyond, np.linspace(*fine, count + 1), fine[1] + beyond])
+    inside = nodes[(cuts[0] < nodes) & (nodes < cuts[-1])]
+    apart = np.abs(np.subtract.outer(inside, cuts)).min(axis=1) > 0.3 * length
+    return np.sort(np.concatenate([cuts, inside[apart]]))

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Walls under slide pads before a run: their share of the tip's deflection, and remedies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from typing import TypeVar
+
+from beam_model.statics import Elements, static_state
+from geometry.boom import Boom, Collar, Joint, Segment
+from geometry.joint import PadSize
+from geometry.typography import TO_MILLI
+from runs.report.formatting import number
+
+_Size = TypeVar("_Size", bound=PadSize)
+
+# Share of the tip's deflection from which remedies are named, and part of it that one leaves.
+LARGE_SHARE, HELPFUL = 0.1, 0.98
+
+
+def pad_wall_lines(boom: Boom, tip: float) -> Iterator[str]:
+    """Yield the share of walls under pads in the tip's deflection, and remedies if it is large.
+
+    Args:
+        boom: as its first model with play sees it.
+        tip: deflection of its static state in m.
+
+    Raises:
+        NumericsError: it has no rest.
+    """
+    padded = [joint for joint in boom.joints if joint.padded]
+    if not padded or any(segment.section is None for segment in boom.segments):
+        return
+    elements = Elements(boom)
+    share = tip - static_state(boom, elements, walls=0.0).tip
+    part = share / tip if tip else 0.0
+    yield (
+        f"Walls bend under pads, which moves the tip by {number(TO_MILLI * share, 4)} mm, "
+        f"{100.0 * part:.2g} % of its deflection (estimate from plates)."
+    )
+    if part < LARGE_SHARE:
+        return
+    remedies = ((static_state(changed).tip, what) for what, changed in _remedies(boom))
+    better = sorted((abs(there), what) for there, what in remedies if there / tip < HELPFUL)
+    listed = "; ".join(f"{what} ({number(TO_MILLI * there, 4)} mm)" for there, what in better)
+    if better:
+        yield f"Remedies, with the deflection of the tip: {listed}."
+
+
+def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
+    """Yield changes that stiffen the walls under pads, each with its description."""
+    if any(pad.offset > 0.0 for joint in boom.joints for pad in _sizes(joint)):
+        yield "pads beside the corners", _with_pads(boom, 1.0, 0.0)
+    yield "pads twice as long", _with_pads(boom, 2.0, 1.0)
+    yield "walls twice as thick by collars at the pads", _with_collars(boom)
+
+
+def _sizes(joint: Joint) -> tuple[PadSize, ...]:
+    return (*joint.pads, *([joint.pad] if joint.pad is not None else []))
+
+
+def _with_pads(boom: Boom, length: float, offset: float) -> Boom:
+    """Return the boom with factors of the length and the offset of all pads.
+
+    No pad is longer than half of the overlap.
+    """
+    joints = []
+    for joint in boom.joints:
+        start, end = boom.overlap(joint)
+        change = partial(_resized, length=length, offset=offset, longest=0.5 * (end - start))
+        pad = None if joint.pad is None else change(joint.pad)
+        joints.append(replace(joint, pad=pad, pads=tuple(map(change, joint.pads))))
+    return replace(boom, joints=tuple(joints))
+
+
+def _resized(pad: _Size, length: float, offset: float, longest: float) -> _Size:
+    longer = max(min(length * pad.length, longest), pad.length)
+    return replace(pad, length=longer, offset=offset * pad.offset)
+
+
+def _with_collars(boom: Boom) -> Boom:
+    """Return the boom with collars at its pads that are as thick as the walls.
+
+    They reach half the height of the section beyond a station. A collar that is there is thicker.
+    """
+    segments = list(boom.segments)
+    for joint in (joint for joint in boom.joints if joint.padded):
+        for index in (joint.outer, joint.inner):
+            for x in joint.stations:
+                segments[index] = _thickened(segments[index], x)
+    return replace(boom, segments=tuple(segments))
+
+
+def _thickened(segment: Segment, x: float) -> Segment:
+    section = segment.section_at(x)
+    reach, thickness = 0.5 * section.size("z"), section.face("z", 1).thickness
+    start, end = max(segment.start, x - reach), min(segment.end, x + reach)
+    there = [one for one in segment.collars if one.span[0] < end and one.span[1] > start]
+    collars = [one for one in segment.collars if one not in there]
+    collars += [replace(one, thickness=one.thickness + thickness) for one in there]
+    if not there:
+        collars.append(Collar((start, end), thickness))
+    return replace(segment, collars=tuple(collars))

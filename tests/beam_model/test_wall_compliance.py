@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Compliance of walls under pads: frames in closed form, stiffeners, a finer mesh."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from beam_model import wall_compliance
+from beam_model.wall_compliance import PressedArea
+from geometry.boom import Collar, Diaphragm, Material, Segment
+from geometry.section import BoxSection
+
+SIDE, WALL, LENGTH = 0.3, 6.0e-3, 2.0
+STEEL = Material(2.1e11, 0.3, 7850.0)
+
+
+def tube(material: Material = STEEL, **stiffeners: object) -> Segment:
+    """Return a square tube with a wall of 6 mm."""
+    section = BoxSection(SIDE, SIDE, WALL, WALL)
+    plain = Segment.of_section("tube", 0.0, LENGTH, material, section)
+    return replace(plain, **stiffeners)
+
+
+def pad(start: float = 0.0, end: float = 0.1, side: int = 1) -> PressedArea:
+    """Return a pair of pads, 60 mm wide, 10 mm beside the corners."""
+    half = 0.5 * SIDE - 0.010
+    return PressedArea(start, end, "z", side, ((half - 0.06, half), (-half, 0.06 - half)))
+
+
+def test_a_tube_under_pressure_on_two_walls_bends_as_a_frame() -> None:
+    """Reference: analytic, frame of equal members, of which two carry an even load, without ν.
+
+    A joint turns by θ = p a³/48 D, and the loaded member deflects by p a⁴/720 D + θ a/6 on average.
+    """
+    walls = [PressedArea(0.0, LENGTH, "z", side, ((-0.5 * SIDE, 0.5 * SIDE),)) for side in (1, -1)]
+    compliance = wall_compliance.wall_compliance(tube(Material(2.1e11, 0.0, 7850.0)), walls)
+    pressure, rigidity = 1.0 / (SIDE * LENGTH), 2.1e11 * WALL**3 / 12.0
+    expected = 7.0 / 1440.0 * pressure * SIDE**4 / rigidity
+    assert compliance.sum(axis=1) == pytest.approx(expected, rel=1.0e-3)
+
+
+def test_elements_are_fine_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reference: other mesh, a third of the length; the default is within 1 %."""
+    areas = [pad(side=1), pad(side=-1)]
+    default = wall_compliance.wall_compliance(tube(), areas)
+    monkeypatch.setattr(wall_compliance, "_LENGTH", 0.07)
+    monkeypatch.setattr(wall_compliance, "_GROWTH", 1.3)
+    fine = wall_compliance.wall_compliance(tube(), areas)
+    np.testing.assert_allclose(default, fine, atol=0.01 * fine[0, 0])
+    assert (np.diag(default) < np.diag(fine)).all()  # conforming elements are too stiff
+
+
+def test_collars_stiffen_by_the_cube_of_the_thickness() -> None:
+    """Reference: analytic, rigidity of a plate of twice the thickness."""
+    plain = wall_compliance.wall_compliance(tube(), [pad()])
+    doubled = tube(collars=(Collar((0.0, LENGTH), WALL),))
+    assert wall_compliance.wall_compliance(doubled, [pad()]) == pytest.approx(plain / 8.0)
+
+
+def test_a_diaphragm_holds_the_walls_that_it_joins() -> None:
+    """Reference: analytic bounds: nothing moves on it, and at the far end it changes nothing."""
+    plain = float(wall_compliance.wall_compliance(tube(), [pad()])[0, 0])
+    there, beyond = (
+        float(
+            wall_compliance.wall_compliance(tube(diaphragms=(Diaphragm(x, WALL),)), [pad()])[0, 0]
+        )
+        for x in (0.05, 1.5)
+    )
+    assert there < 0.15 * plain
+    assert beyond == pytest.approx(plain, rel=1.0e-12)
+
+
+def test_an_end_is_softer_than_the_middle_of_a_tube() -> None:
+    """Reference: analytic bounds of a beam on an elastic foundation, 1 and 4 (Hetényi 1946)."""
+    end, middle = (
+        float(wall_compliance.wall_compliance(tube(), [pad(x, x + 0.1)])[0, 0]) for x in (0.0, 1.0)
+    )
+    assert 1.2 < end / middle < 4.0

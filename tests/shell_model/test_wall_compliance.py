@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Estimated compliance of walls under pads against that of the shell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from beam_model.wall_compliance import contact_compliance
+from geometry.boom import Boom, Collar, PadSize, Support
+from tests.shell_model.booms import LAW, box_segment, flat_boom
+from tests.shell_model.models import reduced
+from tests.touching import touching
+
+SUPPORTS = (Support(7.0), Support(8.0))
+
+
+def short_boom(pad: PadSize) -> Boom:
+    """Return the paper's sections with 3 m of each segment at the overlap, and pads."""
+    boom = touching(flat_boom(), LAW)
+    spans = (7.0, 10.0), (9.0, 12.0)
+    outer, inner = (
+        box_segment(one.name, *span, one.section, supports=held)
+        for one, span, held in zip(boom.segments, spans, (SUPPORTS, ()), strict=True)
+        if one.section is not None
+    )
+    return replace(boom, segments=(outer, inner), joints=(replace(boom.joints[0], pad=pad),))
+
+
+def with_collar(boom: Boom) -> Boom:
+    """Return the boom with a collar at the head of the outer segment."""
+    collared = replace(boom.segments[0], collars=(Collar((9.6, 10.0), 0.008),))
+    return replace(boom, segments=(collared, boom.segments[1]))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("pad", "change"),
+    [
+        (PadSize(0.1, 0.06), lambda boom: boom),
+        (PadSize(0.2, 0.04, offset=0.03), lambda boom: boom),
+        (PadSize(0.1, 0.06), with_collar),
+    ],
+    ids=["beside the webs", "away from the webs", "under a collar"],
+)
+def test_the_estimate_is_that_of_the_shell(pad: PadSize, change: Callable[[Boom], Boom]) -> None:
+    """Reference: other code, the shell, whose own error of the local compliance is 1 %."""
+    boom = change(short_boom(pad))
+    shell = reduced(boom, 0.1, contact_tolerance=0.01)
+    walls = contact_compliance(boom)
+    opening = walls[::2, ::2] + walls[1::2, 1::2] - walls[::2, 1::2] - walls[1::2, ::2]
+    estimated = 0.5 * np.diag(opening)
+    assert estimated == pytest.approx(shell.local_compliance[::2], rel=0.03)
