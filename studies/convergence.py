@@ -32,42 +32,26 @@ from runs.report.pages import page
 from runs.report.tables import Table, wide_console, write
 from studies.study import Plot, Proof, Study
 
-MARKERS = "osD^vPX"
-
 
 def draw(plot: Plot, folder: Path) -> Figure:
-    """Draw a plot.
-
-    Args:
-        plot: that of a study.
-        folder: gets ``NAME.png``.
-    """
+    """Draw a plot of a study as ``NAME.png`` in a folder."""
     with rc_context(theme.RC):
         sheet = Sheet(figsize=(theme.WIDTH, 4.2 + 0.16 * len(plot.curves)))
         FigureCanvasAgg(sheet)
         axes = sheet.add_subplot()
         strokes = theme.strokes(list(plot.curves), [])
-        for i, (label, (x, y)) in enumerate(plot.curves.items()):
+        for label, (x, y) in plot.curves.items():
             # Many points are drawn as a curve, few as measurements.
-            marker = MARKERS[i % len(MARKERS)] if len(x) <= 20 else ""
-            stroke = strokes[label]
-            axes.plot(
-                x,
-                y,
-                color=stroke.color,
-                linestyle=stroke.linestyle,
-                marker=marker,
-                markersize=5.0,
-                label=label,
-            )
+            marker, stroke = "o" if len(x) <= 20 else "", strokes[label]
+            color, dashes = stroke.color, stroke.linestyle
+            axes.plot(x, y, color, ls=dashes, marker=marker, markersize=5.0, label=label)
         axes.set(xlabel=plot.x, ylabel=plot.y)
         if plot.logarithmic:
             axes.set(xscale="log", yscale="log")
             # Sizes span a decade or less: their own values say more than powers of ten.
             sizes = sorted({float(value) for x, _ in plot.curves.values() for value in x})
-            if len(sizes) <= 8:
-                axes.xaxis.set_major_locator(FixedLocator(sizes))
-                axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axes.xaxis.set_major_locator(FixedLocator(sizes))
+            axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axes.xaxis.set_minor_formatter(NullFormatter())
         if len(plot.curves) > 1:
             sheet.legend(loc="outside lower left", ncols=1 if len(plot.curves) < 4 else 2)
@@ -143,7 +127,6 @@ STUDIES = (
     "surface_contact",
     "stiffeners",
     "damping",
-    "model_ladder",
     "histories",
     "stick_slip",
     "interpretations",

@@ -56,8 +56,6 @@ COPIED = {
     "three-segments-stress": ("three-segments", "snapshots/stress-2-first-peak.png"),
     "drawn-out-swing": ("drawn-out-sweep", "figures/sweep-residual-vibration.png"),
     "benchmarks": ("convergence", "figures/benchmarks.png"),
-    "meshes": ("convergence", "figures/mesh.png"),
-    "solid": ("convergence", "figures/solid-frequencies.png"),
 }
 
 

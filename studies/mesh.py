@@ -14,7 +14,7 @@ from dynamics.trajectory import Trajectory
 from runs.case.build import build_boom
 from runs.pipeline.models import MotionPlan
 from studies.motions import friction_case, gap_system, scale_mesh, set_duration, shell_of
-from studies.refined import Refined, error_plot, refined_table
+from studies.refined import Refined, refined_table
 from studies.study import Piece, Progress, define_study
 
 # Permitted error of the default mesh, relative to the limit of infinitely fine ones.
@@ -60,14 +60,6 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     finest = f"edges × {sizes.meshes[-1]:g}"
     for one in found:
         yield one.against_limit(f"{one.what}, default mesh", sizes.default, finest, ALLOWED)
-    yield error_plot(
-        "mesh",
-        "The shell settles as its mesh refines",
-        "edges over the default ones",
-        found,
-        "Relative distance from Richardson's limit of the three finest meshes, for the paper's "
-        "boom with friction.",
-    )
 
 
 def peak_heights(motion: Trajectory) -> list[float]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from runs.report.tables import Table
-from studies.study import Kind, Plot, Proof
+from studies.study import Kind, Proof
 
 # Safety factor of a grid convergence index of three or more grids (Roache 1998).
 SAFETY = 1.25
@@ -98,11 +98,8 @@ class Refined:
         if not self.converges and size == self.sizes[-1]:
             raise ValueError(f"{what}: the finest mesh would be held against itself")
         value = self.values[self.sizes.index(size)]
-        source, order = (
-            ("limit of its refinement (Richardson 1911)", self.order)
-            if self.converges
-            else (finest, None)
-        )
+        source = "limit of its refinement (Richardson 1911)" if self.converges else finest
+        order = self.order if self.converges else None
         return Proof(what, value, self.best, self.unit, "other code", source, allowed, order)
 
     @property
@@ -146,18 +143,3 @@ def refined_table(
         ],
         notes,
     )
-
-
-def error_plot(name: str, title: str, x: str, found: Sequence[Refined], caption: str) -> Plot:
-    """Plot errors over the mesh sizes, for quantities with a reference or a limit.
-
-    Args:
-        name, title, x, caption: those of the figure.
-        found: its curves.
-    """
-    curves = {
-        one.what: (list(one.sizes), one.errors)
-        for one in found
-        if all(map(math.isfinite, one.errors))
-    }
-    return Plot(name, title, x, "relative error", curves, caption)

@@ -53,9 +53,8 @@ class Plot:
     #: Labels with units.
     x: str
     y: str
-    curves: Mapping[
-        str, tuple[Sequence[float], Sequence[float]]
-    ]  #: label → abscissas and ordinates
+    #: Label → abscissas and ordinates.
+    curves: Mapping[str, tuple[Sequence[float], Sequence[float]]]
     caption: str  #: sentences
     logarithmic: bool = True  #: whether both axes are
 

@@ -105,12 +105,7 @@ def boom_lift() -> Iterator[Proof]:
 
 
 def lift_frequency(retracted: float, mass: float) -> float:
-    """Return the first frequency in Hz of three boxes that are rigid where they overlap.
-
-    Args:
-        retracted: length of both overlaps over that of the fly.
-        mass: at the tip in kg.
-    """
+    """Return the first frequency (Hz), with overlaps part retracted and a tip mass (kg)."""
     boxes = [
         (FOOT * length, BoxSection(*(FOOT * (size - wall) for size in sizes), *[FOOT * wall] * 2))
         for length, *sizes, wall in BOXES

@@ -26,8 +26,7 @@ from studies.numerics_1997.survey import (
 from studies.study import Piece, Plot, Progress, define_study
 
 TITLE = "The statements of the paper by numerics of 1997"
-# Figures show unaccounted energy up to this many percent, and this many points of a curve.
-CUT, POINTS = 150.0, 1000
+POINTS = 1000  # of a curve in a figure
 
 
 @define_study("numerics-1997", TITLE)
@@ -140,7 +139,7 @@ def reach_table(survey: Survey) -> Table:
 
 
 def plots(survey: Survey) -> Iterator[Plot]:
-    """Plot the tip by both iterated schemes at the paper's step, and their energy."""
+    """Plot the tip by both iterated schemes at the paper's step."""
     for name, what, example, samples in (
         ("numerics-1997-free", "Without friction", survey.without, survey.free),
         ("numerics-1997-friction", "With friction", survey.with_friction, survey.frictional),
@@ -156,24 +155,9 @@ def plots(survey: Survey) -> Iterator[Plot]:
         yield Plot(
             name,
             f"{what}: the beam elements' tip, solved accurately and by numerics of 1997",
-            "time (s)",
-            "tip (mm)",
+            *("time (s)", "tip (mm)"),
             {label: _curve(run.time, 1e3 * run.tip) for label, run in runs.items()},
             f"{1e3 * PAPER_STEP:g} ms; of {MEMBERS * len(MODES)} runs the one that lasts longest.",
-            logarithmic=False,
-        )
-        yield Plot(
-            f"{name}-energy",
-            f"{what}: energy from nowhere",
-            "time (s)",
-            "% of the energy put in",
-            {
-                # Until the cut is passed.
-                label: _curve(run.time[shown], TO_PERCENT * run.balance[shown])
-                for label, run in runs.items()
-                for shown in [np.cumsum(~(TO_PERCENT * run.balance < CUT)) == 0]
-            },
-            f"Gained above, lost below zero; cut at {CUT:g} %.",
             logarithmic=False,
         )
 

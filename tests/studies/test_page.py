@@ -88,9 +88,7 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "taper": {"MODELS": taper.MODELS | {"shell": replace(taper.MODELS["shear-flexible elements"])}},
 }
 # Studies without a proof have no section.
-PROVING = [
-    name for name in STUDIES if name not in ("model_ladder", "interpretations", "validation")
-]
+PROVING = [name for name in STUDIES if name not in ("interpretations", "validation")]
 
 
 def row(cells: Sequence[str]) -> tuple[str, str, str]:

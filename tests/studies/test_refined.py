@@ -12,8 +12,6 @@ from scipy.integrate import quad
 
 from dynamics.excitation import PiecewiseLinear
 from studies.histories import response
-from studies.model_ladder import LADDER
-from studies.motions import friction_case
 from studies.refined import Reference, Refined, refined_table
 
 
@@ -74,10 +72,6 @@ def test_the_finest_is_held_against_its_reference() -> None:
     first, second = refined_table("t", "T", [short, long], "h = {:g}").data
     assert (first["quantity"], first["h = 4"], first["h = 2"]) == ("p (m)", None, 1.2)
     assert (second["h = 4"], second["order"]) == (1.4, pytest.approx(1.0))
-
-
-def test_the_ladder_has_all_models_of_its_case() -> None:
-    assert [name for _, name in LADDER] == [model.name for model in friction_case().models]
 
 
 @pytest.mark.parametrize("omega", [0.0, 3.0])
