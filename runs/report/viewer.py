@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
+from matplotlib.transforms import Affine2D
 from scipy.spatial.transform import Rotation
 
 from geometry.arrays import Array
@@ -40,6 +41,8 @@ PERCENTILE = 99.0
 # Size of a symbol as a part of the boom's length, a smaller one's as a part of it, and the margin
 # around the boom.
 SYMBOL, SMALL, MARGIN = 0.03, 0.6, 0.02
+# Scale at which matplotlib makes smooth polygons of a symbol's curves.
+FINE = 100.0
 # Largest numbers of 16 and of 8 bits.
 _SHORT, _BYTE = 32767, 255
 
@@ -189,9 +192,13 @@ def symbol_lines(scene: Scene, rest: Array, rise: Array, angle: float, scale: fl
         for x in symbol.places:
             place, near = scene.at(rest, symbol.segment, x, symbol.z(scene.boom, x))
             place[2] += (1.0 if symbol.edge == "top" else -1.0) * scale * symbol.clearance
+            if not isinstance(symbol.edge, str):
+                # In front of the wall that would hide it.
+                place[1] = 1.02 * rest[scene.owner == symbol.segment, 1].min()
             fixed = np.zeros(3) if symbol.stands else rest[near]
-            for outline in symbol.turned(angle).to_polygons(closed_only=False):
-                corners = np.insert(size * np.asarray(outline), 1, 0.0, axis=1)
+            path = symbol.turned(angle).transformed(Affine2D().scale(FINE))
+            for outline in path.to_polygons(closed_only=False):
+                corners = np.insert(size / FINE * np.asarray(outline), 1, 0.0, axis=1)
                 offset = np.concatenate([corners + (place - fixed) @ rise, gap])
                 anchor = np.full(len(offset), -1 if symbol.stands else near)
                 found.setdefault((symbol.color, 3.0), []).append((anchor, offset))

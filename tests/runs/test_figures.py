@@ -96,7 +96,7 @@ def labels(axes: Axes) -> list[str]:
 def with_friction(results: Results) -> Results:
     """Return the same run with invented friction: 1 kN up at 9 m, nothing at 10 m."""
     rubbing = {"friction": 0.2, "normal_forces": (4500.0, 5000.0)}
-    joints = tuple(j.model_copy(update=rubbing) for j in results.case.joints)
+    joints = tuple(replace(joint, **rubbing) for joint in results.case.joints)
     data = results.trajectories.copy(deep=True)
     data["friction_force"] = 0.0 * data["contact_force"].fillna(0.0)
     data["friction_force"][dict(station=0)] = 1000.0
