@@ -193,7 +193,7 @@ def test_slow_peaks_are_drawn_with_their_spreads(
     run: Run, tmp_path: Path, sheets: dict[str, Sheet]
 ) -> None:
     """Reference: the numbers of the summary, in mm."""
-    known = {f.path.stem: f for f in draw(run.results, tmp_path) if f.part == "knowledge"}
+    known = {f.path.stem: f for f in draw(run.results, tmp_path) if f.part == "horizons"}
     assert list(known) == ["slow-peaks", "horizons"]
     (axes,) = sheets["slow-peaks"].axes
     for name, container in zip(SERIES, axes.containers, strict=True):
