@@ -123,7 +123,7 @@ def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
     """
     drives = [number for number, joint in enumerate(boom.joints) if joint.drive is not None]
     smallest = np.inf
-    for group in _groups(boom.play_free, models):
+    for group in _groups(boom.bonded, models):
         first = group.softening
         passing = {n: moving_axial_forces(boom, models, group.members, n) for n in drives}
         if not (first.any() or any(passing.values())):

@@ -33,7 +33,7 @@ def travels(
     members: Sequence[BeamMember],
 ) -> list[Travel]:
     """Return the motion of rows by drives: that of each joint, for stops of several together."""
-    return [_travel(boom, models, rows_at, members, course) for course in moved_stations(boom)]
+    return [_travel(boom, models, rows_at, members, group) for group in moved_stations(boom)]
 
 
 def moving_axial_forces(
@@ -63,35 +63,35 @@ def _travel(
     models: Sequence[SegmentModel],
     rows_at: RowsAt,
     members: Sequence[BeamMember],
-    course: MovedStations,
+    group: MovedStations,
 ) -> Travel:
-    moving = rows_at({}).moving(course.stations)
+    moving = rows_at({}).moving(group.stations)
 
     def rows(extension: float) -> Array:
-        return rows_at(course.extensions(extension)).some_rows(moving, lambda row: row)
+        return rows_at(group.extensions(extension)).some_rows(moving, lambda row: row)
 
-    table = RowTable.of(rows, _breaks(boom, models, course))
-    alone = len(course.joints) == 1
-    pressing = moving_axial_forces(boom, models, members, course.joints[0]) if alone else []
-    history = HistorySum(tuple(drive.history for drive in course.drives))
-    against = joint_thrust(boom.segments, boom.joints, course.joints[0]) if alone else 0.0
-    return Travel(history, table, moving, course.suffix, pressing, against)
+    table = RowTable.of(rows, _breaks(boom, models, group))
+    alone = len(group.joints) == 1
+    pressing = moving_axial_forces(boom, models, members, group.joints[0]) if alone else []
+    history = HistorySum(tuple(drive.history for drive in group.drives))
+    against = joint_thrust(boom.segments, boom.joints, group.joints[0]) if alone else 0.0
+    return Travel(history, table, moving, group.suffix, pressing, against)
 
 
-def _breaks(boom: Boom, models: Sequence[SegmentModel], course: MovedStations) -> list[float]:
+def _breaks(boom: Boom, models: Sequence[SegmentModel], group: MovedStations) -> list[float]:
     """Return the extensions in m at which a node passes a station, and the ends of the reach."""
-    joint = boom.joints[course.joints[-1]]
+    joint = boom.joints[group.joints[-1]]
     outer, inner = (
         np.concatenate([c.breaks for c in models[segment].components.values()])
         for segment in (joint.outer, joint.inner)
     )
     passed = []
-    if len(course.joints) == 1:
+    if len(group.joints) == 1:
         passed += [x - inner for x in joint.stations] + [outer - x for x in joint.stations]
     for stop in boom.stops:
-        if drives_below(boom.joints, stop.segment) == course.joints:
+        if drives_below(boom.joints, stop.segment) == group.joints:
             passed += [stop.x - c.breaks for c in models[stop.segment].components.values()]
-    return _between(boom, course.reach, passed)
+    return _between(boom, group.reach, passed)
 
 
 def _between(boom: Boom, reach: tuple[float, float], passed: Sequence[Array]) -> list[float]:

@@ -133,8 +133,10 @@ def commands() -> str:
             lines += ["| option | meaning |", "| :-- | :-- |"]
         for option in options:
             value = f" {option.metavar}" if option.metavar and not option.is_flag else ""
-            told = (option.help or "").replace("\\[", "[").replace("|", "\\|")
-            lines.append(f"| `{option.opts[0]}{value}` | {told} |".replace("N|auto", "N\\|auto"))
+            help_text = (option.help or "").replace("\\[", "[").replace("|", "\\|")
+            lines.append(
+                f"| `{option.opts[0]}{value}` | {help_text} |".replace("N|auto", "N\\|auto")
+            )
         lines.append("")
     return "\n".join(lines)
 

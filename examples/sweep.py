@@ -22,5 +22,5 @@ def rebound(restitution: float) -> float:
 
 
 if __name__ == "__main__":
-    for asked in np.linspace(0.2, 1.0, 5):
-        print(f"{asked:.1f}: {rebound(asked):.4f}")
+    for gap in np.linspace(0.2, 1.0, 5):
+        print(f"{gap:.1f}: {rebound(gap):.4f}")

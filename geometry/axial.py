@@ -101,10 +101,10 @@ class MovingForce:
     direction: int
     force: float
 
-    def more(self, x: Array, way: Array) -> Array:
-        """Return (..., num_places) added P in N at x in m, at extensions ``way`` (...) in m."""
+    def more(self, x: Array, extension: Array) -> Array:
+        """Return (..., num_places) added P in N at x in m, at an ``extension`` (...) in m."""
         passed = self.direction * (x - self.x)
-        far = np.asarray(way)[..., None]
+        far = np.asarray(extension)[..., None]
         out, back = (passed > 0.0) & (passed < far), (far < passed) & (passed < 0.0)
         return np.asarray(self.force * (out.astype(float) - back))
 
@@ -167,12 +167,12 @@ def moving_force_places(
 ) -> set[float]:
     """Return the x in m on a segment between which axial forces move along it."""
     return {
-        found.x + found.direction * way
+        found.x + found.direction * extension
         for number, joint in enumerate(joints)
         if joint.drive is not None
         and (found := moving_force(segments, joints, number)) is not None
         and found.segment == segment
-        for way in (0.0, *joint.drive.reach)
+        for extension in (0.0, *joint.drive.reach)
     }
 
 

@@ -123,7 +123,7 @@ class Boom:
         return any(joint.lateral_play is not None for joint in self.joints)
 
     @cached_property
-    def play_free(self) -> Boom:
+    def bonded(self) -> Boom:
         """The same boom with all joints bonded."""
         tied = tuple(joint.without_play for joint in self.joints)
         return replace(self, joints=tied)
@@ -172,12 +172,12 @@ class Boom:
             place[joint.inner == segment]
             for joint in self.joints
             if joint.drive is not None and segment in (joint.outer, joint.inner)
-            for way in (0.0, *joint.drive.reach)
-            for place in places(joint, way)
+            for extension in (0.0, *joint.drive.reach)
+            for place in places(joint, extension)
         }
         if drives := drives_of(self.joints, segment):
             moved = [stop.x for stop in self.stops if stop.segment == segment]
-            found |= {x - way for x in moved for way in reach(drives)}
+            found |= {x - extension for x in moved for extension in reach(drives)}
         return tuple(sorted(found | moving_force_places(self.segments, self.joints, segment)))
 
     def stations_of(self, segment: int) -> tuple[float, ...]:

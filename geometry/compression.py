@@ -21,7 +21,7 @@ class Compression:
     Args:
         places: (num_pieces + 1) ends of the pieces, rising x in m; none where P is 0 everywhere.
         ends: (num_pieces) P at both ends of each.
-        handed: the whole axial force in N, which the segment transfers where it is held.
+        transferred: the whole axial force in N, which the segment transfers where it is held.
     """
 
     places: tuple[float, ...] = ()

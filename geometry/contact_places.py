@@ -161,14 +161,14 @@ class Pad:
         """x in m of the middle of its area, through which its resultant goes."""
         return self.x if self.patch is None else 0.5 * (self.patch.start + self.patch.end)
 
-    def travels(self, way: float) -> tuple[float, float]:
-        """Return its travel in m along the outer and the inner segment at the extension ``way``."""
-        on_outer = way if self.carrier == "inner" else 0.0
-        return on_outer, -way if self.carrier == "outer" else 0.0
+    def travels(self, extension: float) -> tuple[float, float]:
+        """Return its travel in m along the outer and the inner segment at an extension in m."""
+        on_outer = extension if self.carrier == "inner" else 0.0
+        return on_outer, -extension if self.carrier == "outer" else 0.0
 
-    def extended(self, boom: Boom, way: float) -> Pad:
-        """Return the pad where its joint is extended by ``way`` in m."""
-        on_outer, on_inner = self.travels(way)
+    def extended(self, boom: Boom, extension: float) -> Pad:
+        """Return the pad where its joint is extended by ``extension`` in m."""
+        on_outer, on_inner = self.travels(extension)
         inner, outer = (
             stretch.moved(boom.segments[number], by)
             for stretch, number, by in zip(
@@ -310,9 +310,9 @@ class StopPatch:
     pressed: Stretch
     reach: tuple[float, float]
 
-    def extended(self, boom: Boom, way: float) -> StopPatch:
-        """Return the rest where its segment is extended by ``way`` in m."""
-        pressed = self.pressed.moved(boom.segments[self.stop.segment], -way)
+    def extended(self, boom: Boom, extension: float) -> StopPatch:
+        """Return the rest where its segment is extended by ``extension`` in m."""
+        pressed = self.pressed.moved(boom.segments[self.stop.segment], -extension)
         return replace(self, pressed=pressed)
 
 

@@ -51,9 +51,9 @@ def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
 
 
 def check_room_on_the_way(
-    where: str, joint: Joint, outer: Segment, inner: Segment, way: float
+    where: str, joint: Joint, outer: Segment, inner: Segment, extension: float
 ) -> None:
-    """Check that the inner segment of a flat joint still has its play at the extension ``way``.
+    """Check that the inner segment of a flat joint still has its play at an extension.
 
     Raises:
         BoomError: it has not; at the drive ``where``.
@@ -61,25 +61,28 @@ def check_room_on_the_way(
     if outer.section is None or inner.section is None:
         return
     near = SAME_PLACE * outer.length
-    height, width = room(joint, outer, inner, way)
+    height, width = room(joint, outer, inner, extension)
     if height < joint.play - near or width < 0.0:
         raise BoomError(
             where,
-            f"draws {inner.name!r} by {way:g} m to where it does not fit in {outer.name!r}: "
+            f"draws {inner.name!r} by {extension:g} m to where it does not fit in {outer.name!r}: "
             f"{height:.6g} m of height and {width:.6g} m of width are free there, and a play of "
             f"{joint.play:.6g} m is asked for; make the travel or the taper smaller",
         )
 
 
-def room(joint: Joint, outer: Segment, inner: Segment, way: float = 0.0) -> tuple[float, float]:
+def room(
+    joint: Joint, outer: Segment, inner: Segment, extension: float = 0.0
+) -> tuple[float, float]:
     """Return the least room of the inner segment for motion along z, and along y, in m.
 
-    At the ends of the overlap, extended by ``way`` in m, of segments whose sections are known;
+    At the ends of the overlap after an extension in m, of segments with known sections;
     a taper is linear between them.
     """
-    first, last = max(outer.start, inner.start + way), min(outer.end, inner.end + way)
+    first, last = max(outer.start, inner.start + extension), min(outer.end, inner.end + extension)
     found = [
-        free_room(outer.section_at(x), inner.section_at(x - way), joint.play) for x in (first, last)
+        free_room(outer.section_at(x), inner.section_at(x - extension), joint.play)
+        for x in (first, last)
     ]
     heights, widths = zip(*found, strict=True)
     return min(heights), min(widths)
@@ -178,13 +181,13 @@ def check_pads_on_the_way(where: str, joint: Joint, boom: Boom) -> None:
             )
     for key, pad in pads.items():
         for x, carrier in zip(joint.stations, joint.drive.carriers, strict=True):
-            for way, edge in product(joint.drive.reach, pad.span(x, boom.overlap(joint))):
-                slides, by = (outer, way) if carrier == "inner" else (inner, -way)
+            for extension, edge in product(joint.drive.reach, pad.span(x, boom.overlap(joint))):
+                slides, by = (outer, extension) if carrier == "inner" else (inner, -extension)
                 if not slides.holds(edge + by):
                     raise BoomError(
                         f"{key}.length",
                         f"the pad at {x:g} m leaves {slides.name!r} as {inner.name!r} is drawn by "
-                        f"{way:g} m; make it shorter, or move the station",
+                        f"{extension:g} m; make it shorter, or move the station",
                     )
 
 

@@ -118,14 +118,14 @@ def _measured(
         yield (x, low_y, low_z), (x, *high), _WALLS * across, _WALLS_GROWTH
     for rest in stop_patches:
         if rest.stop.segment == number:
-            extended = [rest.extended(boom, way) for way in rest.reach]
+            extended = [rest.extended(boom, extension) for extension in rest.reach]
             for face in _faces(section, "z"):
                 yield _swept(_corner(one.pressed, face) for one in extended)
     for pad in pads:
         for end, of in enumerate((pad.joint.inner, pad.joint.outer)):
             if of == number:
                 for face in _faces(section, pad.direction):
-                    telescoping_pads = (pad.extended(boom, way) for way in pad.reach)
+                    telescoping_pads = (pad.extended(boom, extension) for extension in pad.reach)
                     yield _swept(_pressed(boom, one, end, face, line) for one in telescoping_pads)
 
 

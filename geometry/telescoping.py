@@ -48,9 +48,9 @@ class MovedStations:
             return None
         return "" if self.joints[0] == 0 else f"-{self.joints[0] + 1}"
 
-    def extensions(self, way: float) -> dict[int, float]:
+    def extensions(self, extension: float) -> dict[int, float]:
         """Return position of a joint → extension in m; stops need the sum of several alone."""
-        return {self.joints[0]: way}
+        return {self.joints[0]: extension}
 
 
 def moved_stations(boom: Boom) -> list[MovedStations]:
@@ -125,11 +125,11 @@ def sampled_extensions(boom: Boom) -> list[dict[int, float]]:
     return [dict(zip(drives, there.tolist(), strict=True)) for there in extensions[:, steps].T]
 
 
-def places(joint: Joint, way: float) -> list[tuple[float, float]]:
+def places(joint: Joint, extension: float) -> list[tuple[float, float]]:
     """Return x in m of each station on the outer and inner segment at an extension in m."""
     carriers = () if joint.drive is None else joint.drive.carriers
     return [
-        (x, x - way) if carrier == "outer" else (x + way, x)
+        (x, x - extension) if carrier == "outer" else (x + extension, x)
         for x, carrier in zip(joint.stations, carriers, strict=True)
     ]
 
@@ -186,22 +186,22 @@ def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
                 f"draws {inner.name!r} in by {-low:g} m, and the diaphragm of {outer.name!r} at "
                 f"{plate.x:g} m is in its way; it must be less than {inner.start - plate.x:g} m",
             )
-    for way in (low, high):
-        there = places(joint, way)
+    for extension in (low, high):
+        there = places(joint, extension)
         for x, (on_outer, on_inner) in zip(joint.stations, there, strict=True):
             if not (outer.holds(on_outer) and inner.holds(on_inner)):
                 raise BoomError(
                     where,
                     f"the station at {x:g} m leaves the overlap as {inner.name!r} is drawn by "
-                    f"{way:g} m; make the travel shorter, or move the station",
+                    f"{extension:g} m; make the travel shorter, or move the station",
                 )
         if any(right - left <= near for (left, _), (right, _) in pairwise(there)):
             raise BoomError(
                 where,
-                f"stations pass one another as {inner.name!r} is drawn by {way:g} m; make the "
-                "travel shorter, or move them",
+                f"stations pass one another as {inner.name!r} is drawn by {extension:g} m; make "
+                "the travel shorter, or move them",
             )
-        check_room_on_the_way(where, joint, outer, inner, way)
+        check_room_on_the_way(where, joint, outer, inner, extension)
 
 
 def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
@@ -219,13 +219,13 @@ def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> Non
                 "make the travel shorter, or move the place",
             )
         return
-    for way in (low, high):
-        held = outer.holds(x + way) if drive.locked == "inner" else inner.holds(x - way)
+    for extension in (low, high):
+        held = outer.holds(x + extension) if drive.locked == "inner" else inner.holds(x - extension)
         if not held:
             raise BoomError(
                 where,
-                f"{x:g} m leaves the overlap as {inner.name!r} is drawn by {way:g} m; make the "
-                "travel shorter, or move the place",
+                f"{x:g} m leaves the overlap as {inner.name!r} is drawn by {extension:g} m; make "
+                "the travel shorter, or move the place",
             )
 
 

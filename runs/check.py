@@ -200,7 +200,7 @@ def _models(case: Case, boom: Boom) -> Table:
     rows = []
     for model in case.models:
         laws = {str(joint.contact) for joint in model.joined(boom).boom.joints}
-        contact = "bonded" if model.play_free else "; ".join(sorted(laws))
+        contact = "bonded" if model.bonded else "; ".join(sorted(laws))
         rows.append((model.name, model.kind, model.describe(), contact))
     headings = ("model", "kind", "description", "contact (k in N/mⁿ)")
     return Table.of_rows("", "Models", headings, rows)

@@ -223,7 +223,7 @@ def critical_factor(boom: Boom, full: BoomShell, reduced: Sequence[ReducedSegmen
     """
     if not boom.compressed:
         return float("inf")
-    held = ties(boom.play_free, full.shells)
+    held = ties(boom.bonded, full.shells)
     factor = BoomCoordinates(full.comm, full.shells, reduced, held, full.lines).critical_factor
     if factor is not None and factor <= 1.0:
         raise NumericsError(

@@ -56,13 +56,13 @@ class _SampledRows:
     """Rows of a boom at some extensions of the joints that its drives move together.
 
     Args:
-        course: the drives; None of rows that stay.
+        group: the drives; None of rows that stay.
         moving: kind and position of each of the rows in the gap system.
         extensions: (num_extensions,) in m, rising.
         touching: contacts, friction and dashpots at each.
     """
 
-    course: MovedStations | None
+    group: MovedStations | None
     moving: Sequence[tuple[Kind, int]]
     extensions: Array
     touching: Sequence[GapBuilder[Reading]]
@@ -107,16 +107,16 @@ class _SampledRows:
 def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]:
     """Sample all rows of a boom where stations pass the rings of a mesh of this size in m."""
     found = []
-    for course in moved_stations(boom):
+    for group in moved_stations(boom):
         pieces = [
             np.linspace(start, end, max(round((end - start) / size), _FEWEST) + 1)
-            for start, end in pairwise(sorted({*course.reach, 0.0}))
+            for start, end in pairwise(sorted({*group.reach, 0.0}))
         ]
-        moving, extensions = full.rows.moving(course.stations), np.unique(np.concatenate(pieces))
+        moving, extensions = full.rows.moving(group.stations), np.unique(np.concatenate(pieces))
         touching = [
-            full.touching.rows(course.extensions(extension)) for extension in extensions.tolist()
+            full.touching.rows(group.extensions(extension)) for extension in extensions.tolist()
         ]
-        found.append(_SampledRows(course, moving, extensions, touching))
+        found.append(_SampledRows(group, moving, extensions, touching))
     moved = {row for sampled in found for row in sampled.moving}
     counts = len(full.rows.contacts), len(full.rows.frictions), len(full.rows.dashpots)
     every = [(kind, row) for kind, count in zip(KINDS, counts, strict=True) for row in range(count)]
@@ -189,17 +189,17 @@ class TelescopingShell:
             beside[..., behind[k] : behind[k + 1]] = pulls
             at = [first_of[kind] + position for kind, position in sampled.moving]
             pulled[at] = beside[sampled.start]
-            if sampled.course is not None:
+            if sampled.group is not None:
                 rows = np.concatenate([coordinates.of_rows(self._rows[k]), beside], axis=2)
                 travel = Travel(
-                    HistorySum(tuple(drive.history for drive in sampled.course.drives)),
+                    HistorySum(tuple(drive.history for drive in sampled.group.drives)),
                     RowTable.through(sampled.extensions, rows),
                     sampled.moving,
-                    sampled.course.suffix,
+                    sampled.group.suffix,
                     _moving_axial_forces(
-                        self._boom, self._full, coordinates, sampled.course, int(behind[-1])
+                        self._boom, self._full, coordinates, sampled.group, int(behind[-1])
                     ),
-                    joint_thrust(self._boom.segments, self._boom.joints, sampled.course.joints[0]),
+                    joint_thrust(self._boom.segments, self._boom.joints, sampled.group.joints[0]),
                 )
                 travels.append(travel)
         omega2 = np.concatenate([omega2 for omega2, _ in self._springs])
@@ -285,14 +285,14 @@ class TelescopingShell:
 
 
 def _moving_axial_forces(
-    boom: Boom, full: BoomShell, coordinates: BoomCoordinates, course: MovedStations, behind: int
+    boom: Boom, full: BoomShell, coordinates: BoomCoordinates, group: MovedStations, behind: int
 ) -> list[MovingAxialForce]:
     """Return the axial force, if any, that moves along with a telescoping joint. Collective.
 
     The remaining coordinates, after these, do not move sections.
     """
-    found = moving_force(boom.segments, boom.joints, course.joints[0])
-    if found is None or len(course.joints) > 1:
+    found = moving_force(boom.segments, boom.joints, group.joints[0])
+    if found is None or len(group.joints) > 1:
         return []
     shell, lines = full.shells[found.segment], np.zeros(0)
     if shell.mesh is not None:
@@ -303,7 +303,7 @@ def _moving_axial_forces(
         lines = x[np.searchsorted(0.5 * (x[1:] + x[:-1]), around)]
     # Where the force passes lines of the mesh.
     extensions = np.sort(found.direction * (full.comm.bcast(lines) - found.x))
-    (low, high), near = course.drives[0].reach, SAME_PLACE * boom.length
+    (low, high), near = group.drives[0].reach, SAME_PLACE * boom.length
     extensions = extensions[(extensions > low - near) & (extensions < high + near)]
     rows = []
     for extension in extensions.tolist():

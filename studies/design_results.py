@@ -123,7 +123,7 @@ def _cantilever() -> Iterator[Proof]:
     rate = np.sqrt(STIFFNESS / arm.mass_per_length) / (2.0 * np.pi * LENGTH**2)
     for number, root in ((1, 1.875104068711961), (2, 4.694091132974175)):
         mode = next(one for one in own.modes if one.number == number)
-        what = f"cantilever, {mode.way}, mode {number}"
+        what = f"cantilever, {mode.motion}, mode {number}"
         yield Proof(what, mode.frequency, root**2 * rate, "Hz", "analytic", "Blevins 1979", CLOSE)
     assert own.motion is not None
     moment = 0.5 * abs(LOAD) * LENGTH**2
@@ -144,7 +144,7 @@ def _cantilever() -> Iterator[Proof]:
 
 def suddenly_loaded_results(boom: Boom, segments: list[SegmentModel]) -> ModelDesignResults:
     """Return half a second of motion of a single-segment boom under a sudden load."""
-    system, along = gap_system(boom.play_free, segments), lines(boom, segments)
+    system, along = gap_system(boom.bonded, segments), lines(boom, segments)
     rest = positions(system)[0.0]
     static = [static_result(boom, system, along, 0.0, rest)]
     motion = simulate(system, duration=0.5)

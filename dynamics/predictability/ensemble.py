@@ -144,8 +144,8 @@ def integrate_ensemble(
 ) -> xr.Dataset:
     """Return the motions of an ensemble, computed on all cores.
 
-    >>> thrown = Motion(ball, duration=1.0, velocity=[3.0])
-    >>> ensemble = integrate_ensemble(thrown, members=3, relative=1e-3, seed=1, vary="velocity")
+    >>> kicked = Motion(ball, duration=1.0, velocity=[3.0])
+    >>> ensemble = integrate_ensemble(kicked, members=3, relative=1e-3, seed=1, vary="velocity")
     >>> dict(ensemble.sizes)
     {'member': 3, 'time': 1001, 'station': 1}
 

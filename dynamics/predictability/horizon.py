@@ -153,8 +153,8 @@ def measure_horizons(
     Few partners suffice for the growth at a small share; its scatter is a measure of its error.
     Horizons at large shares are chance, and are the earlier the more partners there are.
 
-    >>> thrown = Motion(ball, duration=1.0, velocity=[3.0])
-    >>> found = measure_horizons(thrown, [1e-9, 1e-6], "velocity", observer="height")
+    >>> kicked = Motion(ball, duration=1.0, velocity=[3.0])
+    >>> found = measure_horizons(kicked, [1e-9, 1e-6], "velocity", observer="height")
     >>> found.times.shape
     (2, 2)
 

@@ -250,15 +250,15 @@ def series_notes(case: Case) -> list[str]:
         if table is None:
             continue
         (first, early), (last, late) = table[0], table[-1]
-        said = [
+        remarks = [
             *([f"its first value, {early:g}, is held before"] if first > 0.0 else []),
             *(["what is before t = 0 is left out"] if first < 0.0 else []),
             *([f"its last value, {late:g}, is held afterwards"] if last < duration else []),
             *(["what comes after the run is left out"] if last > duration else []),
         ]
-        if said:
+        if remarks:
             lasts = f"lasts from {first:g} to {last:g} s, the run {duration:g} s"
-            notes.append(f"note: the series of {key} {lasts}: {'; '.join(said)}")
+            notes.append(f"note: the series of {key} {lasts}: {'; '.join(remarks)}")
     return notes
 
 

@@ -84,7 +84,7 @@ def check_varied(case: Case, boom: Boom) -> None:
     Raises:
         BoomError: the data are missing.
     """
-    if case.ensemble is None or all(model.play_free for model in case.models):
+    if case.ensemble is None or all(model.bonded for model in case.models):
         return
     vary = case.ensemble.vary
     if vary == "load" and not _loaded(boom):

@@ -153,8 +153,8 @@ def _rows(text: str) -> list[_Row]:
     numbered = enumerate(text.splitlines(), start=1)
     lines = [(number, line.partition("#")[0].strip()) for number, line in numbered]
     lines = [(number, line) for number, line in lines if line]
-    if lines and (said := _SEPARATOR.fullmatch(lines[0][1])):
-        separator = said[1]
+    if lines and (declaration := _SEPARATOR.fullmatch(lines[0][1])):
+        separator = declaration[1]
         del lines[0]
     else:
         separator = next((mark for mark in ";\t" if lines and mark in lines[0][1]), ",")

@@ -48,7 +48,7 @@ def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
 def with_elastic_drives(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
     """Return a model's system with the data of its elastic drives."""
     found = elastic_drives(case, boom)
-    suffixes = {course.suffix: found.get(course.joints[0]) for course in moved_stations(boom)}
+    suffixes = {group.suffix: found.get(group.joints[0]) for group in moved_stations(boom)}
 
     def pulling(travel: Travel) -> Travel:
         return replace(travel, elastic=None if travel.suffix is None else suffixes[travel.suffix])

@@ -198,8 +198,8 @@ def _s5(run: RunQuery) -> Finding:
     within a tenth of one another. First peaks scatter by 0.5 % only.
     """
     run.without_friction()
-    without = run.peak_height(run.play_free())
-    models = [model for model in run.case.models if not model.play_free]
+    without = run.peak_height(run.bonded())
+    models = [model for model in run.case.models if not model.bonded]
     if not models:
         raise MissingData("The case has no model with play.")
     ratio, name = min((run.peak_height(model) / without, model.name) for model in models)
@@ -261,18 +261,18 @@ def _s7(run: RunQuery) -> Finding:
     apart = {place: _apart(run, models, place) for place in ("tip", "head")}
     conform = float(apart["tip"][early].max())
     later = float(apart["tip"][~early].max())
-    without = run.play_free()
-    play_free = min(float(_apart(run, [model, without], "tip").max()) for model in models)
+    without = run.bonded()
+    bonded = min(float(_apart(run, [model, without], "tip").max()) for model in models)
     head = float(apart["head"].max())
     return Finding(
         _all_of(
             _above(DIVERGENCE, conform, 0.0),
             _above(later, conform, 0.0),
-            _above(play_free, DIVERGENCE, 0.0),
+            _above(bonded, DIVERGENCE, 0.0),
             _above(head, max(conform, later), 0.0),
         ),
         f"Largest difference of the tips of {len(models)} models with play up to {CONFORMITY:g} s; "
-        f"{later:.2f} later, {play_free:.2f} at least between one of them and the play-free one, "
+        f"{later:.2f} later, {bonded:.2f} at least between one of them and the play-free one, "
         f"and {head:.2f} of the range at the head.",
         conform,
         DIVERGENCE,
@@ -308,7 +308,7 @@ def _s9(run: RunQuery) -> Finding:
     their contact law alone, with another exponent n. Threshold: 5 %, less than what the models
     of S4 are apart. The stiffness may differ too, since its unit depends on n.
     """
-    untied = [model for model in run.case.models if not model.play_free]
+    untied = [model for model in run.case.models if not model.bonded]
     differences = [
         (abs(run.peak_height(a) / run.peak_height(b) - 1.0), a.name, b.name)
         for a, b in combinations(untied, 2)

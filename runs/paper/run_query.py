@@ -134,22 +134,20 @@ class RunQuery:
         """Return the paper's beam model with play."""
         return self.one(
             "beam-fe",
-            lambda model: (
-                not model.play_free and getattr(model, "theory", None) == "euler-bernoulli"
-            ),
+            lambda model: not model.bonded and getattr(model, "theory", None) == "euler-bernoulli",
         )
 
     def shell(self) -> Model:
         """Return the shell."""
         return self.one("shell", lambda model: model.meshed)
 
-    def play_free(self) -> Model:
+    def bonded(self) -> Model:
         """Return the beam model without play."""
-        return self.one("beam-fe-tied", lambda model: model.play_free)
+        return self.one("beam-fe-tied", lambda model: model.bonded)
 
     def with_play(self) -> list[Model]:
         """Return all models with contact between segments, two at least."""
-        models = [model for model in self.case.models if not model.play_free]
+        models = [model for model in self.case.models if not model.bonded]
         if len(models) < 2:
             raise MissingData("It takes two models with play to compare.")
         return models

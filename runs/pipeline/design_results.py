@@ -131,20 +131,18 @@ class DesignResults:
     quality_notes: list[QualityNote] = field(default_factory=list)
 
 
-def play_effects(
-    models: list[Model], answers: Mapping[str, ModelDesignResults]
-) -> list[PlayEffect]:
+def play_effects(models: list[Model], design: Mapping[str, ModelDesignResults]) -> list[PlayEffect]:
     """Return the increases by play of each model with play.
 
     Args:
         models: those of the case without failure.
-        answers: design results of each.
+        design: design results of each.
     """
     return [
         PlayEffect(model.name, [*_at_rest(own), *_in_motion(own)])
         for model in models
-        if not model.play_free
-        for own in [answers[model.name]]
+        if not model.bonded
+        for own in [design[model.name]]
     ]
 
 
@@ -156,8 +154,10 @@ def _at_rest(own: ModelDesignResults) -> Iterator[PlayDifference]:
         yield PlayDifference("deflection at rest", "tip", "m", abs(rest.tip), abs(other.tip))
     if own.modes and own.modes_bonded:
         first = own.modes[0]
-        alike = (mode.frequency for mode in own.modes_bonded if mode.way == first.way)
-        yield PlayDifference("first frequency", first.way, "Hz", first.frequency, next(alike, 0.0))
+        alike = (mode.frequency for mode in own.modes_bonded if mode.motion == first.motion)
+        yield PlayDifference(
+            "first frequency", first.motion, "Hz", first.frequency, next(alike, 0.0)
+        )
 
 
 def _in_motion(own: ModelDesignResults) -> Iterator[PlayDifference]:

@@ -92,7 +92,7 @@ def evaluate_model(
         trajectory: its motion.
         shell: its output besides the trajectory; None for a beam.
     """
-    system, shown = built.system.gather_loads(), boom.play_free if model.play_free else boom
+    system, shown = built.system.gather_loads(), boom.bonded if model.bonded else boom
     lines = with_cylinders(shown, system, model.lines(boom, built))
     played, times = _Model(shown, system, lines), instants(system, case.time.duration)
     found, extended = positions(system, times), extended_positions(system, case.time.duration)
@@ -102,7 +102,7 @@ def evaluate_model(
         walls = wall_stresses(shown, shell.stresses)
         own = replace(own, motion=replace(own.motion, walls=walls))
     own = replace(own, residual_vibration=residual_vibration(system, trajectory, case, model))
-    if model.play_free or not boom.joints:
+    if model.bonded or not boom.joints:
         return own
     try:
         bonded = _bonded(boom, model, played, found)
@@ -131,7 +131,7 @@ def evaluate_model(
 
 def _bonded(boom: Boom, model: Model, played: _Model, found: Mapping[float, Array]) -> _Model:
     """Return the same model without play."""
-    without = boom.play_free
+    without = boom.bonded
     if (own := model.without_play(boom)) is not None:
         system = own[0].gather_loads()
         return _Model(without, system, with_cylinders(without, system, own[1]))
@@ -158,14 +158,14 @@ def evaluate_run(
     """
     found = statics(case, boom)
     ran = [model for model in case.models if model.name in models]
-    answers = DesignResults(
+    design = DesignResults(
         models=dict(models),
         reactions=[] if found is None else reactions(found.with_play),
         reactions_bonded=[] if found is None else reactions(found.bonded),
         modes=_compared_modes(boom, ran, models),
         play=play_effects(ran, models) if boom.joints else [],
     )
-    return replace(answers, quality_notes=[*quality_notes(summary, answers, case.time.duration)])
+    return replace(design, quality_notes=[*quality_notes(summary, design, case.time.duration)])
 
 
 def _compared_modes(
@@ -173,7 +173,7 @@ def _compared_modes(
 ) -> ModeComparison | None:
     with_modes = [model for model in ran if models[model.name].modes]
     reference = reference_of(with_modes)
-    others = [m.name for m in with_modes if not m.play_free and m.name != reference]
+    others = [m.name for m in with_modes if not m.bonded and m.name != reference]
     if reference is None or not others:
         return None
     own = models[reference].modes

@@ -73,7 +73,7 @@ def slow_below(boom: Boom, time: TimeTable) -> float | None:
     try:
         with np.errstate(all="ignore"):
             segments = finite_element_segments(boom, ELEMENT_LENGTH, "euler-bernoulli", True)
-            frequencies = gap_system(boom.play_free, segments).frequencies
+            frequencies = gap_system(boom.bonded, segments).frequencies
     except (ArithmeticError, np.linalg.LinAlgError, ValueError):
         return None
     elastic = frequencies[frequencies > 0.0]

@@ -51,7 +51,7 @@ DECIDES: Mapping[str, str] = {
 
 def reference_of(models: Iterable[Model]) -> str | None:
     """Return the reference of the other models: the last shell, else the last model with play."""
-    with_play = [model for model in models if not model.play_free]
+    with_play = [model for model in models if not model.bonded]
     shells = [model for model in with_play if model.meshed]
     candidates = shells or with_play
     return candidates[-1].name if candidates else None
@@ -65,10 +65,10 @@ def leading(case: Case, models: Sequence[str]) -> set[str]:
     if len(models) <= 3:
         return set(models)
     ran = [model for model in case.models if model.name in models]
-    loose = [model for model in ran if not model.play_free]
+    loose = [model for model in ran if not model.bonded]
     shells = [model.name for model in loose if model.meshed]
     beams = [model.name for model in loose if not model.meshed]
-    tied = [model.name for model in ran if model.play_free]
+    tied = [model.name for model in ran if model.bonded]
     return {*shells[-1:], *beams[-1:], *tied[:1]}
 
 
@@ -119,17 +119,17 @@ def _others(data: xr.Dataset, reference: str) -> list[str]:
 
 
 def quality_notes(
-    summary: Summary, answers: DesignResults, duration: float
+    summary: Summary, design: DesignResults, duration: float
 ) -> Iterator[QualityNote]:
     """Yield notes on the accuracy of a run.
 
     Args:
         summary: that of the run.
-        answers: its design results.
+        design: its design results.
         duration: duration of the motion in s.
     """
     models = summary.models
-    for line in _agreement(answers):
+    for line in _agreement(design):
         yield QualityNote("agreement", line)
     for line in _horizon(summary, duration):
         yield QualityNote("horizon", line)
@@ -163,14 +163,14 @@ def _percent(part: float) -> str:
     return f"{TO_PERCENT * part:.2g} %"
 
 
-def _agreement(answers: DesignResults) -> Iterator[str]:
+def _agreement(design: DesignResults) -> Iterator[str]:
     """Yield the agreement of the models with play with the reference."""
-    if answers.modes is None:
+    if design.modes is None:
         return
-    reference = answers.modes.reference
-    own = answers.models[reference]
-    for name, matches in answers.modes.matches.items():
-        other, parts = answers.models[name], []
+    reference = design.modes.reference
+    own = design.models[reference]
+    for name, matches in design.modes.matches.items():
+        other, parts = design.models[name], []
         if (off := off_at_rest(own, other)) is not None:
             parts.append(f"{_percent(abs(off))} in the tip at rest")
         if (first := matches[0]) is not None:

@@ -22,7 +22,7 @@ MODES = 8
 _PLACES = 21
 
 # The kinds of motion in a mode, and their names.
-_WAYS: Mapping[Quantity, str] = {
+_MOTIONS: Mapping[Quantity, str] = {
     "deflection": "bending in z",
     "lateral": "bending in y",
     "twist": "twist",
@@ -47,14 +47,14 @@ class Mode:
 
     Args:
         frequency: in Hz.
-        way: dominant motion: ``bending in z``, ``bending in y``, ``twist``.
-        number: number among the model's modes of this way, from 1 on.
-        share: part of that way in the kinetic energy, from 0 to 1.
+        motion: the dominant one: ``bending in z``, ``bending in y``, ``twist``.
+        number: number among the model's modes of this motion, from 1 on.
+        share: part of that motion in the kinetic energy, from 0 to 1.
         shapes: those of each segment, scaled to a maximum of 1 m or 1 rad of the dominant motion.
     """
 
     frequency: float
-    way: str
+    motion: str
     number: int
     share: float
     shapes: list[Shape]
@@ -94,7 +94,7 @@ class ModeComparison:
 def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> list[Mode]:
     """Return the first modes, by rising frequency.
 
-    The way of a mode is that with the largest part of the kinetic energy, without rotary inertia of
+    A mode's motion has the largest part of the kinetic energy, without rotary inertia of
     cross-sections and without point masses.
 
     Args:
@@ -104,12 +104,12 @@ def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> 
         rest: equilibrium (num_modes,).
     """
     omega, shapes = pressed_modes(system, rest)
-    ways: list[Quantity] = [name for name in _WAYS if name in lines[0].rows]
+    motions: list[Quantity] = [name for name in _MOTIONS if name in lines[0].rows]
     even = [np.linspace(line.x[0], line.x[-1], _PLACES) for line in lines]
     found: list[Mode] = []
     for frequency, shape in zip(omega[:MODES] / (2.0 * np.pi), shapes.T, strict=False):
         curves = [
-            {name: np.interp(x, line.x, line.rows[name] @ shape) for name in ways}
+            {name: np.interp(x, line.x, line.rows[name] @ shape) for name in motions}
             for x, line in zip(even, lines, strict=True)
         ]
         energies = {
@@ -117,17 +117,17 @@ def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> 
                 inertia(segment, name) * segment.length * float((of[name] ** 2).mean())
                 for segment, of in zip(boom.segments, curves, strict=True)
             )
-            for name in ways
+            for name in motions
         }
-        way, whole = max(ways, key=lambda name: energies[name]), sum(energies.values())
-        most = np.concatenate([of[way] for of in curves])
+        motion, whole = max(motions, key=lambda name: energies[name]), sum(energies.values())
+        most = np.concatenate([of[motion] for of in curves])
         scale = 1.0 / float(most[np.abs(most).argmax()] or 1.0)
         found.append(
             Mode(
                 frequency=float(frequency),
-                way=_WAYS[way],
-                number=1 + sum(mode.way == _WAYS[way] for mode in found),
-                share=energies[way] / whole if whole else 0.0,
+                motion=_MOTIONS[motion],
+                number=1 + sum(mode.motion == _MOTIONS[motion] for mode in found),
+                share=energies[motion] / whole if whole else 0.0,
                 shapes=[
                     Shape(
                         segment.name,
@@ -141,9 +141,9 @@ def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> 
     return found
 
 
-def inertia(segment: Segment, way: Quantity) -> float:
+def inertia(segment: Segment, motion: Quantity) -> float:
     """Return the mass per length in kg/m, or the rotary inertia per length in kg·m of a twist."""
-    if way != "twist":
+    if motion != "twist":
         return segment.mass_per_length
     assert segment.lateral is not None
     return segment.lateral.polar_inertia
@@ -182,7 +182,7 @@ def _vector(boom: Boom, mode: Mode) -> Array:
     parts = [
         np.sqrt(inertia(segment, name) * segment.length / _PLACES) * np.array(shape.curves[name])
         for segment, shape in zip(boom.segments, mode.shapes, strict=True)
-        for name in _WAYS
+        for name in _MOTIONS
         if name in shape.curves
     ]
     return np.concatenate(parts)

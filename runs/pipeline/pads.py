@@ -56,7 +56,7 @@ def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
     """
     if not any(table.pad or table.pads for table in case.joints):
         return
-    with_play = (model for model in case.models if not model.play_free)
+    with_play = (model for model in case.models if not model.bonded)
     for model in (model for model in with_play if model.name in data["model"].values):
         seen = model.joined(boom).boom
         station, own = count(), data["contact_force_peak"].sel(model=model.name)

@@ -85,7 +85,7 @@ def _in_vain(case: Case) -> Iterator[str]:
 
 def _pads(case: Case, boom: Boom) -> Iterator[str]:
     """Yield contacts that are softer than the inner segment in bending."""
-    for model in (model for model in case.models if not model.play_free):
+    for model in (model for model in case.models if not model.bonded):
         for joint in model.joined(boom).boom.joints:
             inner = boom.segments[joint.inner]
             bending = 3.0 * inner.bending_stiffness / inner.length**3

@@ -64,23 +64,23 @@ class Run:
             NumericsError: a common result of the models, such as their comparison, is not finite.
         """
         case, boom, summary = self.results.case, self.results.boom, self.results.summary
-        answers = {}
+        design = {}
         for name, ran in self.ran.items():
             own = summary.models[name]
             with ran.stages.stage("design results"), np.errstate(all="ignore"):
                 try:
-                    answers[name] = evaluate_model(
+                    design[name] = evaluate_model(
                         boom, case, ran.model, ran.built, ran.motion.trajectory, ran.shell
                     )
-                    check_finite(answers[name])
+                    check_finite(design[name])
                 except NUMERICS as error:
-                    summary.failures[name], answers[name] = (
+                    summary.failures[name], design[name] = (
                         failure_reason(error),
                         ModelDesignResults(),
                     )
             own.seconds = ran.stages.seconds
             own.wall_time = (own.wall_time or 0.0) + own.seconds["design results"]
-        summary.design = evaluate_run(boom, case, summary, answers)
+        summary.design = evaluate_run(boom, case, summary, design)
         self.results.conclude()
         check_finite(summary)
 

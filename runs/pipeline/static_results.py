@@ -269,8 +269,8 @@ def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> 
         own = [float(gaps[system.station_of_row == next(numbers)].mean()) for _ in joint.stations]
         if len(own) > 1:
             before = travel(boom, joint.outer, time)
-            way = travel(boom, joint.inner, time) - before
-            on_outer = [x for x, _ in places(joint, way)] if joint.drive else joint.stations
+            extension = travel(boom, joint.inner, time) - before
+            on_outer = [x for x, _ in places(joint, extension)] if joint.drive else joint.stations
             # Pads press at their middles.
             middles = contact_centres(boom, joint)
             on_outer = [

@@ -55,11 +55,11 @@ class Statics(NamedTuple):
 
 def statics(case: Case, boom: Boom) -> Statics | None:
     """Return the static states; None without an equilibrium."""
-    with_play = not all(model.play_free for model in case.models)
+    with_play = not all(model.bonded for model in case.models)
     try:
         with np.errstate(all="ignore"):
             elements = Elements(boom)
-            bonded = static_state(boom.play_free, elements)
+            bonded = static_state(boom.bonded, elements)
             if not with_play:
                 return Statics(bonded, bonded)
             return Statics(static_state(boom_with_play(case, boom), elements), bonded)
@@ -69,7 +69,7 @@ def statics(case: Case, boom: Boom) -> Statics | None:
 
 def boom_with_play(case: Case, boom: Boom) -> Boom:
     """Return the boom of the first model with play."""
-    with_play = next((model for model in case.models if not model.play_free), case.models[0])
+    with_play = next((model for model in case.models if not model.bonded), case.models[0])
     return with_play.joined(boom).boom
 
 

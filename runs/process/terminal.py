@@ -107,12 +107,12 @@ class _Lines(logging.Handler):
 
     def __init__(self) -> None:
         super().__init__(logging.WARNING)
-        self.said: set[str] = set()
+        self._printed: set[str] = set()
 
     def emit(self, record: logging.LogRecord) -> None:
         line = message(record.getMessage())
-        if line not in self.said:
-            self.said.add(line)
+        if line not in self._printed:
+            self._printed.add(line)
             say(line)
 
 

@@ -239,11 +239,11 @@ def _draw(panel: Panel, symbols: Sequence[Symbol]) -> None:
         _draw_segment(panel, number)
     for joint in () if panel.whole else panel.boom.joints:
         _draw_stations(panel, joint)
-    for symbol in (symbol for symbol in symbols if symbol.stands):
+    for symbol in (symbol for symbol in symbols if symbol.grounded):
         panel.draw_symbol(symbol)
     for cylinder in panel.boom.cylinders:
         _draw_cylinder(panel, cylinder)
-    for symbol in (symbol for symbol in symbols if not symbol.stands):
+    for symbol in (symbol for symbol in symbols if not symbol.grounded):
         panel.draw_symbol(symbol)
 
 

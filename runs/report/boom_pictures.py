@@ -105,7 +105,7 @@ class BoomView:
         shown = [symbol for symbol in scene.symbols if len(symbol.places) == 1]
         for symbol in shown:
             (x,) = symbol.places
-            around = self.rest.points if symbol.stands else places
+            around = self.rest.points if symbol.grounded else places
             place, _ = scene.at(around, symbol.segment, x, symbol.z(scene.boom, x))
             place[2] += (1.0 if symbol.edge == "top" else -1.0) * self.scale * symbol.clearance
             sign = marker_style(symbol.path, symbol.color, SIGN)

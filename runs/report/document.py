@@ -65,7 +65,7 @@ def render(
     charts = {f.path.stem: f.chart for f in figures if f.chart} if find_spec("plotly") else {}
     costs = _costs(results)
     names = list(results.summary.models)
-    strokes = theme.strokes(names, [m.name for m in results.case.models if m.play_free])
+    strokes = theme.strokes(names, [m.name for m in results.case.models if m.bonded])
     return page(
         addition.template,
         title=results.case.title,

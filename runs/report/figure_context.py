@@ -81,15 +81,15 @@ class FigureContext:
         self.folder = folder
         self.time = np.asarray(self.data["time"].values, dtype=float)
         self.models = [str(name) for name in self.data["model"].values]
-        self.play_free = [model.name for model in results.case.models if model.play_free]
-        self.with_play = [name for name in self.models if name not in self.play_free]
-        self.strokes = theme.strokes(self.models, self.play_free)
+        self.bonded = [model.name for model in results.case.models if model.bonded]
+        self.with_play = [name for name in self.models if name not in self.bonded]
+        self.strokes = theme.strokes(self.models, self.bonded)
         self.labels = {name: name for name in self.models} | {
             model.name: f"{model.name} ({'shell' if model.meshed else 'beam'})"
             for model in results.case.models
-            if model.play_free
+            if model.bonded
         }
-        self.answers = results.summary.design.models
+        self.design = results.summary.design.models
         self.leading = results.leading_models
 
     def of(self, name: str, variable: str) -> Array:

@@ -142,7 +142,7 @@ def law_table(results: Results) -> Table | None:
     found = [
         (model.name, joint, seen.contact)
         for model in results.ran
-        if not model.play_free
+        if not model.bonded
         for joint, seen in zip(
             results.case.joints,
             model.joined(results.boom).boom.joints,

@@ -103,7 +103,7 @@ def _head(run: FigureContext, place: str) -> Figure:
     sheet, panels = run.over_time(len(models), height, share_y=True)
     curves = {name: TO_MILLI * run.of(name, place) for name in run.models}
     for axes, name in zip(panels, models, strict=True):
-        for other in run.play_free:
+        for other in run.bonded:
             if other != name:
                 run.line(axes, other, run.time, curves[other], linewidth=0.9)
         run.line(axes, name, run.time, curves[name], linewidth=1.1, alone=True)
@@ -112,7 +112,7 @@ def _head(run: FigureContext, place: str) -> Figure:
     sheet.supylabel("deflection (mm)", fontsize=theme.RC["font.size"])
     number = int(place.partition("-")[2] or 1)
     which = run.case.joints[number - 1].outer if run.case.joints else run.case.segments[0].name
-    tied = [run.labels[name] for name in run.play_free if name in run.models]
+    tied = [run.labels[name] for name in run.bonded if name in run.models]
     dashed = f" Dashed: {', '.join(tied)}, without play." if tied else ""
     caption = (
         f"Deflection of the head of the segment {which!r}, model by model.{dashed}"

@@ -61,7 +61,7 @@ def at_rest(run: FigureContext) -> list[Figure]:
         for rest in found[name].static_bonded
         if rest.time == rests[name].time
     ]
-    if tied and not rests.keys() & set(run.play_free):
+    if tied and not rests.keys() & set(run.bonded):
         lines["without play"] = _rest_lines(tied[0], "without play", theme.PLAY_FREE)
     caption = (
         "Static under the maximum load: deflection and section forces. Positive normal forces are "
@@ -106,9 +106,9 @@ def mode_shapes(run: FigureContext) -> list[Figure]:
     sheet, panels = new_sheet(len(modes), 0.9 + 1.15 * len(modes))
     for axes, mode in zip(panels, modes, strict=True):
         for number, shape in enumerate(mode.shapes):
-            if (values := shape.curves.get(_DISPLACED[mode.way])) is not None:
+            if (values := shape.curves.get(_DISPLACED[mode.motion])) is not None:
                 axes.plot(shape.x, values, color=theme.segment_color(number), linewidth=1.8)
-        axes.set_title(f"{formatting.number(mode.frequency, 4)} Hz, {mode.way}")
+        axes.set_title(f"{formatting.number(mode.frequency, 4)} Hz, {mode.motion}")
         axes.set_yticks([0.0])
     panels[-1].set_xlabel("x along the boom (m)")
     caption = (
@@ -122,8 +122,8 @@ def mode_shapes(run: FigureContext) -> list[Figure]:
 
 def _read_first(run: FigureContext) -> Iterator[tuple[str, ModelDesignResults]]:
     for name in run.models:
-        if name in run.leading and name in run.answers:
-            yield name, run.answers[name]
+        if name in run.leading and name in run.design:
+            yield name, run.design[name]
 
 
 def _rest_lines(rest: StaticResult, name: str, color: str) -> dict[str, list[_Line]]:

@@ -101,11 +101,11 @@ def _pressed_table(rests: dict[str, StaticResult], as_extended: str) -> Table | 
 
 
 def _reaction_table(results: Results) -> Table | None:
-    answers = results.summary.design
-    found = answers.reactions
+    design = results.summary.design
+    found = design.reactions
     if not found:
         return None
-    tied = {(one.segment, one.x): one.force for one in answers.reactions_bonded}
+    tied = {(one.segment, one.x): one.force for one in design.reactions_bonded}
     beside = [tied.get((one.segment, one.x)) for one in found]
     columns = (
         Column("support", [f"{one.segment} at {one.x:g} m" for one in found]),
@@ -132,7 +132,7 @@ def _unless_none(title: str, carried: list[float], form: str, unit: str) -> Iter
 def mode_table(results: Results) -> Table | None:
     """Return the first modes of the boom with closed contacts, of all models side by side."""
     of = {
-        name: {(mode.way, mode.number): mode.frequency for mode in own.modes}
+        name: {(mode.motion, mode.number): mode.frequency for mode in own.modes}
         for name, own in results.summary.design.models.items()
         if own.modes
     }
@@ -267,9 +267,9 @@ def stick_slip_table(results: Results) -> Table | None:
 
 def record_tables(results: Results) -> Iterator[Table]:
     """Yield a table for each result that is one record of numbers per model."""
-    answers = results.summary.design.models
+    design = results.summary.design.models
     for name, kind in records(ModelDesignResults).items():
-        found = {m: getattr(own, name) for m, own in answers.items() if getattr(own, name)}
+        found = {m: getattr(own, name) for m, own in design.items() if getattr(own, name)}
         if found:
             columns = metric_columns(kind, list(found.values()))
             yield Table(kind.title, [Column("model", list(found)), *columns], kind.notes, name)

@@ -30,10 +30,10 @@ NEAR = 0.9
 
 def summary_table(results: Results) -> Table | None:
     """Return the design results of the leading models, the reference's before the others'."""
-    names, answers = results.leading_models, results.summary.design.models
-    if not answers:
+    names, design = results.leading_models, results.summary.design.models
+    if not design:
         return None
-    own = [answers[name] for name in names]
+    own = [design[name] for name in names]
     tips = [results.trajectories["tip"].sel(model=name).values for name in names]
     hertz = [one.modes[0].frequency if one.modes else None for one in own]
     # By modal damping, of a vibration without other dissipation.
@@ -91,11 +91,11 @@ def summary_table(results: Results) -> Table | None:
 
 def deviation_note(results: Results) -> str:
     """Return the deviation of the other models with play from the reference; else empty."""
-    answers, reference = results.summary.design.models, results.reference
-    if not answers or reference is None:
+    design, reference = results.summary.design.models, results.reference
+    if not design or reference is None:
         return ""
-    loose = [model.name for model in results.ran if not model.play_free and model.name != reference]
-    offs = {name: off_at_rest(answers[reference], answers[name]) for name in loose}
+    loose = [model.name for model in results.ran if not model.bonded and model.name != reference]
+    offs = {name: off_at_rest(design[reference], design[name]) for name in loose}
     deviations = [
         f"{name} {signed(f'{TO_PERCENT * off:+.2g}')} %"
         for name, off in offs.items()
@@ -189,11 +189,11 @@ def _stress(most: Utilisation) -> str:
     return f"{stress}{_used(most.value, 'yield')}\n{most.segment}, x = {most.x:.1f} m"
 
 
-def _used(part: float | None, borne: str) -> str:
+def _used(part: float | None, limit: str) -> str:
     """Return a utilisation as text."""
     if part is None:
         return ""
-    return f", {percent(part)}" + (f"\nbeyond {borne}" if part > 1.0 else "")
+    return f", {percent(part)}" + (f"\nbeyond {limit}" if part > 1.0 else "")
 
 
 def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]:
@@ -204,7 +204,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     )
     described = (
         f"{model.name}: {model.kind}, {model.describe()}"
-        + (", without play" if model.play_free else "")
+        + (", without play" if model.bonded else "")
         for model in models
     )
     yield f"{'; '.join(described)}."

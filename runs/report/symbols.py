@@ -98,7 +98,7 @@ class Symbol:
         color: of the symbol.
         turns: whether the symbol rotates with the boom.
         clearance: in m between edge and symbol.
-        stands: whether it keeps its initial place when the boom moves.
+        grounded: whether it keeps its initial place when the boom moves.
     """
 
     kind: Literal["supports", "springs", "stops", "masses", "loads"]
@@ -110,7 +110,7 @@ class Symbol:
     color: str = theme.FORCE
     turns: bool = True
     clearance: float = 0.0
-    stands: bool = False
+    grounded: bool = False
 
     def turned(self, angle: float) -> Path:
         """Return the symbol on a boom at an angle in degrees."""
@@ -178,7 +178,7 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
 
 def _support_symbols(boom: Boom) -> Iterator[Symbol]:
     """Yield the symbols of supports other than cylinders."""
-    upright: dict[str, Any] = {"color": theme.INK, "turns": False, "stands": True}
+    upright: dict[str, Any] = {"color": theme.INK, "turns": False, "grounded": True}
     for index, segment in enumerate(boom.segments):
         for support in segment.supports:
             place = (support.x,)

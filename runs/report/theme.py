@@ -101,15 +101,15 @@ class Stroke:
     linestyle: str = "-"
 
 
-def strokes(models: Sequence[str], play_free: Sequence[str]) -> dict[str, Stroke]:
+def strokes(models: Sequence[str], bonded: Sequence[str]) -> dict[str, Stroke]:
     """Return a stroke for each model, independent of the models in a figure.
 
     Args:
         models: names in the order of the case.
-        play_free: those without play, which are the background of the others: grey, dashed.
+        bonded: those without play, which are the background of the others: grey, dashed.
     """
-    with_play = [name for name in models if name not in play_free]
-    drawn = {name: Stroke(PLAY_FREE, "--") for name in play_free}
+    with_play = [name for name in models if name not in bonded]
+    drawn = {name: Stroke(PLAY_FREE, "--") for name in bonded}
     for i, name in enumerate(with_play):
         # Beyond the palette the colours are repeated, dashed.
         again, color = divmod(i, len(PALETTE))

@@ -111,7 +111,7 @@ def _view(run: Run) -> View | None:
         times = np.asarray(shell.fields["time"].values, dtype=float)
         return View.of_shell(name, scene, times[frames(times.size)])
     first = leading(results.case, list(run.beams))
-    with_play = [m.name for m in results.ran if m.name in first and not m.play_free]
+    with_play = [m.name for m in results.ran if m.name in first and not m.bonded]
     name = [*first, *with_play][-1]
     beam, motion = run.beams[name], results.trajectories.sel(model=name)
     scene, stress = Scene.of_beam(results.case, results.boom, beam, motion)
@@ -195,12 +195,12 @@ def symbol_lines(scene: Scene, rest: Array, rise: Array, angle: float, scale: fl
             if not isinstance(symbol.edge, str):
                 # In front of the wall that would hide it.
                 place[1] = 1.02 * rest[scene.owner == symbol.segment, 1].min()
-            fixed = np.zeros(3) if symbol.stands else rest[near]
+            fixed = np.zeros(3) if symbol.grounded else rest[near]
             path = symbol.turned(angle).transformed(Affine2D().scale(FINE))
             for outline in path.to_polygons(closed_only=False):
                 corners = np.insert(size / FINE * np.asarray(outline), 1, 0.0, axis=1)
                 offset = np.concatenate([corners + (place - fixed) @ rise, gap])
-                anchor = np.full(len(offset), -1 if symbol.stands else near)
+                anchor = np.full(len(offset), -1 if symbol.grounded else near)
                 found.setdefault((symbol.color, 3.0), []).append((anchor, offset))
     for cylinder in scene.boom.cylinders:
         edge = scene.edges(cylinder.segment, cylinder.x)[0 if cylinder.direction[1] > 0.0 else 1]

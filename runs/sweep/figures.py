@@ -65,17 +65,17 @@ _Word = TypeVar("_Word", bound=str)
 _SUPERSCRIPT = str.maketrans({"^": "", "2": "²", "3": "³", "4": "⁴", "n": "ⁿ"})
 
 
-def draw(data: xr.Dataset, play_free: Sequence[str], folder: Path) -> None:
+def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
     """Draw the charts.
 
     Args:
         data: of :func:`runs.sweep.output.gather`.
-        play_free: models without play.
+        bonded: models without play.
         folder: where the PNG files go; it must exist.
     """
     data = in_shown_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
-    strokes = _strokes(data, play_free)
+    strokes = _strokes(data, bonded)
     with matplotlib.rc_context(theme.RC):
         if len(keys) == 2:
             for quantity in _changing(data):
@@ -189,8 +189,8 @@ def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
             _finish(sheet, title, folder / "sweep-distances.png")
 
 
-def _strokes(data: xr.Dataset, play_free: Sequence[str]) -> dict[str, theme.Stroke]:
-    return theme.strokes([str(name) for name in data["model"].values], play_free)
+def _strokes(data: xr.Dataset, bonded: Sequence[str]) -> dict[str, theme.Stroke]:
+    return theme.strokes([str(name) for name in data["model"].values], bonded)
 
 
 def _of_models(

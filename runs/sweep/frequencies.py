@@ -54,8 +54,8 @@ def first_frequencies(
     boom = build_boom(case)
     with_play = model.joined(boom)
     found = np.full((len(JOINTS), MODES), np.nan)
-    for row, booms in enumerate((with_play, Joined(boom.play_free))):
-        if row == 0 and model.play_free:
+    for row, booms in enumerate((with_play, Joined(boom.bonded))):
+        if row == 0 and model.bonded:
             continue
         tools = None if comm is None else Workshop(comm, cache=cache)
         try:

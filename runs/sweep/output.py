@@ -78,7 +78,7 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
         figures.mkdir()
         data.to_netcdf(netcdf, engine="scipy")
         _write_csv(data, outcomes, table)
-        draw(data, plan.play_free, figures)
+        draw(data, plan.bonded, figures)
         if plan.reference is not None:
             draw_distances(data.drop_sel(model=plan.reference), plan.reference, figures)
     return data

@@ -53,7 +53,7 @@ class Plan:
     title: str  #: of the case
     variations: Sequence[Variation]  #: at least one
     units: Sequence[str]  #: of each variation, '' for none
-    play_free: Sequence[str]  #: names of the models without play
+    bonded: Sequence[str]  #: names of the models without play
     points: Sequence[Point]  #: all combinations, the last variation changing fastest
     reference: str | None = None  #: the model with which the others are compared, if any
 
@@ -131,8 +131,8 @@ def plan(
     if names == [reference]:
         what = f"nothing is run beside {reference!r}; run another model, too"
         raise BadInput(file, "--against", what)
-    play_free = [model.name for model in run if model.play_free]
-    return Plan(file, whole.title, variations, units, play_free, points, reference)
+    bonded = [model.name for model in run if model.bonded]
+    return Plan(file, whole.title, variations, units, bonded, points, reference)
 
 
 def _written(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:

@@ -220,7 +220,7 @@ def comparable_until(
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     end = float(time[-1])
-    if model.play_free or case.regular:
+    if model.bonded or case.regular:
         return end
     tools = None if comm is None else Workshop(comm, cache=cache)
     plan = MotionPlan.of(build(case, build_boom(case), model, tools).system, case, model)

@@ -37,7 +37,7 @@ def test_a_cantilever_bends_as_its_loads_ask(beam: Callable[..., Segment], kind:
     segment = beam(supports=[Support(3.0, "clamped")], load=-100.0)
     boom = Boom((segment,), (), (Load(0, "z", -2000.0, 8.0, Step()),))
     models = MODELS[kind](boom)
-    system = gap_system(boom.play_free, models).gather_loads()
+    system = gap_system(boom.bonded, models).gather_loads()
     (line,) = lines(boom, models)
     found = line.read(equilibrium(system, system.load))
     s = 8.0 - line.x
@@ -60,7 +60,7 @@ def test_a_column_bears_its_loads_across(beam: Callable[..., Segment], kind: str
     pressed = with_compression([free], [], [Thrust(0, 8.0, force)])
     boom = Boom(pressed, (), (Load(0, "z", -44049.0, 8.0, Step()),))
     models = MODELS[kind](boom)
-    system = gap_system(boom.play_free, models).gather_loads()
+    system = gap_system(boom.bonded, models).gather_loads()
     (line,) = lines(boom, models)
     found = line.read(system.static_response(system.load))
     s = 8.0 - line.x
@@ -89,9 +89,9 @@ def test_a_boom_in_space_bends_sideways_and_twists(spatial_boom: Boom) -> None:
     tied boom in its inner segment, whose stations are the only other places that act on it.
     """
     load = Load(1, "y", 300.0, 19.0, Step())
-    boom = replace(spatial_boom.play_free, loads=(load,))
+    boom = replace(spatial_boom.bonded, loads=(load,))
     models = finite_element_segments(boom, 0.5, "timoshenko", True)
-    system = gap_system(boom.play_free, models).gather_loads()
+    system = gap_system(boom.bonded, models).gather_loads()
     inner = lines(boom, models)[1]
     found = inner.read(equilibrium(system, system.load))
     outside = inner.x > 10.0

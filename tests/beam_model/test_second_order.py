@@ -117,11 +117,11 @@ def test_the_static_tip_grows_as_the_buckling_factor_says(build: Build) -> None:
     """Reference: analytic. δ ≈ δ₀/(1 − 1/λ) of a boom whose shape is near its buckling mode
     (Timoshenko and Gere 1961), to 2 %.
     """
-    straight = gap_system(telescope(0.0).play_free, build(telescope(0.0)))
+    straight = gap_system(telescope(0.0).bonded, build(telescope(0.0)))
     factor = critical_factor(telescope(1e4), build(telescope(1e4)))
     assert factor is not None
     boom = telescope(0.25 * factor * 1e4)
-    pressed = gap_system(boom.play_free, build(boom))
+    pressed = gap_system(boom.bonded, build(boom))
     tips = [s.observers["tip"].row @ equilibrium(s, s.load) for s in (straight, pressed)]
     assert tips[1] / tips[0] == pytest.approx(1.0 / (1.0 - 0.25), rel=0.02)
 
@@ -132,7 +132,7 @@ def test_in_play_the_boom_rests_as_its_contacts_let_it(build: Build) -> None:
     """
     boom = telescope(2.0e4)
     system = gap_system(touching(boom, PowerContact(1e12, 1.0).behind(5e-3)), build(boom))
-    tied = gap_system(boom.play_free, build(boom))
+    tied = gap_system(boom.bonded, build(boom))
     tip = float(system.observers["tip"].row @ equilibrium(system, system.load))
     held = float(tied.observers["tip"].row @ equilibrium(tied, tied.load))
     tilt = 5e-3 + 5e-3 * 2.0 / 2.0 * 6.0

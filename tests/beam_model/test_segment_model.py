@@ -32,7 +32,7 @@ def rest(system: GapSystem) -> dict[str, float]:
 
 def test_tied_boom_has_the_published_frequencies(paper_boom: Boom, elements: Models) -> None:
     """Reference: other code, Euler-Bernoulli elements, to its digits."""
-    system = gap_system(paper_boom.play_free, elements(0.5))
+    system = gap_system(paper_boom.bonded, elements(0.5))
     assert system.frequencies[:4] == pytest.approx([2.0852, 10.463, 30.337, 57.49], rel=5e-5)
     assert not system.laws
     assert system.omega2.min() > 1.0
@@ -46,7 +46,7 @@ def test_tied_boom_has_the_exact_frequencies(paper_boom: Boom, elements: Models)
     exact = tied_frequencies(paper_boom, 110.0)
     assert exact.size == 5
     errors = [
-        gap_system(paper_boom.play_free, elements(length)).frequencies[:5] / exact - 1.0
+        gap_system(paper_boom.bonded, elements(length)).frequencies[:5] / exact - 1.0
         for length in (1.0, 0.5, 0.25)
     ]
     assert np.abs(errors[-1]).max() < 2e-6
@@ -60,8 +60,8 @@ def test_pads_do_not_matter_to_a_tied_boom(paper_boom: Boom, elements: Models) -
     padded = replace(paper_boom, joints=(replace(joint, pad=PadSize(0.2, 0.06)),))
     models = elements(1.0)
     np.testing.assert_array_equal(
-        gap_system(padded.play_free, models).frequencies,
-        gap_system(paper_boom.play_free, models).frequencies,
+        gap_system(padded.bonded, models).frequencies,
+        gap_system(paper_boom.bonded, models).frequencies,
     )
 
 
@@ -78,7 +78,7 @@ def test_tied_boom_rests_where_statics_put_it(
     ]
     expected = tied_deflections(paper_boom, shear)
     for length in (20.0, 0.7):
-        found = rest(gap_system(paper_boom.play_free, elements(length, theory)))
+        found = rest(gap_system(paper_boom.bonded, elements(length, theory)))
         assert found == pytest.approx(expected, rel=1e-7, abs=0.0)
 
 
@@ -90,8 +90,8 @@ def test_tied_series_converges_to_the_tied_elements(
     Measured: frequencies within 6e-4, deflections within 5e-4. With 2 + 3 terms the first
     frequency is off by 9 %, the deflections by 14 %.
     """
-    beams = gap_system(paper_boom.play_free, elements(0.25))
-    found = gap_system(paper_boom.play_free, series((12, 12), "complete"))
+    beams = gap_system(paper_boom.bonded, elements(0.25))
+    found = gap_system(paper_boom.bonded, series((12, 12), "complete"))
     np.testing.assert_allclose(found.frequencies[:4], beams.frequencies[:4], rtol=8e-4)
     assert rest(found) == pytest.approx(rest(beams), rel=7e-4, abs=0.0)
 
@@ -152,7 +152,7 @@ def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
     assert [law.terms[0].exponent for law in system.laws] == [2.0, 2.0, 1.0, 1.0]
     assert list(system.stations) == [9.0, 10.0, 17.5, 19.0]
     assert (system.omega2 == 0.0).sum() == 4
-    tied = gap_system(boom.play_free, models)
+    tied = gap_system(boom.bonded, models)
     assert tied.omega2.min() > 1.0
     assert tied.num_modes == system.num_modes - 4
     # Tied, both segments of a joint deflect alike at its stations.
@@ -205,8 +205,8 @@ def test_tied_halves_have_the_frequencies_of_the_whole(
     for omega in np.sqrt(whole.omega2):
         assert np.abs(others - omega).min() <= 1e-8 * omega
     # A tied model of three ties the play away as well.
-    found = gap_system(leaves[0].play_free, leaves[1]).frequencies
-    for frequency in gap_system(paper_boom.play_free, elements(1.0)).frequencies:
+    found = gap_system(leaves[0].bonded, leaves[1]).frequencies
+    for frequency in gap_system(paper_boom.bonded, elements(1.0)).frequencies:
         assert np.abs(found - frequency).min() <= 1e-8 * frequency
 
 

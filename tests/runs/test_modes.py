@@ -37,7 +37,7 @@ def arm(spatial_boom: Boom, steel: Material) -> Boom:
 
 
 def found(boom: Boom, models: list[SegmentModel]) -> list[Mode]:
-    system = gap_system(boom.play_free, models)
+    system = gap_system(boom.bonded, models)
     return modes(boom, system, lines(boom, models), np.zeros(system.num_modes))
 
 
@@ -48,7 +48,7 @@ def test_modes_are_those_of_an_exact_beam(arm: Boom) -> None:
     root, lateral = arm.segments[0], arm.segments[0].lateral
     assert lateral is not None
     first = finite_element_segments(arm, 0.5, "euler-bernoulli", rotary_inertia=False)
-    names = {(mode.way, mode.number): mode for mode in found(arm, first)}
+    names = {(mode.motion, mode.number): mode for mode in found(arm, first)}
     for way, second_moment in (
         ("bending in z", root.second_moment_of_area),
         ("bending in y", lateral.second_moment_of_area),
@@ -73,11 +73,11 @@ def test_a_mode_is_found_again_whatever_its_place(arm: Boom) -> None:
     for mode, match in zip(here, matched(arm, here, moved), strict=True):
         assert match is not None
         other = moved[match.number - 1]
-        assert (other.way, other.number) == (mode.way, mode.number)
+        assert (other.motion, other.number) == (mode.motion, mode.number)
         assert match.alike > 0.999
         assert match.off == pytest.approx(0.0, abs=2e-3)
-    sideways = [mode for mode in there if mode.way == "bending in y"]
-    upright = [mode for mode in here if mode.way == "bending in z"]
+    sideways = [mode for mode in there if mode.motion == "bending in y"]
+    upright = [mode for mode in here if mode.motion == "bending in z"]
     assert matched(arm, upright, sideways) == [None] * len(upright)
 
 
@@ -88,7 +88,7 @@ def test_rigid_segments_swing_on_their_springs(steel: Material) -> None:
     bar = Segment.of_section("bar", 0.0, 4.0, steel, BOX)
     segment = replace(bar, supports=(Support(0.0, stiffness=1e6), Support(4.0, stiffness=1e6)))
     boom = Boom((segment,), ())
-    system = gap_system(boom.play_free, [rigid_segment(segment)])
+    system = gap_system(boom.bonded, [rigid_segment(segment)])
     found = modes(boom, system, lines(boom, [rigid_segment(segment)]), np.zeros(2))
     mass = bar.mass_per_length * 4.0
     inertia = mass * 4.0**2 / 12.0 + bar.rotary_inertia * 4.0

@@ -251,7 +251,9 @@ def test_every_answer_has_its_table(results: Results) -> None:
     assert own is not None
     assert own.quality_notes
     first = own.models[TIED].modes[0]
-    assert float(modes[f"{first.way} 1"][f"{TIED}\nHz"]) == pytest.approx(first.frequency, rel=1e-3)
+    assert float(modes[f"{first.motion} 1"][f"{TIED}\nHz"]) == pytest.approx(
+        first.frequency, rel=1e-3
+    )
     table = stress_table(results)
     assert table is not None
     assert not any("wall" in heading for heading in table.headings)

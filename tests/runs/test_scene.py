@@ -69,7 +69,7 @@ def test_segments_move_along_as_drives_extend_them(shell: Scene) -> None:
 
 def test_supports_and_forces_are_marked(shell: Scene) -> None:
     """Reference: the case. Two supports that stand, and arrows along both segments."""
-    held = [symbol for symbol in shell.symbols if symbol.stands]
+    held = [symbol for symbol in shell.symbols if symbol.grounded]
     assert [(symbol.kind, symbol.segment, symbol.places) for symbol in held] == [
         ("supports", 0, (0.0,)),
         ("supports", 0, (2.0,)),

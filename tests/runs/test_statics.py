@@ -67,7 +67,7 @@ def test_unequal_plays_are_not_pressed_in() -> None:
 def test_a_boom_without_play_has_no_tilt_and_its_stops_are_its_own() -> None:
     """Reference: by hand. The tip of 9.916 mm presses a stop of 10 N/m, 5 mm above, by 4.916 mm."""
     case = case_file.load(str(CASES / "coarse.toml"))
-    tied = tuple(model for model in case.models if model.play_free)
+    tied = tuple(model for model in case.models if model.bonded)
     stop = StopTable("inner", Distance(head=0.0), play=0.01, stiffness=10.0)
     lines = told(case.model_copy(update={"models": tied, "stops": (stop,)}))
     assert not any("nan" in line or line.startswith("Play rotates") for line in lines)

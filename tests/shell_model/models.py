@@ -66,7 +66,7 @@ def assert_rests_as_beams(system: GapSystem, boom: Boom, rel: float) -> None:
 
 def tied_beams(boom: Boom, length: float = 0.25) -> GapSystem:
     """Timoshenko elements of a length in m, without play."""
-    return gap_system(boom.play_free, finite_element_segments(boom, length, "timoshenko", True))
+    return gap_system(boom.bonded, finite_element_segments(boom, length, "timoshenko", True))
 
 
 def frequencies_off(shell: SegmentShell, direction: Direction = "z", count: int = 1) -> Array:

@@ -84,7 +84,7 @@ class CalibratedTable(BeamTable):
             raise BoomError(
                 key, f"{self.calibrated_by!r} is not a shell of the case; give the name of one"
             )
-        if self.play_free:
+        if self.bonded:
             raise BoomError(
                 key, "a tied model has no stations whose springs could be read; leave it out"
             )

@@ -63,7 +63,7 @@ class BeamElements(CalibratedTable):
         return self.theory == "timoshenko" or super().needs_plates
 
     @property
-    def play_free(self) -> bool:
+    def bonded(self) -> bool:
         return self.tied
 
     def check(self, where: str, joined: Joined) -> None:

@@ -199,14 +199,14 @@ class ModelTable(CaseTable):
         return self
 
     @property
-    def play_free(self) -> bool:
+    def bonded(self) -> bool:
         """True if the segments are joined without play."""
         return False
 
     @property
     def cannot_telescope(self) -> str | None:
         """Why the model cannot telescope, with the remedy; None where it can."""
-        if self.play_free:
+        if self.bonded:
             return f"{self.name!r} is tied, and cannot be drawn out; leave the model out"
         return None
 
@@ -265,7 +265,7 @@ class ModelTable(CaseTable):
             joints = (replace(j, contact=along_z, lateral_contact=along_y) for j in boom.joints)
             boom = replace(boom, joints=tuple(joints))
         for number, joint in enumerate(boom.joints, start=1):
-            if joint.contact is None and (joint.tied or self.play_free):
+            if joint.contact is None and (joint.tied or self.bonded):
                 continue
             try:
                 for law in (joint.law(direction) for direction in boom.directions):
@@ -367,7 +367,7 @@ class BeamTable(ModelTable):
 
         start = perf_counter()
         beams = joined.beams(self)
-        boom = joined.boom.play_free if self.play_free else joined.boom
+        boom = joined.boom.bonded if self.bonded else joined.boom
         system = gap_system(boom, beams.segments)
         factor, seconds = beams.critical_factor, {"build": perf_counter() - start}
         return Built(system, system.num_modes, seconds, factor)
@@ -375,14 +375,14 @@ class BeamTable(ModelTable):
     def lines(self, boom: Boom, built: Built) -> list[Line]:
         from beam_model.lines import lines
 
-        return lines(boom.play_free if self.play_free else boom, self.segments(boom))
+        return lines(boom.bonded if self.bonded else boom, self.segments(boom))
 
     def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
         from beam_model.lines import lines
         from beam_model.segment_model import gap_system
 
         segments = self.segments(boom)
-        return gap_system(boom.play_free, segments), lines(boom.play_free, segments)
+        return gap_system(boom.bonded, segments), lines(boom.bonded, segments)
 
     def critical_factor(self, joined: Joined) -> float | None:
         return joined.beams(self).critical_factor
