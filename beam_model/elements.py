@@ -126,7 +126,7 @@ class PlainElement:
 
 @dataclass(frozen=True, slots=True)
 class TaperedElement:
-    """Element of sections between two. Under the moments 1 and ξ its curvature is f and ξ f, its
+    """Element with a varying section. Under the moments 1 and ξ its curvature is f and ξ f, its
     shear strain 0 and −g/h; integration gives θ and w.
 
     Args:

@@ -41,7 +41,7 @@ def moving_axial_forces(
 ) -> list[MovingAxialForce]:
     """Return the axial force, if any, that moves along with a telescoping joint.
 
-    ``members`` are the segments in any coordinates.
+    ``members`` are the models of the segments, beams or shells.
     """
     found = moving_force(boom.segments, boom.joints, joint)
     drive = boom.joints[joint].drive

@@ -35,7 +35,7 @@ class Contact(NamedTuple, Generic[R]):
 
 
 class Friction(NamedTuple, Generic[R]):
-    """Friction row: the slide that it reads, and its friction."""
+    """Friction row: the sliding displacement that it reads, and its friction law."""
 
     reading: R
     law: DryFriction

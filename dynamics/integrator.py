@@ -62,7 +62,7 @@ class Integrator(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class StepSchedule:
-    """Steps whose length is given in each window of the motion.
+    """Prescribed step lengths, one for each window of the motion.
 
     Args:
         substeps: steps of an output interval in each window; the last number holds to the end.

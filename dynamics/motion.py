@@ -47,7 +47,7 @@ class Motion:
             if not 0.0 < getattr(self, name) < np.inf:
                 raise ValueError(f"{name} must be finite and positive, got {getattr(self, name)} s")
         if self.system.softening.size:
-            raise ValueError("what is softened besides moves in_own_modes")
+            raise ValueError("a system with softening must be transformed by in_own_modes")
         n = self.system.num_modes
         for name in ("position", "velocity"):
             state = np.asarray(getattr(self, name), dtype=np.float64)

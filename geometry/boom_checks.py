@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Checks of a boom as a whole: what its parts need of one another."""
+"""Checks of a boom as a whole: mutual requirements of its parts."""
 
 from __future__ import annotations
 

@@ -65,7 +65,7 @@ def check_room_on_the_way(
     if height < joint.play - near or width < 0.0:
         raise BoomError(
             where,
-            f"draws {inner.name!r} by {extension:g} m to where it does not fit in {outer.name!r}: "
+            f"moves {inner.name!r} by {extension:g} m to where it does not fit in {outer.name!r}: "
             f"{height:.6g} m of height and {width:.6g} m of width are free there, and a play of "
             f"{joint.play:.6g} m is asked for; make the travel or the taper smaller",
         )
@@ -177,7 +177,7 @@ def check_pads_on_the_way(where: str, joint: Joint, boom: Boom) -> None:
             raise BoomError(
                 key,
                 f"must not be above the overlap of {end - start - out:g} m that is left where "
-                f"{inner.name!r} is drawn out by {out:g} m, got {length:g} m",
+                f"{inner.name!r} extends by {out:g} m, got {length:g} m",
             )
     for key, pad in pads.items():
         for x, carrier in zip(joint.stations, joint.drive.carriers, strict=True):
@@ -186,8 +186,8 @@ def check_pads_on_the_way(where: str, joint: Joint, boom: Boom) -> None:
                 if not slides.holds(edge + by):
                     raise BoomError(
                         f"{key}.length",
-                        f"the pad at {x:g} m leaves {slides.name!r} as {inner.name!r} is drawn by "
-                        f"{extension:g} m; make it shorter, or move the station",
+                        f"the pad at {x:g} m leaves {slides.name!r} as {inner.name!r} telescopes "
+                        f"by {extension:g} m; make it shorter, or move the station",
                     )
 
 

@@ -83,8 +83,8 @@ def check_pressed(boom: Boom) -> None:
         body = next(_free(bodies, left))
         raise BoomError(
             body.key,
-            f"the loads of t = 0 lift {body.segment.name!r} off what it rests on, and nothing else "
-            "holds it: give it two supports, or a stop that holds both ways",
+            f"the loads of t = 0 lift {body.segment.name!r} off its one-way supports, and nothing "
+            "else holds it: give it two supports, or a stop that holds both ways",
         )
 
 

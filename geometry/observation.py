@@ -56,7 +56,7 @@ class Observation:
     """
 
     name: Name
-    """what the results call it"""
+    """the name of the output in the results"""
     segment: SegmentRef
     """the name of the segment"""
     x: Place

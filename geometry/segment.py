@@ -454,7 +454,7 @@ class Segment:
         if thickness > half:
             raise BoomError(
                 f"{where}.thickness",
-                f"must be at most {half:.6g} m, half of what the box is across, got {thickness:g}",
+                f"must be at most {half:.6g} m, half of the box's smallest size, got {thickness:g}",
             )
 
     def check_place(self, where: str, x: float) -> None:

@@ -162,28 +162,28 @@ def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
         raise BoomError(where, "the joint is tied, and nothing slides; leave it out")
     low, high = drive.reach
     if low == high:
-        raise BoomError(where, f"draws {inner.name!r} nowhere; leave it out")
+        raise BoomError(where, f"does not move {inner.name!r}; leave it out")
     near = SAME_PLACE * outer.length
     overlap = min(outer.end, inner.end) - inner.start - high
     if not overlap > 0.0 or overlap < drive.least_overlap - near:
         least = f"at least {drive.least_overlap:g}" if drive.least_overlap else "above 0"
         raise BoomError(
             where,
-            f"draws {inner.name!r} out by {high:g} m until {overlap:g} m of overlap are left; it "
+            f"extends {inner.name!r} by {high:g} m until {overlap:g} m of overlap are left; it "
             f"must leave {least} m",
         )
     room = min(inner.start - outer.start, inner.end - outer.end)
     if -low > room + near:
         raise BoomError(
             where,
-            f"draws {inner.name!r} in by {-low:g} m; it must be at most {room:g} m, where it is "
+            f"retracts {inner.name!r} by {-low:g} m; it must be at most {room:g} m, where it is "
             f"wholly in {outer.name!r}",
         )
     for plate in outer.diaphragms:
         if inner.start + low <= plate.x + near:
             raise BoomError(
                 where,
-                f"draws {inner.name!r} in by {-low:g} m, and the diaphragm of {outer.name!r} at "
+                f"retracts {inner.name!r} by {-low:g} m, and the diaphragm of {outer.name!r} at "
                 f"{plate.x:g} m is in its way; it must be less than {inner.start - plate.x:g} m",
             )
     for extension in (low, high):
@@ -192,14 +192,14 @@ def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
             if not (outer.holds(on_outer) and inner.holds(on_inner)):
                 raise BoomError(
                     where,
-                    f"the station at {x:g} m leaves the overlap as {inner.name!r} is drawn by "
+                    f"the station at {x:g} m leaves the overlap as {inner.name!r} telescopes by "
                     f"{extension:g} m; make the travel shorter, or move the station",
                 )
         if any(right - left <= near for (left, _), (right, _) in pairwise(there)):
             raise BoomError(
                 where,
-                f"stations pass one another as {inner.name!r} is drawn by {extension:g} m; make "
-                "the travel shorter, or move them",
+                f"stations pass one another as {inner.name!r} telescopes by {extension:g} m; "
+                "make the travel shorter, or move them",
             )
         check_room_on_the_way(where, joint, outer, inner, extension)
 
@@ -215,7 +215,7 @@ def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> Non
         if x > inner.start + low:
             raise BoomError(
                 where,
-                f"{inner.name!r} is drawn in by {-low:g} m, past {x:g} m, from where it is pushed; "
+                f"{inner.name!r} retracts by {-low:g} m, past {x:g} m, where it is pushed; "
                 "make the travel shorter, or move the place",
             )
         return
@@ -224,8 +224,8 @@ def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> Non
         if not held:
             raise BoomError(
                 where,
-                f"{x:g} m leaves the overlap as {inner.name!r} is drawn by {extension:g} m; make "
-                "the travel shorter, or move the place",
+                f"{x:g} m leaves the overlap as {inner.name!r} telescopes by {extension:g} m; "
+                "make the travel shorter, or move the place",
             )
 
 
@@ -270,5 +270,5 @@ def _check_free(boom: Boom, number: int) -> None:
         ):
             raise BoomError(
                 f"stops[{k}].x",
-                f"{segment.name!r} is drawn past {stop.x:g} m; it must be there all the way",
+                f"{segment.name!r} moves past {stop.x:g} m; it must be there over the whole travel",
             )

@@ -24,7 +24,7 @@ def digits(value: float, count: int = 3) -> str:
 
 
 def listed(parts: Iterable[str]) -> str:
-    """Return a list in words of at least one part.
+    """Return the items of a list, at least one, as a phrase.
 
     >>> listed(["play", "load", "friction"])
     'play, load and friction'

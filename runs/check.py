@@ -288,7 +288,7 @@ def _buckling(declared: CheckedCase) -> Table:
         Column("buckling factor", factors, ".4g"),
         Column("part of the critical forces", [f and 1.0 / f for f in factors], ".3g", "%"),
     ]
-    return Table("Buckling under the axial forces, joints pressed", columns)
+    return Table("Buckling under the axial forces, joints in contact", columns)
 
 
 def _damping_ratios(preview: Preview) -> Table:
@@ -305,7 +305,7 @@ def _damping_ratios(preview: Preview) -> Table:
         cells = zip_longest(range(SHOWN_MODES), _ratios(preview, model, beam), fillvalue="")
         rows.append((_beam_name(model), *(cell for _, cell in [*cells][:SHOWN_MODES])))
     headings = ("model", *(f"mode {number}" for number in range(1, SHOWN_MODES + 1)))
-    return Table.of_rows("", "Damping ratios, joints pressed", headings, rows)
+    return Table.of_rows("", "Damping ratios, joints in contact", headings, rows)
 
 
 def _ratios(preview: Preview, model: Model, beam: ModelTable) -> list[str]:
@@ -374,7 +374,7 @@ def _static_lines(case: Case, boom: Boom, found: Statics | None) -> Iterator[str
         f"play {number(TO_MILLI * bonded.tip, 4)} mm."
     )
     yield (
-        f"First natural frequency, joints pressed, {_BEAMS}: {number(hertz, 4)} Hz; without "
+        f"First natural frequency, joints in contact, {_BEAMS}: {number(hertz, 4)} Hz; without "
         f"play {number(bonded_hertz, 4)} Hz."
     )
     for tilt in tilts(state.boom, state.system, state.position):

@@ -38,7 +38,7 @@ app = typer.Typer(
 )
 
 CaseFile = Annotated[str, typer.Argument(metavar="CASE.toml", help="The case file.")]
-ModelNames = Annotated[str | None, typer.Option(metavar="NAME,...", help="Run these models alone.")]
+ModelNames = Annotated[str | None, typer.Option(metavar="NAME,...", help="Run only these models.")]
 MeshSize = Annotated[
     float | None, typer.Option(metavar="M", help="Edge length of uniform shell meshes in m.")
 ]
@@ -46,27 +46,27 @@ Modes = Annotated[
     str | None,
     typer.Option(
         metavar="N|auto",
-        help="Coordinates of each shell segment, at most; auto for what its tolerance asks.",
+        help="Most coordinates of each shell segment; auto for as many as its tolerance needs.",
     ),
 ]
 NoCache = Annotated[
     bool,
-    typer.Option("--no-cache", help="Reduce shells afresh, and leave the user's cache alone."),
+    typer.Option("--no-cache", help="Reduce shells again, without the user's cache."),
 ]
 Large = Annotated[
-    bool, typer.Option("--large", help="Start even what may take more than 4 GB or an hour.")
+    bool, typer.Option("--large", help="Start a run that may take more than 4 GB or an hour.")
 ]
 Vary = Annotated[
     list[str],
     typer.Option(
         metavar="KEY=VALUES",
-        help="What takes which values: joint.play=0:0.02:11 (start, stop, count), "
-        "segment[2].load=20,40,60. May be repeated; all combinations are taken.",
+        help="A key and its values: joint.play=0:0.02:11 (start, stop, count), "
+        "segment[2].load=20,40,60. May be repeated; all combinations are run.",
     ),
 ]
 SweepFolder = Annotated[
     str | None,
-    typer.Option(metavar="DIR", help="Where to write.  \\[default: runs/out/CASE-sweep]"),
+    typer.Option(metavar="DIR", help="Output folder.  \\[default: runs/out/CASE-sweep]"),
 ]
 Picture = Annotated[
     str | None, typer.Option(metavar="FILE.png", help="Draw the boom into this file.")
@@ -96,7 +96,7 @@ def protractile(
 def run(
     case: CaseFile,
     out: Annotated[
-        str | None, typer.Option(metavar="DIR", help="Where to write.  \\[default: runs/out/CASE]")
+        str | None, typer.Option(metavar="DIR", help="Output folder.  \\[default: runs/out/CASE]")
     ] = None,
     models: ModelNames = None,
     mesh_size: MeshSize = None,
@@ -141,7 +141,7 @@ def run(
             workers.helper(opengl.hush) as helper,
         ):
             if helper and not no_pictures and any(model.meshed for model in effective.models):
-                # It imports what draws while this process meshes.
+                # It imports the renderer while this process meshes.
                 helper.submit(import_module, "runs.report.snapshots")
             context = RunContext(comm, report_progress, cache, cache, helper)
             finished = run_case(effective, case, context)
@@ -175,7 +175,7 @@ def snapshot(
         list[float] | None, typer.Option(metavar="T", help="Time in s; may be repeated.")
     ] = None,
 ) -> int:
-    """Render the deformed shells of a run, and its report again with the pictures."""
+    """Render the deformed shells of a run, and add the pictures to its report."""
     from runs.case.messages import BadInput
     from runs.pipeline.results import TRAJECTORIES
     from runs.report import snapshots
@@ -210,14 +210,16 @@ def sweep(
     large: Large = False,
     against: Annotated[
         str | None,
-        typer.Option(metavar="MODEL", help="Tell how far the other models are from this one."),
+        typer.Option(
+            metavar="MODEL", help="Print the differences of the other models from this one."
+        ),
     ] = None,
 ) -> int:
     """Run a case over values of its numbers, and chart its models.
 
-    Finished points stay in the folder and are not run again. Sections that the case infers are
-    those of its own play, whatever play a point has. Under mpirun the ranks but the first run the
-    points, else the cores do. Ensembles are left out.
+    Finished points stay in the folder and are not run again. Inferred sections follow from the
+    play in the case file, at every point. Under mpirun all ranks except the first run points;
+    otherwise all cores do. Ensembles are left out.
     """
     from runs.folder.cache import Cache
     from runs.pipeline import estimates, members
@@ -256,7 +258,7 @@ def frequencies(
     mesh_size: MeshSize = None,
     no_cache: NoCache = False,
 ) -> int:
-    """Chart the first frequencies over values of a case's numbers, joints pressed and tied."""
+    """Chart the first frequencies over values of a case, with joints in contact and bonded."""
     from runs.folder.cache import Cache
     from runs.sweep import frequencies as charts
     from runs.sweep import points
@@ -283,7 +285,7 @@ def frequencies(
 
 @app.command()
 def check(case: CaseFile, picture: Picture = None) -> int:
-    """Check a case file, and print what follows from it."""
+    """Check a case file, and print its masses, static state and first frequency."""
     from runs.case.reading import load_checked
     from runs.check import print_check
 
@@ -300,10 +302,10 @@ def export(
     to: Annotated[str, typer.Option(metavar="opensees", help="The other program.")],
     model: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="Of beam elements.  \\[default: the last such model]"),
+        typer.Option(metavar="NAME", help="A model of beam elements.  \\[default: the last one]"),
     ] = None,
     out: Annotated[
-        str | None, typer.Option(metavar="FILE.py", help="Where to write.  \\[default: CASE.py]")
+        str | None, typer.Option(metavar="FILE.py", help="Output file.  \\[default: CASE.py]")
     ] = None,
 ) -> int:
     """Write a model of beam elements, calibrated or not, as a script for another program."""
@@ -353,7 +355,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _explain(error: Exception) -> tuple[str, int] | None:
-    """Return the line and the exit status for what is not a fault of the program."""
+    """Return the line and the exit status for an error that the user can correct."""
     # Without memory nothing more can be imported; the loader of libraries has an error of its own.
     if isinstance(error, MemoryError) or "failed to map segment" in str(error):
         return message(f"out of memory ({error}); make the models or the output smaller"), 3
@@ -388,7 +390,7 @@ def _all_ranks_end_together(comm: MPI.Comm | None) -> Iterator[None]:
 
 @contextmanager
 def _rendered_again(folder: str) -> Iterator[tuple[Results, Addition, Path]]:
-    """Give a run, what its client says of it, and a copy of its folder, which takes its place.
+    """Give a run, the evaluation by its client, and a copy of its folder that replaces it.
 
     The copy's report is rendered in the end.
     """

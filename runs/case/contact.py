@@ -92,7 +92,7 @@ Forces = Annotated[
 
 
 class RestitutionTable(CaseTable):
-    """How much of its speed a blow gives back."""
+    """Coefficient of restitution of an impact."""
 
     coefficient: Annotated[float, Field(strict=True, gt=0.0, le=1.0), In("1")]
     """the coefficient of restitution"""

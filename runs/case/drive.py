@@ -33,10 +33,10 @@ Ways = Annotated[
 
 
 class DriveTable(CaseTable):
-    """How an inner segment is drawn out, or in, while the boom moves."""
+    """Telescoping of an inner segment during the motion of the boom."""
 
     travel: Annotated[Number, In("m")] | None = None
-    """the length in m by which it is drawn out; negative where it is drawn in"""
+    """the length in m by which the segment extends; negative where it retracts"""
     time: Annotated[Positive, In("s")] | None = None
     """the time in s that the travel takes, on an S-curve without jerks"""
     speed: Annotated[Positive, In("m/s")] | None = None
@@ -182,7 +182,7 @@ def _carrier(place: float | Distance, where: str, what: str, inner: str) -> Carr
     if not isinstance(place, Distance):
         raise BoomError(
             where,
-            f"{place:g} m does not tell on which segment {what} goes as {inner!r} is drawn; "
+            f"{place:g} m does not tell on which segment {what} moves as {inner!r} telescopes; "
             "give 'tail' or 'head', or a distance from one",
         )
     return "inner" if place.head is None else "outer"

@@ -88,7 +88,7 @@ def _check_stiff(where: str, drive: DriveTable) -> None:
         if value:
             raise BoomError(
                 f"{where}.{key}",
-                "without a stiffness the drive is stiff, and what it draws neither sticks nor "
+                "without a stiffness the drive is stiff, and its segment neither sticks nor "
                 f"slips; give stiffness, or leave {key} out",
             )
 

@@ -159,7 +159,7 @@ def _of_joint(case: Case, boom: Boom, number: int) -> Iterator[UsualRange]:
             key, what = ".drive", f"{what} that the drive leaves"
         yield UsualRange(where + key, what, boom.overlap_left(joint), "m", least, np.inf, 100.0)
     if joint.drive is not None:
-        what = f"the largest speed at which {inner.name!r} is drawn"
+        what = f"the largest speed at which {inner.name!r} moves"
         yield UsualRange(f"{where}.drive", what, fastest(joint.drive), "m/s", 0.0, 5.0, 200.0)
 
 

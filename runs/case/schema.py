@@ -53,7 +53,7 @@ from runs.paper.statements import CaseKeys
 
 
 class TimeTable(CaseTable):
-    """How long, and how finely reported."""
+    """Duration, output interval and time step."""
 
     duration: Annotated[Positive, In("s")]
     """the simulated time in s, from t = 0"""
@@ -66,7 +66,7 @@ class TimeTable(CaseTable):
 
 
 class EnsembleTable(CaseTable):
-    """Every model with play once more, many times, with data changed a little."""
+    """Repeated runs of every model with play, with slightly changed data."""
 
     members: Annotated[int, Field(strict=True, ge=2, le=MOST_MEMBERS)]
     """the number of runs of each model, the unchanged one among them"""
@@ -75,7 +75,7 @@ class EnsembleTable(CaseTable):
     seed: Annotated[int, Field(strict=True, ge=0, lt=2**63)] = 1
     """the seed of the changes: the same one gives the same members"""
     vary: Literal["load", "clearance"] = "load"
-    """what is changed, all of it by one factor"""
+    """the data to change, all by one factor"""
 
 
 @dataclass(frozen=True, slots=True, config=PART, kw_only=True)
@@ -94,7 +94,7 @@ Times = Annotated[tuple[tuple[Number, Number], ...], In("s", "1")]
 
 
 class HistoryTable(CaseTable):
-    """How something goes with time: at once and kept, unless one of these is given."""
+    """History over time; constant from t = 0 on unless one of these keys is given."""
 
     ramp: Annotated[Positive, In("s")] | None = None
     """the time in s in which it rises to its value"""
@@ -138,7 +138,7 @@ class LoadTable(HistoryTable):
     moment: Flag = False
     """whether it is a moment at x, towards a larger slope of the segment"""
     released: Flag = False
-    """whether it has acted for ever, and is let go at t = 0"""
+    """whether it acts before t = 0 and is released at t = 0"""
 
     amount: ClassVar[str] = "magnitude"
 
@@ -151,16 +151,16 @@ class LoadTable(HistoryTable):
 
 
 class AxialTable(CaseTable):
-    """A force along the boom, constant, that presses it towards the base: a hoist rope, say."""
+    """A constant axial force towards the base, such as that of a hoist rope."""
 
     segment: str | None = None
-    """the name of the segment that it presses; the last one unless given"""
+    """the name of the segment on which it acts; the last one unless given"""
     x: Place | None = None
     """the x in m where it does; the segment's end unless given"""
     force: Annotated[Number, In("N")] | None = None
     """the force in N towards the base; that of a hoist rope unless given"""
     falls: Count | None = None
-    """the number of falls of a hoist rope, which share what it carries"""
+    """the number of falls of a hoist rope, which share the mass on it"""
     mass: Annotated[Positive, In("kg")] | None = None
     """the mass in kg that the rope carries; the payload's unless given"""
 
@@ -176,7 +176,7 @@ class PayloadTable(CaseTable):
 
 
 class GravityTable(CaseTable):
-    """By what everything weighs."""
+    """Weight of all masses, by the luffing angle and the acceleration."""
 
     acceleration: Annotated[NotNegative, In("m/s^2")] = 9.80665
     """the acceleration in m/s^2"""
@@ -185,7 +185,7 @@ class GravityTable(CaseTable):
 
 
 class BaseTable(HistoryTable):
-    """An acceleration of the ground, which is felt as a load on all masses."""
+    """An acceleration of the ground, which acts as an inertia load on all masses."""
 
     direction: Literal["z", "y"] = "z"
     """up, or to the side"""
@@ -197,7 +197,7 @@ class BaseTable(HistoryTable):
 
 
 class VelocityTable(CaseTable):
-    """How a segment moves at t = 0, as a rigid body would."""
+    """Rigid-body velocity of a segment at t = 0."""
 
     z: Annotated[Number, In("m/s")] = 0.0
     """the velocity along z in m/s"""
@@ -241,7 +241,7 @@ class StartTable(CaseTable):
 
 @dataclass(frozen=True, slots=True, config=PART)
 class ObserveTable(Observation):
-    """What is recorded of every model besides the ends of the segments."""
+    """Additional output of every model, besides the ends of the segments."""
 
     quantity: Recorded = "deflection"
     """the deflection along z, its velocity, its acceleration as the mean of each output interval,
@@ -260,15 +260,15 @@ class DampingTable(CaseTable):
 
 
 class LifeTable(CaseTable):
-    """What the stresses of a run are held against for fatigue."""
+    """Data of the fatigue assessment of a run."""
 
     detail_category: Annotated[Positive, In("1")] | None = None
     """the detail category of the worst weld after EN 1993-1-9, its number: 71 for 71 N/mm^2;
     without it ranges are counted, and no damage"""
     partial_factor: Annotated[Positive, In("1")] = 1.0
-    """the factor gamma_Ff gamma_Mf by which stress ranges count larger"""
+    """the partial factor gamma_Ff gamma_Mf on stress ranges"""
     repeats: Annotated[int, Field(strict=True, ge=1, le=10**9)] = 1
-    """how often in a life the motion of the run comes"""
+    """the number of times that the motion of the run occurs in a life"""
 
 
 if TYPE_CHECKING:
@@ -278,7 +278,7 @@ else:
 
 
 class CaseHeading(CaseTable):
-    """What a case is called, and its units."""
+    """Title and units of a case."""
 
     title: Text
     """the heading of the report"""
@@ -329,7 +329,7 @@ class Case(CaseKeys, CaseHeading):
     damping: DampingTable = DampingTable.model_validate({})
     """the table of the boom's damping"""
     life: LifeTable = LifeTable.model_validate({})
-    """the table of what fatigue is judged by"""
+    """the table of the fatigue assessment"""
     models: Annotated[tuple[Model, ...], Field(min_length=1, max_length=MOST_MODELS)] = Field(
         alias="model"
     )

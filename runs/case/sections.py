@@ -18,7 +18,7 @@ from runs.case.limits import MOST_FACETS, CaseTable
 
 
 class ShapeTable(CaseTable):
-    """What every shape's table has."""
+    """Keys of every shape of a section."""
 
     # Function of the other keys that returns the section.
     make: ClassVar[Callable[..., Section]]
@@ -85,7 +85,7 @@ class PolygonTable(ShapeTable):
 
 
 class _FoldedTable(ShapeTable):
-    """What sections of a top, a bottom and folded sides have."""
+    """Keys of sections with a top, a bottom and folded sides."""
 
     height: Length
     """the height of the top's mid-line above the bottom's in m"""
@@ -116,7 +116,7 @@ class OctagonTable(_FoldedTable):
     shape: Literal["octagon"]
     """the shape of the section"""
     chamfer: Length
-    """what is cut of the rectangle's sides at each end in m"""
+    """the length in m cut off each end of the rectangle's sides"""
 
 
 class UTable(_FoldedTable):

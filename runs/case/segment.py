@@ -28,7 +28,7 @@ class SegmentTable(CaseTable):
     """One box of the boom."""
 
     name: Name
-    """what the joints and the results call the segment"""
+    """the name of the segment in joints and results"""
     span: tuple[Annotated[Number, In("m")], Annotated[Number, In("m")]] | None = None
     """the x of its two ends in m, rising; or give length"""
     length: Length | None = None

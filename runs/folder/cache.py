@@ -81,7 +81,7 @@ class Cache:
             caches = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
         except RuntimeError:
             NOTICES.warning(
-                "there is no home folder, and what is computed is not kept for later runs; give a "
+                "there is no home folder, and results are not kept for later runs; give a "
                 "folder in %s, or --no-cache",
                 VARIABLE,
             )
@@ -153,7 +153,7 @@ class Cache:
             self.make_room()
         except OSError as error:
             NOTICES.warning(
-                "%s: the cache cannot be written (%s), and what is computed is not kept for later "
+                "%s: the cache cannot be written (%s), and results are not kept for later "
                 "runs; give another folder in %s, or --no-cache",
                 shown(str(self.folder)),
                 error.strerror,

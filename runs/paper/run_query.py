@@ -109,7 +109,7 @@ class RunQuery:
         return requested.slow_below
 
     def one(self, what: str, fits: Callable[[Model], bool]) -> Model:
-        """Return the matching model; of several the one named ``what``, else the first."""
+        """Return the model that matches ``what``: the one of that name, else the first."""
         found = sorted(filter(fits, self.case.models), key=lambda model: model.name != what)
         if not found:
             raise MissingData(f"The case has no model like {what!r}.")

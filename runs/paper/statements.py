@@ -29,7 +29,7 @@ STATEMENTS: dict[StatementId, str] = {
 
 
 class CaseKeys(CaseTable):
-    """What a case says of the paper."""
+    """Keys of a case on the statements of the paper."""
 
     statements: Annotated[tuple[StatementId, ...], Few] = ()
     """the statements of the paper that are judged on the run"""

@@ -249,9 +249,9 @@ def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
     if any(moving_force(boom.segments, boom.joints, number) for number in numbers):
         for name in (name for name, one in summary.models.items() if one.stress is not None):
             yield (
-                f"caution: the walls of {name} bear the axial forces of the start: their stresses, "
-                "and what part of the yield strength these are, lack what the forces add where "
-                "drives take them; those of outer fibres have it"
+                f"caution: the walls of {name} carry the axial forces of the initial extension: "
+                "their stresses and utilisations leave out the change of axial forces by drives, "
+                "which those of outer fibres include"
             )
 
 

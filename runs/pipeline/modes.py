@@ -48,9 +48,9 @@ class Mode:
     Args:
         frequency: in Hz.
         motion: the dominant one: ``bending in z``, ``bending in y``, ``twist``.
-        number: number among the model's modes of this motion, from 1 on.
-        share: part of that motion in the kinetic energy, from 0 to 1.
-        shapes: those of each segment, scaled to a maximum of 1 m or 1 rad of the dominant motion.
+        number: position among the model's modes with this dominant motion, from 1 on.
+        share: part of the dominant motion in the kinetic energy, from 0 to 1.
+        shapes: mode shapes of each segment; the dominant motion has a maximum of 1 m or 1 rad.
     """
 
     frequency: float

@@ -30,7 +30,7 @@ _ON = {on: side for side, on in SIDES.items()}
 
 @dataclass(frozen=True, slots=True)
 class PadLoad:
-    """The governing slide pad of a pair at a station in one model.
+    """The governing slide pad of a pair at a station, in one model.
 
     ``force`` is in N, ``x`` of the station in m, ``pressure`` in Pa; ``utilisation`` of the
     permitted pressure is None where the case does not give that.

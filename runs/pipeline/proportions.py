@@ -191,8 +191,8 @@ def _given_twice(case: Case, boom: Boom) -> Iterator[str]:
             )
         if isclose(-force, mass, rel_tol=ALIKE):
             yield (
-                f"{where}: {force:g} N at the tip is a tenth of what the payload of {mass:g} kg "
-                f"weighs; if it is in kg, give {force * STANDARD_GRAVITY:.4g} N"
+                f"{where}: {force:g} N at the tip is a tenth of the weight of the payload of "
+                f"{mass:g} kg; if it is in kg, give {force * STANDARD_GRAVITY:.4g} N"
             )
 
 

@@ -107,7 +107,7 @@ class Results:
         return results
 
     def conclude(self) -> None:
-        """Complete the summary with what follows from the motion and its other parts."""
+        """Complete the summary with numbers derived from the motion and its other parts."""
         case, boom, data, summary = self.case, self.boom, self.trajectories, self.summary
         summary.pads = list(pad_loads(case, boom, data))
         summary.cautions = cautions(case, boom, data, summary)

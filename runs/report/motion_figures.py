@@ -291,7 +291,7 @@ def energies(run: FigureContext) -> list[Figure]:
     axes.set_ylabel("energy (J)")
     losses = " and ".join(_named(energy) for energy in lost)
     hatched = f"; hatched: {losses}" if lost else ""
-    more = " and what was there at the start" if start else ""
+    more = " and the energy at the start" if start else ""
     caption = (
         f"Strain, kinetic and contact energy of {name} on top of one another{hatched}. Their sum "
         f"is the {of}{more}, up to the residual of the next figure."

@@ -201,8 +201,8 @@ def _whole_table(reference: str, whole: Mapping[str, Whole]) -> Table:
             Column(f"rms\nto {end:g} s", rms, ".2f", "%"),
         ]
     notes = (
-        "Parts of the larger range of both within that time. What is well above the step error, "
-        "in the table of steps, is the models' own.",
+        "Parts of the larger range of both within that time. A difference well above the step "
+        "error in the table of steps is due to the models.",
     )
     return Table(f"Tip against {reference}, over the whole run", columns, notes, "whole")
 

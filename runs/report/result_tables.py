@@ -55,7 +55,7 @@ def play_table(results: Results) -> Table | None:
         Column("", [None if hardly(one) else one.share for one in rows], ".3g", "%"),
     )
     notes = ("Absolute values.",)
-    return Table(f"What play adds: {found.model}", columns, notes, "play")
+    return Table(f"Effect of play: {found.model}", columns, notes, "play")
 
 
 def rest_tables(results: Results) -> list[Table]:
@@ -353,8 +353,8 @@ def life_table(results: Results) -> Table | None:
     if any(life.life_damage is not None for life in lives):
         columns.append(Column("of its life", [life.life_damage for life in lives], ".3g"))
     notes = (
-        "Rainflow ranges of the outer fibre's stress where it varies most. Equivalent: what, once "
-        "in a run, does as much as all of them at a slope of 3. Runs to failure: how often its "
-        "motion may come until the damage is 1; none where no range does any.",
+        "Rainflow ranges of the outer fibre's stress where it varies most. Equivalent: the "
+        "single range per run with the same damage at a slope of 3. Runs to failure: number of "
+        "runs until the damage is 1; none without damage.",
     )
     return Table("Life", columns, notes, "life")

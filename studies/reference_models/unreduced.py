@@ -106,7 +106,7 @@ class SegmentStepper:
         shell: the segment.
         load: (num_owned,) constant load in N.
         rows: (num_rows, num_owned) this rank's part of the rows that forces act on.
-        alpha: the step.
+        alpha: the time integration scheme.
 
     Attributes:
         compliance: (num_rows, num_rows) R (K + σ M)⁻¹ Rᵀ in m/N, the same on every rank.

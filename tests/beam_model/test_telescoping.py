@@ -197,29 +197,29 @@ def driven(history: History, least: float = 0.0) -> Drive:
     ("make", "message"),
     [
         (lambda boom: telescope(boom, 0.0, driven(SCurve(4.5, 5.0), 1.0)),
-         "joints[0].drive: draws 'inner' out by 4.5 m until 0.5 m of overlap are left; it must "
+         "joints[0].drive: extends 'inner' by 4.5 m until 0.5 m of overlap are left; it must "
          "leave at least 1 m"),
         (lambda boom: telescope(boom, 0.0, driven(SCurve(5.0, 5.0))),
-         "joints[0].drive: draws 'inner' out by 5 m until 0 m of overlap are left; it must leave "
+         "joints[0].drive: extends 'inner' by 5 m until 0 m of overlap are left; it must leave "
          "above 0 m"),
         (lambda boom: telescope(boom, 0.0, driven(SCurve(-5.5, 5.0))),
-         "joints[0].drive: draws 'inner' in by 5.5 m; it must be at most 5 m, where it is wholly "
+         "joints[0].drive: retracts 'inner' by 5.5 m; it must be at most 5 m, where it is wholly "
          "in 'outer'"),
         (lambda boom: telescope(boom, 0.0, driven(PiecewiseLinear([0.0, 1.0], [0.0, 0.0]))),
-         "joints[0].drive: draws 'inner' nowhere; leave it out"),
+         "joints[0].drive: does not move 'inner'; leave it out"),
         (lambda boom: telescope(boom, 0.0, DRIVE, tied=True),
          "joints[0].drive: the joint is tied, and nothing slides; leave it out"),
         (lambda boom: replace(boom, joints=(Joint(0, 1, (9.3, 9.5), play=0.014,
             drive=Drive(SCurve(0.3, 1.0), ("inner", "outer"))),)),
-         "joints[0].drive: stations pass one another as 'inner' is drawn by 0.3 m; make the travel "
-         "shorter, or move them"),
+         "joints[0].drive: stations pass one another as 'inner' telescopes by 0.3 m; make the "
+         "travel shorter, or move them"),
         (lambda boom: replace(boom, joints=(Joint(0, 1, (9.5, 10.0), play=0.014,
             drive=Drive(SCurve(0.6, 1.0), ("outer", "outer"))),)),
-         "joints[0].drive: the station at 9.5 m leaves the overlap as 'inner' is drawn by 0.6 m; "
+         "joints[0].drive: the station at 9.5 m leaves the overlap as 'inner' telescopes by 0.6 m; "
          "make the travel shorter, or move the station"),
         (lambda boom: replace(telescope(boom, 0.0, DRIVE),
             stops=(Stop(1, 6.0, 0.2, PowerContact(1e6, 1.0, stiffness_below=1e6)),)),
-         "stops[0].x: 'inner' is drawn past 6 m; it must be there all the way"),
+         "stops[0].x: 'inner' moves past 6 m; it must be there over the whole travel"),
         (lambda boom: replace(telescope(boom, 0.0, DRIVE), segments=(
             telescope(boom, 0.0).segments[0],
             replace(telescope(boom, 0.0).segments[1], supports=(Support(12.0),)))),

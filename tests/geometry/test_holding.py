@@ -64,8 +64,8 @@ def test_a_boom_is_held(paper_boom: Boom, case: Mapping[str, Any]) -> None:
 
 
 LIFTED = (
-    "the loads of t = 0 lift 'outer' off what it rests on, and nothing else holds it: give it two "
-    "supports, or a stop that holds both ways"
+    "the loads of t = 0 lift 'outer' off its one-way supports, and nothing else holds it: give it "
+    "two supports, or a stop that holds both ways"
 )
 LOOSE = (
     "nothing holds '{}': give it two supports, a hinge and a cylinder whose line passes beside it, "

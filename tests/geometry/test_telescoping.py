@@ -69,7 +69,7 @@ def test_no_segment_is_drawn_in_through_a_diaphragm(steel: Material) -> None:
         drawn(steel, 2.5, 9.0, -1.0, base=plated)
     assert (caught.value.where, caught.value.what) == (
         "joints[0].drive",
-        "draws 'fly' in by 1 m, and the diaphragm of 'base' at 2 m is in its way; it must be less "
+        "retracts 'fly' by 1 m, and the diaphragm of 'base' at 2 m is in its way; it must be less "
         "than 0.5 m",
     )
 
@@ -99,13 +99,13 @@ def test_tapered_segments_fit_all_of_the_way(steel: Material) -> None:
         Boom((base, fly), (replace(joint, drive=drive),))
     assert (caught.value.where, caught.value.what) == (
         "joints[0].drive",
-        "draws 'fly' by 4 m to where it does not fit in 'base': 0.01 m of height and 0.048 m of "
+        "moves 'fly' by 4 m to where it does not fit in 'base': 0.01 m of height and 0.048 m of "
         "width are free there, and a play of 0.014 m is asked for; make the travel or the taper "
         "smaller",
     )
 
 
-LEFT = "must not be above the overlap of 0.1 m that is left where 'fly' is drawn out by 1.1 m, got "
+LEFT = "must not be above the overlap of 0.1 m that is left where 'fly' extends by 1.1 m, got "
 PAD = PadSize(0.12, 0.05)
 PADS = (
     SlidePad(0.08, 0.05, side="above", thickness=0.02),
@@ -122,8 +122,8 @@ PADS = (
         (
             {"pad": replace(PAD, length=0.08), "stations": (5.38, 6.5)},
             "pad.length",
-            "the pad at 5.38 m leaves 'base' as 'fly' is drawn by 1.1 m; make it shorter, or move "
-            "the station",
+            "the pad at 5.38 m leaves 'base' as 'fly' telescopes by 1.1 m; make it shorter, or "
+            "move the station",
         ),
     ],
 )

@@ -54,7 +54,7 @@ CALIBRATIONS = {
     "missing key of a shell that calibrates": (
         _THEORY,
         'calibrated_by = { kind = "shell" }\n',
-        "model[4].calibrated_by.name: missing; it is what the results call the model",
+        "model[4].calibrated_by.name: missing; it is the name of the model in the results",
     ),
     "calibrated by a number": (
         _THEORY,

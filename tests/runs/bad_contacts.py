@@ -92,7 +92,7 @@ CONTACTS = {
     "shims under a square law": (
         "play = 0.014\nstiffness = 1e13\n",
         "play = 0.0\ninterference = 0.001\nstiffness = 1e13\n",
-        "joint[1].interference: what presses from both sides of a joint needs a law of the "
+        "joint[1].interference: contact on both sides of a joint at once needs a law of the "
         "exponent 1, and model 'kantorovich-4' has another; give it one, or leave interference out",
     ),
     "pads without a width": (

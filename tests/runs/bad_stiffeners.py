@@ -69,7 +69,7 @@ STIFFENERS = {
     "a collar thicker than the box": (
         "height_to_width = 1.5",
         "height_to_width = 1.5\ncollars = [{ span = [1.0, 2.0], thickness = 5.0 }]",
-        "segment[1].collars[1].thickness: must be at most 0.162958 m, half of what the box is "
-        "across, got 5",
+        "segment[1].collars[1].thickness: must be at most 0.162958 m, half of the box's smallest "
+        "size, got 5",
     ),
 }

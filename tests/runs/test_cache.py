@@ -172,7 +172,7 @@ def test_who_has_no_home_has_no_cache(
     monkeypatch.setattr("os.getuid", lambda: 2**31 - 7)
     assert Cache.of_user() is None
     assert caplog.messages == [
-        "there is no home folder, and what is computed is not kept for later runs; give a folder "
+        "there is no home folder, and results are not kept for later runs; give a folder "
         "in PROTRACTILE_CACHE, or --no-cache"
     ]
 

@@ -128,8 +128,8 @@ kind = "finite-element"
          "joint[1].drive.time: missing; it is the time in s that the travel takes, on an S-curve "
          "without jerks, or give speed, table or file"),
         (DRIVE, "drive = { time = 4.0 }\n",
-         "joint[1].drive.travel: missing; it is the length in m by which it is drawn out; "
-         "negative where it is drawn in"),
+         "joint[1].drive.travel: missing; it is the length in m by which the segment "
+         "extends; negative where it retracts"),
         (DRIVE, "drive = { travel = 4.0, time = 5.0, speed = 1.0 }\n",
          "joint[1].drive.speed: time is given; leave one of them out"),
         (DRIVE, "drive = { travel = 4.0, time = 5.0, ramp = 1.0 }\n",
@@ -154,15 +154,15 @@ kind = "finite-element"
         (DRIVE, DRIVE.replace("time", "tiem"),
          "joint[1].drive.tiem: unknown key; the nearest known one is time"),
         (DRIVE, DRIVE.replace("4.0", "4.5"),
-         "joint[1].drive: draws 'inner' out by 4.5 m until 0.5 m of overlap are left; it must "
+         "joint[1].drive: extends 'inner' by 4.5 m until 0.5 m of overlap are left; it must "
          "leave at least 1 m"),
         ('stations = ["tail", "head"]', "stations = [5.0, 10.0]",
-         "joint[1].stations: 5 m does not tell on which segment the station goes as 'inner' is "
-         "drawn; give 'tail' or 'head', or a distance from one"),
+         "joint[1].stations: 5 m does not tell on which segment the station moves as "
+         "'inner' telescopes; give 'tail' or 'head', or a distance from one"),
         ('kind = "kantorovich"\nterms = [2, 3]\nbase = "as printed"',
          'kind = "shell"\ncontact_line = "surface"',
          "model[1]: the shell 'kantorovich-5' touches over the whole overlap, which changes as it "
-         "is drawn out; leave contact_line out, or joint[1].drive"),
+         "telescopes; leave contact_line out, or joint[1].drive"),
         ('kind = "kantorovich"\nterms = [2, 3]\nbase = "as printed"',
          'kind = "shell"\nmodes = 40',
          "model[1]: the shell 'kantorovich-5' takes the coordinates that all of its way asks for; "
@@ -170,24 +170,24 @@ kind = "finite-element"
         ('theory = "timoshenko"',
          'theory = "timoshenko"\ncalibrated_by = { name = "fine", kind = "shell" }',
          "model[3]: the springs of 'timoshenko' are those of the place where it rests, and cannot "
-         "be drawn out; leave calibrated_by out, or joint[1].drive"),
+         "telescope; leave calibrated_by out, or joint[1].drive"),
         ('theory = "euler-bernoulli"', 'theory = "euler-bernoulli"\ntied = true',
-         "model[2]: 'beam-fe' is tied, and cannot be drawn out; leave the model out, or "
+         "model[2]: 'beam-fe' is tied, and cannot telescope; leave the model out, or "
          "joint[1].drive"),
         ("[[joint]]", "[[axial]]\nforce = 7e5\n\n[[joint]]",
          "model[2]: the boom of 'beam-fe' buckles under 0.789 times its axial forces, and has no "
          "motion; it must bear more than all of them: make these smaller, or the sections larger"),
         ("[[joint]]", "[[joint]]\nlocked_at = 7.0",
-         "joint[1].locked_at: 7 m does not tell on which segment the place goes as 'inner' is "
-         "drawn; give 'tail' or 'head', or a distance from one"),
+         "joint[1].locked_at: 7 m does not tell on which segment the place moves as 'inner' "
+         "telescopes; give 'tail' or 'head', or a distance from one"),
         ("[[joint]]", "[[joint]]\nlocked_at = { tail = 2.0 }",
-         "joint[1].locked_at: 7 m leaves the overlap as 'inner' is drawn by 4 m; make the travel "
+         "joint[1].locked_at: 7 m leaves the overlap as 'inner' telescopes by 4 m; make the travel "
          "shorter, or move the place"),
         ("[[joint]]", "[[joint]]\nlocked_at = { head = 4.5 }",
-         "joint[1].locked_at: 5.5 m leaves the overlap as 'inner' is drawn by 4 m; make the "
+         "joint[1].locked_at: 5.5 m leaves the overlap as 'inner' telescopes by 4 m; make the "
          "travel shorter, or move the place"),
         (DRIVE, "locked_at = 4.0\ndrive = { travel = -3.0, time = 5.0 }\n",
-         "joint[1].locked_at: 'inner' is drawn in by 3 m, past 4 m, from where it is pushed; make "
+         "joint[1].locked_at: 'inner' retracts by 3 m, past 4 m, where it is pushed; make "
          "the travel shorter, or move the place"),
     ],
 )  # fmt: skip

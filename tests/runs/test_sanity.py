@@ -98,10 +98,10 @@ def written(folder: Path, old: str, new: str) -> str:
          "joint[1].friction: the coefficient of friction is 1e+30, usual is up to 1; check the "
          "number and its unit"),
         (PLAY, f"{PLAY}drive = {{ travel = -4.0, time = 1e-6 }}\n",
-         "joint[1].drive: the largest speed at which 'fly' is drawn is 8e+06 m/s, usual is "
+         "joint[1].drive: the largest speed at which 'fly' moves is 8e+06 m/s, usual is "
          "up to 5 m/s; check the number and its unit"),
         (PLAY, f"{PLAY}drive = {{ table = [[0.0, 0.0], [1.0, 0.0], [1.000000001, -1.0]] }}\n",
-         "joint[1].drive: the largest speed at which 'fly' is drawn is 1e+09 m/s, usual is up to 5 "
+         "joint[1].drive: the largest speed at which 'fly' moves is 1e+09 m/s, usual is up to 5 "
          "m/s; check the number and its unit"),
         (PLAY, "play = 0.003\nstiffness = 1e8\ndrive = { travel = 1.199999999, time = 9.0 }\n",
          "joint[1].drive: the overlap of 'fly' that the drive leaves is 1e-09 m, usual is from "
@@ -136,7 +136,7 @@ def test_what_no_boom_has_is_refused(
          "joint[1].pad.thickness: the thickness of the pad is 0.2 m, usual is from 0.0005 up to "
          "0.1 m; if it is in cm, give 0.002 m"),
         (PLAY, f"{PLAY}drive = {{ travel = -4.0, time = 1.0 }}\n",
-         "joint[1].drive: the largest speed at which 'fly' is drawn is 8 m/s, usual is up to 5 "
+         "joint[1].drive: the largest speed at which 'fly' moves is 8 m/s, usual is up to 5 "
          "m/s; if it is in mm/s, give 0.008 m/s"),
         (PLAY, f"{PLAY}normal_forces = [1e3, 1e3]\n",
          "joint[1].normal_forces: they press for a friction, which is 0, and do nothing; "
@@ -153,8 +153,8 @@ def test_what_no_boom_has_is_refused(
          "load[1].ramp: the run of 3 s ends at 3 % of the ramp of 100 s; usual is a ramp that ends "
          "within the run"),
         ("-1595.0", "-300.0",
-         "load[1].magnitude: -300 N at the tip is a tenth of what the payload of 300 kg weighs; if "
-         "it is in kg, give -2942 N"),
+         "load[1].magnitude: -300 N at the tip is a tenth of the weight of the payload of 300 "
+         "kg; if it is in kg, give -2942 N"),
         ("-1595.0, ramp = 0.1", "-2942.0",
          "load[1].magnitude: -2942 N at the tip is the weight of the payload, which acts already; "
          "leave it out"),
@@ -193,7 +193,9 @@ def test_a_run_shorter_than_a_swing_is_told(
         "0.553 s; usual are three periods at least"
     )
     assert line in shown.getvalue().splitlines()
-    (frequency,) = re.findall(r"joints pressed, as beam elements: ([0-9.]+) Hz", shown.getvalue())
+    (frequency,) = re.findall(
+        r"joints in contact, as beam elements: ([0-9.]+) Hz", shown.getvalue()
+    )
     assert 1.0 / float(frequency) == pytest.approx(0.553, rel=1e-3)
 
 

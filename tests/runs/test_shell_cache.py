@@ -180,7 +180,7 @@ def test_a_cache_that_cannot_be_written_costs_time_and_a_line(
     found = reduce(case, Cache(folder))
     assert found.system.num_modes > 0
     assert [record.getMessage() for record in caplog.records] == [
-        f"{shown(str(folder))}: the cache cannot be written (Not a directory), and what is "
-        "computed is not kept for later runs; give another folder in PROTRACTILE_CACHE, or "
+        f"{shown(str(folder))}: the cache cannot be written (Not a directory), and results "
+        "are not kept for later runs; give another folder in PROTRACTILE_CACHE, or "
         "--no-cache"
     ]

@@ -54,11 +54,11 @@ def drawn_by(folder: Path, rope: str, **others: str) -> Case:
     ("rope", "message"),
     [
         ("least_overlap = 1.0, dashpot = 5.0 }",
-         "joint[1].drive.dashpot: without a stiffness the drive is stiff, and what it draws "
+         "joint[1].drive.dashpot: without a stiffness the drive is stiff, and its segment "
          "neither sticks nor slips; give stiffness, or leave dashpot out"),
         ("least_overlap = 1.0, static_friction = 0.3 }",
-         "joint[1].drive.static_friction: without a stiffness the drive is stiff, and what it "
-         "draws neither sticks nor slips; give stiffness, or leave static_friction out"),
+         "joint[1].drive.static_friction: without a stiffness the drive is stiff, and its "
+         "segment neither sticks nor slips; give stiffness, or leave static_friction out"),
         (ROPE.replace("0.3", "0.1"),
          "joint[1].drive.static_friction: must be at least that of sliding, the joint's friction "
          "of 0.2, got 0.1"),

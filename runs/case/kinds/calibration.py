@@ -58,7 +58,7 @@ class CalibratedTable(BeamTable):
         if self.calibrated_by is not None:
             return (
                 f"the springs of {self.name!r} are those of the place where it rests, and cannot "
-                "be drawn out; leave calibrated_by out"
+                "telescope; leave calibrated_by out"
             )
         return super().cannot_telescope
 

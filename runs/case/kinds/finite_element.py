@@ -55,7 +55,7 @@ class BeamElements(CalibratedTable):
     section_fields: Flag = Field(
         False,
         description="whether a calibrated beam has the section's own fields besides: bending and "
-        f"what breathes and distorts, in {FIELDS} coordinates of each segment at most",
+        f"breathing and distortion, in {FIELDS} coordinates of each segment at most",
     )
 
     @property

@@ -127,10 +127,10 @@ class StandIn:
 
 
 class ModelTable(CaseTable):
-    """What every kind of model has."""
+    """Keys of every kind of model."""
 
     name: Name
-    """what the results call the model"""
+    """the name of the model in the results"""
     contact: ContactTable | None = None
     """the model's own contact law; the joints' unless given"""
     step: Annotated[Positive, In("s")] | None = None
@@ -207,7 +207,7 @@ class ModelTable(CaseTable):
     def cannot_telescope(self) -> str | None:
         """Why the model cannot telescope, with the remedy; None where it can."""
         if self.bonded:
-            return f"{self.name!r} is tied, and cannot be drawn out; leave the model out"
+            return f"{self.name!r} is tied, and cannot telescope; leave the model out"
         return None
 
     def check(self, where: str, joined: Joined) -> None:
@@ -277,7 +277,7 @@ class ModelTable(CaseTable):
                 key = "interference" if not joint.pads else "pads"
                 raise BoomError(
                     f"joint[{number}].{key}",
-                    f"what presses from both sides of a joint needs a law of the exponent 1, and "
+                    f"contact on both sides of a joint at once needs a law of the exponent 1, and "
                     f"model {self.name!r} has another; give it one, or leave interference out",
                 ) from None
         return Joined(boom)

@@ -106,8 +106,8 @@ class Shell(ModelTable):
     def cannot_telescope(self) -> str | None:
         if self.contact_line == "surface":
             return (
-                f"the shell {self.name!r} touches over the whole overlap, which changes as it is "
-                "drawn out; leave contact_line out"
+                f"the shell {self.name!r} touches over the whole overlap, which changes as it "
+                "telescopes; leave contact_line out"
             )
         if self.modes is not None:
             return (
