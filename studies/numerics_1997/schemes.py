@@ -69,7 +69,10 @@ def lowest(system: GapSystem, modes: int) -> GapSystem:
         rows=system.rows[:, kept],
         friction_rows=system.friction_rows[:, kept],
         observers={name: o._replace(row=o.row[kept]) for name, o in system.observers.items()},
-        **{name: getattr(system, name)[kept] for name in ("damping", "released", "thrown")},
+        **{
+            name: getattr(system, name)[kept]
+            for name in ("damping", "released_load", "initial_impulse")
+        },
         dashpots=system.dashpots[:, kept],
     )
 

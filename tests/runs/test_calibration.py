@@ -170,5 +170,5 @@ def test_a_run_leaves_its_card(case: Case, tmp_path: Path) -> None:
     assert summary is not None
     assert told == {"sprung": summary.model_dump()}
     report = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "The springs of the stations, for sprung" in report
+    assert "Local springs of the stations, for sprung" in report
     assert "Equivalent beam stiffnesses of the segments, for sprung" in report

@@ -53,7 +53,8 @@ def stresses(u: Field, theta: Field) -> tuple[Modes, PlatedMesh]:
     first, _ = shell.owned
     shape = np.zeros((shell.free.size, 1))
     shape[shell.node_dofs - first, 0] = u(shell.nodes)
-    shape[shell.rotation_dofs - first, 0] = theta(shell.rotation_nodes)
+    rotation_nodes, rotation_dofs = shell.plates.nodes[1]
+    shape[rotation_dofs - first, 0] = theta(rotation_nodes)
     modes = gather_stress_modes(shell, shape)
     assert modes is not None
     return modes[0], mesh
