@@ -6,6 +6,9 @@ a neighbouring wall, which is stiff there. So the unfolded walls of a segment ar
 continues over line supports at the folds and has a free edge where the segment ends. The conforming
 rectangles of Bogner, Fox and Schmit (1965) discretise it: products of cubic Hermite polynomials
 along the boom and around the section, whose matrices are Kronecker products.
+
+Sections with sloping walls also spread as a ring where no collar or diaphragm is near. This part is
+left out, and the estimate is too small there.
 """
 
 from __future__ import annotations
