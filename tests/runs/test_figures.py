@@ -286,7 +286,7 @@ def test_energies_start_where_the_boom_does(results: Results, drawn: Drawn) -> N
         (figure,) = drawn(energies, run)
         (work,) = drawn.sheets["energies"].axes[0].get_lines()
         line[name] = np.asarray(work.get_ydata(), dtype=float)
-        assert ("what was there at the start" in figure.caption) == (name == "loaded")
+        assert ("the energy at the start" in figure.caption) == (name == "loaded")
     np.testing.assert_allclose(line["loaded"] - line["from zero"], 5.0, rtol=1e-9)
 
 

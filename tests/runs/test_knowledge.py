@@ -149,7 +149,7 @@ def test_each_level_says_what_it_decides() -> None:
 def test_a_whole_run_is_compared_with_friction() -> None:
     whole = {"kantorovich-4": {"until": [5.0, 10.0], "largest": [0.1, 0.25], "rms": [0.05, 0.125]}}
     (table,) = comparison_tables(results({"reference": "shell", "whole": whole}, friction=0.2))
-    assert "above the step error, in the table of steps" in " ".join(table.notes)
+    assert "above the step error in the table of steps" in " ".join(table.notes)
     assert table.headings[1:3] == ("largest difference\nto 5 s, %", "rms\nto 5 s, %")
     assert table.rows == [("kantorovich-4", "10.00", "5.00", "25.00", "12.50")]
 

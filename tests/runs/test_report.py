@@ -328,7 +328,7 @@ def test_cautions_where_axial_forces_leave_what_walls_bear(name: str, cautioned:
     shell = model_summary().model_copy(update={"stress": object()})
     boom = build_boom(case_file.load(str(CASES / f"{name}.toml")))
     told = list(stress_cautions(summary_of({"beam": model_summary(), "shell": shell}), boom))
-    assert [line.partition(" bear ")[0] for line in told] == (
+    assert [line.partition(" carry ")[0] for line in told] == (
         ["caution: the walls of shell"] if cautioned else []
     )
 
