@@ -36,7 +36,6 @@ from dynamics.kernels.march import (
 from dynamics.kernels.modal_flow import Flow, compliance, modal_flow
 from dynamics.kernels.row_forces import row_laws, row_problem
 from dynamics.kernels.telescoping import (
-    add_axial_energies,
     add_axial_forces,
     moving_axial_forces,
     moving_rows,
@@ -76,8 +75,7 @@ class Integration:
         a, v, rows = motion.position.copy(), motion.velocity.copy(), system.all_rows
         y, axial, softening = (rows * a).sum(axis=1), moving_axial_forces(system), np.zeros(n)
         extensions, stored, driven = np.zeros((3, len(system.travels)))
-        add_axial_forces(extensions, axial, a, 1.0, softening)
-        add_axial_energies(extensions, axial, a, 1.0, stored)
+        add_axial_forces(extensions, axial, a, 1.0, softening, stored)
         forces = [float(law.force(gap)) for law, gap in zip(laws, y, strict=False)]
         tally = np.zeros(TALLY)
         limits, gaps = contact_limits(laws), y[:m]

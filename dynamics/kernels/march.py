@@ -21,7 +21,6 @@ from dynamics.kernels.row_forces import Laws, Problem, contact_response, solve_r
 from dynamics.kernels.telescoping import (
     AxialForces,
     MovingRows,
-    add_axial_energies,
     add_axial_forces,
     move_rows,
 )
@@ -99,6 +98,16 @@ class Schedule(NamedTuple):
     mean: Array
     change: Array
     extensions: Array
+
+
+@njit(**SUMS)
+def assign(target: Array, source: Array) -> None:
+    """Copy the first numbers of ``source`` to ``target``.
+
+    A slice assignment makes numba compile the text of its error message, a quarter of the total.
+    """
+    for i in range(target.size):
+        target[i] = source[i]
 
 
 @njit(**SUMS)
@@ -211,7 +220,7 @@ def _set_loads(
     ``mean`` and ``change`` (num_excitations,) are those of the whole step, in parts of which the
     ``middle`` of this ``part`` lies off the middle of the step.
     """
-    load[:] = system.load
+    assign(load, system.load)
     tilt[:] = 0.0
     for e in range(system.excitations.shape[0]):
         now, then = mean[e] + middle * change[e], part * change[e]
@@ -276,12 +285,12 @@ def march(
     moves, excited = moving.number.size > 0, system.excitations.shape[0] > 0
     softens, travels = axial.force.size > 0, driven.size
     end, load, total, pull = system.load.copy(), system.load.copy(), np.zeros(n), np.zeros(n)
-    tilt, y_end = np.zeros(n if excited else 0), np.zeros(m)
+    tilt, y_end, a_mean = np.zeros(n if excited else 0), np.zeros(m), np.zeros(n)
     rows_end, rows_mean = (rows.copy(), rows.copy()) if moves else (rows, rows)
     travel_of = np.zeros(m, dtype=np.int64)
     for j in range(moving.number.size):
         travel_of[moving.number[j]] = moving.spans[j, 0]
-    extension, extension_end, stored = np.zeros((3, travels))
+    extensions, stored = np.zeros((2, travels)), np.zeros(travels)
     mean, peak, friction = np.zeros(contacts), np.zeros(contacts), np.zeros(frictions)
     matrix = compliances[0]
     for step in range(output.states.shape[0] * stretches):
@@ -303,17 +312,18 @@ def march(
                 )
             for t in range(travels):
                 before, after = schedule.extensions[step : step + 2, t]
-                extension[t] = before + done * (after - before)
-                extension_end[t] = extension[t] + part * (after - before)
+                extensions[0, t] = before + done * (after - before)
+                extensions[1, t] = extensions[0, t] + part * (after - before)
             if moves:
-                move_rows(extension_end, moving, rows, rows_end, rows_mean)
+                move_rows(extensions[1], moving, rows, rows_end, rows_mean)
                 matrix = compliance(rows_end, rows_mean, flow.rise[depth])
             elif m > 0:
                 matrix = compliances[depth]
-            now[:] = force
+            assign(now, force)
             converged = False
             for _ in range(_MOST_ROUNDS):
-                total[:] = load + softening
+                for i in range(n):
+                    total[i] = load[i] + softening[i]
                 if m > 0:
                     free_flow(a, v, flow, depth, total, tilt, end)
                     read_rows(rows_end, end, free)
@@ -324,11 +334,16 @@ def march(
                 converged = not softens
                 if softens:
                     pull[:] = 0.0
-                    a_mean = 0.5 * (a + end)
-                    add_axial_forces(extension, axial, a_mean, 0.5, pull)
-                    add_axial_forces(extension_end, axial, a_mean, 0.5, pull)
-                    converged = np.abs(pull - softening).max() <= _AGREED * np.abs(pull).max()
-                    softening[:] = pull
+                    for i in range(n):
+                        a_mean[i] = 0.5 * (a[i] + end[i])
+                    for side in range(2):
+                        add_axial_forces(extensions[side], axial, a_mean, 0.5, pull, stored)
+                    change, largest = 0.0, 0.0
+                    for i in range(n):
+                        change = max(change, abs(pull[i] - softening[i]))
+                        largest = max(largest, abs(pull[i]))
+                    converged = change <= _AGREED * largest
+                    assign(softening, pull)
                 if converged:
                     break
             joins = converged
@@ -359,10 +374,10 @@ def march(
                         moved -= now[j] * rows_mean[j, i] * (end[i] - a[i])
                     driven[travel_of[j]] += moved
             if softens:
-                add_axial_energies(extension, axial, a, 0.5, driven)
-                add_axial_energies(extension_end, axial, a, -0.5, driven)
-                add_axial_energies(extension, axial, end, 0.5, driven)
-                add_axial_energies(extension_end, axial, end, -0.5, driven)
+                # ½ aᵀ ΔK_G a, in the mean of both ends of the step.
+                for corner in range(4):
+                    at, share = (a, end)[corner // 2], 0.5 - corner % 2
+                    add_axial_forces(extensions[corner % 2], axial, at, share, pull, driven)
             _note_contacts(state, laws, y_end, free, time)
             _note_peaks(state, laws, matrix, time, y_end, now, free, peak)
             work, lost = finish_flow(a, v, flow, depth, total, tilt, end, load)
@@ -370,31 +385,31 @@ def march(
             tally[DAMPING] += lost
             tally[TIME] += time
             tally[STEPS] += 1.0
-            y[:] = y_end
-            force[:] = now
+            assign(y, y_end)
+            assign(force, now)
             if moves:
-                rows[:] = rows_end
+                assign(rows.ravel(), rows_end.ravel())
             done += part
             depth = max(depth, joined)
             while depth > joined and done * 2.0 ** (depth - 1) % 1.0 == 0.0:
                 depth -= 1
         if (step + 1) % stretches == 0:
             interval = step // stretches
-            output.states[interval] = a
-            output.velocities[interval] = v[: output.velocities.shape[1]]
-            output.gaps[interval] = y[:contacts]
-            output.means[interval] = mean
-            output.peaks[interval] = peak
-            output.frictions[interval] = friction
-            output.drives[interval] = driven
+            assign(output.states[interval], a)
+            assign(output.velocities[interval], v)
+            assign(output.gaps[interval], y)
+            assign(output.means[interval], mean)
+            assign(output.peaks[interval], peak)
+            assign(output.frictions[interval], friction)
+            assign(output.drives[interval], driven)
             energies = output.energies[interval]
             energies[0], energies[1] = modal_energy(a, v, flow.omega2)
             if softens:
                 stored[:] = 0.0
-                add_axial_energies(extension_end, axial, a, 1.0, stored)
+                add_axial_forces(extensions[1], axial, a, 1.0, pull, stored)
                 energies[1] -= stored.sum()
             energies[2] = contact_energy(y, laws.terms)
-            energies[3:7] = tally[WORK : WORK + 4]
+            assign(energies[3:7], tally[WORK:])
             if energies.size > 7:
                 energies[7] = driven.sum()
             mean[:] = 0.0

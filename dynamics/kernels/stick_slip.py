@@ -174,7 +174,8 @@ def march_stick_slip(
     """
     state = np.zeros(4)
     for output in range(1, frictions.size):
-        sums[output] = sums[output - 1]
+        for number in range(sums.shape[1]):
+            sums[output, number] = sums[output - 1, number]
         for number in range((output - 1) * substeps, output * substeps):
             rate = (commands[number + 1] - commands[number]) / step
             rise = (pushes[number + 1] - pushes[number]) / step

@@ -153,50 +153,41 @@ def move_rows(
 
 @njit(**SUMS)
 def add_axial_forces(
-    extensions: Array, axial: AxialForces, a: Array, share: float, total: Array
+    extensions: Array, axial: AxialForces, a: Array, share: float, total: Array, energies: Array
 ) -> None:
-    """Add a share of K_G a to ``total`` (num_modes,), at extensions (num_travels,) in m."""
+    """Add a share of K_G a to ``total``, and of ½ aᵀ K_G a in J to the energy of each travel.
+
+    Args:
+        extensions: (num_travels,) in m.
+        axial: the axial forces that move.
+        a: (num_modes,) modal coordinates.
+        share: factor of the force and of the energy.
+        total: (num_modes,) force on the modes; is changed.
+        energies: (num_travels,) energy that the strain energy loses; is changed.
+    """
     own, force = np.zeros((2, axial.modes.shape[1]))
+    slopes, passed = axial.slopes, axial.passed
     for t in range(axial.force.size):
-        soften(extensions, axial, t, a, own, force)
-        for i in range(axial.moved[t]):
-            total[axial.modes[t, i]] += share * force[i]
-
-
-@njit(**SUMS)
-def add_axial_energies(
-    extensions: Array, axial: AxialForces, a: Array, share: float, energies: Array
-) -> None:
-    """Add a share of ½ aᵀ K_G a in J, which the strain energy loses, to that of each travel."""
-    own, force = np.zeros((2, axial.modes.shape[1]))
-    for t in range(axial.force.size):
-        soften(extensions, axial, t, a, own, force)
-        for i in range(axial.moved[t]):
-            energies[axial.spans[t, 0]] += 0.5 * share * own[i] * force[i]
-
-
-@njit(**SUMS)
-def soften(
-    extensions: Array, axial: AxialForces, t: int, a: Array, own: Array, force: Array
-) -> None:
-    """Set ``own`` (most_modes,) to the coordinates that force t moves, ``force`` to its K_G a."""
-    p, u, length = find_piece(extensions, axial.spans[t], axial.knots)
-    slopes, passed, count = axial.slopes, axial.passed, axial.moved[t]
-    for i in range(count):
-        own[i] = a[axial.modes[t, i]]
-    level, turned, bent = 0.0, 0.0, 0.0
-    for i in range(count):
-        level += slopes[p, 0, i] * own[i]
-        turned += slopes[p, 1, i] * own[i]
-        bent += slopes[p, 2, i] * own[i]
-    scale = length * u * axial.force[t]
-    of_level = scale * (level + u * (turned / 2.0 + u * bent / 3.0))
-    of_turned = scale * u * (level / 2.0 + u * (turned / 3.0 + u * bent / 4.0))
-    of_bent = scale * u * u * (level / 3.0 + u * (turned / 4.0 + u * bent / 5.0))
-    for i in range(count):
-        force[i] = of_level * slopes[p, 0, i] + of_turned * slopes[p, 1, i]
-        force[i] += of_bent * slopes[p, 2, i]
-    for j in range(count):
-        pressed = axial.force[t] * own[j]
+        p, u, length = find_piece(extensions, axial.spans[t], axial.knots)
+        count = axial.moved[t]
         for i in range(count):
-            force[i] += passed[p, j, i] * pressed
+            own[i] = a[axial.modes[t, i]]
+        level, turned, bent = 0.0, 0.0, 0.0
+        for i in range(count):
+            level += slopes[p, 0, i] * own[i]
+            turned += slopes[p, 1, i] * own[i]
+            bent += slopes[p, 2, i] * own[i]
+        scale = length * u * axial.force[t]
+        of_level = scale * (level + u * (turned / 2.0 + u * bent / 3.0))
+        of_turned = scale * u * (level / 2.0 + u * (turned / 3.0 + u * bent / 4.0))
+        of_bent = scale * u * u * (level / 3.0 + u * (turned / 4.0 + u * bent / 5.0))
+        for i in range(count):
+            force[i] = of_level * slopes[p, 0, i] + of_turned * slopes[p, 1, i]
+            force[i] += of_bent * slopes[p, 2, i]
+        for j in range(count):
+            pressed = axial.force[t] * own[j]
+            for i in range(count):
+                force[i] += passed[p, j, i] * pressed
+        for i in range(count):
+            total[axial.modes[t, i]] += share * force[i]
+            energies[axial.spans[t, 0]] += 0.5 * share * own[i] * force[i]
