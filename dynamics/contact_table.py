@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
+from dynamics.arrays import Array
 from dynamics.contact import ContactLaw
 from dynamics.contact_term import Term
 
@@ -43,13 +43,9 @@ class TableContact(ContactLaw):
         if min(self.forces) <= 0.0 or self._slopes()[-1] < 0.0:
             raise ValueError("forces must be positive, and must not fall at the end")
 
-    def _slopes(self) -> list[float]:
-        points = [(0.0, 0.0), *zip(self.depths, self.forces, strict=True)]
+    def _slopes(self) -> Array:
         with np.errstate(all="ignore"):
-            return [
-                float(np.divide(after[1] - before[1], after[0] - before[0]))
-                for before, after in pairwise(points)
-            ]
+            return np.asarray(np.diff([0.0, *self.forces]) / np.diff([0.0, *self.depths]))
 
     @property
     def terms(self) -> tuple[Term, ...]:

@@ -39,14 +39,20 @@ _ROUND_OFF = 1.0e-9
 def pressed_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
     """Return ω (num_shapes,) in rad/s, rising, and shapes (num_modes, num_shapes), joints pressed.
 
-    Rows that press at rest have the stiffness that they have there. Where none does at a station
-    between segments, all rows of it are bonded.
+    Rows that press at rest have their stiffness F'(y) there. Where none presses at a station
+    between segments, all its rows are bonded.
 
     Args:
         system: of a boom.
         rest: (num_modes,) its rest in √kg·m; that under the constant loads unless given.
     """
-    stiffness = _stiffness_at_rest(system, rest)
+    try:
+        rest = equilibrium(system, system.load) if rest is None else rest
+    except NumericsError:
+        stiffness = np.zeros(len(system.laws))
+    else:
+        gaps = system.rows @ rest
+        stiffness = np.array([law.slope(y) for law, y in zip(system.laws, gaps, strict=True)])
     pressed = np.isin(system.station_of_row, system.station_of_row[stiffness > 0.0])
     tied = system.rows[~pressed & ~np.isin(system.station_of_row, system.grounded)]
     free = null_space(tied) if tied.size else np.eye(system.num_modes)
@@ -58,16 +64,6 @@ def pressed_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, 
     least = min(system.omega2[system.omega2 > 0.0], default=_ROUND_OFF * omega2.max(initial=0.0))
     moving = omega2 > 1.0e-6 * least
     return np.sqrt(omega2[moving]), free @ combination[:, moving]
-
-
-def _stiffness_at_rest(system: GapSystem, rest: Array | None) -> Array:
-    """Return F'(y) (num_rows,) in N/m at rest; 0 without a rest position."""
-    try:
-        rest = equilibrium(system, system.load) if rest is None else rest
-    except NumericsError:
-        return np.zeros(len(system.laws))
-    gaps = system.rows @ rest
-    return np.array([law.slope(y) for law, y in zip(system.laws, gaps, strict=True)])
 
 
 def add_damping(

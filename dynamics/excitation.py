@@ -329,12 +329,13 @@ class Excitation:
             if not 0.0 <= value < np.inf:
                 raise ValueError(f"{name} of a history must be finite, not negative, got {value}")
 
-    @property
-    def constant(self) -> bool:
-        """True if the load stays constant from t = 0 on."""
-        ahead = [time for time in self.history.kinks if time > 0.0]
-        times = np.array([0.0, *ahead, 1.0 + max(ahead, default=0.0)])
-        return self.history.fastest == 0.0 and bool(np.ptp(self.history(times)) == 0.0)
+
+def is_constant(history: History) -> bool:
+    """Return whether a history stays constant from t = 0 on."""
+    ahead = [time for time in history.kinks if time > 0.0]
+    times = np.array([0.0, *ahead, 1.0 + max(ahead, default=0.0)])
+    changes = history.fastest > 0.0 or bool(np.ptp(history(times)))
+    return history.peak == 0.0 or not changes
 
 
 def _check_positive(name: str, value: float, unit: str) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Generic, Literal, NamedTuple, TypeVar
+from typing import Any, Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -20,30 +20,15 @@ from dynamics.excitation import Excitation, History, InitialImpulse, ReleasedLoa
 from dynamics.gap_system import GapSystem, Observer
 
 R = TypeVar("R")
+L = TypeVar("L")
 
 
-class Contact(NamedTuple, Generic[R]):
-    """Contact row: the approach that it reads, its law, its station."""
+class LawRow(NamedTuple, Generic[R, L]):
+    """Row with a law, of contact or friction: the displacement that it reads, and its station."""
 
     reading: R
-    law: ContactLaw
+    law: L
     station: int
-
-    def row(self, read: Callable[[R], Array]) -> Array:
-        """Return the row (num_modes,) in 1/√kg."""
-        return read(self.reading)
-
-
-class Friction(NamedTuple, Generic[R]):
-    """Friction row: the sliding displacement that it reads, and its friction law."""
-
-    reading: R
-    law: DryFriction
-
-    @property
-    def station(self) -> int:
-        """Position of its station."""
-        return self.law.station
 
     def row(self, read: Callable[[R], Array]) -> Array:
         """Return the row (num_modes,) in 1/√kg."""
@@ -81,8 +66,8 @@ class GapBuilder(Generic[R]):
         grounded: stations of those that the ground stops.
     """
 
-    contacts: list[Contact[R]] = field(default_factory=list)
-    frictions: list[Friction[R]] = field(default_factory=list)
+    contacts: list[LawRow[R, ContactLaw]] = field(default_factory=list)
+    frictions: list[LawRow[R, DryFriction]] = field(default_factory=list)
     dashpots: dict[int, Dashpot[R]] = field(default_factory=dict)
     grounded: list[int] = field(default_factory=list)
 
@@ -108,7 +93,7 @@ class GapBuilder(Generic[R]):
             if there is not None:
                 part = there.shared(weight) if side else there
                 part = part.behind(-raised) if raised else part
-                self.contacts.append(Contact(reading, part, station))
+                self.contacts.append(LawRow(reading, part, station))
         return tuple(range(first, len(self.contacts)))
 
     def add_stop(
@@ -132,7 +117,7 @@ class GapBuilder(Generic[R]):
         if coefficient > 0.0 and pressing:
             pressed_by = pressing if normal_force is None else ()
             law = DryFriction(coefficient, station, normal_force or 0.0, pressed_by)
-            self.frictions.append(Friction(slide, law))
+            self.frictions.append(LawRow(slide, law, station))
 
     def add_dashpot(
         self, station: int, coefficient: float, points: Iterable[tuple[int, float, R]]
@@ -145,12 +130,7 @@ class GapBuilder(Generic[R]):
             dashpot.parts.extend(parts)
 
     @property
-    def dashpot_readings(self) -> list[R]:
-        """All readings of dashpots."""
-        return [reading for dashpot in self.dashpots.values() for _, reading in dashpot.parts]
-
-    @property
-    def rows(self) -> dict[Kind, Sequence[Contact[R] | Friction[R] | Dashpot[R]]]:
+    def rows(self) -> dict[Kind, Sequence[LawRow[R, Any] | Dashpot[R]]]:
         """All rows by their kinds, in the order of a gap system."""
         dashpots = list(self.dashpots.values())
         return {"rows": self.contacts, "friction_rows": self.frictions, "dashpots": dashpots}

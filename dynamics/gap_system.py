@@ -22,7 +22,7 @@ import numpy as np
 from dynamics.arrays import Array, Indices
 from dynamics.contact import ContactLaw, DryFriction
 from dynamics.drive.travel import KINDS, Travel
-from dynamics.excitation import Excitation
+from dynamics.excitation import Excitation, is_constant
 from dynamics.second_order import soften_modes
 
 
@@ -209,10 +209,12 @@ class GapSystem:
 
     def gather_loads(self) -> GapSystem:
         """Return the same system with all constant loads in ``load``."""
-        constant = [x.load * x.history(np.zeros(())) for x in self.excitations if x.constant]
-        changing = [x for x in self.excitations if not x.constant]
-        load = np.sum([self.load, *constant], axis=0)
-        moving = [travel for travel in self.travels if travel.moves]
+        changing = [x for x in self.excitations if not is_constant(x.history)]
+        held = [
+            x.load * x.history(np.zeros(())) for x in self.excitations if is_constant(x.history)
+        ]
+        load = np.sum([self.load, *held], axis=0)
+        moving = [travel for travel in self.travels if not is_constant(travel.history)]
         return replace(self, load=load, excitations=changing, travels=moving)
 
     def at_time(self, time: float) -> GapSystem:
@@ -226,15 +228,8 @@ class GapSystem:
                 softening = softening + force.softening(extension)
             for (kind, position), row in zip(travel.moving, rows, strict=True):
                 rows_at[kind][position] = row
-        rows, friction_rows, dashpots = rows_at.values()
-        return replace(
-            self,
-            rows=rows,
-            friction_rows=friction_rows,
-            dashpots=dashpots,
-            travels=(),
-            softening=softening if softening.any() else np.zeros((0, 0)),
-        )
+        softening = softening if softening.any() else np.zeros((0, 0))
+        return replace(self, **rows_at, travels=(), softening=softening)
 
     def in_own_modes(self) -> GapSystem:
         """Return the same motion in the modes that the softening leaves, which may move."""

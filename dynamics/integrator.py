@@ -24,7 +24,7 @@ TOLERANCE = 1.0e-3
 _FIRST, _FEWEST = 8, 2
 
 # Output intervals and steps of a call of the time loop, between which a run can be interrupted.
-_CALL, _STEPS_OF_CALL = 100, 2**17
+_CALL, _STEPS_OF_CALL = 1000, 2**16
 
 # Output intervals of a window at most, and ω in rad/s where no mode has one.
 _LONGEST, _WITHOUT_FREQUENCY = 128, 100.0

@@ -35,11 +35,7 @@ from dynamics.kernels.march import (
 )
 from dynamics.kernels.modal_flow import Flow, compliance, modal_flow
 from dynamics.kernels.row_forces import row_laws, row_problem
-from dynamics.kernels.telescoping import (
-    add_axial_forces,
-    moving_axial_forces,
-    moving_rows,
-)
+from dynamics.kernels.telescoping import add_axial_forces, moving_axial_forces, moving_rows
 from dynamics.motion import Motion
 from dynamics.trajectory import OF_DRIVES, Output, Trajectory
 

@@ -26,33 +26,19 @@ if TYPE_CHECKING:
 Dims = str | tuple[str, str]
 
 # Variables of each station.
+_INTERVAL = "the output interval that ends then"
 OF_STATIONS: Mapping[str, Mapping[str, str]] = {
-    "contact_force": {
-        "units": "N",
-        "long_name": "contact force, mean of the output interval that ends then",
-    },
-    "contact_force_peak": {
-        "units": "N",
-        "long_name": "largest contact force of the output interval that ends then",
-    },
-    "friction_force": {
-        "units": "N",
-        "long_name": "friction force, mean of the output interval that ends then",
-    },
+    "contact_force": {"units": "N", "long_name": f"contact force, mean of {_INTERVAL}"},
+    "contact_force_peak": {"units": "N", "long_name": f"largest contact force of {_INTERVAL}"},
+    "friction_force": {"units": "N", "long_name": f"friction force, mean of {_INTERVAL}"},
     "gap": {"units": "m", "long_name": "deflection of the inner segment less that of the outer"},
 }
 
 # Variables of each drive; the suffix of its travel follows each name.
 OF_DRIVES: Mapping[str, Mapping[str, str]] = {
     "drawn_out": {"units": "m", "long_name": "extension since the start"},
-    "drive_friction": {
-        "units": "N",
-        "long_name": "force of the drive against friction along the boom, output means",
-    },
-    "drive_power": {
-        "units": "W",
-        "long_name": "power of the drive, axial loads included",
-    },
+    "drive_friction": {"units": "N", "long_name": "drive force against friction, output means"},
+    "drive_power": {"units": "W", "long_name": "power of the drive, axial loads included"},
 }
 
 # A peak below this part of the deflection is the round-off of something at rest.

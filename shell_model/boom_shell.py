@@ -124,7 +124,9 @@ class BoomShell:
 
     def forces(self, number: int) -> Array:
         """Return all forces that act on a segment (num_owned, num_forces), contacts first."""
-        dashpots = self.columns(number, self.rows.dashpot_readings)
+        dashpots = self.columns(
+            number, [r for dashpot in self.rows.dashpots.values() for _, r in dashpot.parts]
+        )
         return np.column_stack([self.joined(number), dashpots, self.pushed(number)])
 
     def pushed(self, number: int) -> Array:

@@ -44,8 +44,8 @@ class RowTable:
     """Rows over an extension s.
 
     >>> table = RowTable.of(lambda s: np.array([[1.0, s**3]]), [0.0, 1.0, 2.0])
-    >>> table(1.5), table.slope(1.5)
-    (array([[1.   , 3.375]]), array([[0.  , 6.75]]))
+    >>> table(1.5)
+    array([[1.   , 3.375]])
 
     Args:
         knots: (num_pieces + 1,) in m, rising.
@@ -72,12 +72,7 @@ class RowTable:
             raise ValueError("knots and coefficients must be finite")
 
     @classmethod
-    def of(
-        cls,
-        rows: Callable[[float], Array],
-        breaks: Sequence[float],
-        tolerance: float = TOLERANCE,
-    ) -> RowTable:
+    def of(cls, rows: Callable[[float], Array], breaks: Sequence[float]) -> RowTable:
         """Return the table of rows (num_rows, num_modes), smooth between rising breaks in m."""
         # Pieces end where others begin, and halves meet rows where the whole did.
         rows = cache(rows)
@@ -85,7 +80,7 @@ class RowTable:
         pieces = [
             piece
             for a, b in pairwise(breaks)
-            for piece in _pieces(rows, a, b, tolerance * scale, _MOST_HALVINGS)
+            for piece in _pieces(rows, a, b, TOLERANCE * scale, _MOST_HALVINGS)
         ]
         knots = np.array([*(start for start, _ in pieces), breaks[-1]])
         return cls(knots, np.array([cubic for _, cubic in pieces]))
@@ -107,12 +102,6 @@ class RowTable:
         """Return the rows (num_rows, num_modes) at s in m."""
         piece, part, _ = self.place(s)
         return _combined(part ** np.arange(4), self.coefficients[piece])
-
-    def slope(self, s: float) -> Array:
-        """Return the slopes (num_rows, num_modes) of the rows along s, per m."""
-        piece, part, length = self.place(s)
-        powers = np.array([0.0, 1.0, 2.0 * part, 3.0 * part**2]) / length
-        return _combined(powers, self.coefficients[piece])
 
     def place(self, s: float) -> tuple[int, float, float]:
         """Return the piece at s in m, the part of it that s has passed, and its length in m."""

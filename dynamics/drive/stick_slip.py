@@ -25,10 +25,7 @@ _PART = 0.1
 
 # Variables of a trajectory; the suffix of the travel follows each name.
 OF_ELASTIC_DRIVES = {
-    "drive_force": {
-        "units": "N",
-        "long_name": "force of the drive as it gives way, mean of the output interval",
-    },
+    "drive_force": {"units": "N", "long_name": "drive force, mean of the output interval"},
     "drive_lag": {"units": "m", "long_name": "lag of the segment behind its drive"},
     "drawn_speed": {"units": "m/s", "long_name": "speed of the segment in the outer one"},
     "drawn_acceleration": {"units": "m/s2", "long_name": "acceleration of the segment"},

@@ -63,11 +63,3 @@ class Travel:
         start = float(self.history(np.zeros(())))
         if abs(start) > 1.0e-9:
             raise ValueError(f"a travel must be 0 at t = 0, got {start:g} m")
-
-    @property
-    def moves(self) -> bool:
-        """True if the extension changes after t = 0."""
-        later = [time for time in self.history.kinks if time > 0.0]
-        if self.history.peak == 0.0:
-            return False
-        return self.history.fastest > 0.0 or bool(self.history(np.array([0.0, *later])).any())

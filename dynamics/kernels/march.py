@@ -18,12 +18,7 @@ from dynamics.arrays import Array
 from dynamics.kernels.compiled import LOOP, SUMS, borrowed
 from dynamics.kernels.modal_flow import Flow, compliance, finish_flow, free_flow, modal_energy
 from dynamics.kernels.row_forces import Laws, Problem, contact_response, solve_rows
-from dynamics.kernels.telescoping import (
-    AxialForces,
-    MovingRows,
-    add_axial_forces,
-    move_rows,
-)
+from dynamics.kernels.telescoping import AxialForces, MovingRows, add_axial_forces, move_rows
 from dynamics.kernels.terms import contact_energy, term_energy, term_force, term_slope
 from dynamics.trajectory import Output
 

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from dynamics.contact import ContactLaw
-from dynamics.gap_builder import Contact
+from dynamics.gap_builder import LawRow
 from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses, probe_places
@@ -35,7 +35,9 @@ def compliance(omega2: Array, rows: Array) -> Array:
     return np.asarray(rows / (omega2 + (2.0 * np.pi * SLOW) ** 2) @ rows.T)
 
 
-def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact[Reading]]) -> Array:
+def full_compliance(
+    shells: Sequence[SegmentShell], contacts: Sequence[LawRow[Reading, ContactLaw]]
+) -> Array:
     """Return the compliance (num_contacts, num_contacts) of unreduced shells. Collective."""
     found = np.zeros((len(contacts), len(contacts)))
     for number, shell in enumerate(shells):

@@ -18,7 +18,7 @@ from functools import partial
 
 import numpy as np
 
-from dynamics.gap_builder import Contact, GapBuilder
+from dynamics.gap_builder import GapBuilder, LawRow
 from geometry.boom import Boom, BoomError, Direction
 from geometry.contact_places import ContactLine, Pad, Patch, pads, stop_patches
 from geometry.section import Offset, Section, Side
@@ -177,7 +177,7 @@ class ShellContacts:
         Collective.
         """
         boom, points = self.boom, self.points
-        rows = GapBuilder([Contact(point.reading, point.law, point.station) for point in points])
+        rows = GapBuilder([LawRow(point.reading, point.law, point.station) for point in points])
         for pad in pads(boom):
             extended = pad.extended(boom, extensions.get(pad.number, 0.0))
             touching, slide = _PadReadings(extended, self.corners, self.walls).contact(self.line)

@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
+from dynamics.drive.row_table import RowTable
 from dynamics.drive.travel import KINDS
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
@@ -33,6 +34,13 @@ def two_modes(exponent: float = 2.0) -> GapSystem:
     )
 
 
+def table_slope(table: RowTable, s: float) -> Array:
+    """Return the slopes (num_rows, num_modes) of the rows of a table along s, per m."""
+    piece, part, length = table.place(s)
+    powers = np.array([0.0, 1.0, 2.0 * part, 3.0 * part**2]) / length
+    return np.tensordot(powers, table.coefficients[piece], 1)
+
+
 def runge_kutta(motion: Motion, max_step: float = 1.0e-3) -> Array:
     """Return the states (num_times, num_modes) by scipy's DOP853 (other code).
 
@@ -50,7 +58,7 @@ def runge_kutta(motion: Motion, max_step: float = 1.0e-3) -> Array:
         for travel in system.travels:
             ahead, behind = travel.history(np.array([time + _APART, abs(time - _APART)]))
             way, speed = float(travel.history(np.array(time))), (ahead - behind) / (2.0 * _APART)
-            now, slopes = travel.table(way), travel.table.slope(way)
+            now, slopes = travel.table(way), table_slope(travel.table, way)
             for (kind, j), row, slope in zip(travel.moving, now, slopes, strict=True):
                 rows[kind][j], drift[kind][j] = row, speed * (slope @ a)
             for force in travel.axial_forces:

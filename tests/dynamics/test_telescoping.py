@@ -28,7 +28,7 @@ from dynamics.excitation import (
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
-from tests.dynamics.reference import end_of, with_rates
+from tests.dynamics.reference import end_of, table_slope, with_rates
 from tests.dynamics.test_moving_thrust import pressed_along
 
 Drawn = Callable[[History], GapSystem]
@@ -228,7 +228,7 @@ def test_tables_hold_cubics_and_come_near_to_the_rest() -> None:
     for way in np.linspace(0.0, 3.0, 101):
         assert cubic(way)[0] == pytest.approx(rows(way)[0], abs=1e-13)
         assert sine(way)[1] == pytest.approx(rows(way)[1], abs=1e-8)
-        assert sine.slope(way)[1] == pytest.approx(np.cos(way), abs=1e-5)
+        assert table_slope(sine, way)[1] == pytest.approx(np.cos(way), abs=1e-5)
 
 
 def test_a_system_that_stands_as_it_is_drawn() -> None:
