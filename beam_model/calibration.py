@@ -86,8 +86,8 @@ def calibrate(
 
     Args:
         boom: all its segments with sections.
-        shell: of the boom, pressed near its webs or by pads.
-        probe_responses: of the shell's segments.
+        shell: shell of the boom, pressed near its webs or by pads.
+        probe_responses: probe responses of the shell's segments.
         segments: makes beams of a boom.
     """
     found = [

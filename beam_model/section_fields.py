@@ -32,7 +32,7 @@ def condense(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
 
     Args:
         system: without modal damping, which a case adds later.
-        most: of all segments together.
+        most: most of all segments together.
 
     Raises:
         ValueError: the system has modal damping.

@@ -52,7 +52,7 @@ def undriven_system(boom: Boom, modes: BoomModes, sides: Sequence[Side] = BOTH_S
 
     Args:
         boom, sides: as of :func:`gap_system`.
-        modes: of the boom's segments.
+        modes: modes of the boom's segments.
     """
     members = [modes.member(number) for number in range(len(boom.segments))]
     ends: tuple[Quantity, ...] = ("deflection", "lateral") if boom.spatial else ("deflection",)

@@ -46,7 +46,7 @@ class StaticState(NamedTuple):
 
     Args:
         boom: the boom.
-        system: of its beams.
+        system: system of its beams.
         position: (num_modes,) of the system in √kg·m.
         reactions: by segment, from its start to its end.
     """
@@ -111,7 +111,8 @@ def static_state(
 
     Args:
         boom: with its loads.
-        elements: of its segments, if they are known from the same boom with play or without.
+        elements: elements of its segments, if they are known from the same boom with play or
+            without.
         walls: factor of the compliance of walls under pads, 0 for rigid walls.
 
     Raises:
@@ -142,7 +143,8 @@ def net_reactions(boom: Boom, reactions: Sequence[Reaction]) -> list[Reaction]:
 
     Args:
         boom: at rest.
-        reactions: of all its segments; those of an outer one lack what the inner transfers.
+        reactions: reactions of all its segments; those of an outer one lack what the inner
+            transfers.
     """
     whole = {reaction[:2]: reaction for reaction in reactions}
     for joint in sorted(boom.joints, key=lambda joint: -joint.inner):

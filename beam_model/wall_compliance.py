@@ -45,7 +45,7 @@ class PressedArea(NamedTuple):
 
     Args:
         start, end: x in m.
-        direction, side: of the wall's outward normal.
+        direction, side: direction and side of the wall's outward normal.
         spans: intervals across the wall in m, from the segment's axis.
     """
 
@@ -90,7 +90,7 @@ def with_wall_springs(system: GapSystem, boom: Boom, factor: float = 1.0) -> Gap
     Args:
         system: with a contact row for each side, ``beam_model.segment_model.EACH_SIDE``.
         boom: the boom.
-        factor: of the compliance, 0 for rigid walls.
+        factor: factor of the compliance, 0 for rigid walls.
     """
     walls = factor * contact_compliance(boom) if factor else np.zeros(0)
     if not walls.any():

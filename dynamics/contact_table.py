@@ -24,7 +24,7 @@ class TableContact(ContactLaw):
 
     Args:
         depths: penetrations in m, rising from above 0; the force is zero at zero.
-        forces: in N, positive, one for each depth.
+        forces: forces in N, positive, one for each depth.
         damping: as in :class:`ContactLaw`, in s/m.
 
     Raises:

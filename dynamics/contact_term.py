@@ -44,7 +44,7 @@ class Term(NamedTuple):
     Args:
         side: 1 where a positive y presses, −1 where a negative one does.
         stiffness: k in N/mⁿ; negative where a law becomes softer.
-        onset: in m from y = 0 on its side.
+        onset: onset in m from y = 0 on its side.
         exponent: n, at least 1.
     """
 

@@ -43,7 +43,7 @@ def pressed_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, 
     between segments, all its rows are bonded.
 
     Args:
-        system: of a boom.
+        system: system of a boom.
         rest: (num_modes,) its rest in √kg·m; that under the constant loads unless given.
     """
     try:
@@ -72,7 +72,7 @@ def add_damping(
     """Return the system with damping besides its segments' own.
 
     Args:
-        system: of a boom.
+        system: system of a boom.
         ratio: as of :func:`with_ratio`.
         rayleigh: α in 1/s and β in s of α + β ω² in the modes of the segments.
         rest: as of :func:`pressed_modes`.

@@ -117,7 +117,7 @@ class PiecewiseLinear:
     (array([1., 1., 0.]), 2.0)
 
     Args:
-        times: in s, rising.
+        times: times in s, rising.
         values: one for each time.
     """
 
@@ -161,9 +161,9 @@ class SCurve:
     array([0., 2., 4.])
 
     Args:
-        travel: in m; negative where the segment retracts.
-        duration: in s.
-        start: in s.
+        travel: travel in m; negative where the segment retracts.
+        duration: duration in s.
+        start: start in s.
     """
 
     travel: float
@@ -201,10 +201,10 @@ class Stroke:
     array([0.5, 1.5, 4. ])
 
     Args:
-        travel: in m; negative where the segment retracts.
-        speed: in m/s, positive.
+        travel: travel in m; negative where the segment retracts.
+        speed: speed in m/s, positive.
         ramp: duration in s of the acceleration, and of the deceleration.
-        start: in s.
+        start: start in s.
 
     Raises:
         ValueError: a number is out of range, or the travel is too short to reach the speed.

@@ -34,9 +34,9 @@ class Observer(NamedTuple):
 
     Args:
         row: over the modal coordinates,
-        unit: of the quantity that it reads, or
-        derivative: of their velocities where it is 1, and of their mean accelerations over the
-            output interval that ends then where it is 2.
+        unit: unit of the quantity that it reads, or
+        derivative: derivative of their velocities where it is 1, and of their mean accelerations
+            over the output interval that ends then where it is 2.
     """
 
     row: Array

@@ -105,7 +105,7 @@ class FixedStep:
     True
 
     Args:
-        step: in s, made smaller to fit the output step.
+        step: step in s, made smaller to fit the output step.
     """
 
     step: float
@@ -206,7 +206,7 @@ class _WindowError:
 
     Args:
         rows: (num_observed, num_modes) of the deflections.
-        period: of the slowest elastic mode in s.
+        period: period of the slowest elastic mode in s.
         places, speeds: (num_followed, num_observed, num_modes) response of the deflections to a
             change of coordinates and velocities, at times of the quarter period that follows.
     """
@@ -271,7 +271,8 @@ def simulate(
     0.319 s
 
     Args:
-        system, duration, output_step, position, velocity: of the :class:`Motion`.
+        system, duration, output_step, position, velocity: system, duration, output step, position
+            and velocity of the :class:`Motion`.
         integrator: :class:`AdaptiveStep` unless given.
 
     Raises:

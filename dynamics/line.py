@@ -53,7 +53,7 @@ class Line:
         """Return the row (num_modes,) of a quantity beside x in m; 0 off the segment.
 
         Args:
-            name: of the quantity.
+            name: name of the quantity.
             x: a place where something jumps.
             side: −1 before it, 1 behind it.
         """

@@ -26,8 +26,8 @@ class Motion:
 
     Args:
         system: the system that moves.
-        duration: in s; a whole number of output steps is made, at least one.
-        output_step: in s.
+        duration: duration in s; a whole number of output steps is made, at least one.
+        output_step: output step in s.
         position: (num_modes,) initial a in √kg·m, zero unless given.
         velocity: (num_modes,) initial ȧ in √kg·m/s, zero unless given.
 
@@ -80,10 +80,10 @@ def build_motion(
     """Return the motion of a boom's system under its loads from t = 0 on.
 
     Args:
-        system: of the boom with all its loads, those that are over at t = 0 among them.
-        duration, output_step: of the motion in s.
+        system: system of the boom with all its loads, those that are over at t = 0 among them.
+        duration, output_step: duration and output step of the motion in s.
         at_rest: whether it starts from rest under the loads of t = 0; straight and unloaded else.
-        damping_ratio: of the boom's modes with its joints pressed.
+        damping_ratio: damping ratio of the boom's modes with its joints pressed.
         rayleigh: factors of the mass in 1/s and of the stiffness in s.
 
     Raises:

@@ -53,7 +53,7 @@ class Integration:
 
     Args:
         motion: with all constant loads in the ``load`` of its system.
-        output: of all times; the first is that of the initial state.
+        output: output of all times; the first is that of the initial state.
         state: after the last output that is done.
     """
 
@@ -116,7 +116,7 @@ class Integration:
 
         Args:
             first, last: outputs at the start and at the end.
-            substeps: of each interval.
+            substeps: substeps of each interval.
             state: at the start, which is changed.
             output: is filled in; a new one unless given.
 
@@ -161,7 +161,8 @@ class Integration:
         lists, and its ``StickSlip`` by name in the attribute ``stick_slip``.
 
         Args:
-            substeps, window: of the :class:`dynamics.integrator.StepSchedule` that was made.
+            substeps, window: substeps and window of the :class:`dynamics.integrator.StepSchedule`
+                that was made.
             step_error: part of the range by which the step changes observed deflections; NaN
                 where it is not known.
 
@@ -232,7 +233,7 @@ def line_within(history: History, times: Array) -> tuple[Array, Array]:
     no step of their own: a mode's response is off by (ωh)⁴/720 of the kink's at most.
 
     Args:
-        history: of a load.
+        history: history of a load.
         times: (num_steps + 1,) ends of the steps in s, evenly spaced.
     """
     kinks = np.asarray(history.kinks, dtype=np.float64)

@@ -50,9 +50,9 @@ class Output(NamedTuple):
 
     Args:
         states, velocities: modal; velocities may have no columns.
-        energies: in J, as in ``dynamics.energy.ENERGIES``.
-        gaps: of the contacts in m.
-        means, peaks: of contact forces within the interval in N.
+        energies: energies in J, as in ``dynamics.energy.ENERGIES``.
+        gaps: gaps of the contacts in m.
+        means, peaks: means and peaks of contact forces within the interval in N.
         frictions: mean friction forces in N.
         drives: work of the drive of each travel so far in J.
     """
@@ -135,8 +135,8 @@ class Trajectory:
             system: that has moved.
             time: (num_times,) in s.
             output: at these times.
-            attributes: of the data, ``step``, ``steps``, ``first_contact`` and ``contact_changes``
-                among them.
+            attributes: attributes of the data, ``step``, ``steps``, ``first_contact`` and
+                ``contact_changes`` among them.
             least_energy: below which the energy put in is round-off, in J.
         """
         stations = np.arange(len(system.stations))
@@ -273,8 +273,8 @@ class Trajectory:
 
         Args:
             other: at the same times.
-            name: of the compared output.
-            until: in s; the horizon up to which both are predictable, say.
+            name: name of the compared output.
+            until: until in s; the horizon up to which both are predictable, say.
 
         Raises:
             ValueError: the times differ.

@@ -135,7 +135,7 @@ def pin_moments(
     Args:
         segments: with their axial forces.
         joints: between them.
-        bodies: of the segments.
+        bodies: bodies of the segments.
     """
     for number, segment in enumerate(segments):
         foot = segment.foot
@@ -184,7 +184,7 @@ def carried(
     Args:
         segments: with their initial axial forces.
         joints: some may telescope.
-        number: of the segment.
+        number: number of the segment.
         x, time: place and time; at a jump either value.
     """
     total = np.broadcast_to(segments[number].compression(x), (*time.shape, x.size))

@@ -242,7 +242,7 @@ def on_segments(part: _Part, where: str, segments: Sequence[Segment]) -> _Part:
     Args:
         part: a joint, or a part on one segment.
         where: its place in the boom.
-        segments: of the boom.
+        segments: segments of the boom.
 
     Raises:
         BoomError: a name that is no segment.

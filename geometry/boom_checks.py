@@ -259,7 +259,7 @@ def check_order(where: str, outer: str, inner: str, names: Sequence[str]) -> Non
     Args:
         where: the place of the joint.
         outer, inner: the names of its segments.
-        names: of all segments, from the base to the tip.
+        names: names of all segments, from the base to the tip.
 
     Raises:
         BoomError: it is not.

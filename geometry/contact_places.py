@@ -41,7 +41,7 @@ class Patch:
 
     Args:
         start, end: x in m.
-        offset: of its edge from that of the wall in m.
+        offset: offset of its edge from that of the wall in m.
         width: across the wall in m.
     """
 
@@ -101,17 +101,18 @@ class Pad:
         joint: the joint.
         number: position of the joint in ``Boom.joints``.
         x: m.
-        direction: of its normal.
+        direction: direction of its normal.
         side: 1 touches where the inner segment presses up (along y: towards larger y), −1 where
             it presses down, 0 both ways.
         inner, outer: (y, z) in m of the points from the axes of their segments.
         weight: the part of the joint's law on this side that the pad carries.
         rubs: direction of sliding.
-        normal_force: of its friction in N; None where its own contact presses.
+        normal_force: normal force of its friction in N; None where its own contact presses.
         pressed: its stretches of the corners of the inner and of the outer segment.
         patch: the wall that it covers; None where it is a point.
         raised: its protrusion into the joint's clearance in m.
-        face: of the inner segment in space, which touches in a corner of it; None in a flat boom.
+        face: face of the inner segment in space, which touches in a corner of it; None in a flat
+            boom.
         carrier: the segment to which it is fixed as the joint telescopes; None without a drive.
         moved: m by which it has moved along the inner and the outer segment.
     """
@@ -301,7 +302,7 @@ class StopPatch:
     Args:
         station: position in ``Boom.stations``.
         stop: the stop.
-        pressed: of the corners.
+        pressed: pressed of the corners.
         reach: range of its segment's extension in m.
     """
 

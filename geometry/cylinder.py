@@ -87,7 +87,7 @@ class Cylinder:
 
         Args:
             where: its place in the boom, ``cylinders[0]`` say.
-            spatial: of the boom.
+            spatial: spatial of the boom.
 
         Raises:
             BoomError: it has no length, or two are side by side in a flat boom.

@@ -128,7 +128,7 @@ class Drive:
     (0.0, 1.5)
 
     Args:
-        history: in m since the start, 0 at t = 0; a history of the dynamics.
+        history: history in m since the start, 0 at t = 0; a history of the dynamics.
         carriers: the segment to which each station of the joint is fixed.
         least_overlap: minimum overlap in m.
         locked: the segment to which the place is fixed where the inner one's axial force passes.

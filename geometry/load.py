@@ -54,7 +54,7 @@ class Load:
     Args:
         segment: its name; in a boom its position.
         direction: along which it acts.
-        magnitude: in N/m along the whole segment, or in N at one place.
+        magnitude: magnitude in N/m along the whole segment, or in N at one place.
         x: the place in m; None for the whole segment.
         history: factor of the magnitude over time, a history of the dynamics, or its substitute
             for loads that are over at t = 0.

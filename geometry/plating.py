@@ -78,7 +78,7 @@ def tapered_mesh(segment: Segment, mesh: PlatedMesh) -> PlatedMesh:
 
     Args:
         segment: tapers.
-        mesh: of the plain segment that has its widest section everywhere.
+        mesh: mesh of the plain segment that has its widest section everywhere.
     """
     number, first, last = _in_fan(segment.widest, mesh.points[:, 1:])
     points = mesh.points.copy()

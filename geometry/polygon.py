@@ -49,8 +49,8 @@ class PolygonSection(Section):
 
     Args:
         corners: (y, z) in m of the corners in turn, either way around, from wherever.
-        thicknesses: in m of the plates, each from a corner to the next; the last one closes the
-            cell.
+        thicknesses: thicknesses in m of the plates, each from a corner to the next; the last one
+            closes the cell.
 
     Raises:
         SectionError: fewer than three corners, sizes that are no section's, a plate without length,

@@ -24,8 +24,8 @@ def hexagon(
     500 x 400 x 8 / 5 / 6, 6 plates
 
     Args:
-        height: of the bottom from the top.
-        width: of the folds from each other.
+        height: height of the bottom from the top.
+        width: width of the folds from each other.
         flat: width of the top, and of the bottom.
         top, bottom, web: thicknesses of the top, the bottom, and the inclined plates.
 
@@ -46,7 +46,7 @@ def octagon(
     500 x 400 x 8 / 5 / 6, 8 plates
 
     Args:
-        height, width: of the rectangle.
+        height, width: height and width of the rectangle.
         chamfer: length cut from each of its sides at either end.
         top, bottom, web: thicknesses of the top, the bottom, and all other plates.
 
@@ -72,9 +72,9 @@ def u_section(
     500 x 400 x 6 / 8, 10 plates
 
     Args:
-        height: of the bottom from the top.
-        width: of the webs from each other.
-        radius: of the bends; half the width makes one round of both.
+        height: height of the bottom from the top.
+        width: width of the webs from each other.
+        radius: radius of the bends; half the width makes one round of both.
         facets: flat plates in each bend, between the level bottom and the web; one at least.
         top, bottom, web: thicknesses of the top, of the bottom with its bends, and of the webs.
 
@@ -106,7 +106,7 @@ def _mirrored(
 
     Args:
         twice: (num_corners, 2) (y, z) of its corners times two in m, upwards.
-        thicknesses: in m, of the bottom, the plates between the corners, and the top.
+        thicknesses: thicknesses in m, of the bottom, the plates between the corners, and the top.
     """
     right = 0.5 * np.array(twice)
     left = right[::-1] * [-1.0, 1.0]

@@ -79,11 +79,11 @@ def refinement_zones(
     """Return the refinement zones of a segment with known plates.
 
     Args:
-        boom: of the segment.
+        boom: boom of the segment.
         number: its position in ``Boom.segments``.
         tolerance: relative error of the local compliance.
         line: where walls touch.
-        stop_patches, pads: of the boom.
+        stop_patches, pads: stop patches and pads of the boom.
     """
     finer = float(np.sqrt(tolerance / MEASURED_AT))
     # Zones on several sides, or in mirror images, are one.

@@ -46,7 +46,7 @@ class Plate(NamedTuple):
     Args:
         name: how results call it.
         start, end: (y, z) in m of the ends of its mid-line.
-        thickness: in m.
+        thickness: thickness in m.
     """
 
     name: str
@@ -83,11 +83,11 @@ class Face(NamedTuple):
 
     Args:
         plate: its number in the section's plates.
-        direction: of its outward normal.
+        direction: direction of its outward normal.
         side: 1 where the normal points along the direction, −1 where against it.
-        offset: of the mid-line along the direction, in m.
+        offset: offset of the mid-line along the direction, in m.
         low, high: coordinates across the plate in m, of its ends.
-        thickness: of the plate in m.
+        thickness: thickness of the plate in m.
     """
 
     plate: int
@@ -394,7 +394,7 @@ def _hollow_rectangle(
     """Return the centroid of a hollow rectangle and its second moment about the centroid.
 
     Args:
-        width, height: of the mid-lines in m.
+        width, height: width and height of the mid-lines in m.
         webs, flanges: thicknesses in m, of flanges that of the upper one first.
 
     Returns:

@@ -46,7 +46,7 @@ class ShearFlow:
 
         Args:
             plates: once around, each beginning where the one before ends.
-            direction: of the force.
+            direction: direction of the force.
         """
         start = np.array([plate.start for plate in plates])
         side = np.array([plate.end for plate in plates]) - start

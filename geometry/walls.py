@@ -57,7 +57,7 @@ def free_room(outer: Section, inner: Section, play: float = 0.0) -> tuple[float,
     Args:
         outer: the section around.
         inner: the section within, wherever it is along z.
-        play: in m, along z; wherever in it the inner section is, it can move so far along y.
+        play: play in m, along z; wherever in it the inner section is, it can move so far along y.
     """
     reach = trapezoids(inner.plates)[:, :2].reshape(-1, 2)
     normal = normals(outer.plates)

@@ -31,7 +31,7 @@ def load_case(path: str | Path) -> Case:
     ['outer', 'inner']
 
     Args:
-        path: of the file; those in ``CASES`` come with the program.
+        path: path of the file; those in ``CASES`` come with the program.
 
     Raises:
         BadInput: the file cannot be read, or what it says cannot be.
@@ -81,7 +81,7 @@ def run_case(case: Case, models: Sequence[str] | None = None) -> Results:
     ('model', 'time')
 
     Args:
-        case: of :func:`load_case` or :func:`change`.
+        case: case of :func:`load_case` or :func:`change`.
         models: their names; all unless given.
 
     Returns:

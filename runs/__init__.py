@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Case files in, trajectories and a report out."""
+"""Runs of case files: the command line, the pipeline from cases to results, and reports."""
 
 import os
 from pathlib import Path
 
-# Of the cases that come with the program.
+# Folder of the cases that come with the program.
 CASES = Path(__file__).parent / "cases"
 
-# Before numpy reads it. Parallelism is ranks, members and points; what BLAS sums over threads
-# differs in the last bit between one process and several, and contact amplifies that.
+# This must be set before numpy reads it. The program runs ranks, ensemble members and sweep points
+# in parallel. Sums over BLAS threads would differ in the last bit between one process and several,
+# and contact amplifies such differences.
 os.environ.setdefault("OMP_NUM_THREADS", "1")

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The command line. Exit status: 0 ran; 1 a demand of the case failed; 2 bad input; 3 numerics."""
+"""The command line.
+
+Exit status: 0 success, 1 a demand of the case is not met, 2 bad input, 3 numerical failure."""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-# Each command imports what it needs: the libraries of all of them take seconds.
+# Each command imports its own libraries: those of all commands take seconds to load.
 from runs.process import ending, progress, terminal
 from runs.process.terminal import Terminal, message, printable, say, shown
 
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
     from runs.sweep.points import Plan
     from runs.sweep.run import Outcome
 
-# Bytes that Open MPI takes of the temporary folder, which are 8.2 MB, and some more.
+# Free bytes that Open MPI needs in the temporary folder: 8.2 MB and a margin.
 _ROOM_OF_MPI = 16_000_000
 
 app = typer.Typer(
@@ -112,7 +114,7 @@ def run(
     from runs.case import reading
 
     effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
-    # After the case, whose mistakes need not wait for them.
+    # Imported after the check of the case, so that errors in it appear at once.
     from runs.client import judge
     from runs.folder.cache import Cache
     from runs.folder.files import whole_folder
@@ -141,7 +143,7 @@ def run(
             workers.helper(opengl.hush) as helper,
         ):
             if helper and not no_pictures and any(model.meshed for model in effective.models):
-                # It imports the renderer while this process meshes.
+                # The helper imports the renderer while this process meshes.
                 helper.submit(import_module, "runs.report.snapshots")
             context = RunContext(comm, report_progress, cache, cache, helper)
             finished = run_case(effective, case, context)
@@ -330,17 +332,17 @@ def schema() -> int:
     """Print the JSON Schema of a case file."""
     from runs.case.schema import case_schema
 
-    # Longer than what is kept until the end, where who reads no more is known to have had enough.
+    # Longer than the buffer, so that a closed pipe is noticed here, where it is handled.
     with suppress(BrokenPipeError):
         print(json.dumps(case_schema(), indent=1))
     return 0
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run a command and exit; whatever the user can mend is one line on stderr."""
+    """Run a command and exit; print each error that the user can correct as one line on stderr."""
     terminal.prepare()
     terminal.show_notices()
-    # Figures are drawn into files, whatever shows them to those who started this process.
+    # Figures go into files, whatever backend the environment selects.
     os.environ["MPLBACKEND"] = "agg"
     command = typer.main.get_command(app)
     try:
@@ -356,7 +358,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _explain(error: Exception) -> tuple[str, int] | None:
     """Return the line and the exit status for an error that the user can correct."""
-    # Without memory nothing more can be imported; the loader of libraries has an error of its own.
+    # Imports fail without memory, and the loader of libraries has its own error for it.
     if isinstance(error, MemoryError) or "failed to map segment" in str(error):
         return message(f"out of memory ({error}); make the models or the output smaller"), 3
     from dynamics.failure import NumericsError
@@ -366,11 +368,11 @@ def _explain(error: Exception) -> tuple[str, int] | None:
         return message(str(error)), 2
     if isinstance(error, NumericsError):
         return message(str(error)), 3
-    # A usage error of typer's, whose class has no public name.
+    # A usage error of typer; its class has no public name.
     if hasattr(error, "format_message"):
         return message(f"{error.format_message()} (protractile --help tells more)"), 2
     if isinstance(error, OSError):
-        # Some libraries do not say which file it was, or why.
+        # Errors of some libraries lack the file or the reason.
         file = "output" if error.filename is None else shown(str(error.filename))
         return message(f"{file}: file: cannot be used ({error.strerror or error})"), 2
     return None
@@ -378,7 +380,7 @@ def _explain(error: Exception) -> tuple[str, int] | None:
 
 @contextmanager
 def _all_ranks_end_together(comm: MPI.Comm | None) -> Iterator[None]:
-    """End all ranks when one fails alone, for which the others would wait for ever."""
+    """End all ranks if one of them fails, since the others would wait for it for ever."""
     try:
         yield
     except Exception as error:
@@ -390,9 +392,9 @@ def _all_ranks_end_together(comm: MPI.Comm | None) -> Iterator[None]:
 
 @contextmanager
 def _rendered_again(folder: str) -> Iterator[tuple[Results, Addition, Path]]:
-    """Give a run, the evaluation by its client, and a copy of its folder that replaces it.
+    """Yield a run, the client's evaluation, and a copy of its folder to change.
 
-    The copy's report is rendered in the end.
+    At the end, the report of the copy is rendered, and the copy replaces the folder.
     """
     from runs.case.user_files import check_left
     from runs.client import judge
@@ -418,10 +420,10 @@ def _names(models: str | None) -> list[str] | None:
 def _enter_mpi(
     case: Case, file: str, without: str = "run the other models with --models"
 ) -> MPI.Intracomm | None:
-    """Return the ranks that share the shells, None for a case without one.
+    """Return the communicator of the ranks that share the shells; None for a case without shells.
 
     Raises:
-        BadInput: a shell is asked for, and what it takes is not installed.
+        BadInput: the case has a shell, and FEniCSx is not installed.
     """
     from runs.case.messages import BadInput
 
@@ -443,14 +445,14 @@ def _enter_mpi(
 
 
 def _check_temporary_folder(file: str) -> None:
-    """Refuse a temporary folder without room for MPI, which would end the process in many lines.
+    """Check the space in the temporary folder, without which MPI aborts with a long message.
 
     Raises:
-        BadInput: it has none, or cannot be written.
+        BadInput: the folder has too little space, or is not writable.
     """
     from runs.case.messages import BadInput
 
-    # Of Open MPI, which takes it as given where Python would look for another one.
+    # Open MPI uses this variable as it is, while Python may choose another folder.
     folder = os.environ.get("TMPDIR") or gettempdir()
     try:
         with TemporaryFile(dir=folder) as probe:
@@ -479,7 +481,7 @@ def _show(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
 
 
 def _report_failed_models(file: str, results: Results) -> int:
-    """Print a line for all models that failed; return the exit status."""
+    """Print a line for each model that failed; return the exit status."""
     failures = results.summary.failures
     if not failures:
         return 0
@@ -491,7 +493,7 @@ def _report_failed_models(file: str, results: Results) -> int:
 
 
 def _show_failures(plan: Plan, outcomes: Sequence[Outcome]) -> int:
-    """Print a line for each model that failed at a point; return 3 if nothing else is left."""
+    """Print a line for each model that failed at a point; return 3 if no result remains."""
     for point, outcome in zip(plan.points, outcomes, strict=True):
         for model, why in outcome.failures.items():
             say(message(f"{shown(plan.file)}: --vary {point.label}: {model}: {why}"))

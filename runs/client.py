@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The client that evaluates runs, the paper: its part of the report, its verdicts.
+"""The client that evaluates runs: the paper, with its part of the report and its verdicts.
 
-Nothing else imports it except :mod:`runs.case.schema`, which adds its keys to every case.
-Another client would replace the names here and there.
+Nothing else imports :mod:`runs.paper` except :mod:`runs.case.schema`, which adds its keys to every
+case. Another client would replace these two imports.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def judge(results: Results) -> Addition:
 
 
 def show(judged: Mapping[str, Addition], console: Console) -> int:
-    """Print the client's verdicts on runs, by their file; return the exit status."""
+    """Print the client's verdicts on runs, each run by its file; return the exit status."""
     from runs.paper.verdicts import show
 
     return show(judged, console)

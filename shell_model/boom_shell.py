@@ -37,15 +37,16 @@ class ShellOptions:
     """Options of the shell model.
 
     Args:
-        mesh_size: edge length in m; in a graded mesh, the one far from contacts and supports.
-        contact_line: ``near webs`` transfers the force from the inner segment's webs to the outer
-            one's, as pads in the corners do; ``across`` spreads it over the width of the
-            inner segment's flanges, which then bow, in a flat boom; ``surface`` touches over the
-            whole overlap of facing walls.
-        surface: its points and penalty, and its own shifts and moments of the reduction.
-        krylov: the reduction.
-        contact_tolerance: relative error of the local compliance where a force acts, which grades
-            the mesh (:mod:`geometry.refinement`); uniform unless given, and at a surface.
+        mesh_size: edge length in m; in a graded mesh, the length far from contacts and supports.
+        contact_line: place of contact. ``near webs`` transfers forces between the webs of both
+            segments, as pads in the corners do. ``across`` spreads forces over the width of the
+            inner flanges, which then bend, in a flat boom. ``surface`` has contact over the whole
+            overlap of facing walls.
+        surface: options of surface contact, with their own shifts and moments of the reduction.
+        krylov: options of the reduction.
+        contact_tolerance: permitted relative error of the local compliance at contacts, which
+            grades the mesh (:mod:`geometry.refinement`). The mesh is uniform without it, and for
+            surface contact.
     """
 
     mesh_size: float = 0.1
@@ -56,12 +57,12 @@ class ShellOptions:
 
     @property
     def order(self) -> float:
-        """Lower bound of the order of the local compliance in the edge length."""
+        """The lower bound of the convergence order of the local compliance."""
         return 1.0 if self.contact_tolerance is None or self.contact_line == "surface" else 2.0
 
     @property
     def coarser(self) -> ShellOptions:
-        """Options with edges of twice the length, for the estimate of the mesh error."""
+        """The options with edges of twice the length, for the estimate of the mesh error."""
         tolerance = self.contact_tolerance
         return replace(
             self,
@@ -75,18 +76,18 @@ class BoomShell:
     """Distributed shell model of a boom with all degrees of freedom.
 
     Args:
-        comm: the ranks that share it.
-        shells: one for each segment.
-        stations: x in m and direction of each.
+        comm: ranks that share the model.
+        shells: shell of each segment.
+        stations: x in m and direction of each station.
         touching: possible contacts, friction and dashpots at any extension.
-        rows: those at t = 0.
-        ties: constraints, whose rows stay at zero.
-        own_loads: (num_owned,) of each segment in N, applied at t = 0 and kept.
-        loads: those that follow a history, and their (num_owned,) load vectors.
+        rows: rows of contacts, friction and dashpots at t = 0.
+        ties: constraints: their rows stay at zero.
+        own_loads: uniform load vector (num_owned,) of each segment in N, constant from t = 0 on.
+        loads: loads with a history, and their load vectors (num_owned,).
         observed: readings that a motion records.
-        lines: (num_owned,) each, connections to the ground.
-        pin_moments: of axial forces, see :func:`geometry.axial.pin_moments`.
-        helper: a process that takes part in the reduction.
+        lines: connections to the ground, (num_owned,) each.
+        pin_moments: pin moments of axial forces, see :func:`geometry.axial.pin_moments`.
+        helper: second process that takes part in the reduction.
     """
 
     comm: MPI.Comm
@@ -104,33 +105,33 @@ class BoomShell:
 
     @cached_property
     def symmetries(self) -> Sequence[SymmetryReduction]:
-        """Symmetry reductions of the segments, computed once for all solves. Collective.
+        """The symmetry reductions of the segments, computed once for all solves. Collective.
 
         Raises:
-            NumericsError: a segment is not its own mirror image.
+            NumericsError: a segment is not symmetric.
         """
         return [SymmetryReduction(shell) for shell in self.shells]
 
     @property
     def num_dofs(self) -> int:
-        """Number of degrees of freedom of all segments."""
+        """The number of degrees of freedom of all segments."""
         return sum(shell.num_dofs for shell in self.shells)
 
     @property
     def resisting(self) -> list[Reading]:
-        """Rows of contacts, then of friction."""
+        """The rows of contacts, then of friction."""
         contacts = [contact.reading for contact in self.rows.contacts]
         return contacts + [friction.reading for friction in self.rows.frictions]
 
     def forces(self, number: int) -> Array:
-        """Return all forces that act on a segment (num_owned, num_forces), contacts first."""
+        """Return all forces (num_owned, num_forces) on a segment, contacts first."""
         dashpots = self.columns(
             number, [r for dashpot in self.rows.dashpots.values() for _, r in dashpot.parts]
         )
         return np.column_stack([self.joined(number), dashpots, self.pushed(number)])
 
     def pushed(self, number: int) -> Array:
-        """Return the load vectors (num_owned, num_pushes) that act on a segment at fixed places."""
+        """Return the load vectors (num_owned, num_pushes) on a segment at fixed places."""
         own = [push for load, push in self.loads if load.segment == number]
         own += [push for segment, push in self.pin_moments if segment == number]
         own += [line.push for line in self.lines if line.segment == number]
@@ -141,7 +142,7 @@ class BoomShell:
         return self.columns(number, [*self.resisting, *self.ties])
 
     def columns(self, number: int, readings: Iterable[Reading]) -> Array:
-        """Return the columns (num_owned, num_rows) of the rows that read a segment. Collective."""
+        """Return the rows that read a segment, as columns (num_owned, num_rows). Collective."""
         shell = self.shells[number]
         rows = [shell.row(reading[number]) for reading in readings if number in reading]
         return np.array(rows).reshape(-1, shell.free.size).T
@@ -156,10 +157,10 @@ def assemble_boom(
     """Assemble the unreduced shells of a boom with contacts, loads and observers. Collective.
 
     Args:
-        boom: all its segments with sections.
+        boom: boom whose segments all have sections.
         options: mesh and contact points.
-        comm: the ranks that share the work.
-        stages: reports the progress.
+        comm: ranks that share the work.
+        stages: stages of the progress.
 
     Raises:
         BoomError: a segment has no section, or the contact line does not suit the boom.
@@ -186,7 +187,7 @@ def assemble_boom(
 def assemble_segments(
     boom: Boom, options: ShellOptions, comm: MPI.Comm, stages: Stages | None = None
 ) -> list[SegmentShell]:
-    """Assemble the shells of all segments alone. Collective."""
+    """Assemble the shells of all segments, without contacts. Collective."""
     watch = stages or Stages()
     shells, count = [], len(boom.segments)
     for number, segment in enumerate(boom.segments):
@@ -228,7 +229,7 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
 
 
 def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, Observed[Reading]]:
-    """Return the observers of the boom's ends and all other observers. Collective."""
+    """Return the readings of the boom's ends and of all other observers. Collective."""
     ends: tuple[Quantity, ...] = ("deflection", "rotation", "distortion")
     if boom.spatial:
         ends += ("lateral", "twist")

@@ -30,7 +30,7 @@ try:
 except ImportError:
     _HAS_BASIX_UFL = False
 
-# All of DOLFINx calls its compiler by this name.
+# DOLFINx calls its form compiler by this name everywhere.
 _JIT_OPTIONS = getattr(jit, "get_options", None) or jit.get_parameters
 _JIT_DEFAULTS = getattr(jit, "DOLFINX_DEFAULT_JIT_OPTIONS", None) or (
     jit.DOLFINX_DEFAULT_JIT_PARAMETERS
@@ -42,10 +42,10 @@ _JIT_DEFAULTS["cache_dir"] = (Path(_FORMS) / "protractile", *_MEANING)
 def _compile_one_at_a_time(compile_form: Callable[..., Any]) -> Callable[..., Any]:
     """Wrap a compiler so that it waits until no other process compiles. Collective.
 
-    FFCx marks a form as started before it compiles it. Another process that finds the mark waits
-    ten seconds at most and then fails, behind a slow process or one that was killed. So this
-    program's forms have their own folder, in which one process compiles at a time. A form that is
-    started but not finished there was left by a killed process, and is removed.
+    FFCx marks a form before it compiles the form. Another process that finds the mark waits for at
+    most ten seconds and then fails, which happens if the first process is slow or killed. So this
+    program's forms have their own folder, in which one process compiles at a time. An unfinished
+    form there belongs to a killed process and is removed.
     """
 
     @wraps(compile_form)
@@ -55,7 +55,7 @@ def _compile_one_at_a_time(compile_form: Callable[..., Any]) -> Callable[..., An
             return compile_form(comm, *arguments, **options)
         folder.mkdir(parents=True, exist_ok=True)
         with (folder / "lock").open("w") as lock:
-            # Some disks of clusters have no locks.
+            # Some file systems of clusters have no locks.
             with suppress(OSError):
                 fcntl.flock(lock, fcntl.LOCK_EX)
             for source in folder.glob("*.c"):
@@ -92,12 +92,12 @@ def create_triangle_mesh(comm: MPI.Comm, points: Array, triangles: Indices) -> A
         )
     cell = ufl.Cell("triangle", geometric_dimension=3)
     domain = ufl.Mesh(ufl.VectorElement("Lagrange", cell, 1))
-    # Version 0.5 gives each rank the cells across its edges, however many they are.
+    # Version 0.5 gives each rank all cells across its edges.
     return mesh.create_mesh(comm, _listed(triangles), points, domain)
 
 
 def _apart(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[str, Any]:
-    """Return arguments of ``create_mesh`` that keep three cells on an edge joined on any ranks."""
+    """Return arguments of ``create_mesh`` that connect three cells on an edge across ranks."""
     if "max_facet_to_cell_links" in _CREATE_MESH:
         joined: dict[str, Any] = {"max_facet_to_cell_links": _CELLS_OF_AN_EDGE}
         if comm.size > 1:
@@ -107,7 +107,7 @@ def _apart(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[str, Any]:
         return joined
     if comm.size == 1:
         return {}
-    # (num_edges, 3) the cells on each edge that has three.
+    # Cells (num_edges, 3) on each edge with three cells.
     sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     edges = sides[:, 0] * (triangles.max(initial=0) + 1) + sides[:, 1]
     by_edge = np.argsort(edges, kind="stable")
@@ -116,9 +116,9 @@ def _apart(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[str, Any]:
     together = by_edge[begins[:, None] + np.arange(_CELLS_OF_AN_EDGE)] // 3
     if not comm.bcast(together.size):
         return {}
-    # Without that argument an edge with two cells on one rank counts as known to no other rank
-    # (FEniCS/dolfinx issue 3063): its cells must stay together.
-    # Equal numbers on each, one after another along x.
+    # Without that argument, an edge with two cells on one rank is not shared with other ranks
+    # (FEniCS/dolfinx issue 3063), so that all its cells must be on one rank. Each rank gets the
+    # same number of cells, in the order of x.
     middles = points[triangles].mean(axis=1)
     place = np.empty(len(triangles), dtype=np.int64)
     place[np.lexsort(middles.T[::-1])] = np.arange(len(triangles))
@@ -134,8 +134,8 @@ def create_hexahedron_mesh(comm: MPI.Comm, points: Array, hexahedra: Indices) ->
     Args:
         comm: the ranks that share the mesh.
         points: (num_points, 3) on rank 0, (0, 3) elsewhere, in m.
-        hexahedra: (num_hexahedra, 8) on rank 0, (0, 8) elsewhere; the points of a cell run along
-            its first axis first, then along its second, then along its third.
+        hexahedra: (num_hexahedra, 8) on rank 0, (0, 8) elsewhere; the points of a cell are ordered
+            along its first axis, then its second, then its third.
     """
     if _HAS_BASIX_UFL:
         element = basix.ufl.element("Lagrange", "hexahedron", 1, shape=(3,))
@@ -146,7 +146,7 @@ def create_hexahedron_mesh(comm: MPI.Comm, points: Array, hexahedra: Indices) ->
 
 
 def _listed(cells: Indices) -> Any:
-    """Return connectivity in the type that DOLFINx 0.5 expects; an array costs it an exception."""
+    """Return connectivity in the type that DOLFINx 0.5 expects; it does not accept arrays."""
     return cpp.graph.AdjacencyList_int64(cells.astype(np.int64))
 
 
@@ -177,8 +177,8 @@ def cellwise_space(domain: Any) -> Any:
 def cellwise_function(domain: Any, values: Array) -> Any:
     """Return a function that is constant on each cell of a mesh.
 
-    ``values`` (num_cells,) have the order in which the cells were given to
-    :func:`create_triangle_mesh`, the same on every rank.
+    ``values`` (num_cells,) are in the order of the cells in :func:`create_triangle_mesh`, and the
+    same on every rank.
     """
     function = fem.Function(cellwise_space(domain))
     function.x.array[:] = values[domain.topology.original_cell_index]
@@ -186,14 +186,14 @@ def cellwise_function(domain: Any, values: Array) -> Any:
 
 
 def assemble_matrix(form: Any, bcs: list[Any], diagonal: float) -> PETSc.Mat:
-    """Assemble a matrix with ``diagonal`` in the rows of constrained degrees of freedom."""
+    """Assemble a matrix, with ``diagonal`` on the diagonal of constrained rows."""
     matrix = fem_petsc.assemble_matrix(form, bcs, **{_ASSEMBLE_DIAGONAL: diagonal})
     matrix.assemble()
     return matrix
 
 
 def assemble_vector(form: Any) -> Array:
-    """Assemble this rank's rows of a vector, with the contributions of other ranks."""
+    """Assemble this rank's rows of a vector, including contributions of other ranks."""
     vector = fem_petsc.assemble_vector(form)
     vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
     rows = vector.array.copy()
@@ -210,10 +210,10 @@ def cell_nodes(space: Any) -> Indices:
 
 
 def node_places(space: Any) -> Array:
-    """Return places (num_nodes, 3) of this rank's quadratic or Crouzeix-Raviart nodes, in m.
+    """Return the positions (num_nodes, 3) of this rank's quadratic or Crouzeix-Raviart nodes in m.
 
-    Corners are as given and middles of edges are half their sum, so that a node has the same
-    place to the last bit on any rank; DOLFINx takes it from any of its cells.
+    Mid-side nodes are computed as the mean of their corners, so that a node has the same position
+    to the last bit on every rank; DOLFINx computes it in one of the node's cells.
     """
     geometry = space.mesh.geometry
     corners = geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Reduction of the boom's shells to a gap system, with the errors of reduction and mesh."""
+"""Reduction of the boom's shells to a gap system, with errors of reduction and mesh."""
 
 from __future__ import annotations
 
@@ -43,23 +43,23 @@ class ReducedShell:
 
     Args:
         system: gap system of all segments.
-        num_dofs: degrees of freedom of the shells before the reduction.
-        fields: displacement of every mesh vertex for each mode, on rank 0 (see ``fields``).
-        errors: measured reduction errors, the worst over the segments: ``contact_compliance`` as a
-            part of the local one, NaN where there is none, ``readings`` relative, and
-            ``frequency_limit_in_hz`` up to which each mode is right in itself.
-        local_compliance: (num_rows,) of the contacts in m/N, see
+        num_dofs: number of degrees of freedom before the reduction.
+        fields: displacements of all mesh vertices for each mode, on rank 0 (see ``fields``).
+        errors: measured reduction errors, the maximum over the segments: ``contact_compliance`` as
+            a fraction of the local compliance, NaN without contacts; ``readings``, relative;
+            ``frequency_limit_in_hz``, up to which natural frequencies are accurate.
+        local_compliance: local compliances (num_rows,) of the contacts in m/N, see
             :func:`shell_model.contact.local_compliance.local_compliance`.
-        mesh_error: the largest part of the local compliance by which the mesh may be off; NaN where
-            there is none.
-        seconds: wall time of each stage: mesh, assembly, rows (of contacts and readings, their
-            values for each coordinate), reduction, fields (of displacement and stress), mesh error,
-            unit responses.
-        meshes: one for each segment, on rank 0.
-        critical_factor: that of the axial forces with closed joints, see
-            :func:`dynamics.second_order.buckling_factor`; infinite without any.
+        mesh_error: largest relative discretisation error of the local compliance; NaN without
+            contacts.
+        seconds: wall time of each stage: mesh, assembly, rows of contacts and readings, reduction,
+            fields of displacement and stress, mesh error, unit responses.
+        meshes: mesh of each segment, on rank 0.
+        critical_factor: critical factor of the axial forces with closed joints, see
+            :func:`dynamics.second_order.buckling_factor`; infinite without axial forces.
         probe_responses: unit responses of the segments, to which beams are calibrated.
-        own_loads: (num_segments, num_modes) the part of each in ``system.load``, in N/√kg.
+        own_loads: contributions (num_segments, num_modes) of the segments' uniform loads to
+            ``system.load``, in N/√kg.
     """
 
     system: GapSystem
@@ -85,11 +85,11 @@ def reduce_boom(
     """Mesh, assemble and reduce every segment. Collective.
 
     Args:
-        boom: all its segments with sections.
+        boom: boom whose segments all have sections.
         options: mesh, contact points, reduction.
-        comm: the ranks that share the work; the result is the same on each.
-        progress: called with the stage and the part of it that is done.
-        helper: a process beside the only rank, which takes part in the work.
+        comm: ranks that share the work; the result is the same on each.
+        progress: callback that receives the stage and its completed fraction.
+        helper: second process, which takes part in the work if there is only one rank.
 
     Raises:
         BoomError: a segment has no section, or the contact line does not suit the boom.
@@ -149,21 +149,21 @@ def reduce_boom(
 
 
 def _mesh_compliance(boom: Boom, options: ShellOptions, comm: MPI.Comm = MPI.COMM_SELF) -> Array:
-    """Return the local compliance (num_contacts,) in m/N of a mesh, unreduced. Collective."""
+    """Return the local compliance (num_contacts,) in m/N of unreduced shells. Collective."""
     shell = assemble_boom(boom, options, comm)
     return _of_contacts(full_compliance(shell.shells, shell.rows.contacts), shell)
 
 
 def _of_contacts(whole: Array, shell: BoomShell) -> Array:
-    """Return the local compliance (num_contacts,) from that of all contacts."""
+    """Return the local compliance (num_contacts,) from the compliance of all contacts."""
     rows = shell.rows.contacts
     return local_compliance(whole, [row.law for row in rows], [row.station for row in rows])
 
 
 def _contact_compliance(full: BoomShell, segments: Sequence[ReducedSegment]) -> tuple[Array, Array]:
-    """Return the compliance (num_contacts, num_contacts) of reduced segments apart, in m/N.
+    """Return the compliance (num_contacts, num_contacts) in m/N of the separate reduced segments.
 
-    Also return the largest error (num_contacts,) of that of each contact.
+    Also return the largest error (num_contacts,) of each contact's compliance.
     """
     apart = BoomCoordinates(full.comm, full.shells, segments, ())
     contacts = full.rows.contacts
@@ -193,7 +193,7 @@ def _reduced(
 
 
 def _gap_system(full: BoomShell, coordinates: BoomCoordinates, own_loads: Array) -> GapSystem:
-    """Return the gap system of the boom in its coordinates."""
+    """Return the gap system of the boom in the coordinates."""
     return full.rows.system(
         coordinates.row,
         coordinates.omega2,
@@ -209,7 +209,7 @@ def _gap_system(full: BoomShell, coordinates: BoomCoordinates, own_loads: Array)
 
 
 def _largest(parts: Array) -> float:
-    """Return the largest of all finite values; NaN without any."""
+    """Return the largest of all finite values; NaN without finite values."""
     return float(np.nanmax(parts)) if np.isfinite(parts).any() else float("nan")
 
 
@@ -219,7 +219,7 @@ def critical_factor(boom: Boom, full: BoomShell, reduced: Sequence[ReducedSegmen
     It is infinite without axial forces.
 
     Raises:
-        NumericsError: it is 1 or less, and the boom buckles.
+        NumericsError: the factor is 1 or less: the boom buckles.
     """
     if not boom.compressed:
         return float("inf")

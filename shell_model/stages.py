@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Duration and progress of the stages of a computation."""
+"""Wall time and progress of the stages of a computation."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Stages:
     mesh 1.0
 
     Args:
-        tell: called with the stage and the part of it that is done.
+        tell: callback that receives the stage and its completed fraction.
     """
 
     def __init__(self, tell: Callable[[str, float], None] | None = None) -> None:
@@ -30,7 +30,7 @@ class Stages:
     def stage(
         self, name: str, number: int = 0, count: int = 1
     ) -> Iterator[Callable[[float], None]]:
-        """Run the part ``number`` of ``count`` of a stage; yield its progress function."""
+        """Run part ``number`` of ``count`` parts of a stage; yield a function for its progress."""
         begin = perf_counter()
         self.tell(name, number / count)
         yield lambda part: self.tell(name, (number + part) / count)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Reduced shell shared by all booms that differ only in plays and magnitudes of loads.
+"""Reduced shell of all booms that differ only in plays and magnitudes of loads.
 
-A shell is reduced on directions of forces of any magnitude, and a play is the gap of a contact:
-neither affects the coordinates. So the shell of the boom without play and
-under unit loads is reduced, and plays, loads and their histories are put into its system. In space
-the lateral lever of a contact goes with the play, and stays what it is.
+Neither plays nor magnitudes of loads affect the reduced coordinates. So the boom is reduced without
+play and under unit loads, and plays, loads and histories are then inserted into its system. In
+space, the lateral lever of a contact depends on the play, and booms share a shell only if they have
+the same play.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from shell_model.reduced_shell import ReducedShell
 
 
 def standard_boom(boom: Boom) -> Boom:
-    """Return the boom under unit loads, in the plane without play."""
+    """Return the boom under unit loads; a flat boom also without play."""
     joints = boom.joints
     if not boom.spatial:
         joints = tuple(
@@ -41,7 +41,7 @@ def standard_boom(boom: Boom) -> Boom:
 
 
 def with_plays_and_loads(shell: ReducedShell, boom: Boom) -> ReducedShell:
-    """Return the shell of a boom from that of its :func:`standard_boom`."""
+    """Return the shell of a boom, from the shell of its :func:`standard_boom`."""
     system = shell.system
     more = [
         joint.clearances("z")
@@ -49,7 +49,7 @@ def with_plays_and_loads(shell: ReducedShell, boom: Boom) -> ReducedShell:
         if not (joint.tied or boom.spatial or _shimmed(joint))
         for _ in joint.stations
     ]
-    # In space, and behind the joints at stops, rows have their clearances already.
+    # In space, and at stops, the rows already have their clearances.
     more += [(0.0, 0.0)] * (len(system.stations) - len(more))
     factors = np.array([_own_load(segment) for segment in boom.segments])
     changing = [load for load in boom.loads if _changing(load)]
@@ -84,7 +84,7 @@ def _unit_segment(segment: Segment) -> Segment:
 
 
 def _changing(load: Load) -> bool:
-    """Return whether the load follows a history and is not over at t = 0."""
+    """Return whether the load has a history and acts after t = 0."""
     return not isinstance(load.history, ReleasedLoad | InitialImpulse)
 
 

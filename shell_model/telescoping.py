@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Shells of telescoping booms: modes for every extension, and springs that move with the pads.
 
-A basis of the responses to forces at every place would grow with the length of the extension.
-But segments have few modes that pads excite, and springs represent the compliance of walls beyond
-these (:mod:`shell_model.reduction.pad_springs`). Rows and springs are sampled where pads pass the
-rings of the mesh, and are splines between these, so that no ring has an effect.
-
-An axial force that moves along with a segment softens by K_G of the sections as they move as a
-whole: of the slope of their mean deflection, which is a spline between the lines of the mesh that
-go all around. Walls that bend in themselves keep what they have at the start.
+A basis of the responses to forces at all places would grow with the extension. But pads excite few
+modes of segments, and springs represent the remaining compliance of walls
+(:mod:`shell_model.reduction.pad_springs`). Rows and springs are sampled where pads pass the rings
+of the mesh, and are interpolated by splines, so that single rings have no effect. The geometric
+stiffness of an axial force that moves with a segment follows from the slope of the mean deflection,
+which is a spline between the mesh lines around the segment. Local bending of walls keeps the
+geometric stiffness of the initial extension.
 """
 
 from __future__ import annotations
@@ -38,28 +37,28 @@ from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.stress.stresses import lines_around
 
-# Modes up to this frequency in Hz are kept: the slow ones, and those that somewhere give way by
-# more than a part of what springs take.
+# Highest frequency of modes in Hz; frequency up to which all modes are kept; fraction of the
+# springs' compliance that a faster mode must contribute.
 _CUTOFF, _SLOWEST, _PART = 1500.0, 100.0, 0.003
 
-# Moments of what stays in its place, and of the reduction that finds the modes from forces at every
-# so many extensions.
+# Moments of forces at fixed places; moments, and stride of extensions, of the reduction that finds
+# the modes.
 MOMENTS = 2
 _EVERY = 4
 
-# Extensions at which rows are sampled, however short the stroke is.
+# Minimum number of extensions at which rows are sampled.
 _FEWEST = 4
 
 
 @dataclass(frozen=True, slots=True)
 class _SampledRows:
-    """Rows of a boom at some extensions of the joints that its drives move together.
+    """Rows of a boom at several extensions of the joints that its drives move together.
 
     Args:
-        group: the drives; None of rows that stay.
-        moving: kind and position of each of the rows in the gap system.
-        extensions: (num_extensions,) in m, rising.
-        touching: contacts, friction and dashpots at each.
+        group: the drives; None for rows that do not move.
+        moving: kind and index of each row in the gap system.
+        extensions: extensions (num_extensions,) in m, ascending.
+        touching: contacts, friction and dashpots at each extension.
     """
 
     group: MovedStations | None
@@ -69,16 +68,16 @@ class _SampledRows:
 
     @property
     def start(self) -> int:
-        """Position of the extension 0."""
+        """The index of the extension 0."""
         return int(np.abs(self.extensions).argmin())
 
     @property
     def count(self) -> int:
-        """Number of the rows at all extensions."""
+        """The number of rows at all extensions."""
         return self.extensions.size * len(self.moving)
 
     def columns(self, shell: SegmentShell, number: int, step: int = 1) -> Array:
-        """Return columns (num_owned, num_extensions · num_moving), at every n-th extension."""
+        """Return columns (num_owned, num_extensions · num_moving) at every n-th extension."""
         nothing = np.zeros(shell.free.size)
 
         def read(reading: Reading) -> Array:
@@ -88,9 +87,9 @@ class _SampledRows:
         return np.asarray(np.concatenate(rows).T)
 
     def moving_and_staying(self, comm: MPI.Comm, columns: Array) -> tuple[Mask, Mask]:
-        """Return which rows (num_extensions · num_moving) read other places as a segment extends.
+        """Return the mask (num_extensions · num_moving) of rows whose places move.
 
-        Also return the first of each of those that read the same place. Collective.
+        Also return the first one of each set of rows whose place does not change. Collective.
         """
         rows = columns.T.reshape(self.extensions.size, len(self.moving), -1)
         same = comm.allreduce((rows[0] == rows[-1]).all(axis=1), MPI.LAND)
@@ -105,7 +104,7 @@ class _SampledRows:
 
 
 def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]:
-    """Sample all rows of a boom where stations pass the rings of a mesh of this size in m."""
+    """Sample all rows of a boom where stations pass the rings of a mesh with the size in m."""
     found = []
     for group in moved_stations(boom):
         pieces = [
@@ -128,15 +127,15 @@ class TelescopingShell:
     """Shell of a telescoping boom. Collective.
 
     Args:
-        boom: its joints have drives.
-        full: its shells.
-        size: edge length of their meshes in m.
-        reduce: returns the segment in reduced coordinates, from its position and the forces
-            (num_owned, num_columns) on it at several extensions.
-        test: Hz of the shift at which the responses of springs are checked.
+        boom: boom whose joints have drives.
+        full: shells of the boom.
+        size: edge length of the meshes in m.
+        reduce: function that returns a segment in reduced coordinates, from its index and the
+            forces (num_owned, num_columns) on it at several extensions.
+        test: frequency in Hz of the shift at which responses of springs are checked.
 
     Attributes:
-        reduced: the segments, without springs.
+        reduced: reduced segments, without springs.
     """
 
     def __init__(
@@ -156,14 +155,14 @@ class TelescopingShell:
             columns = self._columns(number)
             self._responses.append(pad_responses(symmetry, columns, test))
             self.reduced.append(self._with_few_modes(number, segment, columns))
-        # Springs represent the response beyond the modes of the unloaded boom.
+        # Springs represent the residual response, without axial forces.
         free = [replace(one, geometric=0.0 * one.geometric) for one in self.reduced]
         self._apart = BoomCoordinates(full.comm, full.shells, free, ())
         self._rows = [sampled.rows(self._apart) for sampled in self._sampled]
         self._springs = [springs(*self._residuals(k)) for k in range(len(self._sampled))]
 
     def lost(self, contacts: int) -> Array:
-        """Return the largest error (num_contacts,) of each compliance at any extension, in m/N."""
+        """Return the largest error (num_contacts,) of each compliance at any extension in m/N."""
         sigma, found = squared(self._test), np.zeros(contacts)
         for k, sampled in enumerate(self._sampled):
             omega2, pulls = self._springs[k]
@@ -177,7 +176,7 @@ class TelescopingShell:
         return found
 
     def with_springs(self, system: GapSystem, coordinates: BoomCoordinates) -> GapSystem:
-        """Return a system in the coordinates of the boom, with its springs and its travels."""
+        """Return a gap system in the coordinates of the boom, with springs and travels."""
         first_of, stacked = {}, 0
         for kind in KINDS:
             first_of[kind] = stacked
@@ -212,7 +211,7 @@ class TelescopingShell:
     def _with_few_modes(
         self, number: int, segment: ReducedSegment, columns: Array
     ) -> ReducedSegment:
-        """Select the modes that pads excite, and the responses to all forces at fixed places.
+        """Select the modes that pads excite, and the responses to forces at fixed places.
 
         ``columns`` (num_owned, num_columns) are the rows of pads at all extensions.
         """
@@ -252,9 +251,10 @@ class TelescopingShell:
         )
 
     def _transfer_error(self, many: tuple[Array, Array, Array], few: tuple[Array, Array]) -> float:
-        """Return the error of the response of readings to pads, relative to the geometric mean.
+        """Return the error of the readings' response to pads, relative to the geometric mean.
 
-        ``many`` are ω², rows of the pads and of the readings; ``few`` ω², and shapes in these.
+        ``many`` has ω² and the rows of pads and readings in all modes; ``few`` has ω² of the
+        selected modes, and their shapes in these.
         """
         omega2, rows, observed = many
         shifted, shapes = (1.0 / (one + squared(self._test)) for one in (omega2, few[0])), few[1]
@@ -266,7 +266,7 @@ class TelescopingShell:
         return float((np.abs(missed) / scale).max(initial=0.0))
 
     def _residuals(self, k: int) -> tuple[Array, Array]:
-        """Return the residuals of compliance and inertia of sampled rows beyond the modes."""
+        """Return the residual compliance and inertia of sampled rows, without the modes."""
         rows, shifted = self._rows[k], self._apart.omega2 + squared(SLOW)
         compliance, inertia = (rows / shifted**power @ rows.swapaxes(1, 2) for power in (1, 2))
         return self._compliance(k, "compliance") - compliance, self._compliance(
@@ -287,9 +287,9 @@ class TelescopingShell:
 def _moving_axial_forces(
     boom: Boom, full: BoomShell, coordinates: BoomCoordinates, group: MovedStations, behind: int
 ) -> list[MovingAxialForce]:
-    """Return the axial force, if any, that moves along with a telescoping joint. Collective.
+    """Return the axial force, if any, that moves with a telescoping joint. Collective.
 
-    The remaining coordinates, after these, do not move sections.
+    Further coordinates do not move sections as a whole.
     """
     found = moving_force(boom.segments, boom.joints, group.joints[0])
     if found is None or len(group.joints) > 1:
@@ -298,10 +298,10 @@ def _moving_axial_forces(
     if shell.mesh is not None:
         along = shell.mesh.points[shell.mesh.triangles, 0]
         around = lines_around(np.stack([along.min(axis=1), along.max(axis=1)], axis=1))
-        # Nodes are on these but for the digits to which they are rounded.
+        # Nodes are on these lines up to rounding.
         x = np.unique(along)
         lines = x[np.searchsorted(0.5 * (x[1:] + x[:-1]), around)]
-    # Where the force passes lines of the mesh.
+    # Extensions at which the force passes mesh lines.
     extensions = np.sort(found.direction * (full.comm.bcast(lines) - found.x))
     (low, high), near = group.drives[0].reach, SAME_PLACE * boom.length
     extensions = extensions[(extensions > low - near) & (extensions < high + near)]

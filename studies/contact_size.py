@@ -98,7 +98,7 @@ def support_compliance(case: Case, parts: Sequence[float]) -> list[float]:
     both sides, where all meshes have a line.
 
     Args:
-        case: that of the boom.
+        case: case of the boom.
         parts: ratios of the edge lengths to the default ones, falling.
     """
     from shell_model.boom_shell import assemble_segments

@@ -154,7 +154,7 @@ def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
     """Run studies side by side, print their tables, and write them to a folder.
 
     Args:
-        names: of ``STUDIES``.
+        names: names of ``STUDIES``.
         folder: gets ``convergence.json`` and ``.md``, ``verification.md``, ``report.html``.
         console: for the tables.
     """

@@ -73,7 +73,7 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, progress: Progress
 
     Args:
         case: in the plane, with prescribed normal forces and a model ``shell``.
-        steps: those of the unreduced one in s.
+        steps: steps of the unreduced one in s.
         sizes: parameters of the study.
         progress: reports the progress.
     """

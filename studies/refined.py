@@ -88,7 +88,7 @@ class Refined:
 
         Args:
             what: the quantity.
-            size: that of the mesh.
+            size: size of the mesh.
             finest: name of the finest mesh, the reference if there is no limit.
             allowed: permitted relative error.
 
@@ -117,7 +117,7 @@ def refined_table(
     """Return a table with one row per quantity: its values, order, limit and index.
 
     Args:
-        name, title, notes: those of the table.
+        name, title, notes: name, title and notes of the table.
         found: quantities on the same sizes, or on some of the finest.
         mesh: name of a mesh of a size, "edges × {:g}" say.
     """

@@ -100,7 +100,7 @@ def column(
     """Create a column under a uniform load of 1 N/m, or 1 N at a place.
 
     Args:
-        supports: those of its ends.
+        supports: supports of its ends.
         force: axial force at its tip, in N.
         gravity: acceleration along it, in m/s².
         point: x in m of the load.

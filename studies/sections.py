@@ -132,7 +132,7 @@ def ring_of_bars(section: Section, length: float) -> float:
 
     Args:
         section: one with a flat top and bottom.
-        length: that of the ring in m.
+        length: length of the ring in m.
     """
     count = len(section.plates)
     stiffness = np.zeros((3 * count, 3 * count))

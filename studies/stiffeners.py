@@ -135,10 +135,10 @@ def racking_stiffness(
     """Return a diaphragm's contribution to the racking stiffness in N m per radian.
 
     Args:
-        section: that of a box one metre long, with the plate in its middle.
-        material: of both.
-        thickness: of the plate in m.
-        size: of the mesh in m.
+        section: section of a box one metre long, with the plate in its middle.
+        material: material of both.
+        thickness: thickness of the plate in m.
+        size: size of the mesh in m.
     """
     stiffness = []
     for plates in ((), (Diaphragm(0.5, thickness),)):
@@ -152,10 +152,10 @@ def ring_flexibility(section: BoxSection, young: float, collar: float, size: flo
     """Return the compliance of a ring of box under opposite forces on its flanges, in m²/N.
 
     Args:
-        section: that of a ring whose length is a twentieth of its perimeter.
+        section: section of a ring whose length is a twentieth of its perimeter.
         young: Young's modulus in Pa; without Poisson's ratio plates bend as beams do.
         collar: thickness in m that is added all around.
-        size: of the mesh in m.
+        size: size of the mesh in m.
     """
     length = 0.1 * (section.width + section.height)
     collars = (Collar((0.0, length), collar),) if collar else ()

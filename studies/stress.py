@@ -63,7 +63,7 @@ class InnerSegmentState:
 
         Args:
             boom: with two stations.
-            size: of the mesh in m.
+            size: size of the mesh in m.
         """
         segment = boom.segments[INNER]
         shell = shell_alone(segment, size, boom.stations_of(INNER))
@@ -84,7 +84,7 @@ class InnerSegmentState:
 
         Args:
             boom: one with two stations.
-            size: that of the mesh in m.
+            size: size of the mesh in m.
         """
         shell = reduce_boom(boom, ShellOptions(size), MPI.COMM_SELF)
         system, fields = shell.system, shell.fields

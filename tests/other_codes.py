@@ -21,7 +21,7 @@ def run_elsewhere(*arguments: str, given: str = "", folder: Path | None = None) 
     """Return the output of the other codes' Python, which cannot import this program.
 
     Args:
-        arguments: of the interpreter.
+        arguments: arguments of the interpreter.
         given: its input.
         folder: its working directory.
 

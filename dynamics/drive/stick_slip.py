@@ -41,7 +41,7 @@ class ElasticDrive:
     2.25 Hz, damped by 7.1 %
 
     Args:
-        mass: of all moved segments in kg.
+        mass: mass of all moved segments in kg.
         stiffness: k of rope, chain or cylinder in N/m.
         dashpot: c in parallel in N·s/m.
         sticking: static over sliding friction, at least 1.
@@ -83,7 +83,7 @@ class StickSlip:
     """Results of an elastic drive.
 
     Args:
-        mean: of |drive force| in N while the drive moves.
+        mean: mean of |drive force| in N while the drive moves.
         peak: largest |drive force| in N.
         sticks: number of times that the segment sticks while the drive moves.
         slip: longest distance in m caught up in one slip.

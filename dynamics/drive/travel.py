@@ -36,12 +36,12 @@ class Travel:
     array([[0.5]])
 
     Args:
-        history: in m.
+        history: history in m.
         table: (num_moving, num_modes) rows over the extension.
         moving: kind and position of each row in the gap system.
-        suffix: of the names of its results; there are none where it is None.
+        suffix: suffix of the names of its results; there are none where it is None.
         axial_forces: those that move with the extension.
-        axial_load: of all moved segments in N, against which the drive works.
+        axial_load: axial load of all moved segments in N, against which the drive works.
         elastic: the elastic drive; a rigid one where it is None.
 
     Raises:

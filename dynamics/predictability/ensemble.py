@@ -36,7 +36,7 @@ class EnsembleMember:
         motion: without changes.
         vary: the data that change.
         change: relative change.
-        integrator: of the motion.
+        integrator: integrator of the motion.
         kept: variables that come back.
     """
 
@@ -102,7 +102,7 @@ def run_members(
 
     Args:
         members: to run.
-        executor: of threads or processes; one thread per core unless given.
+        executor: executor of threads or processes; one thread per core unless given.
         progress: called with the part done, 0 to 1.
 
     Raises:
@@ -148,13 +148,14 @@ def integrate_ensemble(
     {'member': 3, 'time': 1001, 'station': 1}
 
     Args:
-        motion: of member 0, without changes.
+        motion: motion of member 0, without changes.
         members: their number, at least two.
         relative: largest relative change, positive.
-        seed: of the changes; the same seed gives the same members on every machine.
+        seed: seed of the changes; the same seed gives the same members on every machine.
         vary: the data that change, all by one factor: the loads, all clearances, or the initial
             velocity.
-        integrator: of member 0, :class:`AdaptiveStep` unless given; the others make its steps.
+        integrator: integrator of member 0, :class:`AdaptiveStep` unless given; the others make its
+            steps.
         executor: see :func:`run_members`; for MPI, the pool of ``mpi4py.futures``.
         progress: called with the part done, 0 to 1.
         unchanged: trajectory of member 0, if it is known.

@@ -163,8 +163,8 @@ def measure_horizons(
         relatives: ε, each between 0 and 1.
         vary: the data that change, see :func:`dynamics.predictability.ensemble.integrate_ensemble`.
         partners: runs for each size, with changes from ε/2 to ε of either sign, the first ε.
-        integrator: of the unchanged run, :class:`AdaptiveStep` unless given; the others make its
-            steps, and one of them half of each.
+        integrator: integrator of the unchanged run, :class:`AdaptiveStep` unless given; the others
+            make its steps, and one of them half of each.
         executor: see :func:`dynamics.predictability.ensemble.run_members`.
         shares: parts of the observer's range, rising.
         observer: the output that is compared.

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The case file: its schema, its reading and checking, and the boom and models that it defines."""
+"""Case files: the schema, the reader, the checks, and the boom and models of a case."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Actions on the boom of a case, over time and before t = 0."""
+"""Actions on the boom of a case: loads, weights, axial forces and ground accelerations."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ STANDARD_GRAVITY = 9.80665
 
 
 def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
-    """Return the loads: weights and loads from t = 0 on, loads released then, and initial impulses.
+    """Return the weights, the loads from t = 0 on, the loads released at t = 0, and the impulses.
 
-    :func:`dynamics.motion.begin` turns the last two into the state at t = 0.
+    :func:`dynamics.motion.begin` turns released loads and impulses into the state at t = 0.
 
     Raises:
-        BoomError: an unknown segment, an invalid history, a payload's own gravity beside the
-            common one.
+        BoomError: a segment is unknown, a history is invalid, or a payload has its own gravity
+            beside the table ``gravity``.
     """
     if case.gravity is not None and case.payload is not None and case.payload.gravity is not None:
         raise BoomError(
@@ -156,8 +156,8 @@ def thrusts(case: Case, segments: Sequence[Segment]) -> tuple[Thrust, ...]:
     """Return the axial forces on the boom except weights.
 
     Raises:
-        BoomError: an unknown segment, a place outside it, a rope without payload, a force given in
-            two ways or none.
+        BoomError: a segment is unknown, a place is outside its segment, a rope has no payload, or a
+            force is given twice or not at all.
     """
     return tuple(
         _thrust(f"axial[{number}]", table, case, segments)
@@ -196,7 +196,7 @@ def _axial_force(where: str, table: AxialTable, case: Case) -> float:
 
 
 def _payload_gravity(payload: PayloadTable | None) -> float:
-    """Return the acceleration in m/s² of a payload with its own gravity."""
+    """Return the acceleration of gravity in m/s² that acts on the payload alone."""
     if payload is None or payload.gravity is None:
         return STANDARD_GRAVITY
     return payload.gravity
@@ -222,7 +222,7 @@ def stops(case: Case) -> tuple[Stop, ...]:
     """Return the stops on the ground.
 
     Raises:
-        BoomError: nothing can touch a stop.
+        BoomError: no segment can touch a stop.
     """
     for number, table in enumerate(case.stops, start=1):
         if table.stiffness == 0.0 and not table.stiffness_below:
@@ -241,7 +241,7 @@ def stops(case: Case) -> tuple[Stop, ...]:
 
 
 def series_notes(case: Case) -> list[str]:
-    """Return notes on tabulated histories that are shorter or longer than the run, a line each."""
+    """Return a line for each tabulated history that is shorter or longer than the run."""
     duration = case.time.duration
     tabled = [(f"load[{i}]", load.table) for i, load in enumerate(case.loads, start=1)]
     tabled += [(f"base[{i}]", base.table) for i, base in enumerate(case.base, start=1)]
@@ -263,7 +263,7 @@ def series_notes(case: Case) -> list[str]:
 
 
 def values(table: Any, part: type) -> dict[str, Any]:
-    """Return the values that a table has of the fields of a part."""
+    """Return the fields of a part that a table of the case has, with their values."""
     return {field.name: getattr(table, field.name) for field in fields(part)}
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The boom and the contact laws that a case declares."""
+"""Construction of the boom and its contact laws from a case."""
 
 from __future__ import annotations
 
@@ -43,12 +43,13 @@ _TAKEN = {
     "model",
 }
 
-# Relative tolerance between a beam's numbers and its plates', for the rounding of data sheets.
+# Relative tolerance between the given beam properties and those of the plates. Data sheets round
+# them.
 SAME_SECTION = 0.01
 
 
 def build_boom(case: Case) -> Boom:
-    """Return the boom of a case; infer sections that are not given.
+    """Return the boom of a case, with inferred sections where the case gives none.
 
     Raises:
         BoomError: the boom is invalid.
@@ -79,7 +80,7 @@ def build_boom(case: Case) -> Boom:
 
 
 def check_varied(case: Case, boom: Boom) -> None:
-    """Check that the case has the data that the members of an ensemble vary.
+    """Check that the case has the data that its ensemble varies.
 
     Raises:
         BoomError: the data are missing.
@@ -113,7 +114,7 @@ def _loaded(boom: Boom) -> bool:
 
 
 def _check_observations(case: Case) -> None:
-    """Check that observations have names of their own."""
+    """Check that the names of observations are unique."""
     check_names("observe", [table.name for table in case.observe])
     of_drives = {
         name + suffix for suffix in case.driven for name in (*OF_DRIVES, *OF_ELASTIC_DRIVES)
@@ -142,7 +143,7 @@ def check_names(where: str, names: Sequence[str]) -> None:
 
 
 def _check_joined(case: Case) -> None:
-    """Check that joints connect two segments each, and every pair once."""
+    """Check that each joint connects two segments, and that no two joints connect the same pair."""
     names = [segment.name for segment in case.segments]
     for index, table in enumerate(case.joints):
         where = f"joint[{index + 1}]"
@@ -185,7 +186,7 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
 
 
 def _check_plays(where: str, table: JointTable) -> None:
-    """Check that parts of a play do not exceed it, and that shims leave clearance."""
+    """Check that no station's play exceeds the joint's, and that shims leave clearance."""
     for key, of, pressed in (
         ("play_above", "play", "interference"),
         ("lateral_play_right", "lateral_play", "lateral_interference"),
@@ -261,7 +262,7 @@ def _in_space(case: Case) -> bool:
 
 
 def _lateral(table: SegmentTable, material: Material, section: Section | None) -> Lateral | None:
-    """Return lateral bending and torsion data, given or of the section; None if incomplete."""
+    """Return the lateral bending and torsion data of a segment; None if they are incomplete."""
     second_moment, torsion = table.lateral_second_moment_of_area, table.torsion_constant
     polar = table.polar_inertia
     if section is not None:
@@ -281,7 +282,7 @@ def _lateral(table: SegmentTable, material: Material, section: Section | None) -
 
 
 def _beam_numbers(case: Case, index: int) -> tuple[float, float]:
-    """Return mass per length in kg/m and second moment in m⁴, given or of the given section."""
+    """Return the mass per length in kg/m and the second moment of area in m⁴ of a segment."""
     table = case.segments[index]
     section, head = _given_section(table, index), _head_section(table, index)
     mass, second_moment = table.mass_per_length, table.second_moment_of_area
@@ -297,7 +298,7 @@ def _beam_numbers(case: Case, index: int) -> tuple[float, float]:
 
 
 def _check_plates(case: Case, index: int, section: Section) -> None:
-    """Check that a section is given once, and that its plates agree with the beam's numbers."""
+    """Check that a section is given only once and agrees with the given beam properties."""
     table = case.segments[index]
     where = f"segment[{index + 1}]"
     if table.height_to_width is not None:
@@ -351,7 +352,7 @@ def _head_section(table: SegmentTable, index: int) -> Section | None:
     return head
 
 
-# Numbers that vary along a tapered segment.
+# Keys of the properties that vary along a tapered segment.
 _OF_SECTIONS = (
     "mass_per_length", "second_moment_of_area", "rotary_inertia", "lateral_second_moment_of_area",
     "lateral_rotary_inertia", "torsion_constant", "polar_inertia",
@@ -359,12 +360,12 @@ _OF_SECTIONS = (
 
 
 def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
-    """Return given sections, those of a given ratio, then those that fit in the one around them."""
+    """Return the sections of all segments: those of the case, then the inferred ones."""
     sections = [_given_section(table, i) for i, table in enumerate(case.segments)]
     for i, table in enumerate(case.segments):
         if sections[i] is None and table.height_to_width is not None:
             sections[i] = _infer(case, i, table.height_to_width)
-    # One pass per joint carries a section inwards through all of them, in any order.
+    # One pass per joint reaches every inner segment, whatever the order of the joints.
     for _ in joints:
         for joint in joints:
             outer = sections[joint.outer]
@@ -381,9 +382,9 @@ def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
 
 
 def _infer(case: Case, index: int, hint: float | tuple[Section, float]) -> Section | None:
-    """Infer a section from its height-to-width ratio, or from the one around it and the clearance.
+    """Infer a section from its height-to-width ratio, or from the outer section and the clearance.
 
-    Return None where there is none and no model needs it.
+    Return None where neither is available and no model needs the section.
     """
     mass, second_moment = _beam_numbers(case, index)
     area = mass / material_of(case, index).density
@@ -407,7 +408,7 @@ def _spans(
         joints: joints of these segments.
 
     Raises:
-        BoomError: a segment has no position, or two.
+        BoomError: a segment has no position, or two different ones.
     """
     lengths = {segment.name: segment.length for segment in segments}
     ends = {segment.name: segment.span for segment in segments if segment.span is not None}

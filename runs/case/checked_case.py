@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The boom of a case and its models on it, each built once."""
+"""A checked case with its boom and models, which are built once."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from runs.case.schema import Case, Model
 
 @dataclass(frozen=True)
 class CheckedCase:
-    """A case, and its boom and joined models, built on first use."""
+    """A checked case with its boom and the booms of its models, built on first use."""
 
     case: Case  #: a case with a valid boom
     _joined: dict[str, Joined] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def boom(self) -> Boom:
-        """The boom of :func:`runs.case.build.build_boom`."""
+        """The boom of the case, from :func:`runs.case.build.build_boom`."""
         return build_boom(self.case)
 
     def joined(self, model: Model) -> Joined:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Two columns of a CSV file, as instruments, programs and spreadsheets write them.
+"""Reader of two columns of a CSV file from an instrument, a program or a spreadsheet.
 
-Commas, semicolons or tabs separate cells, a comma in a number is a decimal one, and the text after
-a # is a comment. A heading names the columns, each with its unit after the name, in brackets,
+Commas, semicolons or tabs separate cells, a comma within a number is a decimal comma, and text
+after a # is a comment. A heading names the columns, each with its unit after the name, in brackets,
 after a slash or ``in``, or in a line of units below.
 """
 
@@ -31,9 +31,9 @@ _HEADED = re.compile(r"(.*?)\s*(?:\[(.+)\]|\((.+)\)|/(.+)|\bin (.+))")
 class Column:
     """Expected content of one of the two columns."""
 
-    name: str  #: in messages
-    unit: str  #: of its numbers unless the heading gives another of the same dimension
-    factor: bool = False  #: whether its numbers are factors unless the heading gives such a unit
+    name: str  #: name of the column in messages
+    unit: str  #: unit of the numbers, unless the heading gives another one of the same dimension
+    factor: bool = False  #: whether the numbers are factors if the heading gives no unit
 
     def __str__(self) -> str:
         return self.name if self.factor else f"{self.name} in {self.unit}"
@@ -54,10 +54,10 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Pairs:
-    """The numbers of two columns, in their units."""
+    """Pairs of numbers from two columns, in the columns' units."""
 
-    values: tuple[tuple[float, float], ...]  #: the first number of each rises
-    measured: bool  #: whether the second one is a quantity with a unit in its heading
+    values: tuple[tuple[float, float], ...]  #: the first numbers of the pairs increase
+    measured: bool  #: whether the heading gives a unit for the second column
 
 
 def read_pairs(
@@ -66,14 +66,14 @@ def read_pairs(
     """Read two columns of a CSV file.
 
     Args:
-        path: path of the case file, to which that of the CSV file is relative, for messages.
-        key: key of the file, for messages.
-        file: its path.
-        names: names of the two columns in its heading; by default its only two.
-        columns: their expected content.
+        path: path of the case file; the path of the CSV file is relative to it.
+        key: key of the CSV file, for messages.
+        file: path of the CSV file.
+        names: names of the two columns in the heading; not needed if the file has only two.
+        columns: expected content of the two columns.
 
     Raises:
-        BadInput: the file cannot be read, or has other content.
+        BadInput: the file cannot be read, or its content is invalid.
     """
     remedy = (
         f"give a CSV file of two columns, {columns[0]} and {columns[1]}; a heading may say other "
@@ -107,13 +107,13 @@ def read_pairs(
 
 
 class _Unfit(Exception):
-    """The fault of a file, without quoting its content.
+    """Error for a file, whose text does not quote the content of the file.
 
     The path may be wrong, and messages must not disclose another file's content.
 
     Args:
-        what: the fault.
-        remedy: a specific remedy; by default to give the right file.
+        what: description of the error.
+        remedy: the remedy; by default to give the right file.
     """
 
     def __init__(self, what: str, remedy: str = "") -> None:
@@ -123,9 +123,9 @@ class _Unfit(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """The cells of a line that is neither empty nor a comment."""
+    """A line of the file with its cells; empty lines and comments make no row."""
 
-    line: int  #: counted from 1
+    line: int  #: line number, from 1
     cells: list[str]
 
     @property

@@ -26,7 +26,7 @@ BOTH: tuple[Side, Side] = (1, -1)
 # Number of pads that share the force on one side of a station, one beside each web.
 PADS_OF_SIDE = 2
 
-# Number of terms: each is evaluated for every row in every step of the time loop.
+# Maximum number of terms. The time loop evaluates each one for every row in every step.
 MOST_POINTS = 1000
 
 PAD_WITHOUT_STIFFNESS = (
@@ -38,7 +38,7 @@ _OF_POWER = ("stiffness", "stiffness_below", "exponent")
 
 
 def table_law(points: Sequence[tuple[float, float]], damping: float = 0.0) -> TableContact:
-    """Return a contact law through pairs of a penetration in m and a force in N.
+    """Return the contact law through tabulated pairs of penetration in m and force in N.
 
     Raises:
         ValueError: the law is invalid.
@@ -58,11 +58,11 @@ def _check_points(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float,
 
 
 def _check_law(table: ContactTable, of_power: Sequence[str]) -> None:
-    """Check that a power law has a stiffness, and that tables and pads with a thickness have none.
+    """Check that power laws have a stiffness, and that tables and pads with a thickness do not.
 
     Args:
         table: the table with all its keys, in any order.
-        of_power: keys of power laws only.
+        of_power: keys that only power laws may have.
 
     Raises:
         ValidationError: a key is missing or superfluous.
@@ -97,21 +97,21 @@ class RestitutionTable(CaseTable):
     coefficient: Annotated[float, Field(strict=True, gt=0.0, le=1.0), In("1")]
     """the coefficient of restitution"""
     speed: Annotated[Positive, In("m/s")]
-    """the speed of the impact in m/s at which it holds"""
+    """the impact speed in m/s at which the coefficient holds"""
 
 
 @dataclass(frozen=True, config=PART, kw_only=True)
 class ContactTable:
-    """The contact law that one model uses in all joints, instead of the joints' own."""
+    """Contact law of one model, which replaces the laws of all joints."""
 
     force_table: Forces | None = None
-    """pairs of a penetration in m and a force in N, straight lines between them from 0 on, instead
-    of stiffness and exponent"""
+    """pairs of a penetration in m and a force in N, linear between them and from 0 on, instead of
+    stiffness and exponent"""
     force_file: Text | None = None
-    """a CSV file of such pairs, its path seen from the case file"""
+    """a CSV file of such pairs; its path is relative to the case file"""
     force_columns: tuple[Text, Text] | None = None
-    """the names of two columns in the heading of the file, of the penetrations and of the forces;
-    its only two unless given"""
+    """the names of the columns of penetrations and forces in the heading of the file; not needed if
+    the file has only two columns"""
     stiffness: Annotated[Positive, In("N/m^n")] | None = None
     """the contact stiffness in N/m^n where the inner segment presses up"""
     stiffness_below: Annotated[NotNegative, In("N/m^n")] | None = None
@@ -128,25 +128,25 @@ class ContactTable:
         return self
 
     def exponent_of(self, key: str) -> float | None:
-        """Return the exponent of the contact law of a key; None where the table gives none."""
+        """Return the exponent that belongs to a stiffness key; None if the table has none."""
         return self.exponent or 2.0
 
     def law(self, direction: Direction) -> ContactLaw | None:
-        """Return the contact law of each station along a direction."""
+        """Return the contact law of each station in a direction."""
         below = self.stiffness_below if direction == "z" else None
         return _law(self, self.stiffness, below, self.exponent)
 
 
 @dataclass(frozen=True, config=PART, kw_only=True)
 class JointTable(ContactTable, BareJoint):
-    """Where an inner segment slides in an outer one, with play."""
+    """A joint: an inner segment that slides in an outer one, with play."""
 
     extension: Annotated[NotNegative, In("m")] | None = None
-    """the length in m of the inner segment that is out of the outer one, where the inner one is
-    given by its length"""
+    """the length in m by which the inner segment protrudes from the outer one; needed if the inner
+    segment has a length only"""
     drive: DriveTable | None = None
-    """the table of what draws the inner segment out while the boom moves, from where it is at t =
-    0; it stays there unless given"""
+    """the table of the drive that telescopes the inner segment during the motion; without it the
+    extension is constant"""
     lateral_stiffness: Annotated[Positive, In("N/m^n")] | None = None
     """the contact stiffness to the sides in N/m^n; the same unless given"""
     lateral_exponent: Exponent | None = None
@@ -154,7 +154,7 @@ class JointTable(ContactTable, BareJoint):
 
     @property
     def thick_pads(self) -> str | None:
-        """Key of the pads whose thickness determines a stiffness."""
+        """Key of the pads whose thickness determines the contact stiffness."""
         if self.pads:
             return "pads"
         return "pad.thickness" if self.pad is not None and self.pad.thickness else None
@@ -167,7 +167,8 @@ class JointTable(ContactTable, BareJoint):
 
     @model_validator(mode="after")
     def _one_law(self) -> Self:
-        # To the sides, a lateral stiffness makes a power law beside any table.
+        # A lateral stiffness makes the lateral law a power law, even beside a tabulated vertical
+        # law.
         lateral = () if self.lateral_stiffness else ("lateral_exponent",)
         _check_law(self, (*_OF_POWER, *lateral))
         if self.pads and self.lateral_stiffness:
@@ -181,7 +182,7 @@ class JointTable(ContactTable, BareJoint):
         return self.lateral_exponent or along_z if key == "lateral_stiffness" else along_z
 
     def law(self, direction: Direction) -> ContactLaw | None:
-        """Return the contact law of each station along a direction; None without pads there."""
+        """Return the contact law of each station in a direction; None without pads in it."""
         if self.pads:
             above, below = (
                 PADS_OF_SIDE

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Conversion of a case from other units to SI units, as its tables declare the units of numbers."""
+"""Conversion of a case to SI units, by the units that the fields of its tables declare."""
 
 from __future__ import annotations
 
@@ -14,9 +14,7 @@ from runs.case.units import System, scaled
 
 
 def in_si(case: Case) -> Case:
-    """Return the case in SI units; it keeps its own units for display.
-
-    Defaults are in SI units already.
+    """Return the case in SI units; its field ``units`` stays, for display.
 
     Args:
         case: a case that stands alone, without files.
@@ -53,7 +51,7 @@ def _converted(table: Any, system: System, exponent: float = 2.0) -> Any:
 
 
 def _scaled(value: Any, sizes: Sequence[Fraction], system: System, exponent: float) -> Any:
-    """Return a value of a table with all its numbers scaled; several sizes apply to each row."""
+    """Return a value of a table with all numbers scaled; several sizes apply to a row's columns."""
     if is_table(value):
         return _converted(value, system, exponent)
     if isinstance(value, dict):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Drives that extend or retract an inner segment during the motion, in a case file."""
+"""Keys of drives, which extend or retract an inner segment during the motion."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from runs.case.limits import MOST_TIMES, CaseTable, Text
 # Least duration in s and least travel in m: a shorter time is an input error.
 _SHORTEST, _NOWHERE = 1.0e-6, 1.0e-9
 
-# Evenly spaced times at least, times in a period of the fastest history, and times at most.
+# Minimum number of evenly spaced times, times per period of the fastest history, maximum number.
 _TIMES, _OF_SWING, _MOST_TIMES = 2001, 100, 1_000_001
 # Fraction of the duration below which two times are the same.
 _SAME_TIME = 1.0e-9
 
-# Kinds of drive histories, by their keys.
+# Kinds of histories of the extension, by their keys.
 _WAYS = ("time", "speed", "table")
 
 Ways = Annotated[
@@ -33,36 +33,36 @@ Ways = Annotated[
 
 
 class DriveTable(CaseTable):
-    """Telescoping of an inner segment during the motion of the boom."""
+    """A drive that telescopes an inner segment during the motion of the boom."""
 
     travel: Annotated[Number, In("m")] | None = None
     """the length in m by which the segment extends; negative where it retracts"""
     time: Annotated[Positive, In("s")] | None = None
-    """the time in s that the travel takes, on an S-curve without jerks"""
+    """the duration of the travel in s, on a smooth S-curve"""
     speed: Annotated[Positive, In("m/s")] | None = None
-    """the speed in m/s of the travel, in place of its time"""
+    """the speed of the travel in m/s, instead of its duration"""
     ramp: Annotated[NotNegative, In("s")] = 0.0
-    """the time in s in which that speed comes, and goes; at once unless given"""
+    """the time in s in which the drive reaches this speed, and in which it stops; at once unless
+    given"""
     start: Annotated[NotNegative, In("s")] = 0.0
     """the time in s at which the travel begins"""
     table: Ways | None = None
-    """pairs of a time in s and the length in m drawn out since the start, linear between them and
-    constant beyond, in place of a travel"""
+    """pairs of a time in s and the extension in m since the start, linear between them and constant
+    beyond, instead of a travel"""
     file: Text | None = None
-    """a CSV file of such pairs, its path seen from the case file"""
+    """a CSV file of such pairs; its path is relative to the case file"""
     columns: tuple[Text, Text] | None = None
-    """the names of two columns in the heading of the file, of the times and of the lengths; its
-    only two unless given"""
+    """the names of the columns of times and lengths in the heading of the file; not needed if the
+    file has only two columns"""
     least_overlap: Annotated[NotNegative, In("m")] = 0.0
-    """the overlap in m that must be left; more than none unless given"""
+    """the least overlap in m that must remain; any positive overlap unless given"""
     stiffness: Annotated[Positive, In("N/m")] | None = None
-    """the stiffness in N/m of the rope, chain or cylinder that draws, on which the segment may
-    stick and slip against friction; stiff unless given"""
+    """the stiffness in N/m of the rope, chain or cylinder that moves the segment, which may then
+    stick and slip; rigid unless given"""
     dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
-    """the damping in N s/m beside that stiffness"""
+    """the viscous damping in N s/m parallel to this stiffness"""
     static_friction: Annotated[Positive, In("1")] | None = None
-    """the coefficient of friction that has to be overcome where the segment stands; the joint's
-    unless given"""
+    """the coefficient of friction while the segment sticks; the joint's unless given"""
 
     def history(self, where: str) -> History:
         """Return the history of the extension in m.
@@ -71,7 +71,7 @@ class DriveTable(CaseTable):
             where: key of the drive.
 
         Raises:
-            BoomError: keys contradict one another, or one is missing.
+            BoomError: keys contradict one another, or a key is missing.
         """
         given = [key for key in _WAYS if getattr(self, key) is not None]
         if not given:
@@ -126,15 +126,15 @@ class DriveTable(CaseTable):
         locked_at: float | Distance | None,
         inner: tuple[str, float],
     ) -> Drive | None:
-        """Return the drive; None where it moves nothing.
+        """Return the drive; None if its extension is constant.
 
         Args:
             where: key of its joint.
-            stations, locked_at: those of the joint.
-            inner: name of the moving segment, and its tail's x in m.
+            stations, locked_at: stations and locked station of the joint.
+            inner: name of the moving segment, and the x of its tail in m.
 
         Raises:
-            BoomError: as :meth:`history`, and for a station on no segment.
+            BoomError: as :meth:`history`, or a station is on no segment.
         """
         history = self.history(f"{where}.drive")
         name, tail = inner
@@ -142,7 +142,7 @@ class DriveTable(CaseTable):
         carriers = tuple(_carrier(place, *goes) for place in stations)
         locked: Carrier = "inner"
         if isinstance(locked_at, float) and locked_at < tail:
-            # The fixed end of the drive that pushes the tail.
+            # The drive pushes the tail from this fixed end.
             locked = "outer"
         elif locked_at is not None:
             locked = _carrier(locked_at, f"{where}.locked_at", "the place", name)

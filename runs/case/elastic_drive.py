@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Data of drives of finite stiffness."""
+"""Data of elastic drives: drives of finite stiffness."""
 
 from __future__ import annotations
 
@@ -21,12 +21,11 @@ _FASTEST = 1.0e3
 
 
 def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
-    """Return the data of each drive of finite stiffness, by the index of its joint.
+    """Return the data of the elastic drives, by the indices of their joints.
 
     Args:
         case: a checked case.
-        boom: that of the case.
-    """
+        boom: boom of the case."""
     return {
         number: ElasticDrive(
             _moved_mass(boom, number),
@@ -46,7 +45,7 @@ def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
 
 
 def with_elastic_drives(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
-    """Return a model's system with the data of its elastic drives."""
+    """Return the gap system of a model with the data of its elastic drives."""
     found = elastic_drives(case, boom)
     suffixes = {group.suffix: found.get(group.joints[0]) for group in moved_stations(boom)}
 
@@ -60,8 +59,7 @@ def check_elastic_drives(case: Case, boom: Boom) -> None:
     """Check the data of elastic drives.
 
     Raises:
-        BoomError: the data are invalid.
-    """
+        BoomError: data of an elastic drive are invalid."""
     for number, joint, drive in _drives(case):
         where = f"joint[{number + 1}].drive"
         if drive.stiffness is None:
@@ -115,7 +113,7 @@ def _drives(case: Case) -> Iterator[tuple[int, JointTable, DriveTable]]:
 
 
 def _moved_mass(boom: Boom, *joints: int) -> float:
-    """Return the mass in kg of the segments that the drives of all these joints move."""
+    """Return the mass in kg of the segments that all these joints' drives move together."""
     return sum(
         segment.mass
         for number, segment in enumerate(boom.segments)

@@ -13,12 +13,12 @@ from geometry.fields import PART, In, declared_units, fields_of
 
 
 class CaseTable(BaseModel):
-    """A table of the case file: nothing but its own keys, and not changed once read."""
+    """A table of the case file, immutable, without unknown keys."""
 
     model_config = ConfigDict(**PART, frozen=True)
 
     def declared_units(self, key: str) -> tuple[str, ...]:
-        """Return the units of the numbers of a key, as of :class:`geometry.fields.In`."""
+        """Return the units that a field declares by :class:`geometry.fields.In`."""
         return declared_units(type(self).model_fields[key])
 
 
@@ -31,9 +31,9 @@ def units_of(table: Any, key: str, exponent: float = 2.0) -> tuple[str, ...]:
     """Return the units of the numbers of a key; empty for other values.
 
     Args:
-        table: of the key.
-        key: its name in the class.
-        exponent: that of the contact law of a table without one.
+        table: table with the key.
+        key: name of the field.
+        exponent: exponent of the contact law, for a table without one.
     """
     if isinstance(table, CaseTable):
         declared = table.declared_units(key)
@@ -48,23 +48,23 @@ def units_of(table: Any, key: str, exponent: float = 2.0) -> tuple[str, ...]:
 
 
 def errors_in(table: Any, kind: str | PydanticCustomError, *at: tuple[Any, ...]) -> ValidationError:
-    """Return errors for validators of a whole table: each a path of keys, and the value there."""
+    """Return a validator's errors, each from a path of keys and the value there."""
     errors = [InitErrorDetails(type=kind, loc=path, input=value) for path, value in at]
     return ValidationError.from_exception_data(type(table).__name__, errors)
 
 
 def error_at(table: Any, kind: str | PydanticCustomError, *keys: str) -> ValidationError:
-    """Return errors at keys of a table, for validators of a whole table."""
+    """Return a validator's errors at keys of a table."""
     return errors_in(table, kind, *(((key,), getattr(table, key)) for key in keys))
 
 
 def superfluous(table: Any, given: str, *keys: str) -> ValidationError:
-    """Return a validator's error for keys that repeat another one."""
+    """Return a validator's error for keys that repeat the information of another key."""
     what = {"what": f"{given} is given; leave one of them out"}
     return error_at(table, PydanticCustomError("unsuitable", "{what}", what), *keys)
 
 
-# A Hertz contact has 3/2; the upper limit excludes input errors.
+# A Hertz contact has the exponent 3/2; the upper limit excludes input errors.
 Exponent = Annotated[float, Field(strict=True, ge=1.0, le=10.0, allow_inf_nan=False), In("1")]
 Count = Annotated[int, Field(strict=True, ge=1, le=1000)]
 Part = Annotated[float, Field(strict=True, gt=0.0, lt=1.0), In("1")]
@@ -72,16 +72,16 @@ Part = Annotated[float, Field(strict=True, gt=0.0, lt=1.0), In("1")]
 PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]*$"
 Text = Annotated[str, Field(pattern=PRINTABLE, max_length=200)]
 
-# The run stores the whole tip history of each.
+# The run stores the whole tip history of each member.
 MOST_MEMBERS = 10_000
-# Many more are an input error, and would take too long to draw.
+# More plates are an input error, and would take too long to draw.
 MOST_SEGMENTS, MOST_MODELS, MOST_FACETS = 20, 50, 20
-# Enough for measured accelerations of a minute at 1 kHz, and more.
+# This suffices for an acceleration measured for a minute at 1 kHz.
 MOST_TIMES = 100_000
 
 
 def _modes(given: Any) -> Any:
-    """Check a number of modes or a word; a union's own messages would name its branches."""
+    """Check a number of modes or ``auto``; the messages of a union type would name its branches."""
     if given == "auto" or (isinstance(given, int) and not isinstance(given, bool) and given > 0):
         return given
     raise PydanticCustomError("modes", "a whole number above 0, or 'auto'")
@@ -93,12 +93,12 @@ Modes = Annotated[
 ]
 
 
-# A mesh of a smaller size is too fine for one machine.
+# A mesh with shorter edges is too fine for one machine.
 LEAST_CONTACT_TOLERANCE = 1.0e-3
 
 
 def _contact_tolerance(given: Any) -> Any:
-    """Check a part or a word; a union's own messages would name its branches."""
+    """Check a fraction or ``any``; the messages of a union type would name its branches."""
     number = isinstance(given, float) and LEAST_CONTACT_TOLERANCE <= given < 1.0
     if given == "any" or number:
         return given

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Error messages about the user's input, in one line that names the place and the remedy."""
+"""Error messages on user input: one line that names the place and the remedy."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ from runs.process.terminal import shown
 # Keys of the case that are arrays of tables.
 _ARRAYS = ("segment", "joint", "stop", "cylinder", "load", "axial", "base", "observe", "model")
 
-# Parts of a boom, and their keys.
+# Attributes of a boom, and their keys.
 _PARTS = {f"{key}s": key for key in ("segment", "joint", "load", "stop", "cylinder")}
 _PARTS["observations"] = "observe"
 
-# Valid input, before the given value in a message; braces hold the limits of the schema.
+# Descriptions of valid input, which messages put before the given value; limits of the schema
+# replace the braces.
 _MUST = {
     "float_type": "a number",
     "int_type": "a whole number",
@@ -45,7 +46,7 @@ _MUST = {
     "tuple_type": "a list",
 }
 _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
-# Messages without the given value.
+# Messages that do not quote the given value.
 _SAYS = {
     "unsuitable": "{what}",
     "too_short": "too short; give {min_length} at least",
@@ -55,7 +56,7 @@ _SAYS = {
 
 
 class BadInput(Exception):
-    """An input error: ``file`` as the user gave it, ``key``, the fault and the valid input."""
+    """An input error: ``file`` as the user gave it, ``key``, the error and the valid input."""
 
     def __init__(self, file: str, key: str, what: str) -> None:
         super().__init__(" ".join(f"{shown(file)}: {shown(key)}: {what}".split()))
@@ -65,9 +66,9 @@ class BadInput(Exception):
 
     @classmethod
     def from_validation(cls, file: str, error: ValidationError) -> BadInput:
-        """Return the most informative of the schema's errors.
+        """Return the most informative one of the schema's errors.
 
-        A misspelled key is both unknown and missing: the unknown one is more informative.
+        A misspelled key causes two errors, an unknown and a missing key; the first says more.
         """
         faults = error.errors(include_url=False)
         first = next((f for f in faults if f["type"] in _UNKNOWN), faults[0])
@@ -75,7 +76,7 @@ class BadInput(Exception):
 
     @classmethod
     def from_boom(cls, file: str, error: BoomError) -> BadInput:
-        """Return an error of a boom at its key: ``segment[2].span`` for ``segments[1].start``."""
+        """Return a boom's error with its key: ``segment[2].span`` for ``segments[1].start``."""
         part = re.split(r"\W", error.where)[0]
         if part not in _PARTS:
             return cls(file, error.where, error.what)
@@ -85,7 +86,7 @@ class BadInput(Exception):
 
 
 def first_error(error: ValidationError) -> str:
-    """Return place and description of the first fault of a file that the program has written."""
+    """Return place and description of the first error in a file that the program wrote."""
     fault = error.errors(include_url=False)[0]
     return "".join(f"{step}: " for step in fault["loc"]) + fault["msg"]
 
@@ -93,7 +94,7 @@ def first_error(error: ValidationError) -> str:
 def _explain(
     fault: str, location: tuple[int | str, ...], value: Any, context: Mapping[str, Any] | None
 ) -> tuple[str, str]:
-    """Return the key and the fault."""
+    """Return the key and the message."""
     key = _key(location)
     limits = context or {}
     if fault == "missing" and isinstance(location[-1], int):
@@ -133,7 +134,7 @@ def _pair(location: Sequence[int | str]) -> str:
 
 
 def _key(location: Sequence[int | str]) -> str:
-    """Return ``segment[2].span`` from the schema's path, which counts from zero and names kinds."""
+    """Return the key, such as ``segment[2].span``, of a schema path; paths count from 0."""
     key = ""
     for step in _without_kind(location):
         key += f"[{step + 1}]" if isinstance(step, int) else f".{step}" if key else step
@@ -154,7 +155,7 @@ def _table(location: Sequence[int | str]) -> type:
     """Return the table of the last step of a path."""
     names = [step for step in location[:-1] if isinstance(step, str)]
     if names[:2] == ["start", "velocity"]:
-        # A segment's name follows.
+        # The next step of the path is the name of a segment.
         del names[2:]
     return _TABLES[names[-1]] if names else schema.Case
 

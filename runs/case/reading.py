@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Reading and checking of case files."""
+"""Reader of case files, and the checks beyond their schema."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ from runs.case.schema import Case, EnsembleTable, HistoryTable, Model, TimeTable
 from runs.case.units import System
 from runs.case.user_files import read_text
 
-# Limit of output times: a netCDF file cannot hold more, and the run would take too long.
+# Maximum number of output times: the run would take too long for more.
 MOST_OUTPUTS = 10_000_000
 
 History = TypeVar("History", bound=HistoryTable)
 Law = TypeVar("Law", bound=ContactTable)
 
-# Limit of digits of a whole number in an option: longer numbers are input errors.
+# Maximum number of digits of an integer option: longer numbers are input errors.
 _WHOLE = re.compile(r"[0-9]{1,9}")
 
-# After the equals sign, a number that continues with a comma is an error.
+# Pattern of a number with a decimal comma after an equals sign, which is an error.
 _DECIMAL_COMMA = re.compile(r"=\s*([-+]?[0-9]+),([0-9]+)")
 
 _TOO_MANY_DIGITS = "has more than 64 bits; give fewer digits, or a number as 1.0e20"
@@ -92,7 +92,7 @@ def select(
     members: int | None = None,
     modes: str | None = None,
 ) -> Case:
-    """Return the case with the named models only, and with other shells and ensembles.
+    """Return the case with the selected models, mesh size, modes and ensemble members.
 
     Args:
         case: a checked case.
@@ -103,8 +103,8 @@ def select(
         modes: modes of the shells: a number, or ``auto``.
 
     Raises:
-        BadInput: an unknown name, an invalid or unused mesh size or number of modes, a single
-            member, members without variation.
+        BadInput: a name is unknown, a mesh size or number of modes is invalid or not used, or an
+            ensemble has a single member or no variation.
     """
     chosen = case.models
     if models is not None:
@@ -155,7 +155,7 @@ def select(
 def _with_shells(
     models: Sequence[Model], path: str, option: str, update: Mapping[str, object]
 ) -> tuple[Model, ...]:
-    """Return the models with the shells changed by an option."""
+    """Return the models after an option has changed their shells."""
     if not any(model.needs_shell for model in models):
         raise BadInput(path, option, "no shell is to be run; leave it out")
     return tuple(model.with_shells(update) for model in models)
@@ -177,7 +177,7 @@ def _read(path: str) -> dict[str, object]:
 
 
 def _check_whole_numbers(thing: object, path: str, key: str = "") -> None:
-    """Check that whole numbers have 64 bits, as in TOML; Python reads longer ones."""
+    """Check that integers fit in 64 bits, as TOML requires; Python reads longer ones."""
     if isinstance(thing, dict):
         for name, value in thing.items():
             _check_whole_numbers(value, path, f"{key}.{name}" if key else name)
@@ -189,7 +189,7 @@ def _check_whole_numbers(thing: object, path: str, key: str = "") -> None:
 
 
 def _read_tables(case: Case, path: str) -> Case:
-    """Return the case with the CSV files of its histories in place, so that it stands alone."""
+    """Return the case with the contents of its CSV files in place of their names."""
     system = System(case.units)
 
     def standing(key: str, histories: Sequence[History]) -> tuple[History, ...]:
@@ -232,7 +232,7 @@ def _read_tables(case: Case, path: str) -> Case:
 
 
 def _history(path: str, key: str, table: History, system: System) -> History:
-    """Return a table with the pairs of its file in place, if it has a file."""
+    """Return a table with the pairs of its CSV file, if it has one."""
     _check_columns(path, f"{key}.columns", table.columns, table.file)
     if table.file is None:
         return table
@@ -243,13 +243,13 @@ def _history(path: str, key: str, table: History, system: System) -> History:
     if not read.measured and table.amount not in table.model_fields_set:
         what = described(type(table).model_fields[table.amount])
         raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
-    # Omitted values count as given, in the units of the case file.
+    # The default values become given ones, in the units of the case file.
     amount = {table.amount: getattr(table, table.amount)}
     return table.model_copy(update={"file": None, "columns": None, "table": read.values, **amount})
 
 
 def _driven(path: str, key: str, joint: JointTable, system: System) -> JointTable:
-    """Return a joint with the pairs of its drive's file in place, if there is a file."""
+    """Return a joint with the pairs of its drive's CSV file, if the drive has one."""
     drive = joint.drive
     if drive is None:
         return joint

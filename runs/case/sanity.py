@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Usual ranges of the numbers of a case: most numbers far outside are in another unit."""
+"""Usual ranges of the numbers of a case; numbers far outside usually have another unit."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from runs.case.drive import fastest
 from runs.case.schema import Case
 from runs.case.units import System, Unit
 
-# Units that a user may have meant, the most likely first.
+# Units that a user may have meant, most likely first.
 _TAKEN_FOR = {
     "Pa": ("MPa", "GPa", "kPa", "Pa"),
     "m": ("mm", "cm", "m"),
@@ -29,7 +29,7 @@ _HEIGHT_OVER_GYRATION = 2.5
 
 
 class UsualRange(NamedTuple):
-    """A number of a case, and its usual range.
+    """A number of a case with its usual range.
 
     Args:
         key: key in the case file.
@@ -37,7 +37,7 @@ class UsualRange(NamedTuple):
         value: value in SI units.
         unit: SI unit, ``1`` for none.
         least, most: limits of usual values.
-        margin: factor beyond these limits from which on a value is impossible.
+        margin: factor beyond these limits at which a value is impossible.
     """
 
     key: str
@@ -50,7 +50,7 @@ class UsualRange(NamedTuple):
 
     @property
     def unusual(self) -> bool:
-        """True if the number deserves a caution."""
+        """True if the number is outside its usual range."""
         return not self.least <= self.value <= self.most
 
     @property
@@ -59,7 +59,7 @@ class UsualRange(NamedTuple):
         return not self.least / self.margin <= self.value <= self.most * self.margin
 
     def text(self, system: System) -> str:
-        """Return the number, its usual range and the unit that the user may have meant, as text."""
+        """Return text with the number, its usual range, and the unit that may have been meant."""
         limits = [
             f"{word} {system.of(limit, self.unit):.3g}"
             for word, limit in (("from", self.least), ("up to", self.most))
@@ -76,7 +76,7 @@ class UsualRange(NamedTuple):
 
 
 def check_ranges(case: Case, boom: Boom) -> None:
-    """Refuse a number that is impossible for a boom.
+    """Check that no number is impossible for a boom.
 
     Raises:
         BoomError: a number is impossible.
@@ -110,7 +110,7 @@ def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
 
 
 def _of_materials(case: Case) -> Iterator[UsualRange]:
-    """Yield the material data: solids for booms, from plastics to tungsten, with a margin."""
+    """Yield the material data; the ranges include solids from plastics to tungsten."""
     tables = {f"segment[{i}].material": one.material for i, one in enumerate(case.segments, 1)}
     for where, table in {"material": case.material, **tables}.items():
         if table is None:

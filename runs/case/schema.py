@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The schema of a case file, in SI units unless it names others; an unknown key is an error.
+"""Schema of a case file, in SI units by default; an unknown key is an error.
 
-The JSON Schema shows the string below a key, and the message for a missing key quotes it.
+The string below a key appears in the JSON Schema and in the message for a missing key.
 """
 
 from __future__ import annotations
@@ -60,32 +60,32 @@ class TimeTable(CaseTable):
     output_step: Annotated[Positive, In("s")] = 1.0e-3
     """the interval of the reported times in s"""
     step: Annotated[Positive, In("s")] | None = None
-    """the step of the integrator in s; as long as the tolerance allows unless given"""
+    """the time step in s; chosen by the tolerance unless given"""
     tolerance: Annotated[Part, Field(ge=1.0e-8)] = 1.0e-3
-    """the part of the deflections' range by which the step may change them"""
+    """the permitted error of the deflections by the time step, as a fraction of their range"""
 
 
 class EnsembleTable(CaseTable):
-    """Repeated runs of every model with play, with slightly changed data."""
+    """Repeated runs of every model with play under slightly changed data."""
 
     members: Annotated[int, Field(strict=True, ge=2, le=MOST_MEMBERS)]
-    """the number of runs of each model, the unchanged one among them"""
+    """the number of runs of each model, including the unchanged one"""
     relative: Part = 1.0e-9
     """the largest relative change"""
     seed: Annotated[int, Field(strict=True, ge=0, lt=2**63)] = 1
-    """the seed of the changes: the same one gives the same members"""
+    """the seed of the random changes; the same seed gives the same members"""
     vary: Literal["load", "clearance"] = "load"
-    """the data to change, all by one factor"""
+    """the data to change, all by the same factor"""
 
 
 @dataclass(frozen=True, slots=True, config=PART, kw_only=True)
 class StopTable(BareStop):
-    """A rest on the ground that a segment may touch across a play."""
+    """A stop on the ground that a segment touches after a play."""
 
     stiffness: Annotated[NotNegative, In("N/m^n")]
-    """the contact stiffness in N/m^n where the segment presses up; 0 for none"""
+    """the contact stiffness in N/m^n for upward pressure of the segment; 0 for none"""
     stiffness_below: Annotated[NotNegative, In("N/m^n")] | None = None
-    """the same where it presses down; the same unless given"""
+    """the contact stiffness in N/m^n for downward pressure; as upwards unless given"""
     exponent: Exponent = 1.0
     """the exponent n of the contact law"""
 
@@ -94,26 +94,26 @@ Times = Annotated[tuple[tuple[Number, Number], ...], In("s", "1")]
 
 
 class HistoryTable(CaseTable):
-    """History over time; constant from t = 0 on unless one of these keys is given."""
+    """History over time; constant from t = 0 on unless a key is given."""
 
     ramp: Annotated[Positive, In("s")] | None = None
-    """the time in s in which it rises to its value"""
+    """the time in s of the rise to the full value"""
     frequency: Annotated[Positive, In("Hz")] | None = None
     """the frequency of a sine in Hz"""
     table: Annotated[Times, Field(min_length=2, max_length=MOST_TIMES)] | None = None
     """pairs of a time in s and a factor, linear between them and constant beyond"""
     file: Text | None = None
-    """a CSV file of such pairs, its path seen from the case file"""
+    """a CSV file of such pairs; its path is relative to the case file"""
     columns: tuple[Text, Text] | None = None
-    """the names of two columns in the heading of the file, of the times and of the factors; its
-    only two unless given"""
+    """the names of the columns of times and factors in the heading of the file; not needed if the
+    file has only two columns"""
 
-    # The key of the quantity that the history multiplies.
+    # Key of the quantity that the history multiplies.
     amount: ClassVar[str]
 
     @model_validator(mode="after")
     def _has_an_amount(self) -> Self:
-        # A file that gives its unit needs no such key.
+        # A file with the unit of the quantity makes this key superfluous.
         if self.file is None and self.amount not in self.model_fields_set:
             raise error_at(self, "missing", self.amount)
         return self
@@ -131,14 +131,14 @@ class LoadTable(HistoryTable):
     start: Place | None = Field(None, alias="from")
     """the x in m from which a load along the segment acts; its start unless given"""
     end: Place | None = Field(None, alias="to")
-    """the x in m to which it acts; the segment's end unless given"""
+    """the x in m up to which a load along the segment acts; its end unless given"""
     magnitude: Annotated[Number, In("N/m")] = 1.0
-    """the load in N at x, or in N/m along the segment; the moment in N m; a factor, 1 unless given,
-    where the heading of its file says such a unit"""
+    """the load in N at x, or in N/m along the segment, or the moment in N m; a factor, 1 unless
+    given, if the heading of its file has such a unit"""
     moment: Flag = False
-    """whether it is a moment at x, towards a larger slope of the segment"""
+    """whether the load is a moment at x, positive where it increases the slope of the segment"""
     released: Flag = False
-    """whether it acts before t = 0 and is released at t = 0"""
+    """whether the load acts before t = 0 and is released at t = 0"""
 
     amount: ClassVar[str] = "magnitude"
 
@@ -156,9 +156,9 @@ class AxialTable(CaseTable):
     segment: str | None = None
     """the name of the segment on which it acts; the last one unless given"""
     x: Place | None = None
-    """the x in m where it does; the segment's end unless given"""
+    """the x in m of its point of application; the segment's end unless given"""
     force: Annotated[Number, In("N")] | None = None
-    """the force in N towards the base; that of a hoist rope unless given"""
+    """the force in N towards the base; unless given, the force follows from the hoist rope"""
     falls: Count | None = None
     """the number of falls of a hoist rope, which share the mass on it"""
     mass: Annotated[Positive, In("kg")] | None = None
@@ -171,8 +171,8 @@ class PayloadTable(CaseTable):
     mass: Annotated[Positive, In("kg")]
     """the mass in kg"""
     gravity: Annotated[NotNegative, In("m/s^2")] | None = None
-    """the acceleration in m/s^2 by which it alone weighs down from t = 0, 0 for none; 9.80665
-    unless given, or that of the table gravity"""
+    """the acceleration of gravity in m/s^2 that acts on the payload alone from t = 0, 0 for none;
+    9.80665 unless given, or that of the table gravity"""
 
 
 class GravityTable(CaseTable):
@@ -188,10 +188,10 @@ class BaseTable(HistoryTable):
     """An acceleration of the ground, which acts as an inertia load on all masses."""
 
     direction: Literal["z", "y"] = "z"
-    """up, or to the side"""
+    """the direction: up, or to the side"""
     acceleration: Annotated[Number, In("m/s^2")] = 1.0
-    """the acceleration in m/s^2; a factor, 1 unless given, where the heading of its file says such
-    a unit"""
+    """the acceleration in m/s^2; a factor, 1 unless given, if the heading of its file has
+    such a unit"""
 
     amount: ClassVar[str] = "acceleration"
 
@@ -208,7 +208,7 @@ class VelocityTable(CaseTable):
     lateral_turn: Annotated[Number, In("rad/s")] = 0.0
     """the rate of rotation in rad/s by which the velocity along y grows with x"""
     x: Place | None = None
-    """the x in m that has these velocities; the segment's start unless given"""
+    """the x in m of the point with these velocities; the segment's start unless given"""
 
 
 def _velocity(given: Any) -> Any:
@@ -221,7 +221,7 @@ Velocity = Annotated[
 ]
 
 
-# The key that a plain number sets where it replaces a table.
+# Key to which a plain number belongs if it replaces a table.
 PLAIN = {Support: "x", VelocityTable: "z"}
 
 
@@ -231,7 +231,7 @@ class StartTable(CaseTable):
     state: Literal["rest", "equilibrium"] = "rest"
     """straight and unloaded, or at rest under the loads of t = 0"""
     velocity: dict[str, Velocity] = Field(default_factory=dict)
-    """segment = velocity along z in m/s, or a table with a turn besides"""
+    """segment = velocity along z in m/s, or a table with further components"""
 
     @property
     def at_rest(self) -> bool:
@@ -244,31 +244,31 @@ class ObserveTable(Observation):
     """Additional output of every model, besides the ends of the segments."""
 
     quantity: Recorded = "deflection"
-    """the deflection along z, its velocity, its acceleration as the mean of each output interval,
-    the rotation of the cross-section; in space the lateral deflection and the twist"""
+    """the quantity: deflection along z, its velocity, its acceleration as the mean over each output
+    interval, rotation of the cross-section; in space also lateral deflection and twist"""
 
 
 class DampingTable(CaseTable):
     """Damping of the boom."""
 
     modal: Annotated[float, Field(strict=True, ge=0.0, lt=1.0), In("1")] = 0.0
-    """the damping ratio of the boom's modes with pressed joints, 0.02 for 2 %"""
+    """the damping ratio of the boom's modes with closed contacts, 0.02 for 2 %"""
     mass: Annotated[NotNegative, In("1/s")] = 0.0
-    """Rayleigh's factor of the mass in 1/s"""
+    """Rayleigh's mass-proportional factor in 1/s"""
     stiffness: Annotated[NotNegative, In("s")] = 0.0
-    """Rayleigh's factor of the stiffness in s"""
+    """Rayleigh's stiffness-proportional factor in s"""
 
 
 class LifeTable(CaseTable):
     """Data of the fatigue assessment of a run."""
 
     detail_category: Annotated[Positive, In("1")] | None = None
-    """the detail category of the worst weld after EN 1993-1-9, its number: 71 for 71 N/mm^2;
-    without it ranges are counted, and no damage"""
+    """the number of the worst weld's detail category by EN 1993-1-9: 71 for 71 N/mm^2; without it
+    stress ranges are counted, and no damage is computed"""
     partial_factor: Annotated[Positive, In("1")] = 1.0
     """the partial factor gamma_Ff gamma_Mf on stress ranges"""
     repeats: Annotated[int, Field(strict=True, ge=1, le=10**9)] = 1
-    """the number of times that the motion of the run occurs in a life"""
+    """the number of occurrences of this motion in the service life"""
 
 
 if TYPE_CHECKING:
@@ -285,7 +285,7 @@ class CaseHeading(CaseTable):
     units: SystemName = "SI"
     """the units of all numbers: SI, or mm, t and s with N and MPa ('mm-t-s', the same as 'N-mm')"""
     shown_units: SystemName | None = None
-    """the units of check's tables and of sweeps; those of the case unless given"""
+    """the units in tables of check and in sweeps; those of the case unless given"""
 
 
 class Case(CaseKeys, CaseHeading):
@@ -294,9 +294,10 @@ class Case(CaseKeys, CaseHeading):
     time: TimeTable
     """the table of the duration and the output step"""
     ensemble: EnsembleTable | None = None
-    """the table of the ensembles; none are run unless given"""
+    """the table of the ensembles; no ensembles unless given"""
     material: Material | None = None
-    """the table of the elastic constants and density of all segments that have none of their own"""
+    """the table of elastic constants and density, for all segments without a material of their
+    own"""
     segments: Annotated[tuple[SegmentTable, ...], Field(min_length=1, max_length=MOST_SEGMENTS)] = (
         Field(alias="segment")
     )
@@ -308,7 +309,7 @@ class Case(CaseKeys, CaseHeading):
     stops: Annotated[tuple[StopTable, ...], Field(max_length=MOST_STATIONS)] = Field(
         (), alias="stop"
     )
-    """the rests that segments may touch, one [[stop]] each"""
+    """the stops that segments may touch, one [[stop]] each"""
     cylinders: Annotated[tuple[Cylinder, ...], Few] = Field((), alias="cylinder")
     """the luffing cylinders, one [[cylinder]] each"""
     loads: Annotated[tuple[LoadTable, ...], Few] = Field((), alias="load")
@@ -318,12 +319,12 @@ class Case(CaseKeys, CaseHeading):
     payload: PayloadTable | None = None
     """the table of a mass at the tip"""
     gravity: GravityTable | None = None
-    """the table of the weight of all masses, across and along the boom; nothing weighs but the
-    payload unless given"""
+    """the table of the weight of all masses, across and along the boom; unless given, only the
+    payload has weight"""
     base: Annotated[tuple[BaseTable, ...], Few] = ()
     """the accelerations of the ground"""
     observe: Annotated[tuple[ObserveTable, ...], Few] = ()
-    """the places and quantities that are recorded besides, one [[observe]] each"""
+    """the additional outputs, one [[observe]] each"""
     start: StartTable = StartTable.model_validate({})
     """the table of the state at t = 0"""
     damping: DampingTable = DampingTable.model_validate({})
@@ -337,7 +338,7 @@ class Case(CaseKeys, CaseHeading):
 
     @model_validator(mode="after")
     def _segments_by_name(self) -> Self:
-        """Check that parts give their segments by name; in a case file none has a position."""
+        """Check that parts refer to their segments by name, since a case file has no indices."""
         groups = {"joint": self.joints, "stop": self.stops, "cylinder": self.cylinders}
         for group, parts in {**groups, "observe": self.observe}.items():
             for number, part in enumerate(parts):
@@ -349,7 +350,7 @@ class Case(CaseKeys, CaseHeading):
 
     @model_validator(mode="after")
     def _calibrators(self) -> Case:
-        """Replace the names of shells that calibrate beams by their tables, which stand alone."""
+        """Replace the names of calibrating shells by their tables."""
         by_name = {model.name: model for model in self.models}
         resolved = tuple(model.calibrated_among(by_name) for model in self.models)
         if any(new is not old for new, old in zip(resolved, self.models, strict=True)):
@@ -358,15 +359,15 @@ class Case(CaseKeys, CaseHeading):
 
     @property
     def system(self) -> System:
-        """System of units of tables and sweeps."""
+        """The system of units of tables and sweeps."""
         return System(self.shown_units or self.units)
 
     @property
     def regular(self) -> bool:
         """True if dry friction keeps motions comparable at all times.
 
-        It does under given normal forces, at each station of a boom without stops; under
-        contact forces it does not.
+        This needs friction with given normal forces at each station, and no stops. Friction of
+        contact forces does not suffice.
         """
         return not self.stops and all(
             joint.tied or (joint.friction > 0.0 and min(joint.normal_forces, default=0.0) > 0.0)
@@ -375,7 +376,7 @@ class Case(CaseKeys, CaseHeading):
 
     @property
     def driven(self) -> dict[str, str]:
-        """Result name and segment of each joint with a drive."""
+        """The result name and the segment of each joint with a drive."""
         return {
             "" if number == 1 else f"-{number}": joint.inner
             for number, joint in enumerate(self.joints, start=1)

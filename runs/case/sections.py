@@ -20,12 +20,12 @@ from runs.case.limits import MOST_FACETS, CaseTable
 class ShapeTable(CaseTable):
     """Keys of every shape of a section."""
 
-    # Function of the other keys that returns the section.
+    # Function that returns the section of the other keys.
     make: ClassVar[Callable[..., Section]]
     shape: str
 
     def section(self) -> Section:
-        """Return the section of these numbers.
+        """Return the section that the keys define.
 
         Raises:
             SectionError: the section is invalid.
@@ -34,7 +34,7 @@ class ShapeTable(CaseTable):
 
 
 class SectionTable(ShapeTable):
-    """A box by its wall mid-lines and thicknesses."""
+    """Keys of a box: distances of wall mid-lines, and thicknesses."""
 
     make = BoxSection
     shape: Literal["box"] = "box"
@@ -54,7 +54,7 @@ def _unequal_box(height: float, width: float, top: float, bottom: float, web: fl
 
 
 class UnequalBoxTable(ShapeTable):
-    """A box with flanges of different thickness, by its wall mid-lines and thicknesses."""
+    """Keys of a box with flanges of different thickness."""
 
     make = _unequal_box
     shape: Literal["unequal box"]
@@ -72,25 +72,25 @@ class UnequalBoxTable(ShapeTable):
 
 
 class PolygonTable(ShapeTable):
-    """Flat plates once around a cell, by the corners of their mid-lines."""
+    """Keys of a closed polygon of flat plates."""
 
     make = closed_polygon
     shape: Literal["polygon"]
     """the shape of the section"""
     corners: Annotated[tuple[tuple[Number, Number], ...], Few, In("m")]
-    """the corners of the mid-lines in turn, as pairs of y and z in m from anywhere"""
+    """the corners of the mid-lines in order, as pairs of y and z in m from any origin"""
     thicknesses: Annotated[tuple[Length, ...], Few]
-    """the thickness of each plate in m, from each corner to the next; the last one closes the
+    """the thickness of each plate in m, from each corner to the next; the last plate closes the
     cell"""
 
 
 class _FoldedTable(ShapeTable):
-    """Keys of sections with a top, a bottom and folded sides."""
+    """Common keys of sections with a top, a bottom and folded sides."""
 
     height: Length
     """the height of the top's mid-line above the bottom's in m"""
     width: Length
-    """the greatest distance of the sides' mid-lines in m"""
+    """the greatest distance between the sides' mid-lines in m"""
     top: Length
     """the thickness of the top in m"""
     bottom: Length
@@ -100,7 +100,7 @@ class _FoldedTable(ShapeTable):
 
 
 class HexagonTable(_FoldedTable):
-    """A hexagon that lies on a flat bottom, its sides folded in the middle."""
+    """Keys of a hexagon with flat top and bottom, whose sides are folded in the middle."""
 
     make = hexagon
     shape: Literal["hexagon"]
@@ -110,17 +110,17 @@ class HexagonTable(_FoldedTable):
 
 
 class OctagonTable(_FoldedTable):
-    """A rectangle whose corners are cut at 45°."""
+    """Keys of an octagon: a rectangle whose corners are cut at 45°."""
 
     make = octagon
     shape: Literal["octagon"]
     """the shape of the section"""
     chamfer: Length
-    """the length in m cut off each end of the rectangle's sides"""
+    """the length in m by which each cut shortens the rectangle's sides"""
 
 
 class UTable(_FoldedTable):
-    """A U whose bends are folded of flat plates, closed by a flat top."""
+    """Keys of a U with a flat top, whose bends consist of flat plates."""
 
     make = u_section
     shape: Literal["U"]
@@ -132,7 +132,7 @@ class UTable(_FoldedTable):
 
 
 def _shape(given: Any) -> str:
-    """Return the shape of a section's table; default a box."""
+    """Return the shape of a section's table; the default is a box."""
     if isinstance(given, Mapping):
         return str(given.get("shape", "box"))
     return str(getattr(given, "shape", "box"))

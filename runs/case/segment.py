@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A segment of the boom in a case file."""
+"""Keys of a segment of the boom."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from runs.case.sections import AnySection
 
 
 def _support(given: Any) -> Any:
-    """Return a plain place as a pinned support."""
+    """Return a plain x as a pinned support there."""
     return {"x": given} if isinstance(given, str) or is_number(given) else given
 
 
@@ -25,19 +25,19 @@ _Support = Annotated[
 
 
 class SegmentTable(CaseTable):
-    """One box of the boom."""
+    """A segment of the boom: one box."""
 
     name: Name
     """the name of the segment in joints and results"""
     span: tuple[Annotated[Number, In("m")], Annotated[Number, In("m")]] | None = None
-    """the x of its two ends in m, rising; or give length"""
+    """the x of its two ends in m, in ascending order; or give length"""
     length: Length | None = None
-    """the length in m of a segment whose place follows from the extension of the joint in which it
-    slides; the first one then starts at 0"""
+    """the length in m, instead of span; the first segment then starts at 0, and the others follow
+    from the extension of their joints"""
     material: Material | None = None
     """the table of the segment's own material; the case's unless given"""
     supports: Annotated[tuple[_Support, ...], Few] = ()
-    """the places that the ground holds: an x in m each, or a table"""
+    """the supports: an x in m each, or a table"""
     masses: Annotated[tuple[PointMass, ...], Few] = ()
     """the masses on the segment"""
     mass_per_length: Annotated[Positive, In("kg/m")] | None = None
@@ -47,13 +47,14 @@ class SegmentTable(CaseTable):
     rotary_inertia: Annotated[NotNegative, In("kg m")] | None = None
     """the rotary inertia in kg m; density times second moment unless given"""
     height_to_width: Annotated[Positive, In("1")] | None = None
-    """the ratio of the mid-lines of a uniform-wall box, to infer its section"""
+    """the ratio of height to width of the mid-lines, to infer the section of a box with uniform
+    walls"""
     section: AnySection | None = None
-    """the table of the plates; unless given a box is inferred from mass and second moment, with
-    height_to_width, or with the room in the segment around it"""
+    """the table of the plates; unless given, a box is inferred from mass and second moment, with
+    height_to_width or the space in the outer segment"""
     head_section: AnySection | None = None
-    """the table of the plates at the head, of the section's shape: the segment tapers from its
-    section at the tail to this one"""
+    """the table of the plates at the head, for a tapered segment, whose section is that at the
+    tail; both have the same shape"""
     load: Annotated[Number, In("N/m")] = 0.0
     """the uniform load in N/m, positive upwards, applied at t = 0 and kept"""
     viscous_damping: Annotated[NotNegative, In("N s/m^2")] = 0.0
@@ -64,16 +65,16 @@ class SegmentTable(CaseTable):
     """the second moment of area for bending along y in m^4; follows from the section unless
     given"""
     lateral_rotary_inertia: Annotated[NotNegative, In("kg m")] | None = None
-    """the same in kg m; density times second moment unless given"""
+    """the rotary inertia for bending along y in kg m; density times second moment unless given"""
     torsion_constant: Annotated[Positive, In("m^4")] | None = None
     """the torsion constant in m^4; follows from the section unless given"""
     polar_inertia: Annotated[Positive, In("kg m")] | None = None
     """the mass moment of inertia about the axis per length in kg m; follows from the section unless
     given"""
     collars: Annotated[tuple[Collar, ...], Few] = ()
-    """the doublers around the box: stiffness of shells alone, mass of all models"""
+    """the doublers around the box: all models have their mass, shells also their stiffness"""
     diaphragms: Annotated[tuple[Diaphragm, ...], Few] = ()
-    """the plates that close the box: stiffness of shells alone, mass of all models"""
+    """the plates that close the box: all models have their mass, shells also their stiffness"""
 
     @model_validator(mode="after")
     def _has_a_place(self) -> Self:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Writer of a case as TOML that reads back as the same case."""
+"""Writer of cases as TOML, from which the same case can be read again."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def dumps(case: Case) -> str:
 
 
 def digest(case: Case) -> str:
-    """Return the SHA-256 of the whole case as written."""
+    """Return the SHA-256 of the case as TOML."""
     return hashlib.sha256(dumps(case).encode()).hexdigest()
 
 
 def _table(table: Mapping[str, Any], path: str) -> Iterator[str]:
-    """Yield the lines of a table: first plain values, as TOML requires, then inner tables."""
+    """Yield the lines of a table: plain values first, as TOML requires, then inner tables."""
     nested = {key: value for key, value in table.items() if _is_nested(value)}
     for key, value in table.items():
         if key not in nested:
@@ -40,7 +40,7 @@ def _table(table: Mapping[str, Any], path: str) -> Iterator[str]:
 
 
 def _key(name: str) -> str:
-    """Return a valid key: a segment's name, a key of velocities, may have blanks and points."""
+    """Return a valid TOML key: names of segments, the keys of velocities, may need quotes."""
     return name if _BARE.fullmatch(name) else _value(name)
 
 
@@ -56,7 +56,7 @@ def _value(value: bool | int | float | str | tuple[Any, ...] | Mapping[str, Any]
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
-        # JSON's escapes are TOML's, which also requires DEL to be escaped.
+        # TOML has the escapes of JSON, and requires that DEL is escaped, too.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, Mapping):
         inside = ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Units by their names: the factor to the SI unit, and the dimension."""
+"""Units of measurement, with their names, factors to SI units and dimensions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
-# Exponents of length, mass and time.
+# A dimension: the exponents of length, mass and time.
 Dimension = tuple[float, float, float]
 
 _NONE, _LENGTH, _MASS, _TIME = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -29,7 +29,7 @@ _SIZES: Mapping[Dimension, Mapping[str, str]] = {
 }
 _SYMBOLS = {name: (size, of) for of, sizes in _SIZES.items() for name, size in sizes.items()}
 
-# m^2, m2, m-2, N/m^1.5.
+# Pattern of a factor of a unit: m^2, m2, m-2, N/m^1.5.
 _POWER = re.compile(r"([^\^0-9-]+|1|-)(?:\^(-?[0-9]{1,2}(?:\.[0-9]{1,9})?)|(-?[0-9]))?")
 _PLAIN = str.maketrans("¹²³⁴⁻μ·*", "1234-µ  ")
 
@@ -38,18 +38,18 @@ _PLAIN = str.maketrans("¹²³⁴⁻μ·*", "1234-µ  ")
 class Unit:
     """A unit of measurement."""
 
-    factor: float  #: number of SI units in one of it
+    factor: float  #: number of SI units in one unit
     dimension: Dimension  #: the exponents of length, mass and time
 
     @classmethod
     def of(cls, text: str) -> Unit:
-        """Return the unit of a name such as ``kN/m``, ``m/s^2``, ``m/s²``, ``N m``, ``g``.
+        """Return the unit with a name such as ``kN/m``, ``m/s^2``, ``m/s²``, ``N m``, ``g``.
 
         Raises:
             ValueError: the unit is unknown.
         """
         above, *below = text.replace("**", "^").translate(_PLAIN).split("/")
-        # Decimal sizes are exact fractions: a density in t/mm³ is to be exactly 1e12 kg/m³.
+        # Sizes are exact fractions, so that 1 t/mm³ is exactly 1e12 kg/m³.
         size: Fraction | float = Fraction(1)
         exponents = [0.0, 0.0, 0.0]
         for part, sign in [(above, 1.0), *((part, -1.0) for part in below)]:
@@ -67,7 +67,7 @@ class Unit:
         return cls(float(size), (exponents[0], exponents[1], exponents[2]))
 
 
-# Systems of units: the replacements of units of the SI.
+# Systems of units: the unit that replaces each SI unit.
 SystemName = Literal["SI", "mm-t-s", "N-mm"]
 _MILLIMETRES = {"m": "mm", "kg": "t", "Pa": "MPa"}
 _SYSTEMS: Mapping[SystemName, Mapping[str, str]] = {
@@ -87,12 +87,12 @@ class System:
     name: SystemName = "SI"
 
     def unit(self, si: str) -> str:
-        """Return the system's unit in place of an SI unit: ``N/mm`` for ``N/m``, for example."""
+        """Return the system's unit in place of an SI unit, for example ``N/mm`` for ``N/m``."""
         symbols = _SYSTEMS[self.name]
         return re.sub("[A-Za-z]+", lambda found: symbols.get(found[0], found[0]), si)
 
     def size(self, si: str) -> Fraction:
-        """Return the number of SI units in the system's unit."""
+        """Return the number of SI units in one unit of the system."""
         return Fraction(repr(Unit.of(self.unit(si)).factor / Unit.of(si).factor))
 
     def of(self, value: float, si: str) -> float:
@@ -100,16 +100,16 @@ class System:
         return scaled(value, 1 / self.size(si))
 
     def label(self, si: str) -> str:
-        """Return the system's unit for headings: ``mm⁴``."""
+        """Return the system's unit as text for headings, for example ``mm⁴``."""
         return self.unit(si).replace("^", "").translate(_RAISED)
 
     def text(self, value: float, si: str, digits: int = 4) -> str:
-        """Return a value in an SI unit as text in the system's unit: ``12.5 mm``."""
+        """Return a value in an SI unit as text in the system's unit, such as ``12.5 mm``."""
         return f"{self.of(value, si):.{digits}g} {self.label(si)}"
 
 
 def scaled(value: float, size: Fraction) -> float:
-    """Return value times size in decimal arithmetic: 9.7 mm are 0.0097 m to the last bit.
+    """Return value times size in decimal arithmetic, so that 9.7 mm are exactly 0.0097 m.
 
     Raises:
         OverflowError: the number is too large.

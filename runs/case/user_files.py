@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""User files: checks of files to read and of folders to replace."""
+"""Checks of the user's files before reading, and of folders before replacement."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from pathlib import Path
 from runs.case.messages import BadInput
 from runs.folder.files import real
 
-# Limit of a text in bytes: a case with the most tabulated times is smaller.
+# Maximum size of a text in bytes; a case with the most tabulated times is smaller.
 LARGEST = 16_000_000
 
 
 def check_regular(path: Path) -> None:
-    """Refuse files without an end: a pipe waits for its writer, a device has no end.
+    """Check that a path is a regular file: pipes may block, and devices have no end.
 
     Raises:
         OSError: the file is missing, or is no regular file.
@@ -30,11 +30,13 @@ def check_regular(path: Path) -> None:
 
 
 def check_left(folder: Path, file: str, key: str) -> None:
-    """Refuse to replace the working folder: a shell would stay in the old one, which is then empty.
+    """Check that a folder to replace is not the working folder.
+
+    The user's shell would stay in the old folder, which is then empty.
 
     Args:
         folder: the folder to replace.
-        file, key: names for messages.
+        file, key: names in messages.
 
     Raises:
         BadInput: it is the working folder of this process.
@@ -56,10 +58,9 @@ def read_text(path: Path) -> str:
 
 
 def read_any_text(path: Path) -> str:
-    """Return the text of a file as :func:`read_text`, but also in the encodings of spreadsheets.
+    """Return the text of a file like :func:`read_text`, also in the encodings of spreadsheets.
 
-    These are UTF-16, which begins with its mark, and if the text is not UTF-8 the Western one of
-    Windows.
+    A byte order mark identifies UTF-16. Text that is not UTF-8 is read as Windows-1252.
     """
     data = _read(path)
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A cache of results under the hash of their inputs.
 
-An entry is a file whose first line is the SHA-256 of its key and of what follows, so that a disk
-error and a file that was copied from elsewhere are detected. It is complete or absent, and
-never changes. Nobody requests an outdated entry again, so that it becomes the least recently used,
-and is removed.
+An entry is a file whose first line is the SHA-256 of its key and its content. This detects disk
+errors, and files that were copied from elsewhere. An entry is complete or absent, and never
+changes. No run requests an outdated entry again; the cache removes the least recently used entries
+first.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ if TYPE_CHECKING:
 
 Kept = TypeVar("Kept")
 
-# Size in bytes of all entries of a user.
+# Maximum total size in bytes of the entries of a user.
 MAX_SIZE = 4 * 1024**3
 
-# Environment variable for another folder than the user's own.
+# Environment variable that replaces the user's cache folder.
 VARIABLE = "PROTRACTILE_CACHE"
 
 # Linux's struct flock: type, whence, start, length, process.
@@ -49,10 +49,10 @@ _HEAD = 65
 
 
 def key(*content: Any) -> str:
-    """Return the SHA-256 of content, numbers to the last bit, and of the program that computes.
+    """Return the SHA-256 of the content, numbers to the last bit, and of the program's sources.
 
     Raises:
-        TypeError: a part is not valid in a record, see :func:`runs.folder.records.write`.
+        TypeError: the content is not valid in a record, see :func:`runs.folder.records.write`.
     """
     digest = sha256()
     records.write((content, program()), SimpleNamespace(write=digest.update))
@@ -61,7 +61,7 @@ def key(*content: Any) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Cache:
-    """Entries by key.
+    """Cache of entries by their keys.
 
     Args:
         folder: folder of the entries; the first entry creates it.
@@ -89,9 +89,9 @@ class Cache:
         return cls(Path(caches) / "protractile")
 
     def load(self, key: str, kind: type[Kept]) -> Kept | None:
-        """Return an entry of a class; None where it is missing or damaged."""
+        """Return the entry, an object of a class; None if it is missing or damaged."""
         entry = self._entry(key)
-        # An entry of another user may be readable, too.
+        # The entry may belong to another user.
         with suppress(OSError):
             os.utime(entry)
         if not entry.is_file():
@@ -106,7 +106,7 @@ class Cache:
         except FileNotFoundError:
             return None
         except Exception:
-            # The file may be damaged, or made by anybody.
+            # The file may be damaged, or come from elsewhere.
             pass
         NOTICES.warning(
             "%s: is not as it was kept; it is dropped, and computed again", shown(str(entry))
@@ -117,7 +117,7 @@ class Cache:
 
     @contextmanager
     def making(self, key: str) -> Iterator[None]:
-        """Block other processes and threads that want the same entry.
+        """Make other processes and threads that compute the same entry wait.
 
         They do not wait if the cache is not writable.
         """
@@ -126,7 +126,7 @@ class Cache:
                 self.folder.mkdir(parents=True, exist_ok=True)
                 lock = stack.enter_context((self.folder / ".lock").open("a", encoding="utf-8"))
                 # Each entry locks a byte of its own, so that no lock files remain. The lock belongs
-                # to the open file: one of the process would let in its other threads.
+                # to the open file: a lock of the process would not stop its other threads.
                 byte = _LOCK.pack(fcntl.F_WRLCK, os.SEEK_SET, int(key[:15], 16), 1, 0)
                 fcntl.fcntl(lock, fcntl.F_OFD_SETLKW, byte)
             yield
@@ -147,7 +147,7 @@ class Cache:
             file.write(head)
 
     def remember(self, key: str, thing: Any) -> None:
-        """Store an entry and make room for others; give a notice if the cache is not writable."""
+        """Store an entry and remove old ones; give a notice if the cache is not writable."""
         try:
             self.keep(key, thing)
             self.make_room()
@@ -161,7 +161,7 @@ class Cache:
             )
 
     def make_room(self, room: int = MAX_SIZE) -> None:
-        """Remove the least recently used entries until the others take ``room`` bytes together."""
+        """Remove the least recently used entries until the others have at most ``room`` bytes."""
         used: list[tuple[float, int, Path]] = []
         for entry in self.folder.glob(f"*{_SUFFIX}"):
             # Another process may remove it at the same time.
@@ -187,8 +187,8 @@ def remembered(
 ) -> ReducedShell:
     """Return a reduced shell, from the cache if it is there. Collective.
 
-    A cache that cannot be read or written costs time, and a notice, and nothing else. Of
-    processes that want the same shell at a time one makes it, and the others wait for it.
+    A cache that cannot be read or written causes a notice and costs time. If several processes need
+    the same shell, one computes it and the others wait.
 
     Args:
         cache: cache of the user.
@@ -202,7 +202,7 @@ def remembered(
     name = key(list(content))
     with cache.making(name) if comm.rank == 0 else nullcontext():
         found = cache.load(name, ReducedShell) if comm.rank == 0 else None
-        # Only the first rank has fields and meshes.
+        # Fields and meshes are on the first rank only.
         shared = comm.bcast(None if found is None else replace(found, fields=None, meshes=[]))
         if shared is not None:
             return replace(found or shared, seconds={"cache": perf_counter() - start})

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Files and folders that are complete or absent, at any interruption of the writing.
+"""Files and folders that are complete or absent, even if writing is interrupted.
 
-Incomplete files lie in a hidden folder beside their place. That folder is locked as long as its
-process lives, so that the next process that writes there can remove those of a killed one. A
-finished folder has a manifest of its files with their checksums, as ``sha256sum -c`` reads them.
+Incomplete files are in a hidden folder beside their final place. A process locks its folder, so
+that the next process that writes there can remove the folder of a killed one. A finished folder has
+a manifest of its files with their checksums, as ``sha256sum -c`` reads them.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ from runs.process.ending import when_interrupted
 
 MANIFEST = ".manifest"
 
-# renameat2(2): paths are relative to the current folder; exchange two names.
+# Flags of renameat2(2): paths are relative to the current folder; exchange two names.
 _AT_FDCWD, _RENAME_EXCHANGE = -100, 2
 
 
 def real(path: Path) -> Path:
-    """Return a path without links.
+    """Return a path with its links resolved.
 
     Raises:
-        OSError: its links form a loop, where :meth:`pathlib.Path.resolve` raises RuntimeError, or
-            from Python 3.13 on nothing.
+        OSError: links form a loop; :meth:`pathlib.Path.resolve` raises RuntimeError, or nothing
+            from Python 3.13 on.
     """
     found = Path(os.path.realpath(path))
     if found.is_symlink():
@@ -45,24 +45,24 @@ def real(path: Path) -> Path:
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """Give a name to write to; the file gets its own when it is complete."""
+    """Yield a temporary path to write to; the complete file gets the final name."""
     with scratch_folder(path) as folder:
         yield folder / path.name
         os.replace(folder / path.name, path)
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a file of text, which appears when it is complete."""
+    """Write a text file, which appears when it is complete."""
     with whole(path) as part:
         part.write_text(text, encoding="utf-8")
 
 
 @contextmanager
 def whole_folder(folder: Path) -> Iterator[Path]:
-    """Give an empty folder to write to, which replaces ``folder`` when it is complete.
+    """Yield an empty folder to write to, which replaces ``folder`` when it is complete.
 
     Args:
-        folder: may exist; everything in it is removed.
+        folder: final path; an existing folder is removed with its content.
     """
     with scratch_folder(folder) as part:
         yield part
@@ -72,10 +72,10 @@ def whole_folder(folder: Path) -> Iterator[Path]:
 
 @contextmanager
 def changed_folder(folder: Path) -> Iterator[Path]:
-    """Give a copy of ``folder`` to change, which replaces it when it is complete.
+    """Yield a copy of ``folder`` to change, which replaces it when it is complete.
 
     The copies share their content with the files in ``folder``: replace them, do not write to them.
-    Files that the user has put there stay, and are not listed in the manifest. To be used
+    Files that the user has added stay, and are not in the manifest. Call it within
     :func:`exclusive`.
     """
     with scratch_folder(folder) as part:
@@ -93,13 +93,13 @@ def changed_folder(folder: Path) -> Iterator[Path]:
 
 @contextmanager
 def exclusive(folder: Path) -> Iterator[None]:
-    """Wait until no other process replaces a folder beside this one, and keep others waiting."""
+    """Hold a lock under which only this process replaces folders beside this path."""
     path = real(folder)
     with ExitStack() as stack:
         with suppress(OSError):
             parent = os.open(path.parent, os.O_RDONLY)
             stack.callback(os.close, parent)
-            # Some network disks have no locks.
+            # Some network file systems have no locks.
             with suppress(OSError):
                 fcntl.flock(parent, fcntl.LOCK_EX)
             if not path.exists():
@@ -109,10 +109,10 @@ def exclusive(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def scratch_folder(path: Path) -> Iterator[Path]:
-    """Give an empty folder to work in beside a path; remove it at the end, with earlier ones."""
+    """Yield an empty folder beside a path; remove it at the end, with those of killed processes."""
     path = real(path)
     part = path.with_name(f"{_hidden(path)}{token_hex(4)}")
-    # Other processes do not find it until it is locked.
+    # Other processes cannot find the folder before it is locked.
     unlocked = path.with_name(f".{part.name}")
     try:
         if not path.parent.exists():
@@ -130,7 +130,7 @@ def scratch_folder(path: Path) -> Iterator[Path]:
             unlocked.rename(part)
             yield part
     except OSError as error:
-        # The error of a full disk names no file, and users know it by its final name.
+        # The error of a full disk names no file; the user knows only the final name.
         place = os.path.abspath(error.filename or path)
         for scratch in (unlocked, part):
             place = place.replace(str(scratch), str(path))
@@ -139,9 +139,9 @@ def scratch_folder(path: Path) -> Iterator[Path]:
 
 
 def damaged(folder: Path) -> str | None:
-    """Return the first file whose checksum is not that of the manifest, None where there is none.
+    """Return the first file whose checksum differs from the manifest; None if all agree.
 
-    Missing files, and files of the user, count as none.
+    Missing files and files of the user do not count.
     """
     for name, digest in _listed(folder).items():
         path = folder / name
@@ -156,14 +156,14 @@ def _hidden(path: Path) -> str:
 
 
 def _away(path: Path) -> Path:
-    """Return the path of a folder while another one takes its place in two steps."""
+    """Return the temporary path of an old folder, for an exchange in two steps."""
     return path.with_name(f".{path.name[:50]}.away")
 
 
 def _remove_left(path: Path) -> None:
     """Remove the remains of killed processes beside a path."""
     for left in path.parent.glob(f"{escape(_hidden(path))}*"):
-        # The folder of a live process is locked.
+        # A locked folder belongs to a live process.
         with suppress(OSError), (left / MANIFEST).open("r+", encoding="utf-8") as manifest:
             fcntl.flock(manifest, fcntl.LOCK_EX | fcntl.LOCK_NB)
             shutil.rmtree(left, ignore_errors=True)
@@ -174,7 +174,7 @@ def _take_the_place(part: Path, folder: Path, own: Iterable[str]) -> None:
 
     Args:
         part: the new folder.
-        folder: the old one, if there is one; ``part`` gets its name.
+        folder: the path for ``part``, where an old folder may exist.
         own: files of the new folder that the manifest lists.
     """
     lines = [f"{_digest(part / name)}  {name}\n" for name in sorted(own)]
@@ -189,7 +189,7 @@ def _take_the_place(part: Path, folder: Path, own: Iterable[str]) -> None:
             raise
         libc = ctypes.PyDLL(None)
         names = _AT_FDCWD, os.fsencode(part), _AT_FDCWD, os.fsencode(folder)
-        # Not every system and not every disk can exchange two names at once.
+        # Some systems and some disks cannot exchange two names at once.
         if not hasattr(libc, "renameat2") or libc.renameat2(*names, _RENAME_EXCHANGE) != 0:
             folder.rename(_away(folder))
             part.rename(folder)
@@ -197,7 +197,7 @@ def _take_the_place(part: Path, folder: Path, own: Iterable[str]) -> None:
 
 
 def _files(folder: Path) -> list[str]:
-    """Return all files but the manifest and links, by their paths in a folder."""
+    """Return all files in a folder except manifest and links, by their relative paths."""
     paths = (path for path in folder.rglob("*") if path.is_file() and not path.is_symlink())
     return [name for path in paths if (name := str(path.relative_to(folder))) != MANIFEST]
 
@@ -208,10 +208,10 @@ def _same(name: str, one: Path, other: Path) -> bool:
 
 
 def _listed(folder: Path) -> dict[str, str]:
-    """Return the checksums of a folder's manifest, by paths in the folder."""
+    """Return the checksums in a folder's manifest, by relative path."""
     manifest = folder / MANIFEST
     try:
-        # A pipe in its place would wait for its writer.
+        # Reading a pipe in its place would block.
         lines = manifest.read_text("utf-8").splitlines() if manifest.is_file() else []
     except (OSError, UnicodeDecodeError):
         lines = []

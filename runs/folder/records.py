@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Results as a line of JSON and its arrays, in numpy's own format.
+"""Records: results as a line of JSON, followed by their arrays in numpy's format.
 
 Everything is restored to the last bit: tuples as tuples, and this program's dataclasses, named
-tuples and pydantic models as objects of their classes, validation included. Files hold data only:
-their author has no influence on the code that runs at reading, except for the choice of these
-classes and their data.
+tuples and pydantic models as objects of their classes, validation included. Files contain data
+only: an untrusted file can choose among these classes and their data, but cannot run code.
 """
 
 from __future__ import annotations
@@ -21,14 +20,14 @@ from pydantic import BaseModel
 
 from runs.folder.versions import packages
 
-# Of arrays: booleans, numbers, texts.
+# Permitted kinds of arrays: booleans, numbers, texts.
 _KINDS = "biufcU"
 
 Kind = TypeVar("Kind")
 
 
 class Writable(Protocol):
-    """A writer of bytes, such as a file."""
+    """Destination of bytes, such as a file."""
 
     def write(self, data: bytes, /) -> object:
         """Write more bytes."""
@@ -36,7 +35,7 @@ class Writable(Protocol):
 
 
 def write(thing: Any, file: Writable) -> None:
-    """Write a result.
+    """Write a record.
 
     Args:
         thing: a dataclass, a dataset, an array, a number, a text, or a combination of these.
@@ -52,10 +51,10 @@ def write(thing: Any, file: Writable) -> None:
 
 
 def read(file: IO[bytes], kind: type[Kind]) -> Kind:
-    """Read a result of a class.
+    """Read a record, an object of a class.
 
     Raises:
-        Exception: the file is no record, or one of another class.
+        Exception: the file is not a record of this class.
     """
     thing = _read(json.loads(file.readline()), file)
     if not isinstance(thing, kind):
@@ -64,7 +63,7 @@ def read(file: IO[bytes], kind: type[Kind]) -> Kind:
 
 
 def _written(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
-    """Return the object in JSON's terms, and add its arrays to the others."""
+    """Return an object in JSON types, and append its arrays to ``arrays``."""
     if thing is None or isinstance(thing, bool | int | float | str):
         return thing
     if isinstance(thing, np.generic):
@@ -85,7 +84,7 @@ def _written(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
         ]
         return {"mapping": entries}
     if (names := _names(type(thing))) is not None:
-        # Of a pydantic model, fields that were never set stay unset.
+        # Only the fields of a pydantic model that were set are written.
         own = thing.model_fields_set if isinstance(thing, BaseModel) else names
         parts = {name: _written(getattr(thing, name), arrays) for name in names if name in own}
         return {"record": [type(thing).__module__, type(thing).__name__], "parts": parts}
@@ -95,7 +94,7 @@ def _written(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
 
 
 def _read(written: Any, file: IO[bytes]) -> Any:
-    """Return the object of JSON's terms, with its arrays from the file in the same order."""
+    """Return the object of JSON types, with its arrays from the file in the same order."""
     match written:
         case None | bool() | int() | float() | str():
             return written
@@ -103,7 +102,7 @@ def _read(written: Any, file: IO[bytes]) -> Any:
             return np.lib.format.read_array(file, allow_pickle=False)
         case {"dataset": content}:
             variables, coordinates, attributes = _read(content, file)
-            # Their order is that of a file that they are written to.
+            # Variables keep the order in which they are written to a file.
             return xr.Dataset(variables, attrs=attributes).set_coords(coordinates)
         case {"mapping": list(entries)}:
             return {_read(name, file): _read(value, file) for name, value in entries}
@@ -117,7 +116,7 @@ def _read(written: Any, file: IO[bytes]) -> Any:
 
 
 def _class(module: str, name: str) -> type:
-    """Return one of this program's classes that consist of their fields only."""
+    """Return a class of this program whose objects consist of fields only."""
     if module.partition(".")[0] in {package.name for package in packages()}:
         found = vars(import_module(module)).get(name)
         if isinstance(found, type) and found.__module__ == module and _names(found) is not None:
@@ -126,7 +125,7 @@ def _class(module: str, name: str) -> type:
 
 
 def _names(kind: type) -> list[str] | None:
-    """Return the fields of a class; None for a class that may hold more than its fields."""
+    """Return the fields of a class; None for a class whose objects may hold further data."""
     if issubclass(kind, BaseModel):
         return list(kind.model_fields)
     if is_dataclass(kind):

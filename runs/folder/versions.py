@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Versions of the code that computes: this program's sources, and the libraries."""
+"""Versions of the code that computes results: this program's sources and its libraries."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, distribution, version
 from pathlib import Path
 
-# The distributions that compute.
+# Distributions that influence numerical results.
 _LIBRARIES = "protractile", "numpy", "scipy", "numba", "gmsh", "fenics-dolfinx", "petsc4py"
 
 
@@ -24,7 +24,7 @@ def installed_version(name: str) -> str | None:
 
 
 def versions() -> dict[str, str | None]:
-    """Return versions of loaded modules by name: a beam's run does not load FEniCSx."""
+    """Return the versions of the loaded modules, by name; a run of beams does not load FEniCSx."""
     modules: Sequence[str] = (
         "numpy", "scipy", "numba", "xarray", "gmsh", "dolfinx", "petsc4py", "mpi4py",
     )  # fmt: skip
@@ -37,7 +37,7 @@ def versions() -> dict[str, str | None]:
 
 @cache
 def packages() -> list[Path]:
-    """Return this program's packages: all in the source tree, or the installed ones."""
+    """Return this program's packages: those of the source tree, or the installed ones."""
     top = Path(__file__).parents[2]
     if (top / "pyproject.toml").is_file():
         return [path.parent for path in sorted(top.glob("*/__init__.py"))]
@@ -46,7 +46,7 @@ def packages() -> list[Path]:
 
 
 def sources(folders: Iterable[Path]) -> str:
-    """Return the SHA-256 of the Python files of packages and subpackages, with their paths."""
+    """Return the SHA-256 of the paths and contents of all Python files of these packages."""
     digest = hashlib.sha256()
     for folder in folders:
         for path in sorted(folder.rglob("*.py")):
@@ -59,7 +59,7 @@ def sources(folders: Iterable[Path]) -> str:
 
 @cache
 def program() -> dict[str, str | None]:
-    """Return the inputs of a result beside its data: the sources, and libraries that compute."""
-    # As installed: the loaded modules of one process do not determine those of another.
+    """Return the version of the program as an input of results: its sources and its libraries."""
+    # Installed versions count, since processes differ in the modules that they have loaded.
     libraries = {name: installed_version(name) for name in _LIBRARIES}
     return {"sources": sources(packages()), **libraries}

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The paper's statements: rules that judge results, and readings of its data."""
+"""The paper's statements, and the rules that judge results by them."""

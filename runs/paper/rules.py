@@ -2,8 +2,8 @@
 """Rules that judge each statement of the paper on trajectories.
 
 The frictionless system is chaotic: a relative change of the load of 1e-9 grows to about 1 % of
-the tip's range within a second. So one trajectory decides what happens up to the first peak;
-beyond it a difference is a sample, and a rule asks how many members of an ensemble show it.
+the tip's range within a second. So one trajectory decides only up to the first peak. Beyond it, a
+difference is a sample, and a rule counts the members of an ensemble that show it.
 """
 
 from __future__ import annotations
@@ -24,31 +24,31 @@ from runs.paper.statements import STATEMENTS
 from runs.paper.verdicts import Judgement, Verdict
 from runs.pipeline.results import Results
 
-# S1. The integration of both series differs by round-off alone: about 1e-14 of the range.
+# S1. Both series differ by round-off only: about 1e-14 of the range.
 COINCIDENCE = 1.0e-6
-# S2. Number of the statement.
+# S2. The number in the statement.
 DIVERGENCE = 0.20
-# S3. Number of the statement, in s.
+# S3. The time in the statement, in s.
 CONFORMITY = 6.0
 # S3. The paper shows one run, which is typical if most members agree.
 MOST = 0.5
-# S2. Of the mean of an ensemble, whose members are samples of one chaotic motion.
+# S2. Confidence of the mean of an ensemble, whose members are samples of a chaotic motion.
 CONFIDENCE = 0.95
-# S2, S7, S8. The paper's shortest interval in s: its friction example ended there for want of
-# stability, and its frictionless curves part visibly after six seconds.
+# S2, S7, S8. The paper's shortest interval in s: its friction example became unstable there, and
+# its frictionless curves diverge visibly after six seconds.
 INTERVAL = 7.0
 # S4. A relative load change of 1e-4, or another step, moves a first tip peak by up to 0.5 %.
 PEAK_SCATTER = 0.005
 # S5. From here on play adds more than the whole deflection without play.
 FUNDAMENTAL = 2.0
-# S6. Equal relative differences would make the absolute ones differ like the ranges, whose ratio
-# is about 10 for this boom; up to half of that they are taken as of one level. Chaos moves the
-# largest differences up to the first peak by about a tenth.
+# S6. With equal relative differences, the absolute ones would differ like the ranges, whose ratio
+# is about 10 for this boom. Up to half of this ratio, the absolute differences count as equal.
+# Chaos changes the largest differences up to the first peak by about a tenth.
 SAME_LEVEL = 5.0
 LEVEL_SCATTER = 0.1
-# S9. Less than what the models of S4 are apart, which the paper calls minor.
+# S9. Less than the differences between the models of S4, which the paper calls minor.
 CLEAR_INFLUENCE = 0.05
-# S10. Number of the statement.
+# S10. The number in the statement.
 SERIES_STEPS = 2000
 ELEMENT_STEPS = 4000
 # S11. More than two.
@@ -57,7 +57,7 @@ SEGMENTS = 3
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Result of a rule; the fields are those of a verdict."""
+    """Result of a rule; the fields are those of :class:`runs.paper.verdicts.Verdict`."""
 
     verdict: Judgement
     why: str
@@ -84,8 +84,8 @@ def judge(results: Results) -> list[Verdict]:
 
 def _s1(run: RunQuery) -> Finding:
     """Measure: largest difference of both tips before the earlier first contact, as a part of
-    the five-term tip's range. Threshold: 1e-6. Both have the same outer functions and a rigid
-    inner motion until then, so only round-off may part them; nothing has grown chaotic yet.
+    the five-term tip's range. Threshold: 1e-6. Until then both have the same outer functions and a
+    rigid inner motion, so that only round-off may differ; chaos has not amplified it yet.
     """
     run.without_friction()
     four, five = run.four_terms(), run.five_terms()
@@ -103,10 +103,10 @@ def _s1(run: RunQuery) -> Finding:
 
 
 def _s2(run: RunQuery) -> Finding:
-    """Measure: largest difference of the tips in the last second, as a part of the larger range,
-    in the mean of the members. Threshold: 0.20, the statement's number. The mean is known to
-    within its 95 % confidence interval over the members: of their chaotic motions the run that
-    the paper shows is one. The run must be as long as the paper's interval.
+    """Measure: largest difference of the tips in the last second, as a fraction of the larger
+    range, averaged over the members. Threshold: 0.20, the statement's number. The mean has a 95 %
+    confidence interval over the members; the run in the paper is one sample of their chaotic
+    motions. The run must be as long as the paper's interval.
     """
     run.without_friction()
     run.last_until(INTERVAL)
@@ -126,13 +126,14 @@ def _s2(run: RunQuery) -> Finding:
 
 def _s3(run: RunQuery) -> Finding:
     """Measure: share of the members that conform for six seconds, and of those that stratify
-    after them. Threshold: half of them each, so that what the paper shows is typical. Conformity
-    is of the slow motion: every peak of all models with play within 0.20 of one another, the part
-    that the paper itself calls a divergence (S2), in time as a part of the period and in height;
-    a peak that only some models have is infinitely far. One peak further apart after six seconds
-    is a stratification. A member without any peak before or after says nothing of that time and
-    is not counted there. Pointwise nothing could be asked: the run that the paper shows is beyond
-    its horizon long before.
+    after them. Threshold: half of the members each, so that the paper's figure is typical.
+
+    Slow motions conform if every peak of all models with play is within 0.20 of the others, in
+    height and, as a fraction of the period, in time. The paper itself calls 0.20 a divergence (S2).
+    A peak that only some models have has an infinite distance. One peak beyond 0.20 after six
+    seconds is a stratification. A member without peaks before or after six seconds is not counted
+    there. A pointwise comparison is impossible: six seconds are far beyond the horizon of a single
+    run.
     """
     run.without_friction()
     run.last_until(CONFORMITY)
@@ -171,8 +172,9 @@ def _s3(run: RunQuery) -> Finding:
 
 def _s4(run: RunQuery) -> Finding:
     """Measure: smallest rise of the first tip peak from one model to the next, in percent.
-    Threshold: 0.5 %, by which a small change of load or step moves one such peak. A larger
-    rise each time reproduces, a fall of more than that contradicts, anything between is chance.
+    Threshold: 0.5 %, by which a small change of load or step moves one such peak. The statement is
+    reproduced if every rise is larger, and contradicted by a fall of more than 0.5 %; results
+    between are chance.
     """
     run.without_friction()
     models = [run.four_terms(), run.five_terms(), run.beam_elements(), run.shell()]
@@ -193,9 +195,9 @@ def _s4(run: RunQuery) -> Finding:
 
 
 def _s5(run: RunQuery) -> Finding:
-    """Measure: smallest ratio of a first tip peak with play to the one without. Threshold: 2,
-    where play adds as much again as the whole play-free deflection; the models with play are
-    within a tenth of one another. First peaks scatter by 0.5 % only.
+    """Measure: smallest ratio of a first tip peak with play to the one without. Threshold: 2, where
+    play adds as much as the whole deflection without play. The models with play differ by less than
+    a tenth, and first peaks scatter by 0.5 % only.
     """
     run.without_friction()
     without = run.peak_height(run.bonded())
@@ -215,10 +217,10 @@ def _s5(run: RunQuery) -> Finding:
 
 def _s6(run: RunQuery) -> Finding:
     """Measure: largest pointwise difference of any two models at the tip over that at the head,
-    up to the first tip peak. Beyond it chaos and the phase of the slow motion, not the models,
-    set the differences. Threshold: 5, half of the ratio of the ranges, at which relative
-    differences would be equal. Reproduced if the ratio is within it either way and the
-    difference relative to the place's own range is greater at the head.
+    up to the first tip peak. Beyond it, chaos and the phase of the slow motion determine the
+    differences, not the models. Threshold: 5, half of the ratio of the ranges, at which relative
+    differences would be equal. The statement is reproduced if the ratio is between 1/5 and 5, and
+    the difference relative to the local range is larger at the head.
     """
     run.without_friction()
     models = run.with_play()
@@ -248,11 +250,11 @@ def _s6(run: RunQuery) -> Finding:
 
 def _s7(run: RunQuery) -> Finding:
     """Measure: largest pointwise difference of any two models with play at the tip within six
-    seconds, as a part of the largest range. Threshold: 0.20, the part that the paper itself calls
-    a divergence (S2). Reproduced if they conform so far, differ more after it, if the play-free
-    model is further from each of them than that, and if the difference relative to the place's
-    range is greater at the head. With friction the motion is regular, so that one trajectory of
-    each model decides, over its whole length.
+    seconds, as a fraction of the largest range. Threshold: 0.20, which the paper itself calls a
+    divergence (S2). The statement is reproduced if the models conform within six seconds and differ
+    more afterwards, if the model without play differs more from each of them, and if the difference
+    relative to the local range is larger at the head. With friction the motion is regular, so that
+    one trajectory of each model decides, over its whole length.
     """
     run.with_friction()
     run.last_until(INTERVAL)
@@ -281,10 +283,10 @@ def _s7(run: RunQuery) -> Finding:
 
 
 def _s8(run: RunQuery) -> Finding:
-    """Measure: how long the beam elements with friction move with their energy in bound, in s.
-    Threshold: 7 s, beyond which the paper's solution was not stable. A run that goes on for
-    longer contradicts that the system is to blame; one that ends before decides nothing, since a
-    run whose energy is out of bound is no result here.
+    """Measure: time in s for which the beam elements with friction move with a bounded energy
+    residual. Threshold: 7 s, beyond which the paper's solution was unstable. A longer stable run
+    contradicts that the system itself is unstable. A shorter run decides nothing, since runs with
+    unbounded energy are no results here.
     """
     run.with_friction()
     model = run.beam_elements()
@@ -305,8 +307,8 @@ def _s8(run: RunQuery) -> Finding:
 
 def _s9(run: RunQuery) -> Finding:
     """Measure: largest relative difference of first tip peaks between models that differ in
-    their contact law alone, with another exponent n. Threshold: 5 %, less than what the models
-    of S4 are apart. The stiffness may differ too, since its unit depends on n.
+    their contact law alone, with another exponent n. Threshold: 5 %, less than the differences
+    between the models of S4. The stiffness may differ, too, since its unit depends on n.
     """
     untied = [model for model in run.case.models if not model.bonded]
     differences = [
@@ -328,10 +330,10 @@ def _s9(run: RunQuery) -> Finding:
 
 
 def _s10(run: RunQuery) -> Finding:
-    """Measure: steps that the series needs, the larger of both, for its first three slow peaks:
-    the fewest of all step sizes tried that keep them within 1 % beyond the ensemble's spread.
-    Threshold: 2000; beam elements must take more than 4000. The paper's 2000 are for its whole
-    interval, so that fewer for a part of it leave the statement possible, no more.
+    """Measure: steps that the series needs for its first three slow peaks, the larger number of
+    both series: the smallest number in the trials that keeps the peaks within 1 % beyond the
+    ensemble's spread. Threshold: 2000; beam elements must take more than 4000. The paper's 2000
+    steps cover its whole interval, so that fewer steps for a part of it do not prove the statement.
     """
     run.without_friction()
     series = [run.four_terms(), run.five_terms()]
@@ -354,7 +356,8 @@ def _s10(run: RunQuery) -> Finding:
 def _s11(run: RunQuery) -> Finding:
     """Measure: distance of the first tip peak of the longest series from that of beam elements, on
     a boom of three segments or more. Threshold: 20 %, the part that the paper itself calls a
-    divergence (S2): a description that extends comes as near to the elements as with two.
+    divergence (S2): the description extends to more segments if it is as near to beam elements as
+    with two.
     """
     count = len(run.case.segments)
     if count < SEGMENTS:
@@ -391,14 +394,14 @@ def _find(rule: Callable[[RunQuery], Finding], run: RunQuery) -> Finding:
 
 
 def _above(value: float, threshold: float, margin: float) -> Judgement:
-    """Return the judgement of a value above a threshold, both known to within ``margin``."""
+    """Return whether a value is above a threshold, where both have the uncertainty ``margin``."""
     if abs(value - threshold) <= margin:
         return "undecided"
     return "reproduced" if value > threshold else "contradicted"
 
 
 def _mean(values: Array) -> tuple[float, float]:
-    """Return the mean of the members, and half its Student's confidence interval."""
+    """Return the mean of the members, and half the width of its Student confidence interval."""
     quantile = stdtrit(values.size - 1, 0.5 + 0.5 * CONFIDENCE)
     return float(values.mean()), float(quantile * values.std(ddof=1) / np.sqrt(values.size))
 
@@ -409,7 +412,7 @@ def _share(shows: Mask) -> tuple[float, float]:
 
 
 def _apart(run: RunQuery, models: Sequence[Model], place: str) -> Array:
-    """Return the largest difference (num_times,) of any two models, as a part of the range."""
+    """Return the largest difference (num_times,) between models, as a fraction of the range."""
     curves = np.array([run.curve(model, place) for model in models])
     return np.asarray(np.ptp(curves, axis=0) / max(map(_range, curves)))
 
@@ -422,7 +425,7 @@ def _half_part(middle: float) -> str:
 
 
 def _horizons(run: RunQuery, models: list[Model]) -> str:
-    """Return a sentence on the times from which a single run of each model is a sample."""
+    """Return a sentence on the horizons, beyond which a single run of each model is a sample."""
     horizons = [run.horizon(model, DIVERGENCE) for model in models]
     times = [time for time in horizons if time is not None]
     if not times:
@@ -434,7 +437,7 @@ def _horizons(run: RunQuery, models: list[Model]) -> str:
 
 
 def _all_of(*parts: Judgement) -> Judgement:
-    """Return the common judgement: contradicted if one part is, reproduced if all parts are."""
+    """Return the common verdict: contradicted if one part is, reproduced if all parts are."""
     if "contradicted" in parts:
         return "contradicted"
     return "undecided" if "undecided" in parts else "reproduced"
@@ -448,6 +451,6 @@ def _range(curve: Array) -> float:
 
 
 def _exponents(run: RunQuery, model: Model) -> list[set[float]]:
-    """Return n of each joint in a model."""
+    """Return the contact exponents n of a model's joints."""
     joints = model.joined(run.results.boom).boom.joints
     return [{term.exponent for term in joint.contact.terms} for joint in joints]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Quantities of a run that the rules on the paper's statements need, and model divergence."""
+"""Queries of a run for the rules on the paper's statements, and divergence between models."""
 
 from __future__ import annotations
 
@@ -24,31 +24,31 @@ _Found = TypeVar("_Found")
 
 
 class MissingData(Exception):
-    """Error for a quantity that a rule needs and the run lacks, as a sentence."""
+    """Error for missing data that a rule needs; the message is a sentence."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunQuery:
-    """Query of a run for the rules; each method raises :class:`MissingData` without a result.
+    """Access of the rules to a run; its methods raise :class:`MissingData` if the data are missing.
 
     Args:
-        results: of the run.
+        results: results of the run.
     """
 
     results: Results
 
     @property
     def case(self) -> Case:
-        """Case of the run, by which models are identified."""
+        """The case of the run, which identifies the models."""
         return self.results.case
 
     @property
     def time(self) -> Array:
-        """Output times (num_times,) in s."""
+        """The output times (num_times,) in s."""
         return np.asarray(self.results.trajectories["time"].values, dtype=float)
 
     def check_ran(self, model: Model) -> None:
-        """Refuse a model that failed, or was left out."""
+        """Check that a model ran."""
         why = self.results.summary.failures.get(model.name)
         if why is not None:
             raise MissingData(f"{model.name!r} failed: {why}.")
@@ -67,7 +67,7 @@ class RunQuery:
         return deflection
 
     def members(self, *models: Model) -> Array:
-        """Return the tip (num_models, num_members, num_times) in m."""
+        """Return the tip deflections (num_models, num_members, num_times) in m of the ensembles."""
         for model in models:
             self.curve(model)
         if self.results.ensembles is None:
@@ -81,7 +81,7 @@ class RunQuery:
         return self.results.summary.models[model.name]
 
     def horizon(self, model: Model, share: float) -> float | None:
-        """Return when members of a model differ by a share of the tip's range (s), or None."""
+        """Return the time in s at which members differ by a share of the tip's range, or None."""
         return _require(model, "ensemble", self.found(model).ensemble).horizon(share)
 
     def first_contact(self, model: Model) -> float:
@@ -109,7 +109,7 @@ class RunQuery:
         return requested.slow_below
 
     def one(self, what: str, fits: Callable[[Model], bool]) -> Model:
-        """Return the model that matches ``what``: the one of that name, else the first."""
+        """Return the first model that fits, or the one whose name is ``what`` if it fits."""
         found = sorted(filter(fits, self.case.models), key=lambda model: model.name != what)
         if not found:
             raise MissingData(f"The case has no model like {what!r}.")
@@ -120,7 +120,7 @@ class RunQuery:
         return self.one("kantorovich-4", lambda model: terms(model) == (2, 2))
 
     def five_terms(self) -> Model:
-        """Return the series with one bending function more in the inner segment, else the same."""
+        """Return the series with one more bending function, in the inner segment."""
         four = self.four_terms()
         return self.one(
             "kantorovich-5",
@@ -146,24 +146,24 @@ class RunQuery:
         return self.one("beam-fe-tied", lambda model: model.bonded)
 
     def with_play(self) -> list[Model]:
-        """Return all models with contact between segments, two at least."""
+        """Return all models with contact between segments; there must be at least two."""
         models = [model for model in self.case.models if not model.bonded]
         if len(models) < 2:
             raise MissingData("It takes two models with play to compare.")
         return models
 
     def with_friction(self) -> None:
-        """Refuse a case without friction."""
+        """Check that the case has friction."""
         if not any(joint.friction > 0.0 for joint in self.case.joints):
             raise MissingData("This case has no friction; it takes the case with friction.")
 
     def without_friction(self) -> None:
-        """Refuse a case with friction."""
+        """Check that the case has no friction."""
         if any(joint.friction > 0.0 for joint in self.case.joints):
             raise MissingData("This case has friction; it takes the case without.")
 
     def last_until(self, end: float) -> None:
-        """Refuse a run that ends before ``end`` in s."""
+        """Check that the run lasts until ``end`` in s."""
         if self.time[-1] < end * (1.0 - 1e-9):
             raise MissingData(f"The run ends at {self.time[-1]:g} s; it takes {end:g} s.")
 
@@ -175,7 +175,7 @@ def _require(model: Model, what: str, value: _Found | None) -> _Found:
 
 
 def terms(model: Model) -> tuple[int, ...]:
-    """Return the numbers of a series' functions; none for other models."""
+    """Return the numbers of functions of a series; empty for other models."""
     return next((series.terms for series in of_kind(Kantorovich, [model])), ())
 
 
@@ -198,18 +198,19 @@ def apart_at_the_end(one: Array, other: Array, last: Mask) -> Array:
 def peaks_apart(curves: Array, time: Array, cutoff: float) -> tuple[Array, Array]:
     """Return distances between the peaks of several slow motions, peak by peak.
 
-    The k-th peak of one model belongs to the k-th of every other. Their distance is the larger of
-    that in time, as a part of the mean period, and that in height, as a part of the highest; it is
-    infinite where a model has no such peak and its motion goes on for long enough to have one.
+    The k-th peak of one model belongs to the k-th of every other. Their distance is the larger one
+    of the distance in time, as a fraction of the mean period, and the distance in height, as a
+    fraction of the highest peak. It is infinite if a model lacks the peak although its motion lasts
+    long enough.
 
     Args:
         curves: (num_models, num_times), one member of each model.
         time: (num_times,) in s, equal steps.
-        cutoff: of the slow motion in Hz.
+        cutoff: cut-off of the slow motion in Hz.
 
     Returns:
-        (num_peaks,) time in s at which the first model has the peak, and (num_peaks,) distance;
-        peaks that only some models have are among them.
+        Times (num_peaks,) in s at which the first model has the peak, and distances (num_peaks,);
+        peaks that only some models have are included.
     """
     found = [slow_peaks(curve, time, cutoff) for curve in curves]
     many = [np.diff(times) for times, _ in found if times.size > 1]

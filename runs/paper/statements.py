@@ -29,7 +29,7 @@ STATEMENTS: dict[StatementId, str] = {
 
 
 class CaseKeys(CaseTable):
-    """Keys of a case on the statements of the paper."""
+    """Keys of a case for the statements of the paper."""
 
     statements: Annotated[tuple[StatementId, ...], Few] = ()
     """the statements of the paper that are judged on the run"""
@@ -37,5 +37,5 @@ class CaseKeys(CaseTable):
     """the statements of the paper that the run must reproduce"""
 
     def unjudged(self) -> Self:
-        """Return the same case without these keys."""
+        """Return the case without these keys."""
         return self.model_copy(update={"statements": (), "demand": ()})

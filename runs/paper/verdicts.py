@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Verdicts on the paper's statements: in the report, in the terminal and in ``verdicts.json``."""
+"""Verdicts on the paper's statements, in the report, the terminal and ``verdicts.json``."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ class Verdict:
     """Verdict on one statement.
 
     Args:
-        id: in the case.
-        statement: the claim.
-        measured: number that the rule compares, None where there is none.
+        id: identifier of the statement in the case.
+        statement: text of the statement.
+        measured: number that the rule compares; None if there is none.
         threshold: limit of this number.
-        unit: of both; empty where there is none.
+        unit: unit of both numbers; empty if they have none.
         verdict: result of the rule.
-        why: what was compared, and what the number can and cannot decide.
-        demanded: the case takes no other verdict than ``reproduced``.
+        why: explanation of the comparison and of its limits.
+        demanded: whether the case demands the verdict ``reproduced``.
     """
 
     id: str
@@ -51,7 +51,7 @@ class Verdict:
     demanded: bool = False
 
     def with_unit(self, value: float | None) -> str:
-        """Return one of its numbers as text."""
+        """Return a number of the verdict as text with its unit."""
         text = number(value)
         return f"{text} {self.unit}" if self.unit and text != NONE else text
 
@@ -86,7 +86,7 @@ def addition(case: Case, verdicts: Sequence[Verdict]) -> Addition:
 
 
 def evidence(case: Case) -> Mapping[str, Sequence[str]]:
-    """Return the evidence for each statement in the report: anchors, pictures before tables."""
+    """Return the evidence in the report for each statement: anchors of pictures, then of tables."""
     regular = case.regular
     heads = [f"figure-head-{number}" for number in range(2, len(case.joints) + 1)]
     heads = ["figure-head", *heads]
@@ -110,7 +110,7 @@ def evidence(case: Case) -> Mapping[str, Sequence[str]]:
 
 
 def show(judged: Mapping[str, Addition], console: Console) -> int:
-    """Print verdicts by the file of their run, and those that a case demands; return the status."""
+    """Print the verdicts of all runs, then the demands that are not met; return the exit status."""
     runs: dict[str, Sequence[Verdict]] = {
         file: one.content["verdicts"] for file, one in judged.items()
     }
@@ -129,8 +129,8 @@ def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> N
     """Print a paragraph for each statement: the verdict of the first run that decides it.
 
     Args:
-        runs: the verdicts by the name of their case; nothing is printed if there are none.
-        console: of the output.
+        runs: verdicts by the name of their case; nothing is printed if there are none.
+        console: console of the output.
     """
     judging = [name for name, verdicts in runs.items() if verdicts]
     if not judging:
@@ -153,7 +153,7 @@ def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> N
 def decisive(runs: Mapping[str, Sequence[Verdict]]) -> list[tuple[str, Verdict]]:
     """Return each statement's verdict, and the run that gives it.
 
-    That is the first run that decides it; the first of all if none does.
+    This is the first run that decides the statement, or the first run if none does.
     """
     found: dict[str, tuple[str, Verdict]] = {}
     for name, verdicts in runs.items():

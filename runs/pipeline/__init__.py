@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The pipeline from a case to results: models, their motion, their ensembles, their summaries."""
+"""The pipeline from a case to results: models, motions, ensembles, summaries."""

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Models without play whose contacts are bonded.
+"""Models with bonded contacts, without play.
 
-Contacts that press at rest are held where they touch without play; at stations where
-none does, all contacts are held. Under pressure they still deform, as with play: the wall of a
-shell, say.
+Contacts under pressure at rest are bonded in the position without play. At stations without such
+contacts, all contacts are bonded. Local compliance remains, for example that of a shell's walls.
 """
 
 from __future__ import annotations
@@ -17,14 +16,14 @@ from scipy.linalg import eigh, null_space
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 
-# Fraction of the least ω² of the segments: motions below it are rigid.
+# Fraction of the least ω² of the segments, below which a motion is rigid.
 _RIGID = 1.0e-6
 
 
 def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, Array]:
     """Return the bonded system and its shapes (num_modes, num_tied_modes).
 
-    Its stations are those of the ground.
+    The bonded system keeps only the stations on the ground.
 
     >>> from runs.pipeline.bonded import bonded_system
     >>> pair = replace(ball, omega2=np.array([0.0, 4.0]), load=np.zeros(2), stations=[1.0],
@@ -35,8 +34,8 @@ def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem,
     array([2.])
 
     Args:
-        system: with its contacts.
-        rests: (num_modes,) rest positions under the loads that count.
+        system: gap system with its contacts.
+        rests: equilibria (num_modes,) under the loads that decide which contacts press.
     """
     on_ground = np.isin(system.station_of_row, system.grounded)
     pressing = np.zeros(len(system.laws), dtype=bool)

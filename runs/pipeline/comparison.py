@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Comparison of two models of one boom at three levels, each with the question that it decides."""
+"""Comparison of two models of one boom at three levels: instants, peaks, distributions."""
 
 from __future__ import annotations
 
@@ -17,15 +17,16 @@ from runs.pipeline.low_pass import Number, Numbers, SlowPeaks
 
 @dataclass(frozen=True, slots=True)
 class PeakDifferences:
-    """Differences of the slow motions' peaks, the other's less the one's, in order.
+    """Differences between the peaks of two slow motions, the second less the first, in order.
 
-    A combined spread is the sum of both: beyond it no member of one model has the peak of a
-    member of the other.
+    A combined spread is the sum of both spreads. If a difference exceeds it, no member of one model
+    has the same peak as a member of the other.
 
     Args:
-        time, time_spread: (num_peaks,) difference and combined spread in s.
-        height, height_spread: (num_peaks,) likewise, in the signal's unit.
-        explained: (num_peaks,) true where both differ by no more than the spreads.
+        time, time_spread: differences and combined spreads (num_peaks,) of the times in s.
+        height, height_spread: differences and combined spreads (num_peaks,) of the heights, in the
+            signal's unit.
+        explained: (num_peaks,) true where no difference exceeds its spread.
     """
 
     decides: ClassVar[str] = (
@@ -42,7 +43,7 @@ class PeakDifferences:
 
     @classmethod
     def of(cls, one: SlowPeaks, other: SlowPeaks) -> PeakDifferences:
-        """Compare the first peaks of both, as many as both have."""
+        """Compare the peaks that both models have."""
         common = slice(min(one.time.size, other.time.size))
         time, height = (
             other.time[common] - one.time[common],
@@ -56,14 +57,15 @@ class PeakDifferences:
 
 @dataclass(frozen=True, slots=True)
 class Distributions:
-    """Distributions of the members' values once both models are unpredictable, of one and other.
+    """Distributions of the values of two models' members, once both are unpredictable.
 
     Args:
-        since: the later of both horizons at the last of ``SHARES`` in s.
-        range, mean, deviation: of both, in the signal's unit; NaN where there is no such time.
-        distance: Kolmogorov's and Smirnov's, the largest difference of the cumulated shares, 0
-            to 1. No significance follows: values of one member at close times are not
-            independent.
+        since: later one of both horizons at the last of ``SHARES`` in s.
+        range, mean, deviation: range, mean and standard deviation of each model, in the signal's
+            unit; NaN if one stays predictable.
+        distance: Kolmogorov-Smirnov distance, the largest difference of the cumulative
+            distributions, 0 to 1. It gives no significance, since values of one member at close
+            times are not independent.
     """
 
     decides: ClassVar[str] = (
@@ -81,9 +83,9 @@ class Distributions:
     def of(cls, one: Array, other: Array, time: Array, since: float) -> Distributions:
         """Compare all values (num_members, num_times) of one quantity; times in s.
 
-        They count from ``since`` on, NaN where a model stays predictable.
+        Values from ``since`` on count; it is NaN if a model stays predictable.
         """
-        # Not at the top: most runs have no ensemble, and the import takes half a second.
+        # Imported here, since most runs have no ensemble and the import takes half a second.
         from scipy.stats import ks_2samp
 
         both = [members[:, time >= since].ravel() for members in (one, other)]
@@ -101,7 +103,7 @@ class Distributions:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Two models at three levels."""
+    """Comparison of two models at three levels."""
 
     pointwise: Pointwise
     peaks: PeakDifferences
@@ -112,10 +114,10 @@ def compare(one: xr.Dataset, other: xr.Dataset, cutoff: float, observer: str = "
     """Compare the ensembles of two models.
 
     Args:
-        one, other: of :func:`dynamics.predictability.ensemble.integrate_ensemble`, at the same
-            times.
-        cutoff: of the slow motion in Hz.
-        observer: which output is compared.
+        one, other: ensembles of :func:`dynamics.predictability.ensemble.integrate_ensemble`, at the
+            same times.
+        cutoff: cut-off of the slow motion in Hz.
+        observer: name of the compared output.
 
     Raises:
         ValueError: the times differ.
@@ -126,7 +128,7 @@ def compare(one: xr.Dataset, other: xr.Dataset, cutoff: float, observer: str = "
     members = one[observer].values, other[observer].values
     horizons = np.array([horizons_of(ensemble, SHARES, observer) for ensemble in (one, other)])
     until = float(np.nan_to_num(horizons[:, 0], nan=time[-1]).min())
-    # NaN of either model passes on: it is predictable to the end.
+    # The maximum is NaN if a horizon is NaN, that is, if a model is predictable to the end.
     since = float(horizons[:, -1].max())
     return Comparison(
         Pointwise.of(members[0][0], members[1][0], time, until),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The context of a run: ranks, progress, cache."""
+"""Context of a run: ranks, progress and cache."""
 
 from __future__ import annotations
 
@@ -16,20 +16,19 @@ if TYPE_CHECKING:
 
 
 def silent(model: str, stage: str, part: float) -> None:
-    """Ignore the progress, as a :data:`runs.process.progress.Progress` without display."""
+    """Ignore the progress; a :data:`runs.process.progress.Progress` without display."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunContext:
-    """The context of a run: ranks, folders and progress.
+    """Context of a run: ranks, folders and progress.
 
     Args:
-        comm: the ranks that share the shells and the ensembles; a case without shells can do
-            without.
+        comm: ranks that share the shells and the ensembles; None for a case without shells.
         progress: receives the progress of every stage.
         cache: cache of reduced shells.
-        motions: store of completed motions, earlier ones and those of this run.
-        helper: a process beside the only rank, for shells and pictures.
+        motions: store of completed motions, of this run and earlier ones.
+        helper: second process for shells and pictures, where there is only one rank.
     """
 
     comm: MPI.Intracomm | None = None
@@ -40,7 +39,7 @@ class RunContext:
 
     @property
     def first_rank(self) -> bool:
-        """True if this is the first rank, which writes files and integrates reduced models."""
+        """True for the first rank, which writes files and integrates reduced models."""
         return self.comm is None or self.comm.rank == 0
 
     @property

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Design results of a boom, part of ``summary.json``; SI units."""
+"""Design results of a boom in ``summary.json``, in SI units."""
 
 from __future__ import annotations
 
@@ -20,20 +20,21 @@ class ModelDesignResults:
     """Design results of one model.
 
     Args:
-        static: static states under the loads of t = 0, and for variable loads also under the
-            extreme ones; empty without an equilibrium.
-        static_extended: static states at the largest and least extension, under the loads of that
-            time and under the extreme ones at that extension.
-        static_bonded: as ``static``, without play, at the instants with the initial extension.
-        modes: the first modes at rest under the loads of t = 0; empty without an equilibrium.
-        modes_bonded: those of the boom without play, without their shapes.
-        motion: extreme values of the run.
-        motion_bonded: extreme values without play; None for a model without play, and where they
-            cannot be computed. Walls of shells are left out.
+        static: static states under the loads at t = 0 and, if loads vary, under their extreme
+            values; empty without an equilibrium.
+        static_extended: static states at the largest and least extension, under the loads at that
+            time and the extreme loads at that extension.
+        static_bonded: static states without play, at the instants with the initial extension.
+        modes: the first modes about the equilibrium under the loads at t = 0; empty without an
+            equilibrium.
+        modes_bonded: modes of the boom without play, without shapes.
+        motion: extreme values of the motion.
+        motion_bonded: extreme values without play, except wall stresses of shells; None for a model
+            without play, or if they cannot be computed.
         life: fatigue damage of each segment with a known section, where cycles can be counted.
-        life_bonded: likewise without play.
-        residual_vibration: vibration during the extension; None without extension, for a run that
-            ends before its drives, and without an equilibrium.
+        life_bonded: fatigue damage without play.
+        residual_vibration: vibration during telescoping; None without telescoping, if the run ends
+            before its drives, or without an equilibrium.
     """
 
     static: list[StaticResult] = field(default_factory=list)
@@ -49,7 +50,7 @@ class ModelDesignResults:
 
     @property
     def farthest_static(self) -> StaticResult | None:
-        """The static state with the farthest tip, at any extension; None without any."""
+        """The static state with the largest tip deflection; None without static states."""
         return max(
             [*self.static, *self.static_extended], key=lambda rest: abs(rest.tip), default=None
         )
@@ -57,13 +58,14 @@ class ModelDesignResults:
 
 @dataclass(frozen=True, slots=True)
 class PlayDifference:
-    """The increase of a number by play.
+    """Effect of play on one result.
 
     Args:
-        what: as of :class:`Peak`, or ``deflection at rest``, ``first frequency``, ``stress``.
-        where: the place; empty for the whole boom.
+        what: name of the result, as in :class:`Peak`, or ``deflection at rest``, ``first
+            frequency``, ``stress``.
+        where: place of the result; empty for the whole boom.
         unit: SI unit.
-        with_play, bonded: the number with play and without, by its absolute value.
+        with_play, bonded: absolute values of the result with play and without.
     """
 
     what: str
@@ -74,22 +76,22 @@ class PlayDifference:
 
     @property
     def increase(self) -> float:
-        """Increase by play, in the unit."""
+        """The increase by play, in the unit."""
         return self.with_play - self.bonded
 
     @property
     def share(self) -> float | None:
-        """Increase as a part of the number without play; None where that is zero."""
+        """The increase as a fraction of the value without play; None if that is zero."""
         return self.increase / self.bonded if self.bonded else None
 
 
 @dataclass(frozen=True, slots=True)
 class PlayEffect:
-    """The increases of numbers by play in one model.
+    """Effect of play on the results of one model.
 
     Args:
         model: name of the model with play.
-        numbers: numbers at rest, of modes and of motions, with and without play.
+        numbers: results at rest, of modes and of motions, with and without play.
     """
 
     model: str
@@ -98,10 +100,10 @@ class PlayEffect:
 
 @dataclass(frozen=True, slots=True)
 class QualityNote:
-    """A note of one line on the accuracy of the results.
+    """Note of one line on the accuracy of the results.
 
     Args:
-        what: ``agreement``, ``horizon``, ``reduction``, ``mesh``, ``energy`` or ``step``.
+        what: subject: ``agreement``, ``horizon``, ``reduction``, ``mesh``, ``energy`` or ``step``.
         line: the note.
     """
 
@@ -114,12 +116,12 @@ class DesignResults:
     """Design results of a run.
 
     Args:
-        models: design results by the model's name.
-        reactions: support reactions of beam elements at rest under the loads of t = 0, as in
+        models: design results of each model, by its name.
+        reactions: support reactions of beam elements at rest under the loads at t = 0, as in
             ``check``; empty without an equilibrium.
-        reactions_bonded: the same without play.
-        modes: modes of all models side by side; None if fewer than two models have any.
-        play: increases by play of each model with play.
+        reactions_bonded: support reactions without play.
+        modes: comparison of the modes of all models; None if fewer than two models have modes.
+        play: effect of play in each model with play.
         quality_notes: notes on the accuracy.
     """
 
@@ -132,11 +134,11 @@ class DesignResults:
 
 
 def play_effects(models: list[Model], design: Mapping[str, ModelDesignResults]) -> list[PlayEffect]:
-    """Return the increases by play of each model with play.
+    """Return the effect of play in each model with play.
 
     Args:
-        models: those of the case without failure.
-        design: design results of each.
+        models: models of the case that did not fail.
+        design: design results of the models.
     """
     return [
         PlayEffect(model.name, [*_at_rest(own), *_in_motion(own)])

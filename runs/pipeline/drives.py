@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Bound of (R_s − R)/(v √(k m)) in the search for the critical speed.
+# Upper limit of (R_s − R)/(v √(k m)) in the search for the critical speed.
 _FARTHEST = 1.0e6
 
-# Part of the smallest overlap. A larger lag moves the pads to other places.
+# Fraction of the smallest overlap. The pads of a segment with a larger lag are at other places.
 FAR_BEHIND = 0.01
 
 
@@ -37,8 +37,8 @@ def drive_lines(boom: Boom, system: System) -> Iterator[str]:
     """Yield a sentence for each drive: travel, time, speed and remaining overlap.
 
     Args:
-        boom: whose joints may have drives.
-        system: the units of the sentences.
+        boom: boom whose joints may have drives.
+        system: units of the sentences.
     """
     for joint in boom.joints:
         if joint.drive is None:
@@ -61,7 +61,7 @@ class StickSlipEstimate:
     """The stick-slip behaviour of a drive of finite stiffness, estimated before the motion.
 
     Args:
-        inner: name of the segment.
+        inner: name of the moving segment.
         elastic: data of the elastic drive.
         friction: largest friction R at rest in N.
         fastest: largest commanded speed in m/s.
@@ -74,7 +74,7 @@ class StickSlipEstimate:
 
     @property
     def critical(self) -> float:
-        """Speed in m/s above which the segment does not stick again once it slips."""
+        """The speed in m/s above which the segment does not stick again once it slips."""
         return critical_speed(self.elastic, self.friction)
 
 
@@ -84,7 +84,7 @@ def critical_speed(drive: ElasticDrive, friction: float) -> float:
     It is infinite without damping.
 
     Args:
-        drive: moves the segment.
+        drive: data of the drive.
         friction: R of sliding in N.
     """
     drop = (drive.sticking - 1.0) * friction
@@ -97,11 +97,11 @@ def critical_speed(drive: ElasticDrive, friction: float) -> float:
 
 
 def _critical_drop(ratio: float) -> float:
-    """Return (R_s − R)/(v √(k m)) up to which a slip at the damping ratio ζ does not end.
+    """Return the limit of (R_s − R)/(v √(k m)) below which a slip does not end, for a ratio ζ.
 
-    ż/v begins a slip with 1 and the slope −D, in units of 1/ω, swings freely, and is largest again,
-    for all ζ below 1, where it is √(1 − 2ζD + D²) e^{−ζ(θ + π)/√(1 − ζ²)},
-    θ = arg((ζD − 1)/√(1 − ζ²) + iD); it sticks where that is 1. At little damping D = √(4πζ).
+    A slip begins with ż/v = 1 and the slope −D, in units of 1/ω, and vibrates freely. For all ζ
+    below 1 its next maximum is √(1 − 2ζD + D²) e^{−ζ(θ + π)/√(1 − ζ²)}, θ = arg((ζD − 1)/√(1 − ζ²)
+    + iD). The segment sticks if this maximum is 1. For small damping, D = √(4πζ).
     """
     from scipy.optimize import brentq
 
@@ -182,9 +182,9 @@ def lag_cautions(boom: Boom, data: xr.Dataset, system: System) -> Iterator[str]:
     """Yield a caution for each segment whose lag moves its pads to other places.
 
     Args:
-        boom: that of a case.
-        data: the trajectories of its models.
-        system: the units of the cautions.
+        boom: boom of a case.
+        data: trajectories of its models.
+        system: units of the cautions.
     """
     for number, joint in enumerate(boom.joints, start=1):
         name = "drive_lag" if number == 1 else f"drive_lag-{number}"

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Estimates of the memory and time of a run, from the numbers of its case.
+"""Estimates of the memory and time of a run before it starts.
 
-Estimates may be high by a factor of up to about four, but not low. Steps of beams are those of the
-run; a shell is not meshed yet, and its steps follow from a beam's. The constants were
-measured on one core of an AMD EPYC (``python -m studies.cost.bench``, and
+Estimates are never too low, and too high by a factor of at most about four. Beams are built and
+their steps are exact; a shell is not meshed yet, and its steps are estimated by a beam. The
+constants were measured on one core of an AMD EPYC (``python -m studies.cost.bench``, and
 tests/runs/test_estimates.py for the memory).
 """
 
@@ -26,30 +26,30 @@ from runs.pipeline.models import build_on, initial_motion
 # Memory in bytes and time in s of runs that need no confirmation.
 MAX_MEMORY, MAX_TIME = 4.0e9, 3600.0
 
-# Memory in bytes of the libraries for a beam and for a shell, with the code compiled at first.
+# Memory in bytes of the libraries for a beam and for a shell, including just-in-time compilation.
 _LIBRARIES, _SHELL_LIBRARIES = 1.3e9, 1.6e9
 
-# Numbers of 8 bytes for each output and model: columns, for each coordinate, for each station.
+# Numbers of 8 bytes per output and model: fixed columns, per coordinate, per station.
 _NUMBERS, _OF_COORDINATE, _OF_STATION = 160.0, 1.5, 12.0
-# Time in s for each output and model: files and figures.
+# Time in s per output and model for files and figures.
 _WRITING = 3.0e-5
-# Numbers for each output and member of an ensemble, and for each step of an output interval.
+# Numbers of 8 bytes per output and member of an ensemble, and per step of an output interval.
 _OF_MEMBER, _OF_STEP = 22.0, 24.0
 
-# Time in s for a step, for a coordinate in it, and for a row that reads a coordinate.
+# Time in s per step, per coordinate of a step, and per coordinate and row of a step.
 _STEP, _OF_MODE, _OF_ROW = 0.4e-6, 1.0e-8, 1.0e-9
-# Steps per output interval, and repeated windows per window, of a motion with error control.
+# Steps per output interval, and repeated windows per window, with error control.
 _SUBSTEPS, _AGAIN = 32.0, 2.0
 # Number of motions that measure the horizons.
 _HORIZONS = 24
 
-# Number of points of a sweep that are estimated; the others are assumed to be like them.
+# Number of points of a sweep that are estimated; the cost of the others is extrapolated.
 _SAMPLE = 20
 
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """Approximate memory in bytes and time in s on one core."""
+    """Approximate memory in bytes, and time in s on one core."""
 
     memory: float
     seconds: float
@@ -65,10 +65,10 @@ class Cost:
 
 @dataclass(frozen=True, slots=True)
 class Preview:
-    """The motions of the models of a case, each model built once as beams before the run.
+    """Motions of the models of a case for estimates, each model built once as beams.
 
     Args:
-        declared: the case with its boom and models.
+        declared: case with its boom and models.
     """
 
     declared: CheckedCase
@@ -79,7 +79,7 @@ class Preview:
 
         Args:
             model: a model of the case.
-            beam: the model itself, or its stand-in.
+            beam: the model itself, or the beam that stands for it.
 
         Raises:
             NumericsError: there is no equilibrium to start from.
@@ -99,11 +99,11 @@ def run_cost(case: Case) -> Cost:
 
 
 def preview_cost(preview: Preview) -> Cost:
-    """Return the cost of a run of a case, some of whose models may already be built as beams."""
+    """Return the cost of a run; models that are already built as beams are used again."""
     case = preview.declared.case
     shell = any(model.needs_shell for model in case.models)
     total = Cost(_SHELL_LIBRARIES if shell else _LIBRARIES, 0.0)
-    # The run itself detects overflow.
+    # Overflow is ignored here: the run detects it.
     with np.errstate(all="ignore"):
         for model in case.models:
             total += _of_model(preview, model)
@@ -119,10 +119,10 @@ def sweep_cost(cases: Sequence[Case]) -> Cost:
 
 
 def refuse_large(cost: Cost, file: str) -> None:
-    """Refuse a run or sweep that needs much memory or time without confirmation.
+    """Refuse a run or sweep that needs more memory or time than is allowed without confirmation.
 
     Raises:
-        BadInput: more than :data:`MAX_MEMORY` or :data:`MAX_TIME`.
+        BadInput: the cost exceeds :data:`MAX_MEMORY` or :data:`MAX_TIME`.
     """
     if not (cost.memory <= MAX_MEMORY and cost.seconds <= MAX_TIME):
         raise BadInput(
@@ -139,7 +139,7 @@ def _of_model(preview: Preview, model: Model) -> Cost:
     try:
         motion = preview.motion(model, stand_in.beam)
     except NUMERICS:
-        # The run ends with this error and reports it.
+        # The run meets the same error and reports it.
         return before
     system, time = motion.system, case.time
     outputs, coordinates = time.duration / time.output_step, stand_in.coordinates

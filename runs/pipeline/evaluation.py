@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Evaluation of built and integrated models: the design results of each model and of a run."""
+"""Evaluation of models after the run: design results of each model and of the run."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from runs.pipeline.summary import Summary
 
 
 class _Model(NamedTuple):
-    """A model of a boom, with all constant loads in the load of its system, and its lines."""
+    """A model of a boom and its lines; the load of its system includes all constant loads."""
 
     boom: Boom
     system: GapSystem
@@ -49,7 +49,7 @@ class _Model(NamedTuple):
     def at_rest(
         self, found: Mapping[float, Array], extended: Mapping[float, Array] = MappingProxyType({})
     ) -> ModelDesignResults:
-        """Return the static states at equilibria (num_modes,) by their time in s, and the modes."""
+        """Return the modes, and the static states at equilibria (num_modes,) given by time in s."""
         static, static_extended = (
             [static_result(*self, time, position) for time, position in positions.items()]
             for positions in (found, extended)
@@ -65,7 +65,7 @@ class _Model(NamedTuple):
         case: Case,
         model: Model,
     ) -> ModelDesignResults:
-        """Return static results with those of a motion, and the fatigue life."""
+        """Return the static results, extended by those of the motion and the fatigue life."""
         still = np.array([*found.values()]).reshape(-1, self.system.num_modes)
         static, jumps = [*own.static, *own.static_extended], not model.smooth
         motions = Motions(self.boom, self.lines, trajectory, still, static, jumps)
@@ -85,12 +85,12 @@ def evaluate_model(
     """Return the design results of one model, on the first rank.
 
     Args:
-        boom: that of the case.
+        boom: boom of the case.
         case: the case of the model.
         model: a model of the case.
-        built: the model before its motion.
-        trajectory: its motion.
-        shell: its output besides the trajectory; None for a beam.
+        built: the model before time integration.
+        trajectory: motion of the model.
+        shell: further output of a shell; None for a beam.
     """
     system, shown = built.system.gather_loads(), boom.bonded if model.bonded else boom
     lines = with_cylinders(shown, system, model.lines(boom, built))
@@ -109,22 +109,22 @@ def evaluate_model(
         found = positions(bonded.system, times)
         other = bonded.at_rest(found)
     except NUMERICS:
-        # For example, rigid segments without play leave no degree of freedom.
+        # For example, rigid segments without play have no degree of freedom.
         return own
     own = replace(
         own,
         static_bonded=[state for state in other.static if _at_initial_extension(boom, state.time)],
-        # Their shapes look the same as those of the boom with play.
+        # Their shapes hardly differ from those of the boom with play.
         modes_bonded=[replace(mode, shapes=[]) for mode in other.modes],
     )
     if boom.driven:
-        # The boom without play cannot extend.
+        # The boom without play cannot telescope.
         return own
     try:
         motion = MotionPlan.of(bonded.system, case, model).trajectory()
         other = bonded.with_motion(other, found, motion, case, model)
     except NUMERICS:
-        # The static states remain available.
+        # The static states are still available.
         return own
     return replace(own, motion_bonded=other.motion, life_bonded=other.life)
 
@@ -141,7 +141,7 @@ def _bonded(boom: Boom, model: Model, played: _Model, found: Mapping[float, Arra
 
 
 def _at_initial_extension(boom: Boom, time: float) -> bool:
-    """Return whether drives have all segments in their initial positions at a time in s."""
+    """Return whether all driven segments are in their initial positions at a time in s."""
     return not any(travel(boom, segment, time) for segment in range(len(boom.segments)))
 
 
@@ -151,10 +151,10 @@ def evaluate_run(
     """Return the design results of all models of a run.
 
     Args:
-        boom: that of the case.
+        boom: boom of the case.
         case: the case of the run.
-        summary: that of the run, without design results.
-        models: models of the run without failure.
+        summary: summary of the run, without design results.
+        models: design results of the models that did not fail.
     """
     found = statics(case, boom)
     ran = [model for model in case.models if model.name in models]

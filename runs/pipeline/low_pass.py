@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The motion below a cut-off frequency: its peaks, its period, and their spread."""
+"""The slow motion below a cut-off frequency, its peaks and its period."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, PlainSerializer, PlainValidator
 
 from dynamics.arrays import Array
 
-# Arrays and numbers in JSON, which has neither NaN nor infinity.
+# Types of arrays and numbers in JSON, which has neither NaN nor infinity.
 Numbers = Annotated[
     Array, PlainValidator(np.asarray), PlainSerializer(lambda values: np.asarray(values).tolist())
 ]
@@ -22,12 +22,12 @@ Number = Annotated[
     PlainSerializer(lambda value: value if math.isfinite(value) else None),
 ]
 
-# Cut-off as a part of the lowest elastic frequency of the closed system. With play the boom
-# vibrates more slowly than the closed structure, and the ripple of impacts is faster.
+# Cut-off as a fraction of the lowest elastic frequency with closed contacts. With play the boom
+# vibrates more slowly than the closed structure; ripple of impacts is faster.
 CUTOFF_SHARE = 0.8
-# Order of the filter, which is passed twice, forwards and backwards.
+# Order of the filter, which is applied twice, forwards and backwards.
 ORDER = 4
-# Prominence of a peak as a part of the range, which excludes shoulders.
+# Least prominence of a peak as a fraction of the range; it excludes shoulders.
 PROMINENCE = 0.2
 
 
@@ -39,8 +39,8 @@ def filter_low_pass(signal: Array, output_step: float, cutoff: float) -> Array:
 
     Args:
         signal: (..., num_times).
-        output_step: in s.
-        cutoff: in Hz, below half the sampling rate.
+        output_step: output step in s.
+        cutoff: cut-off in Hz, below half the sampling rate.
 
     Raises:
         ValueError: the cut-off cannot be sampled, or the signal is shorter than its period.
@@ -56,7 +56,7 @@ def filter_low_pass(signal: Array, output_step: float, cutoff: float) -> Array:
             f"the signal must be longer than the period of the cut-off, {1.0 / cutoff:g} s, got "
             f"{(times - 1) * output_step:g} s"
         )
-    # Not at the top: only ensembles are filtered, and the import takes half a second.
+    # Imported here, since only ensembles are filtered and the import takes half a second.
     from scipy.signal import butter, sosfiltfilt
 
     sections = butter(ORDER, cutoff, fs=1.0 / output_step, output="sos")
@@ -64,9 +64,9 @@ def filter_low_pass(signal: Array, output_step: float, cutoff: float) -> Array:
 
 
 def slow_peaks(signal: Array, time: Array, cutoff: float) -> tuple[Array, Array]:
-    """Return times in s and heights (num_peaks,) of the peaks below a cut-off in Hz.
+    """Return times in s and heights (num_peaks,) of the slow motion's peaks, for a cut-off in Hz.
 
-    The signal (num_times,) is at evenly spaced times.
+    The times of the signal (num_times,) are evenly spaced.
     """
     from scipy.signal import find_peaks
 
@@ -76,11 +76,11 @@ def slow_peaks(signal: Array, time: Array, cutoff: float) -> tuple[Array, Array]
 
 
 def mean_period(time: Array, tip: Array) -> float:
-    """Return the mean time between main peaks in s; NaN where there are fewer than two.
+    """Return the mean time between main peaks in s; NaN for fewer than two peaks.
 
     Args:
         time: (num_times,) in s.
-        tip: (num_times,) in m, which sets out from its first value.
+        tip: tip deflection (num_times,) in m; the motion starts from its first value.
     """
     from scipy.signal import find_peaks
 
@@ -96,16 +96,16 @@ def mean_period(time: Array, tip: Array) -> float:
 class SlowPeaks:
     """Peaks that all members of an ensemble have.
 
-    A spread is half the distance between the largest and the smallest member, as in
-    :func:`dynamics.predictability.horizon.horizon`; values are the members' means.
+    Values are means over the members. A spread is half the difference between the largest and the
+    smallest member, as in :func:`dynamics.predictability.horizon.horizon`.
 
     Args:
-        time: (num_peaks,) in s.
-        time_spread: (num_peaks,) in s.
-        height: (num_peaks,) in the signal's unit.
-        height_spread: (num_peaks,) in the signal's unit.
-        period: mean distance of successive peaks in s, NaN with fewer than two.
-        period_spread: in s, NaN as above.
+        time: times (num_peaks,) in s.
+        time_spread: spreads (num_peaks,) of the times in s.
+        height: heights (num_peaks,) in the signal's unit.
+        height_spread: spreads (num_peaks,) of the heights in the signal's unit.
+        period: mean time between successive peaks in s; NaN for fewer than two peaks.
+        period_spread: spread of the period in s; NaN for fewer than two peaks.
     """
 
     time: Numbers
@@ -119,8 +119,8 @@ class SlowPeaks:
     def of(cls, members: Array, time: Array, cutoff: float) -> SlowPeaks:
         """Return the peaks of an ensemble, in order, up to the first that a member lacks.
 
-        A member (num_times,) has a peak of member 0 if one of its own is nearer than half a period
-        of the cut-off in Hz; two peaks of one filtered motion are farther apart.
+        A member (num_times,) has a peak of member 0 if one of its peaks is nearer than half a
+        period of the cut-off in Hz. Two peaks of one filtered motion are farther apart.
         """
         found = [slow_peaks(member, time, cutoff) for member in members]
         times, heights = [], []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Predictability of a model's motion: its ensemble, its horizons, the steps that it needs."""
+"""Predictability of a model's motion: ensemble, horizons, and the necessary number of steps."""
 
 from __future__ import annotations
 
@@ -34,26 +34,26 @@ if TYPE_CHECKING:
 
 # Elements of the retracted boom, which give its lowest frequency to four digits.
 ELEMENT_LENGTH = 0.5
-# Deflections that the run stores for every member.
+# Deflections that are stored for every member.
 PLACES = ("tip", "head")
-# Relative changes whose growth gives the horizon and the rate.
+# Relative changes whose growth determines horizons and growth rates.
 CHANGES = (1.0e-12, 1.0e-10, 1.0e-8, 1.0e-6)
-# The number of peaks until the spread of the slow motion equals the differences of the peaks.
+# Number of peaks; at later ones the spread of the slow motion hides the differences.
 PEAKS = 3
-# Tolerance of a peak: in time as a part of the period, in height as a part of itself, beyond
-# the spread that an ensemble of fully resolved runs has by itself.
+# Tolerance of a peak, beyond the spread of an ensemble of fully resolved runs: in time as a
+# fraction of the period, in height as a fraction of the height.
 WITHIN = 0.01
 
-# The first step is the output step over 2 to this power; the last one is below this part of a
-# period at the cutoff, which the filter still sees.
+# The first step is the output step over 2 to this power. The last one is below this fraction of a
+# period at the cut-off, which the filter can still resolve.
 _FINEST, _OF_PERIOD = -4, 0.25
 
 
 @contextmanager
 def rank_executor(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
-    """Give the executor of an ensemble: all ranks but the first, or None for local threads.
+    """Yield the executor of an ensemble, made of all ranks but the first. Collective.
 
-    Collective. Ranks other than the first get None once their work is done.
+    It is None for local threads. Other ranks than the first get None after their work.
     """
     if comm is None or comm.size == 1:
         yield None
@@ -65,10 +65,10 @@ def rank_executor(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
 
 
 def slow_below(boom: Boom, time: TimeTable) -> float | None:
-    """Return the cut-off of the slow motion in Hz, a part of the lowest frequency without play.
+    """Return the cut-off of the slow motion in Hz, a fraction of the lowest frequency without play.
 
-    Return None if the run is too short for it, its output too coarse, or the boom invalid for every
-    model, in which case each model reports the error.
+    Return None if the run is too short, its output too coarse, or the boom invalid for every model;
+    each model then reports the error.
     """
     try:
         with np.errstate(all="ignore"):
@@ -89,8 +89,8 @@ def summarise_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> Ensembl
     """Return the summary of one model's ensemble.
 
     Args:
-        ensemble: that of :func:`dynamics.predictability.ensemble.integrate_ensemble`.
-        peaks: the tip's slow peaks that all members have; None without a cut-off.
+        ensemble: ensemble of :func:`dynamics.predictability.ensemble.integrate_ensemble`.
+        peaks: peaks of the tip's slow motion that all members have; None without a cut-off.
     """
     shares = zip(SHARES, horizons_of(ensemble), strict=True)
     return EnsembleSummary(
@@ -101,10 +101,11 @@ def summarise_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> Ensembl
 
 
 def gather_ensembles(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
-    """Gather tip and head of all ensembles in one dataset, in single precision; None without any.
+    """Gather tip and head of all ensembles in one dataset, in single precision.
 
     Args:
-        ensembles: ensembles by the model's name, with the same members and times.
+        ensembles: ensembles by the model's name, with the same members and times. Without ensembles
+            the result is None.
     """
     if not ensembles:
         return None
@@ -126,15 +127,15 @@ def measure_predictability(
     executor: Executor | None,
     progress: Callable[[float], None],
 ) -> Predictability:
-    """Return the horizons of changes of several sizes, their growth rate, and the step's horizon.
+    """Return the horizons and growth rates of changes of several sizes, and those of the time step.
 
     Args:
-        motion: that of the model.
-        integrator: that of its system.
-        vary: the varied data.
-        unchanged: the trajectory without change.
+        motion: motion of the model.
+        integrator: integrator of its system.
+        vary: name of the varied data.
+        unchanged: trajectory without change.
         executor: executor of the runs; by default threads of this process.
-        progress: receives the completed part.
+        progress: callback that receives the completed fraction.
     """
     found = measure_horizons(
         motion,
@@ -157,21 +158,21 @@ def measure_predictability(
 
 
 def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsForPeaks | None:
-    """Integrate with longer and longer steps, and find those that keep the first slow peaks.
+    """Integrate with increasing time steps, and find those that preserve the first slow peaks.
 
     Args:
-        motion: motion from rest; the peaks determine the used part of its duration.
-        peaks: those of the ensemble.
+        motion: motion from rest, of which the part up to the last peak is integrated.
+        peaks: peaks of the ensemble.
         cutoff: cut-off of the slow motion in Hz.
 
     Returns:
-        The trials; None if there are fewer peaks.
+        The trials; None if the ensemble has too few peaks.
     """
     if peaks.time.size < PEAKS:
         return None
     # The filter needs half of its own period after the last peak.
     lasting = peaks.time[PEAKS - 1] + 1.0 / cutoff
-    # There is at least one step between outputs.
+    # Every output interval has at least one step.
     steps = motion.output_step * 2.0 ** np.arange(_FINEST, 64)
     trials = []
     for step in steps[steps < _OF_PERIOD / cutoff]:
@@ -186,7 +187,7 @@ def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsFor
                 holds=_holds(trial, peaks, cutoff),
             )
         )
-    # One trial that misses may be chance, as with a member of the ensemble.
+    # A single failed trial may be chance, as with a member of the ensemble.
     return StepsForPeaks(
         peaks=PEAKS,
         within=WITHIN,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Display formats of a model's numbers, declared beside the fields of their records.
+"""Metrics: display formats of a model's results, annotations of the fields of records.
 
 >>> from runs.pipeline.residual_vibration import ResidualVibration
 >>> metrics(ResidualVibration)["tip"].title
@@ -15,21 +15,21 @@ from typing import ClassVar, get_args, get_type_hints
 
 @dataclass(frozen=True, slots=True)
 class Metric:
-    """A number of a model in sweeps and tables; an annotation of the field that holds it."""
+    """Display format of one number of a model, as an annotation of its field."""
 
-    name: str  #: in files of sweeps, which omit the number where this is empty
-    unit: str  #: in files, SI
+    name: str  #: name in the files of sweeps, which omit the number if it is empty
+    unit: str  #: SI unit in files
     title: str  #: a lower-case phrase for display
-    factor: float  #: from the SI unit to the displayed one
-    shown_unit: str  #: of tables and charts
-    logarithmic: bool = False  #: whether it spans decades
-    charted: bool = True  #: whether it is smooth enough for a chart
-    heading: str = ""  #: of its column in tables of reports, which omit it without
-    form: str = ".4g"  #: format of the numbers there
+    factor: float  #: factor from the SI unit to the displayed one
+    shown_unit: str  #: title in tables and charts
+    logarithmic: bool = False  #: whether charts have a logarithmic scale
+    charted: bool = True  #: whether the number is smooth enough for a chart
+    heading: str = ""  #: heading in tables of reports, which omit the number if it is empty
+    form: str = ".4g"  #: number format in tables of reports
 
     @property
     def unit_of_heading(self) -> str:
-        """Unit below the heading; empty for dimensionless numbers."""
+        """The unit below the heading; empty for dimensionless numbers."""
         return "" if self.unit == "1" else self.shown_unit
 
 
@@ -53,7 +53,7 @@ def metrics(kind: type) -> dict[str, Metric]:
 
 
 def records(kind: type) -> dict[str, type[Record]]:
-    """Return the kinds of the fields of a class that are a :class:`Record` or None, by name."""
+    """Return the record classes of a class's fields of type :class:`Record` or None, by name."""
     return {
         name: one
         for name, hint in get_type_hints(kind).items()

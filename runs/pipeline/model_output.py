@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Output of models besides trajectories: fields, stresses, meshes of shells, lines of beams."""
+"""Further output of models: fields, stresses and meshes of shells, deflections of beams."""
 
 from __future__ import annotations
 
@@ -37,15 +37,15 @@ FRAMES = 61
 
 @dataclass(frozen=True, slots=True)
 class ShellOutput:
-    """Output of one shell, which has files of its own.
+    """Output of one shell, which is written to its own files.
 
     Args:
         fields: points, triangles, segment, modes and stresses of the mesh, ``state`` (time,
             mode), and ``pressed_mode_shape`` (pressed_mode in Hz, mode) of the boom
             with closed contacts.
         stresses: von Mises stresses near stations and supports over time.
-        largest: the largest of them, and the section forces in the walls at that time.
-        meshes: mesh by the name of the segment.
+        largest: maximum of these stresses, and the section forces of the walls at its time.
+        meshes: mesh of each segment, by name.
     """
 
     fields: xr.Dataset
@@ -55,7 +55,7 @@ class ShellOutput:
 
     @property
     def modes(self) -> xr.Dataset | None:
-        """Fields whose instants are the modes, at their frequencies in Hz; None without any."""
+        """The fields of the modes, by their frequencies in Hz; None without modes."""
         if "pressed_mode" not in self.fields.dims:
             return None
         return self.fields.drop_vars(["state", "time"]).assign(
@@ -67,13 +67,13 @@ class ShellOutput:
     def of(
         cls, boom: Boom, name: str, reduced: ReducedShell, trajectory: Trajectory
     ) -> ShellOutput:
-        """Return the output of a shell after its motion; on rank 0.
+        """Return the output of a shell after its motion, on rank 0.
 
         Args:
-            boom: that of the shell.
+            boom: boom of the shell.
             name: name of the model.
-            reduced: the shell.
-            trajectory: its motion.
+            reduced: the reduced shell.
+            trajectory: motion of the shell.
         """
         assert reduced.fields is not None
         names = [segment.name for segment in boom.segments]
@@ -88,7 +88,7 @@ class ShellOutput:
         return cls(fields, stresses, summarise(shell, stresses), meshes)
 
     def write_files(self, folder: Path, prefix: str) -> None:
-        """Write stresses, series and meshes to a run's folder that already has the fields.
+        """Write stresses, series and meshes to a run's folder, which already has the fields.
 
         Args:
             folder: the run's folder.
@@ -97,7 +97,7 @@ class ShellOutput:
         self.stresses.assign_attrs(Conventions=CONVENTIONS).to_netcdf(
             folder / f"{prefix}{STRESSES}", engine="scipy"
         )
-        # Names joined by a hyphen may coincide.
+        # Names of models and segments, joined by a hyphen, may coincide.
         meshes, series = folder / "mesh" / prefix.removesuffix("-"), folder / SERIES
         for place in (meshes, series):
             place.mkdir(parents=True, exist_ok=True)
@@ -111,21 +111,21 @@ class ShellOutput:
 
 
 class SegmentMotion(NamedTuple):
-    """Quantities (num_frames, num_places) along one segment, at rising x (num_places,) in m."""
+    """Quantities (num_frames, num_places) of one segment, at ascending x (num_places,) in m."""
 
     x: Array
     read: Mapping[Quantity, Array]
 
 
 class BeamOutput(NamedTuple):
-    """Quantities along all segments at times (num_frames,) in s."""
+    """Quantities of all segments at times (num_frames,) in s."""
 
     time: Array
     segments: list[SegmentMotion]
 
     @classmethod
     def of(cls, lines: Sequence[Line], trajectory: Trajectory) -> BeamOutput:
-        """Return the output of a beam after its motion; at a jump, keep the value behind it."""
+        """Return the output of a beam after its motion; at a jump, take the value behind it."""
         steps = frames(trajectory.time.size)
         moved = []
         for line in lines:
@@ -138,19 +138,19 @@ class BeamOutput(NamedTuple):
 
 
 def frames(num_times: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
-    """Return indices of the output times of a film, evenly spaced, with both ends."""
+    """Return the indices of the output times of a film, evenly spaced, with first and last."""
     return np.unique(np.linspace(0, num_times - 1, FRAMES).round().astype(np.intp))
 
 
 def _places(boom: Boom) -> list[float]:
-    """Return the rising x of all places with a concentrated force on a segment."""
+    """Return the x of all concentrated forces on a segment, in ascending order."""
     places = {x for number in range(len(boom.segments)) for x in boom.stations_of(number)}
     places |= {support.x for segment in boom.segments for support in segment.supports}
     return sorted(places)
 
 
 def _modes(reduced: ReducedShell) -> dict[str, Any]:
-    """Return the modes of the boom with closed contacts, each with a maximum of 1 m."""
+    """Return the modes of the boom with closed contacts, scaled to a maximum of 1 m."""
     assert reduced.fields is not None
     system = reduced.system.gather_loads()
     rest = positions(system)

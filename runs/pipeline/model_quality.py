@@ -30,18 +30,18 @@ from runs.pipeline.proportions import (
 )
 from runs.pipeline.summary import Comparisons, Summary, Whole
 
-# Difference of members, as a part of the tip's range, beyond which their motions have diverged.
+# Difference of members, as a fraction of the tip's range, beyond which their motions diverge.
 _PARTED = 0.2
 
-# Relative error of a reduction or a mesh beyond which the run gives a caution.
+# Relative error of a reduction or a mesh that causes a caution.
 POOR = 0.01
 
-# Part of the boom's length beyond which a displacement is not small.
+# Fraction of the boom's length beyond which a displacement is not small.
 MOST = 0.1
 
-# Times in s until which differences are given, besides those of the whole run.
+# End times in s of intervals for which differences are given, besides the whole run.
 HALFWAY = 5.0
-# What each level of comparison can and cannot decide.
+# Scope of each level of comparison.
 DECIDES: Mapping[str, str] = {
     "pointwise": Pointwise.decides,
     "peaks": PeakDifferences.decides,
@@ -50,7 +50,7 @@ DECIDES: Mapping[str, str] = {
 
 
 def reference_of(models: Iterable[Model]) -> str | None:
-    """Return the reference of the other models: the last shell, else the last model with play."""
+    """Return the reference model: the last shell, else the last model with play."""
     with_play = [model for model in models if not model.bonded]
     shells = [model for model in with_play if model.meshed]
     candidates = shells or with_play
@@ -60,7 +60,7 @@ def reference_of(models: Iterable[Model]) -> str | None:
 def leading(case: Case, models: Sequence[str]) -> set[str]:
     """Return the main models: the last shell, the last beam with play, the first without.
 
-    With up to three models, all are main ones.
+    Up to three models are all main models.
     """
     if len(models) <= 3:
         return set(models)
@@ -78,7 +78,7 @@ def compare_models(
     ensembles: xr.Dataset | None,
     cutoff: float | None,
 ) -> Comparisons | None:
-    """Return the summary of the differences of models; None where there is nothing to compare.
+    """Return the differences between models; None without two comparable models.
 
     Args:
         case: the case with the models.
@@ -124,8 +124,8 @@ def quality_notes(
     """Yield notes on the accuracy of a run.
 
     Args:
-        summary: that of the run.
-        design: its design results.
+        summary: summary of the run.
+        design: design results of the run.
         duration: duration of the motion in s.
     """
     models = summary.models
@@ -159,12 +159,12 @@ def quality_notes(
 
 
 def _percent(part: float) -> str:
-    """Return a percentage with two digits, or with the first digit that is not 0."""
+    """Return a percentage with two decimals, or more up to the first digit that is not 0."""
     return f"{TO_PERCENT * part:.2g} %"
 
 
 def _agreement(design: DesignResults) -> Iterator[str]:
-    """Yield the agreement of the models with play with the reference."""
+    """Yield the differences between the reference and the other models with play."""
     if design.modes is None:
         return
     reference = design.modes.reference
@@ -183,7 +183,7 @@ def _agreement(design: DesignResults) -> Iterator[str]:
 
 
 def off_at_rest(own: ModelDesignResults, other: ModelDesignResults) -> float | None:
-    """Return the relative difference of static tips under the largest loads; None where unknown."""
+    """Return the relative difference of static tips under the largest loads, or None."""
     tips = [max((rest.tip for rest in one.static), key=abs, default=None) for one in (own, other)]
     if tips[1] is None or not tips[0]:
         return None
@@ -214,10 +214,10 @@ def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list
     """Return the limits of validity of the results.
 
     Args:
-        case: that of the run.
-        boom: that of the case.
-        data: the trajectories of its models.
-        summary: that of the run, with all failures.
+        case: case of the run.
+        boom: boom of the case.
+        data: trajectories of its models.
+        summary: summary of the run, with all failures.
     """
     return [
         *proportion_cautions(case, boom),
@@ -233,7 +233,7 @@ def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list
 
 
 def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
-    """Yield cautions about axial forces, the static deflection and the duration."""
+    """Yield cautions on axial forces, the static deflection and the duration."""
     for name, model in summary.models.items():
         yield from buckling_cautions(name, model.critical_factor)
         yield from tip_cautions(f"in {name}", model.static_tip, boom)
@@ -244,7 +244,7 @@ def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
 
 
 def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
-    """Yield the limits of the wall stresses of shells where axial forces change along the boom."""
+    """Yield cautions on wall stresses of shells where axial forces vary along the boom."""
     numbers = range(len(boom.joints))
     if any(moving_force(boom.segments, boom.joints, number) for number in numbers):
         for name in (name for name, one in summary.models.items() if one.stress is not None):
@@ -266,7 +266,7 @@ def _large_displacements(boom: Boom, data: xr.Dataset) -> Iterator[str]:
 
 
 def _numerical(summary: Summary) -> Iterator[str]:
-    """Yield cautions about reductions and meshes."""
+    """Yield cautions on reductions and meshes."""
     for name, model in summary.models.items():
         if (error := model.reduction_errors.get("contact_compliance") or 0.0) > POOR:
             yield (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""One model of a run: its construction, motion and summary."""
+"""The run of one model: construction, motion and summary."""
 
 from __future__ import annotations
 
@@ -36,17 +36,17 @@ from runs.pipeline.summary import (
 )
 from shell_model.stages import Stages
 
-# Wall of the outer segment by the direction and the sign of the inner one's force.
+# Wall of the outer segment that presses, by direction and sign of the inner one's force.
 _WALLS = {("z", 1): "top", ("z", -1): "bottom", ("y", 1): "right", ("y", -1): "left"}
 
 
 class SharedFailure(Exception):
-    """A failure of one of several ranks, for which the others may wait in their work."""
+    """Failure of one of several ranks, while the others may wait for it."""
 
 
 @dataclass(frozen=True, slots=True)
 class CompletedMotion:
-    """A completed motion; ``ensemble`` where the case asks for one."""
+    """A completed motion, with an ensemble if the case has one."""
 
     trajectory: Trajectory
     summary: ModelSummary
@@ -55,7 +55,7 @@ class CompletedMotion:
 
 @dataclass(frozen=True, slots=True)
 class ModelRun:
-    """A model before its motion, the motion, the output of a shell, and the wall times."""
+    """A built model, its motion, further output of a shell, and wall times."""
 
     model: Model
     built: Built
@@ -65,7 +65,7 @@ class ModelRun:
 
 
 def failure_reason(error: Exception) -> str:
-    """Return why a model has failed."""
+    """Return the reason why a model failed."""
     if isinstance(error, NumericsError):
         return str(error)
     return (
@@ -79,19 +79,19 @@ def run_model(
 ) -> ModelRun | None:
     """Build, integrate and summarise a model; return None except on rank 0. Collective.
 
-    A motion that an earlier run completed comes from the store of motions. A new one goes there as
-    soon as it ends, so that the next run continues from there.
+    A motion that an earlier run completed is read from the store of motions. A new motion is stored
+    as soon as it ends, so that a later run need not repeat it.
 
     Args:
-        boom: that of the case.
+        boom: boom of the case.
         model: a model of the case.
-        case: that of the run.
-        cutoff: cut-off of the slow motion in Hz; None without one.
+        case: case of the run.
+        cutoff: cut-off of the slow motion in Hz; None if it cannot be determined.
         context: the context of the run.
 
     Raises:
         NumericsError: the model cannot be computed.
-        SharedFailure: likewise, for a shell that several ranks share.
+        SharedFailure: the model cannot be computed, and several ranks share it.
     """
     begin, comm = perf_counter(), context.comm
     stages = Stages(partial(context.progress, model.name))
@@ -116,7 +116,7 @@ def run_model(
         if motion is None:
             moving = Stages(stages.tell)
             motion = _move(built, model, case, cutoff, executor, moving)
-            # The first model of a process compiles the time loop for all.
+            # The first model of a process compiles the time loop for the others.
             begin += moving.seconds["compilation"]
             if store is not None:
                 store.remember(name, motion)
@@ -125,7 +125,7 @@ def run_model(
         summary.critical_factor = built.critical_factor
     if built.calibration is not None:
         summary.calibration = calibration_card(boom, system, built.calibration)
-    # The wall times of a stored motion are those of its computation.
+    # A stored motion keeps the wall times of its computation.
     stages.seconds |= summary.seconds
     shell = None
     if reduced is not None:
@@ -221,9 +221,9 @@ def calibration_card(boom: Boom, system: GapSystem, calibration: Calibration) ->
     """Return the stiffness of a calibrated beam and the springs of its stations.
 
     Args:
-        boom: that of the case.
-        system: that of the model, with the contact rows of the calibration.
-        calibration: that of the model.
+        boom: boom of the case.
+        system: system of the model, with the contact rows of the calibration.
+        calibration: calibration of the model.
     """
     return CalibrationCard(
         segments=[

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The models of a case: the gap system of each, and its motion as the case defines it."""
+"""Gap systems and motions of the models of a case."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from runs.case.schema import Case, Model
 if TYPE_CHECKING:
     from dynamics.integrator import AdaptiveStep, FixedStep
 
-# Days of computing: a case with more is an input error.
+# Maximum number of steps, which takes days: a case with more is an input error.
 MOST_STEPS = 1.0e10
 
 
@@ -30,7 +30,7 @@ def build(case: Case, boom: Boom, model: Model, workshop: Workshop | None = None
 
     Args:
         case: the case, with the contact laws of the joints.
-        boom: that of the case.
+        boom: boom of the case.
         model: a model of the case.
         workshop: the context for a meshed model.
 
@@ -43,7 +43,7 @@ def build(case: Case, boom: Boom, model: Model, workshop: Workshop | None = None
 def build_on(
     joined: Joined, case: Case, model: ModelTable, workshop: Workshop | None = None
 ) -> Built:
-    """Build a model on the boom of a case; arguments and errors as of :func:`build`."""
+    """Build a model on the boom of a case; arguments and errors as in :func:`build`."""
     built = model.build(joined, workshop)
     return replace(built, system=with_elastic_drives(built.system, case, joined.boom))
 
@@ -67,11 +67,11 @@ def initial_motion(system: GapSystem, case: Case) -> Motion:
 
 @dataclass(frozen=True, slots=True)
 class MotionPlan:
-    """The motion of one of the models of a case, and its integrator.
+    """Motion of a model of a case, and its integrator.
 
     Args:
         motion: motion of the system under the loads from t = 0 on.
-        integrator: integrator with the step of the model or the case, else with error control.
+        integrator: integrator with the step of the model or the case, or else with error control.
     """
 
     motion: Motion
@@ -82,7 +82,8 @@ class MotionPlan:
         """Return the plan of a model of a case.
 
         Raises:
-            NumericsError: there is no equilibrium to start from, or it would take days.
+            NumericsError: there is no equilibrium to start from, or the motion needs too many
+                steps.
         """
         from dynamics.integrator import AdaptiveStep, FixedStep
 
@@ -97,7 +98,7 @@ class MotionPlan:
         return cls(motion, FixedStep(step))
 
     def warm(self) -> None:
-        """Compile the time loop by one output, so that a wall time is the motion's own."""
+        """Compile the time loop by one output, so that later wall times exclude compilation."""
         from dynamics.kernels.compiled import one_compiles
 
         with one_compiles():
@@ -108,7 +109,7 @@ class MotionPlan:
         return self.integrator(self.motion, progress)
 
     def step_error(self, trajectory: Trajectory, progress: Callable[[float], None]) -> float:
-        """Return the change of the tip by twice a fixed step, as a part of its range."""
+        """Return the change of the tip for a doubled fixed step, as a fraction of its range."""
         from dynamics.integrator import FixedStep
 
         coarser = FixedStep(2.0 * trajectory.data.attrs["step"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Modes of the boom linearised at rest: each closed contact is a spring, in all models alike."""
+"""Modes of the boom, linearised at rest: each closed contact is a spring, in all models."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from runs.pipeline.section_forces import rounded
 # Number of modes of each model.
 MODES = 8
 
-# Number of places per segment at which shapes are compared and stored.
+# Number of points per segment at which mode shapes are compared and stored.
 _PLACES = 21
 
-# The kinds of motion in a mode, and their names.
+# Kinds of motion in a mode, with their names.
 _MOTIONS: Mapping[Quantity, str] = {
     "deflection": "bending in z",
     "lateral": "bending in y",
     "twist": "twist",
 }
 
-# Modes with a smaller criterion are different modes (Allemang 2003).
+# Least modal assurance criterion of matching modes (Allemang 2003).
 ALIKE = 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """Shape of a segment in a mode: at x in m ``deflection``, in space ``lateral``, ``twist``."""
+    """Mode shape of a segment at x in m: ``deflection``, in space ``lateral`` and ``twist``."""
 
     segment: str
     x: list[float]
@@ -43,13 +43,13 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """A mode of the boom with the contacts that are closed at rest.
+    """Mode of the boom with the contacts that are closed at rest.
 
     Args:
-        frequency: in Hz.
-        motion: the dominant one: ``bending in z``, ``bending in y``, ``twist``.
-        number: position among the model's modes with this dominant motion, from 1 on.
-        share: part of the dominant motion in the kinetic energy, from 0 to 1.
+        frequency: frequency in Hz.
+        motion: dominant motion: ``bending in z``, ``bending in y`` or ``twist``.
+        number: number among the model's modes with this dominant motion, from 1 on.
+        share: fraction of the kinetic energy in the dominant motion, from 0 to 1.
         shapes: mode shapes of each segment; the dominant motion has a maximum of 1 m or 1 rad.
     """
 
@@ -62,12 +62,12 @@ class Mode:
 
 @dataclass(frozen=True, slots=True)
 class Match:
-    """A mode of another model that matches one of the reference.
+    """Mode of another model that matches a mode of the reference.
 
     Args:
         number: number among the other model's modes, from 1 on.
-        frequency: in Hz.
-        off: relative difference from the reference's.
+        frequency: frequency in Hz.
+        off: relative difference from the reference's frequency.
         alike: modal assurance criterion of both shapes, from 0 to 1.
     """
 
@@ -79,12 +79,12 @@ class Match:
 
 @dataclass(frozen=True, slots=True)
 class ModeComparison:
-    """The modes of all models beside those of a reference.
+    """Comparison of the modes of all models with those of a reference.
 
     Args:
-        reference: name of the model.
-        matches: modes of each other model with play, for each mode of the reference; None without
-            a match.
+        reference: name of the reference model.
+        matches: for each other model with play, its modes in the order of the reference's modes;
+            None for a mode without a match.
     """
 
     reference: str
@@ -92,15 +92,15 @@ class ModeComparison:
 
 
 def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> list[Mode]:
-    """Return the first modes, by rising frequency.
+    """Return the first modes, in ascending order of frequency.
 
-    A mode's motion has the largest part of the kinetic energy, without rotary inertia of
-    cross-sections and without point masses.
+    The dominant motion of a mode has the largest fraction of the kinetic energy, without rotary
+    inertia of cross-sections and without point masses.
 
     Args:
-        boom: the boom of the lines.
-        system: that of the model.
-        lines: those along its segments.
+        boom: boom of the model.
+        system: system of the model.
+        lines: lines along the segments.
         rest: equilibrium (num_modes,).
     """
     omega, shapes = pressed_modes(system, rest)
@@ -142,7 +142,7 @@ def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> 
 
 
 def inertia(segment: Segment, motion: Quantity) -> float:
-    """Return the mass per length in kg/m, or the rotary inertia per length in kg·m of a twist."""
+    """Return the inertia of a motion: mass per length in kg/m, or for a twist in kg·m."""
     if motion != "twist":
         return segment.mass_per_length
     assert segment.lateral is not None
@@ -150,14 +150,14 @@ def inertia(segment: Segment, motion: Quantity) -> float:
 
 
 def matched(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) -> list[Match | None]:
-    """Return for each mode of a reference the best match of another model, each once; else None.
+    """Return another model's best match for each mode of the reference; None without a match.
 
-    The match is by the modal assurance criterion of the deflections and twists along the segments,
-    each weighted by its inertia (Allemang 2003).
+    Each mode is used once. The criterion is the modal assurance criterion of the deflections and
+    twists along the segments, weighted by inertia (Allemang 2003).
 
     Args:
-        boom: that of both models.
-        reference, other: their modes.
+        boom: boom of both models.
+        reference, other: modes of the reference and of the other model.
     """
     here, there = (np.array([_vector(boom, mode) for mode in of]) for of in (reference, other))
     if not (here.size and there.size):

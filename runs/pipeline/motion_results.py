@@ -23,12 +23,12 @@ from runs.pipeline.strength import Fibres, FibreStress, Varying, WallStress, lar
 
 @dataclass(frozen=True, slots=True)
 class Envelope:
-    """The envelope of a segment: the least and the largest value of every curve of a diagram.
+    """Envelope of a segment: minimum and maximum of every curve of a diagram.
 
     Args:
-        segment: its name.
+        segment: name of the segment.
         x: (num_places) in m; a place with a jump occurs twice.
-        low, high: extreme values of each curve over the run, as in :class:`Diagram`.
+        low, high: minimum and maximum of each curve over the run, as in :class:`Diagram`.
     """
 
     segment: str
@@ -39,19 +39,19 @@ class Envelope:
 
 @dataclass(frozen=True, slots=True)
 class Peak:
-    """The largest value of a motion beside the largest at rest, by their absolute values.
+    """Maximum absolute value of a quantity in motion, and its static value.
 
     Args:
-        what: ``deflection``, ``contact force``, ``cylinder force``, ``reaction``, with axial
-            loads also ``reaction along the boom`` and ``reaction, across and along``,
-            ``moment at the support`` or ``bending moment``; in space the lateral ones, called
-            ``lateral``, and ``torque at the support``.
-        where: the place, by its name in the results or the case.
+        what: name of the quantity: ``deflection``, ``contact force``, ``cylinder force``,
+            ``reaction``, with axial loads also ``reaction along the boom`` and ``reaction, across
+            and along``, ``moment at the support`` or ``bending moment``; in space the same for y,
+            marked ``lateral``, and ``torque at the support``.
+        where: name of the place in the results or the case.
         unit: SI unit.
-        largest: largest value of the motion; for contacts the mean over an output interval, the
-            design load of a pad, not the peak of an impact.
-        time: its time in s.
-        at_rest: largest value at rest under the largest loads, at any extension; None without an
+        largest: maximum of the motion; for contacts the maximum of the means over output intervals,
+            which is the design load of a pad, and not the peak of an impact.
+        time: time of the maximum in s.
+        at_rest: maximum at rest under the extreme loads, at any extension; None without an
             equilibrium.
     """
 
@@ -64,18 +64,18 @@ class Peak:
 
     @property
     def factor(self) -> float | None:
-        """Dynamic factor; None without a value at rest."""
+        """The dynamic factor; None without a value at rest."""
         return self.largest / self.at_rest if self.at_rest else None
 
 
 @dataclass(frozen=True, slots=True)
 class MotionResult:
-    """The extreme values of a model's motion.
+    """Extreme values of a model's motion.
 
     Args:
-        envelopes: those of each segment.
-        peaks: largest values beside the static ones.
-        fibres: stresses of each segment with a known section; none for rigid ones.
+        envelopes: envelope of each segment.
+        peaks: maxima of all quantities, with their static values.
+        fibres: stress of each elastic segment with a known section.
         walls: wall stresses of shells.
     """
 
@@ -86,7 +86,7 @@ class MotionResult:
 
 
 class _Plane(NamedTuple):
-    """The names of the section forces of a plane of bending."""
+    """Names of the section forces of a plane of bending."""
 
     direction: Direction
     name: str
@@ -102,15 +102,15 @@ _PLANES = (
 
 @dataclass(frozen=True, slots=True)
 class Motions:
-    """A motion and the static states for comparison.
+    """A motion with the static states for comparison.
 
     Args:
         boom: the boom, with the play of the model.
-        lines: those along its segments.
+        lines: lines along the segments.
         trajectory: the motion.
-        positions: equilibria (num_rests, num_modes); empty without any.
-        rests: the static states there.
-        jumps: whether lines jump at point forces, which those of series do not.
+        positions: equilibria (num_rests, num_modes).
+        rests: static states at the equilibria.
+        jumps: whether section forces jump at point forces; those of series are smooth.
     """
 
     boom: Boom
@@ -122,9 +122,9 @@ class Motions:
 
 
 def evaluate_motion(motions: Motions) -> tuple[MotionResult, list[Varying]]:
-    """Return the extreme values of a beam's motion, or of a shell's without its walls.
+    """Return the extreme values of a motion, without those of walls.
 
-    The second value is the stress of each segment where it varies most.
+    The second result is the stress history of each segment at the place where it varies most.
     """
     boom, envelopes, peaks = motions.boom, [], list(_observed(motions))
     fibres, varying = [], []
@@ -149,14 +149,14 @@ def evaluate_motion(motions: Motions) -> tuple[MotionResult, list[Varying]]:
 def _peak(
     what: str, where: str, unit: str, time: Array, values: Array, still: Sequence[float] | Array
 ) -> Peak:
-    """Return the largest value over time (num_times,) beside the largest at rest (num_rests,)."""
+    """Return the maximum over time (num_times,), with the maximum at rest (num_rests,)."""
     step = int(np.abs(values).argmax())
     at_rest = max((float(abs(value)) for value in still), default=None)
     return Peak(what, where, unit, float(abs(values[step])), float(time[step]), at_rest)
 
 
 def _observed(motions: Motions) -> Iterator[Peak]:
-    """Yield the peaks of the quantities in the trajectories."""
+    """Yield the maxima of the quantities in the trajectories."""
     data, rests, time = motions.trajectory.data, motions.rests, motions.trajectory.time
     tips = [rest.tip for rest in rests]
     yield _peak("deflection", "tip", "m", time, data["tip"].values, tips)
@@ -187,12 +187,12 @@ def _bending_moments(
 
 
 def _reactions(motions: Motions, number: int) -> Iterator[Peak]:
-    """Yield the support reactions of a segment: the jumps of its section forces."""
+    """Yield the maxima of a segment's support reactions, which are jumps of its section forces."""
     segment, line = motions.boom.segments[number], motions.lines[number]
     states, time = (motions.trajectory.states, motions.positions), motions.trajectory.time
 
     def jump(name: Quantity, x: float) -> list[Array]:
-        """Return the jumps (num_times,) and (num_rests,) of the line's values at x."""
+        """Return a section force's jumps at x, in motion (num_times,) and at rest (num_rests,)."""
         row = np.zeros(states[0].shape[1])
         if name in line.rows:
             row = line.beside(name, x, -1) - line.beside(name, x, 1)

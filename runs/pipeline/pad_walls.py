@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Walls under slide pads before a run: their share of the tip's deflection, and remedies."""
+"""Compliance of walls under slide pads: their share of the tip deflection, and remedies."""
 
 from __future__ import annotations
 
@@ -16,19 +16,20 @@ from runs.report.formatting import number
 
 _Size = TypeVar("_Size", bound=PadSize)
 
-# Share of the tip's deflection from which remedies are named, and part of it that one leaves.
+# Share of the tip deflection that makes remedies useful, and the fraction of it that remains after
+# an effective remedy.
 LARGE_SHARE, HELPFUL = 0.1, 0.98
 
 
 def pad_wall_lines(boom: Boom, tip: float) -> Iterator[str]:
-    """Yield the share of walls under pads in the tip's deflection, and remedies if it is large.
+    """Yield the share of walls under pads in the tip deflection, and remedies if it is large.
 
     Args:
-        boom: as its first model with play sees it.
-        tip: deflection of its static state in m.
+        boom: boom of the first model with play.
+        tip: static tip deflection in m.
 
     Raises:
-        NumericsError: it has no rest.
+        NumericsError: the boom has no equilibrium.
     """
     padded = [joint for joint in boom.joints if joint.padded]
     if not padded or any(segment.section is None for segment in boom.segments):
@@ -50,7 +51,7 @@ def pad_wall_lines(boom: Boom, tip: float) -> Iterator[str]:
 
 
 def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
-    """Yield changes that stiffen the walls under pads, each with its description."""
+    """Yield booms with stiffer walls under pads, each with a description of the change."""
     if any(pad.offset > 0.0 for joint in boom.joints for pad in _sizes(joint)):
         yield "pads beside the corners", _with_pads(boom, 1.0, 0.0)
     yield "pads twice as long", _with_pads(boom, 2.0, 1.0)
@@ -62,9 +63,9 @@ def _sizes(joint: Joint) -> tuple[PadSize, ...]:
 
 
 def _with_pads(boom: Boom, length: float, offset: float) -> Boom:
-    """Return the boom with factors of the length and the offset of all pads.
+    """Return the boom with the length and offset of all pads multiplied by factors.
 
-    No pad is longer than half of the overlap.
+    No pad becomes longer than half of the overlap.
     """
     joints = []
     for joint in boom.joints:
@@ -81,9 +82,10 @@ def _resized(pad: _Size, length: float, offset: float, longest: float) -> _Size:
 
 
 def _with_collars(boom: Boom) -> Boom:
-    """Return the boom with collars at its pads that are as thick as the walls.
+    """Return the boom with collars at all pads.
 
-    They reach half the height of the section beyond a station. A collar that is there is thicker.
+    A new collar is as thick as the wall, and reaches half the height of the section beyond the
+    station. An existing collar becomes thicker.
     """
     segments = list(boom.segments)
     for joint in (joint for joint in boom.joints if joint.padded):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Forces and pressures of slide pads, at rest and during the motion."""
+"""Forces and pressures of slide pads, at rest and in motion."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ from runs.case.schema import Case, Model
 if TYPE_CHECKING:
     import xarray as xr
 
-# Signs of the sides.
+# Sign of each side.
 SIGNS: tuple[Side, Side] = (1, -1)
 
-# Names of the sides.
+# Name of each side, by direction.
 _ON = {on: side for side, on in SIDES.items()}
 
 
 @dataclass(frozen=True, slots=True)
 class PadLoad:
-    """The governing slide pad of a pair at a station, in one model.
+    """Governing slide pad of a station's side, in one model.
 
-    ``force`` is in N, ``x`` of the station in m, ``pressure`` in Pa; ``utilisation`` of the
-    permitted pressure is None where the case does not give that.
+    ``x`` is the position of the station in m, ``force`` in N, ``pressure`` in Pa; ``utilisation``
+    is None if the case has no permitted pressure.
     """
 
     model: str
@@ -47,11 +47,11 @@ class PadLoad:
 
 
 def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
-    """Yield the governing pads of every station of joints with play, in each model.
+    """Yield the governing pads of each station with play, in each model.
 
     Args:
-        case: that of the run.
-        boom: that of the case.
+        case: case of the run.
+        boom: boom of the case.
         data: the trajectories of its models.
     """
     if not any(table.pad or table.pads for table in case.joints):
@@ -82,7 +82,7 @@ def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
 def _pressed(
     model: Model, joint: JointTable, pad: PadSize, x: float, side: str, both: float
 ) -> PadLoad:
-    """Return one pad of a pair that carries a force in N evenly."""
+    """Return a pad of a pair that shares a force in N evenly."""
     force, allowable = both / PADS_OF_SIDE, pad.allowable_pressure
     pressure = force / pad.area
     return PadLoad(
@@ -104,8 +104,8 @@ def _of_each(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array)
         joint: the joint of the pads.
         direction: direction of the forces.
         law: contact law of a station.
-        pushed: (num_pushes,) in N the force of the side that is pressed harder, negative on the
-            side −1. The approach of that side gives the forces of the other.
+        pushed: forces (num_pushes,) in N on the side with the larger force, negative on the side
+            −1. The approach of this side determines the force on the other side.
     """
     laws, sides = [], []
     for pad in (pad for pad in joint.pads if SIDES[pad.side][0] == direction):
@@ -137,9 +137,9 @@ def _of_each(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array)
 
 
 def _of_a_side(both: float, law: ContactLaw) -> float:
-    """Return the force in N of one side of a beam's station, whose law has the net force of both.
+    """Return the force in N on one side of a beam's station.
 
-    Shims preload each side.
+    The contact law of the station has the net force of both sides, which shims may preload.
     """
     sides = (law.one_sided(side) for side in (1, -1))
     at_rest = max(float(abs(law.force(np.zeros(())))) for law in sides if law is not None)
@@ -147,7 +147,7 @@ def _of_a_side(both: float, law: ContactLaw) -> float:
 
 
 def largest_pad_force(joint: Joint, direction: Direction, sides: Sequence[float]) -> float | None:
-    """Return the largest force in N on one pad for the forces of both sides; None without pads."""
+    """Return the largest force in N on a pad, from the forces on both sides; None without pads."""
     if not joint.padded:
         return None
     pairs = (_hardest(joint, direction, *of) for of in zip(SIGNS, sides, strict=True))
@@ -155,17 +155,17 @@ def largest_pad_force(joint: Joint, direction: Direction, sides: Sequence[float]
 
 
 def _hardest(joint: Joint, direction: Direction, side: Side, force: float) -> float:
-    """Return the largest force in N of the pairs of a side; those with more shim close first."""
+    """Return the largest force in N on a pair of pads; pairs with more shim close first."""
     pairs = sorted(joint.pads_of(direction, side), key=lambda pair: -pair[2])
     shares, shims = (np.array([pair[k] for pair in pairs]) for k in (1, 2))
     own = [pad.stiffness for pad in joint.pads if pad.touches(direction, side)]
     stiffness = PADS_OF_SIDE * sum(own) or 1.0
-    # Each further pair in contact reduces the compression of those before it.
+    # Each further pair in contact reduces the compression of the pairs before it.
     ways = (force / stiffness - np.cumsum(shares * shims)) / np.cumsum(shares)
     return float(stiffness * (shares * (ways.min() + shims)).max())
 
 
 def side_force(law: ContactLaw, side: int, gap: float) -> float:
-    """Return the contact force on a side in N, not negative."""
+    """Return the contact force on a side in N, positive in compression."""
     there = law.one_sided(side)
     return 0.0 if there is None else float(abs(there.force(np.array(gap))))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Sanity checks of the proportions of a case or a boom, to find errors of unit or sign."""
+"""Sanity checks of proportions of a case or a boom, which find errors of unit or sign."""
 
 from __future__ import annotations
 
@@ -17,28 +17,28 @@ from runs.case.actions import STANDARD_GRAVITY, gravity_across
 from runs.case.sanity import usual_ranges
 from runs.case.schema import Case
 
-# Angle in degrees up to which a boom may be called level.
+# Angle in degrees up to which a boom is horizontal.
 LEVEL = 0.1
 
-# Part of the critical force above which second-order effects are not small.
+# Fraction of the critical force above which second-order effects are not small.
 CLOSE = 1.0 / 3.0
 
-# Part of the boom's length beyond which a static deflection is not small.
+# Fraction of the boom's length beyond which a static deflection is not small.
 FAR = 0.05
 
 
-# Parts of the boom's weight: smaller loads have no effect, larger ones exceed any capacity.
+# Fractions of the boom's weight: smaller loads have no effect, larger ones exceed any capacity.
 LIGHT, HEAVY = 1.0e-3, 1.0e2
 
-# Part of the boom's weight: larger upward loads are weights with the wrong sign.
+# Fraction of the boom's weight: larger upward loads are probably weights with the wrong sign.
 LIFTING = 0.3
 
-# Relative difference up to which two numbers are the same: two weights, a mass and a force.
+# Relative difference up to which two loads, or a mass and a force, count as the same.
 SAME, ALIKE = 0.01, 0.05
 
 
 def proportion_cautions(case: Case, boom: Boom) -> list[str]:
-    """Return suspicious inputs, a line each."""
+    """Return a line for each suspicious input."""
     unusual = (one for one in usual_ranges(case, boom) if one.unusual)
     found = [f"{one.key}: {one.text(case.system)}" for one in unusual]
     found += [
@@ -53,7 +53,7 @@ def proportion_cautions(case: Case, boom: Boom) -> list[str]:
 
 
 def _in_vain(case: Case) -> Iterator[str]:
-    """Yield inputs without effect, or with less than intended."""
+    """Yield inputs that have no effect, or less than the user may intend."""
     duration = case.time.duration
     ramps = [(f"load[{i}].ramp", load.ramp) for i, load in enumerate(case.loads, start=1)]
     ramps += [(f"base[{i}].ramp", base.ramp) for i, base in enumerate(case.base, start=1)]
@@ -84,7 +84,7 @@ def _in_vain(case: Case) -> Iterator[str]:
 
 
 def _pads(case: Case, boom: Boom) -> Iterator[str]:
-    """Yield contacts that are softer than the inner segment in bending."""
+    """Yield a caution for each contact that is softer than the bending of the inner segment."""
     for model in (model for model in case.models if not model.bonded):
         for joint in model.joined(boom).boom.joints:
             inner = boom.segments[joint.inner]
@@ -148,7 +148,7 @@ def _sizes(case: Case, boom: Boom) -> Iterator[str]:
 
 
 def _lasting(boom: Boom) -> Iterator[tuple[float, float]]:
-    """Yield the force in N and the moment in N m about the base of each lasting load along z."""
+    """Yield the force in N and the moment in N m about the base of each load along z that lasts."""
     base = boom.segments[0].start
     for segment in boom.segments:
         force = segment.load * segment.length
@@ -162,7 +162,7 @@ def _lasting(boom: Boom) -> Iterator[tuple[float, float]]:
 
 
 def _given_twice(case: Case, boom: Boom) -> Iterator[str]:
-    """Yield loads that repeat another load or a weight, and masses in place of forces."""
+    """Yield loads that repeat another load or a weight, and masses that look like forces."""
     for name, tables in (("load", case.loads), ("axial", case.axial)):
         for number, table in enumerate(tables):
             if table in tables[:number]:
@@ -209,12 +209,12 @@ def _without_gravity(case: Case, boom: Boom) -> Iterator[str]:
 
 
 def period_cautions(where: str, frequency: float, case: Case) -> list[str]:
-    """Return a caution against a run that is shorter than one period of the boom.
+    """Return a caution if the run is shorter than one period of the boom.
 
     Args:
-        where: for example ``in MODEL``.
+        where: source of the frequency, for example ``in MODEL``.
         frequency: first frequency in Hz, with closed contacts.
-        case: the case, which has the duration.
+        case: case with the duration.
     """
     if case.time.duration * frequency >= 1.0:
         return []
@@ -228,7 +228,7 @@ def static_tip(system: GapSystem) -> float:
     """Return the static tip deflection in m under the constant loads; NaN without an equilibrium.
 
     Args:
-        system: its ``load`` has all constant loads from t = 0 on.
+        system: gap system whose ``load`` includes all constant loads from t = 0 on.
     """
     try:
         return float(system.observers["tip"].row @ equilibrium(system, system.load))
@@ -237,11 +237,12 @@ def static_tip(system: GapSystem) -> float:
 
 
 def buckling_cautions(name: str, critical_factor: float | None) -> list[str]:
-    """Return a caution against a model's axial forces, if they are too large.
+    """Return a caution if the axial forces of a model are too large.
 
     Args:
         name: name of the model.
-        critical_factor: buckling factor of its axial forces; None if unknown or without any.
+        critical_factor: buckling factor of its axial forces; None without axial forces, or if it is
+            not computed.
     """
     if critical_factor is None or critical_factor * CLOSE >= 1.0:
         return []
@@ -252,12 +253,12 @@ def buckling_cautions(name: str, critical_factor: float | None) -> list[str]:
 
 
 def tip_cautions(where: str, tip: float | None, boom: Boom) -> list[str]:
-    """Return a caution against a static deflection, if it is too large.
+    """Return a caution if a static deflection is too large.
 
     Args:
-        where: for example ``in MODEL``.
-        tip: deflection in m, NaN or None without an equilibrium.
-        boom: the boom, whose length is that from its first end to its tip.
+        where: source of the deflection, for example ``in MODEL``.
+        tip: tip deflection in m; NaN or None without an equilibrium.
+        boom: the boom, whose length counts from its first end to its tip.
     """
     if tip is None or not abs(tip) > FAR * boom.length:
         return []

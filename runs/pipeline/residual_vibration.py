@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Vibration of the tip while a boom extends, beside that of the same boom without extension.
+"""Residual vibration of the tip during telescoping, compared with that at constant extension.
 
 The amplitude is the largest distance of the tip from its equilibrium at the current extension and
 under the current loads.
@@ -25,27 +25,27 @@ from runs.case.schema import Case, Model
 from runs.pipeline.metrics import Metric, Record
 from runs.pipeline.models import MotionPlan
 
-# Numbers of equilibria along all changes (linear between them), of those between two reversals, and
-# of the most reversals; with more of them there are no equilibria.
+# Numbers of equilibria along all changes, with linear interpolation, and between two reversals;
+# maximum number of reversals, beyond which no equilibria are computed.
 _RESTS, _BETWEEN_TURNS, _MOST_TURNS = 60, 4, 100
 
 _TIP = ("tip", "tip_lateral")
 
-# Formats of a length, and of one that is a constant beside a curve.
+# Formats of a length, and of a length that is constant during the run.
 _metres = partial(Metric, unit="m", factor=TO_MILLI, shown_unit="mm")
 _level = partial(_metres, charted=False)
 
 
 @dataclass(frozen=True, slots=True)
 class ResidualVibration(Record):
-    """Vibration of the tip during and after the extension.
+    """Residual vibration of the tip during and after telescoping.
 
     Args:
         tip: largest distance of the tip from equilibrium in m.
-        time: its time in s.
-        initial, final: those of the same boom at constant initial and final extension, under the
-            same loads, in m; None where they cannot be computed.
-        speed: mean speed of the fastest drive while it moves, in m/s.
+        time: time of this distance in s.
+        initial, final: largest distances in m at constant initial and constant final extension,
+            under the same loads; None if they cannot be computed.
+        speed: mean speed in m/s of the fastest drive while it moves.
     """
 
     title = "Residual vibration during telescoping"
@@ -86,17 +86,17 @@ class ResidualVibration(Record):
 def residual_vibration(
     system: GapSystem, trajectory: Trajectory, case: Case, model: Model
 ) -> ResidualVibration | None:
-    """Return the vibration of a model that extends; None without extension or an equilibrium path.
+    """Return the residual vibration; None without telescoping or without equilibria.
 
     Args:
-        system: that of the model; its ``load`` has all constant loads.
-        trajectory: its motion.
-        case: the case of the model.
-        model: a model of the case.
+        system: system of the model; its ``load`` has all constant loads.
+        trajectory: motion of the model.
+        case: case of the model.
+        model: the model.
     """
     ends = [time for travel in system.travels for time in travel.history.kinks]
     if not ends or max(ends) > trajectory.time[-1]:
-        # A motion that ends before its drives has not reached its largest vibration.
+        # A motion that ends before its drives may not contain the largest vibration.
         return None
     try:
         tip, time = farthest_from_rest(system, trajectory)
@@ -113,11 +113,11 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
     """Return the largest distance from equilibrium in m, and its time in s.
 
     Args:
-        system: its ``load`` has all constant loads.
-        trajectory: its motion.
+        system: gap system whose ``load`` includes all constant loads.
+        trajectory: motion of the system.
 
     Raises:
-        NumericsError: there is no equilibrium, or loads reverse too often to follow it.
+        NumericsError: there is no equilibrium, or loads reverse too often.
     """
     time = trajectory.time
     changes = [x.history for x in system.excitations] + [x.history for x in system.travels]
@@ -137,10 +137,10 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
 
 
 def _rest_steps(values: Array, passed: Array) -> Indices:
-    """Return rising steps (num_rests,) at which equilibria are computed.
+    """Return the steps (num_rests,) at which equilibria are computed, in ascending order.
 
-    They are evenly spaced along the accumulated change, and between points where one of the values
-    (num_changes, num_times) reverses and where the next one does.
+    They are evenly spaced along the accumulated change, and between successive reversals of the
+    values (num_changes, num_times).
     """
     turns = sorted({step for change in values for step in _turns(change).tolist()})
     if len(turns) > _MOST_TURNS:
@@ -178,7 +178,7 @@ def _passed(values: Array) -> Array:
 
 
 def _standing(system: GapSystem, case: Case, model: Model) -> float | None:
-    """Return the largest distance from equilibrium in m of the same boom without extension."""
+    """Return the largest distance from equilibrium in m at constant extension."""
     try:
         plan = MotionPlan.of(system, case, model)
         changes = system.excitations or system.released_load.any() or plan.motion.velocity.any()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Results of a run: labelled trajectories of all models, and a summary."""
+"""Results of a run: labelled trajectories of all models, and their summary."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ CASE = "case.toml"
 FIELDS = "fields.nc"
 ENSEMBLES = "ensembles.nc"
 
-# Conventions of climate and forecast data (CF), as far as they apply to a boom's motion.
+# Attributes of the conventions for climate and forecast data (CF) that apply to a boom.
 CONVENTIONS = "CF-1.8"
 
 
 @dataclass(frozen=True)
 class Results:
-    """The results of one run.
+    """Results of one run.
 
     >>> case = pt.load_case(pt.CASES / "coarse.toml")
     >>> results = pt.run_case(case, models=["kantorovich-4"])
@@ -52,15 +52,15 @@ class Results:
     ['kantorovich-4']
 
     Args:
-        case: the effective case, with all defaults.
+        case: the case of the run, with all defaults.
         trajectories: dims ``model`` (names, in the case's order), ``time`` in s, ``station`` in
             m, with the ``direction`` of its contact, and its name ``place``; deflections
             ``tip``, ``head``, ``tail`` in m (``head-2`` and so forth from the second joint on),
             ``contact_force``, ``contact_force_peak`` and ``friction_force`` in N, ``gap`` in m,
             energies in J; NaN where a model has none.
         summary: the content of ``summary.json``.
-        ensembles: dims ``model`` (those with play), ``member`` (the first one unchanged),
-            ``time``; ``tip``, ``head`` in m; None where the case asks for none.
+        ensembles: dims ``model`` (models with play), ``member`` (the first one unchanged),
+            ``time``; ``tip``, ``head`` in m; None if the case has no ensembles.
     """
 
     case: Case
@@ -73,7 +73,7 @@ class Results:
         """Read a run's folder.
 
         Raises:
-            BadInput: it is not a run's folder, or an incomplete one.
+            BadInput: it is not the folder of a run, or it is incomplete.
         """
         folder = Path(folder)
         if not folder.is_dir():
@@ -107,16 +107,16 @@ class Results:
         return results
 
     def conclude(self) -> None:
-        """Complete the summary with numbers derived from the motion and its other parts."""
+        """Complete the summary with numbers that follow from the motion and from other numbers."""
         case, boom, data, summary = self.case, self.boom, self.trajectories, self.summary
         summary.pads = list(pad_loads(case, boom, data))
         summary.cautions = cautions(case, boom, data, summary)
 
     def save(self, folder: Path | str) -> None:
-        """Write a folder that :meth:`load` reads; make it if it is missing."""
+        """Write a folder that :meth:`load` can read; create it if it is missing."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        # netCDF 3 has no empty dimension: a boom without joints leaves out its stations.
+        # netCDF 3 has no empty dimensions: without joints the stations are left out.
         empty = [name for name, size in self.trajectories.sizes.items() if size == 0]
         self.trajectories.drop_dims(empty).to_netcdf(folder / TRAJECTORIES, engine="scipy")
         if self.ensembles is not None:
@@ -126,7 +126,7 @@ class Results:
 
     @property
     def ran(self) -> list[Model]:
-        """Models that have not failed."""
+        """The models that did not fail."""
         return [model for model in self.case.models if model.name in self.summary.models]
 
     @cached_property
@@ -136,25 +136,25 @@ class Results:
 
     @cached_property
     def reference(self) -> str | None:
-        """The model that the others are compared with."""
+        """The reference model, with which the others are compared."""
         return reference_of(self.ran)
 
     @property
     def play(self) -> PlayEffect | None:
-        """Increase by play in the model that the others are compared with."""
+        """The effect of play in the reference model."""
         known = (one for one in self.summary.design.play if one.numbers)
         return next((one for one in known if one.model == self.reference), None)
 
     @cached_property
     def leading_models(self) -> list[str]:
-        """The most important models, the reference before the others."""
+        """The most important models, starting with the reference."""
         names = list(self.summary.models)
         first = leading(self.case, names)
         return sorted(first, key=lambda name: (name != self.reference, names.index(name)))
 
     @property
     def motions(self) -> dict[str, MotionResult]:
-        """Extreme values of the motions of the most important models."""
+        """The extreme values of the motions of the most important models."""
         own = self.summary.design.models
         return {
             name: moved
@@ -164,10 +164,10 @@ class Results:
 
 
 def read_fields(path: Path) -> xr.Dataset:
-    """Read the fields of a shell in a run's folder, with all data of pictures.
+    """Read the fields of a shell from a run's folder, with all data that pictures need.
 
     Raises:
-        BadInput: the file is damaged, or of another version.
+        BadInput: the file is damaged, or written by another version.
     """
     fields: xr.Dataset = _read(path, _whole_fields)
     return fields
@@ -179,10 +179,10 @@ def read_netcdf(path: Path) -> xr.Dataset:
 
 
 def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
-    """Gather the trajectories of all models, which share their times, in one dataset.
+    """Gather the trajectories of all models in one dataset; they have the same times.
 
     Args:
-        boom: the boom, whose stations are the dimension ``station``.
+        boom: boom whose stations become the dimension ``station``.
         trajectories: trajectories by the model's name.
     """
     stations = [x for x, _ in boom.stations]
@@ -238,7 +238,7 @@ def _read(path: Path, how: Callable[[Path], Any]) -> Any:
     """Read a file of a run's folder.
 
     Raises:
-        BadInput: the file is missing, damaged, or of another version.
+        BadInput: the file is missing, damaged, or written by another version.
     """
     try:
         check_regular(path)

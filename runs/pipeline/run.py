@@ -35,19 +35,19 @@ from runs.pipeline.summary import Ensembles, Summary, check_finite
 
 @dataclass(frozen=True)
 class Run:
-    """Results, and the integrated models by their names."""
+    """A run: its results, and the integrated models by name."""
 
     results: Results
     ran: dict[str, ModelRun]
 
     @property
     def shells(self) -> dict[str, ShellOutput]:
-        """Output of each shell."""
+        """The output of each shell."""
         return {name: one.shell for name, one in self.ran.items() if one.shell is not None}
 
     @cached_property
     def beams(self) -> dict[str, BeamOutput]:
-        """Output of each beam."""
+        """The output of each beam."""
         boom = self.results.boom
         return {
             name: BeamOutput.of(one.model.lines(boom, one.built), one.motion.trajectory)
@@ -56,12 +56,12 @@ class Run:
         }
 
     def evaluate(self) -> None:
-        """Put the design results and the limits of validity into the summary.
+        """Add the design results and the cautions to the summary.
 
-        A model whose design results cannot be computed is in ``failures``, too.
+        ``failures`` also names models whose design results cannot be computed.
 
         Raises:
-            NumericsError: a common result of the models, such as their comparison, is not finite.
+            NumericsError: a common result of all models, such as their comparison, is not finite.
         """
         case, boom, summary = self.results.case, self.results.boom, self.results.summary
         design = {}
@@ -86,24 +86,24 @@ class Run:
 
 
 def run_case(case: Case, file: str, context: RunContext) -> Run | None:
-    """Run all models of a case without design results, see :meth:`Run.evaluate`. Collective.
+    """Run all models of a case; :meth:`Run.evaluate` adds the design results. Collective.
 
-    Return None except on rank 0. The summary's ``failures`` name each model that cannot be
+    Return None except on rank 0. ``failures`` of the summary names each model that cannot be
     computed, with the reason.
 
     Args:
         case: a checked case.
-        file: its name in messages.
+        file: name of the case in messages.
         context: the context of the run.
 
     Raises:
-        NumericsError: no model can be computed, or a shell that several ranks share.
+        NumericsError: no model can be computed, or a shell fails that several ranks share.
     """
     boom = build_boom(case)
     cutoff = None if case.ensemble is None else members.slow_below(boom, case.time)
 
     def attempt(model: Model) -> ModelRun | Exception | None:
-        # Overflow is detected and reported where it matters.
+        # Overflow is detected and reported later, where it matters.
         with np.errstate(all="ignore"):
             try:
                 found = run_model(boom, model, case, cutoff, context)
@@ -145,7 +145,7 @@ def _results(
         models={name: one.summary for name, one in motions.items()},
         failures=failures,
     )
-    # Every file names its case, so that a folder cannot mix two runs unnoticed.
+    # Every file contains its case, so that files of two runs in one folder are detected.
     trajectories = {name: one.trajectory for name, one in motions.items()}
     data = label(boom, trajectories).assign_attrs(case_hash=summary.case_hash)
     ensembles = members.gather_ensembles(
@@ -168,8 +168,8 @@ def _attempt_all(
 ) -> dict[str, ModelRun | Exception | None]:
     """Return the result or the failure of each model, in the order of the models.
 
-    Where no other rank waits, beams are integrated while shells are built: the compiled loops
-    release the interpreter.
+    Without other ranks, beams are integrated while shells are built: the compiled loops release the
+    interpreter.
     """
     if not alone or not any(model.needs_shell for model in models):
         return {model.name: attempt(model) for model in models}
@@ -178,7 +178,7 @@ def _attempt_all(
         try:
             made = {model.name: attempt(model) for model in models if model.needs_shell}
         except BaseException:
-            # An interrupt does not wait for all beams.
+            # After an interrupt, the remaining beams are not awaited.
             thread.shutdown(cancel_futures=True)
             raise
         return {m.name: made[m.name] if m.needs_shell else moving[m.name].result() for m in models}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Section forces of a segment: those of its line, and the normal force.
 
-N comes from the given axial forces, and from the axial forces of luffing cylinders between their
+The normal force N has contributions of given axial forces, and of luffing cylinders between their
 lugs and the foot of the boom.
 """
 
@@ -19,7 +19,7 @@ from geometry.axial import carried
 from geometry.boom import Boom
 from geometry.cylinder import force_name
 
-# Distance on both sides of a jump, as a part of the distance from the start.
+# Distance on both sides of a jump, as a fraction of the distance from the start.
 _ASIDE = 1.0e-9
 
 _ACROSS: tuple[tuple[Quantity, Quantity], ...] = (
@@ -33,7 +33,7 @@ _DIGITS = 5
 
 
 def rounded(values: Array | Iterable[float]) -> list[float]:
-    """Return values rounded to the digits of a file."""
+    """Return values rounded to the number of digits in files."""
     return [float(f"{value:.{_DIGITS}g}") for value in values]
 
 
@@ -41,9 +41,9 @@ def with_cylinders(boom: Boom, system: GapSystem, lines: Sequence[Line]) -> list
     """Return lines with the axial forces of cylinders as normal forces.
 
     Args:
-        boom: that of the system.
+        boom: boom of the system.
         system: the system, whose observers give the cylinders' forces.
-        lines: those along its segments.
+        lines: lines along the segments.
     """
     found = list(lines)
     for number, cylinder in enumerate(boom.cylinders, start=1):
@@ -62,18 +62,19 @@ def section_forces(
 
     Args:
         boom: the boom, which may extend.
-        number: index of the line's segment.
-        line, states: those of a model.
+        number: index of the segment.
+        line: line along the segment.
+        states: modal coordinates of the model.
         time: times (...) of the states in s.
     """
     read = line.read(states)
-    # Slightly before or behind themselves where places occur twice.
+    # Double places are moved slightly to both sides.
     jump = np.diff(line.x) == 0.0
     aside = _ASIDE * max(1.0, float(np.ptp(line.x)))
     x = line.x + aside * (np.append(False, jump).astype(float) - np.append(jump, False))
     pressed = carried(boom.segments, boom.joints, number, x, time)
     if boom.driven:
-        # Lines include the shear force of the axial forces at the start.
+        # Lines include the shear force at the start that axial forces cause.
         more = pressed - boom.segments[number].compression(x)
         for deflection, shear in _ACROSS:
             if shear in read:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Static states of a model of the boom, at the instants of the largest loads.
+"""Static states of a model at the instants of extreme loads.
 
-Section forces are those of the part behind the section on the part before it. A positive normal
-force is tension; a positive moment causes tension at the top (a lateral one at larger y).
+Section forces act from the part behind the section on the part before it. A positive normal force
+is tension. A positive moment causes tension at the top, a positive lateral moment at larger y.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from runs.case.drive import resolving_times
 from runs.pipeline.pads import SIGNS, largest_pad_force, side_force
 from runs.pipeline.section_forces import rounded, section_forces
 
-# Distance from the farthest extension, as a part of it, that counts as zero.
+# Distance from the largest extension, as a fraction of it, that counts as zero.
 _SAME_WAY = 1.0e-12
 
 
@@ -38,12 +38,12 @@ class Diagram:
     """Section forces and deflections of a segment at rest, from its start to its end.
 
     Args:
-        segment: its name.
+        segment: name of the segment.
         x: (num_places) in m; a place with a jump occurs twice.
-        normal: N in N.
-        curves: available other quantities of :data:`dynamics.line.Quantity`:
-            ``deflection`` in m, ``shear`` in N, ``moment`` in N·m; in space ``lateral`` in m,
-            ``twist`` in rad, ``lateral_shear``, ``lateral_moment``, ``torque``.
+        normal: normal force in N.
+        curves: other available quantities of :data:`dynamics.line.Quantity`: ``deflection`` in m,
+            ``shear`` in N, ``moment`` in N·m; in space ``lateral`` in m, ``twist`` in rad,
+            ``lateral_shear``, ``lateral_moment``, ``torque``.
     """
 
     segment: str
@@ -54,12 +54,13 @@ class Diagram:
 
 @dataclass(frozen=True, slots=True)
 class Tilt:
-    """The rotation of a joint by its play and by the compression of its contacts.
+    """Rotation of a joint by its play and the compression of its contacts.
 
     Args:
         inner, outer: names of the segments.
-        rotation: rotation of the inner one in the outer one in rad, towards a larger slope.
-        tip: tip displacement by that rotation in m.
+        rotation: rotation in rad of the inner segment in the outer one, positive for a larger
+            slope.
+        tip: tip displacement in m by this rotation.
     """
 
     inner: str
@@ -70,16 +71,16 @@ class Tilt:
 
 @dataclass(frozen=True, slots=True)
 class StationLoad:
-    """A station at rest: its contact force and compression.
+    """Contact force and compression of a station at rest.
 
     Args:
-        place: its name, as in trajectories.
-        x: in m.
+        place: name of the station in trajectories.
+        x: position in m.
         direction: z or y.
-        force: in N, positive where the inner segment presses up (along y: towards larger y).
-        pad: largest force on one of its pads in N, not negative, where stiffness and shims
-            determine the distribution over the pads of a side; None without pads.
-        depth: largest compression of a contact in m.
+        force: force in N, positive where the inner segment presses up (along y: towards larger y).
+        pad: largest force on a pad of the station in N, not negative; stiffness and shims determine
+            the distribution over the pads of a side. None without pads.
+        depth: largest compression of a contact of the station in m.
     """
 
     place: str
@@ -92,16 +93,16 @@ class StationLoad:
 
 @dataclass(frozen=True, slots=True)
 class StaticResult:
-    """A static state of a model of the boom.
+    """Static state of a model.
 
     Args:
-        time: time of the loads and of the extension in s.
+        time: time in s of the loads and of the extension.
         tip: tip deflection in m.
-        tip_lateral: likewise along y, in space.
-        diagrams: those of each segment.
-        tilts: those of the joints with play and at least two stations.
-        stations: those of the joints with play, and of stops.
-        cylinders: axial forces in N by the names of the results.
+        tip_lateral: tip deflection along y in m, in space.
+        diagrams: diagram of each segment.
+        tilts: tilts of the joints with play and at least two stations.
+        stations: stations of joints with play, and stops.
+        cylinders: axial forces of cylinders in N, by their names in the results.
     """
 
     time: float
@@ -129,7 +130,7 @@ def instants(system: GapSystem, duration: float) -> list[float]:
     """Return 0 and the times in s at which a variable load has an extreme value.
 
     Args:
-        system: its ``load`` has all constant loads.
+        system: gap system whose ``load`` includes all constant loads.
         duration: duration of the motion in s.
     """
     times, values = _over_time(system.excitations, system, duration)
@@ -137,10 +138,10 @@ def instants(system: GapSystem, duration: float) -> list[float]:
 
 
 def extended_instants(system: GapSystem, duration: float) -> list[float]:
-    """Return the times in s of the largest and least extension, and of the extreme loads meanwhile.
+    """Return the times in s of the largest and least extension, and of extreme loads during these.
 
     Args:
-        system: its ``load`` has all constant loads.
+        system: gap system whose ``load`` includes all constant loads.
         duration: duration of the motion in s.
     """
     times, ways = _over_time(system.travels, system, duration)
@@ -158,7 +159,7 @@ def extended_instants(system: GapSystem, duration: float) -> list[float]:
 def _over_time(
     changes: Sequence[Excitation | Travel], system: GapSystem, duration: float
 ) -> tuple[Array, Array]:
-    """Return times in s that resolve all histories, and values (num_changes, num_times) of some."""
+    """Return times in s that resolve all histories, and values (num_changes, num_times) at them."""
     loads, ways = ([change.history for change in of] for of in (system.excitations, system.travels))
     times = resolving_times([*loads, *ways], duration)
     values = np.array([change.history(times) for change in changes])
@@ -166,7 +167,7 @@ def _over_time(
 
 
 def _distinct(times: Array, values: Array, steps: Sequence[int]) -> list[float]:
-    """Return the first time in s of each of the different values among some steps."""
+    """Return the first time in s of each distinct value at the given steps."""
     found: dict[tuple[float, ...], float] = {}
     for step in steps:
         found.setdefault(tuple(values[:, step]), float(times[step]))
@@ -174,13 +175,13 @@ def _distinct(times: Array, values: Array, steps: Sequence[int]) -> list[float]:
 
 
 def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float, Array]:
-    """Return the equilibria (num_modes,) by the instants in s whose loads act.
+    """Return the equilibria (num_modes,) under the loads of each instant, by time in s.
 
-    Instants without an equilibrium are left out; without the first one all are.
+    Instants without an equilibrium are left out. The result is empty if the first has none.
 
     Args:
-        system: that of a model; its ``load`` has all constant loads.
-        times: those of :func:`instants`.
+        system: gap system of a model, whose ``load`` includes all constant loads.
+        times: times of :func:`instants`.
     """
     found: dict[float, Array] = {}
     for time in times:
@@ -197,7 +198,7 @@ def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]
     """Return the equilibria at the largest and least extension, in addition to :func:`positions`.
 
     Args:
-        system: that of a model; its ``load`` has all constant loads.
+        system: gap system of a model, whose ``load`` includes all constant loads.
         duration: duration of the motion in s.
     """
     known = instants(system, duration)
@@ -216,9 +217,9 @@ def static_result(
 
     Args:
         boom: the boom, with the play of the system.
-        system: that of the model.
-        lines: those along its segments.
-        time: time of the loads and of the extension in s.
+        system: system of the model.
+        lines: lines along the segments.
+        time: time in s of the loads and of the extension.
         position: equilibrium (num_modes,).
     """
     system, diagrams = system.at_time(time), []
@@ -240,14 +241,14 @@ def static_result(
 
 
 def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[StationLoad]:
-    """Yield the stations of joints with play, in z and in y, and the stops, at (num_modes,)."""
+    """Yield the stations of joints with play, and the stops, at a position (num_modes,)."""
     gaps = system.rows @ position
     loose = [joint for joint in boom.joints if not joint.tied]
     joints = [joint for _ in boom.directions for joint in loose for _ in joint.stations]
     for k, ((x, direction), name, joint) in enumerate(
         zip_longest(boom.stations, place_names(boom.stations), joints)
     ):
-        # A model without play has stations, but no contact rows there.
+        # A model without play has stations, but no contact rows at them.
         here = np.flatnonzero(system.station_of_row == k)
         sides = [
             sum(side_force(system.laws[row], side, gaps[row]) for row in here) for side in SIGNS
@@ -263,7 +264,7 @@ def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[St
 
 
 def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> Iterator[Tilt]:
-    """Yield the tilts of joints with play and several stations, at (num_modes,) and time in s."""
+    """Yield the tilts of joints with play and several stations, at a position and a time in s."""
     gaps, numbers = system.rows @ position, count()
     for joint in (joint for joint in boom.joints if not joint.tied):
         own = [float(gaps[system.station_of_row == next(numbers)].mean()) for _ in joint.stations]
@@ -271,7 +272,7 @@ def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> 
             before = travel(boom, joint.outer, time)
             extension = travel(boom, joint.inner, time) - before
             on_outer = [x for x, _ in places(joint, extension)] if joint.drive else joint.stations
-            # Pads press at their middles.
+            # The resultant force of a pad acts at its middle.
             middles = contact_centres(boom, joint)
             on_outer = [
                 x + sum(middles[at]) / len(middles[at]) - at

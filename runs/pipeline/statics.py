@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Static states of a boom as beam elements with and without play, and their reactions."""
+"""Static states of a boom of beam elements with and without play, and their reactions."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from geometry.cylinder import force_name
 from runs.case.schema import Case
 from runs.pipeline.static_results import station_loads
 
-# Part of the other reactions below which a reaction counts as zero.
+# Fraction of the other reactions below which a reaction counts as zero.
 ROUND_OFF = 1.0e-9
 
 
 @dataclass(frozen=True, slots=True)
 class Reaction:
-    """The reaction of a support, a cylinder or a stop on a segment at x in m.
+    """Reaction of a support, a cylinder or a stop on a segment.
 
     Args:
-        segment: its name.
-        x: in m.
-        force: along z in N.
-        moment: towards a larger slope in N·m.
+        segment: name of the segment.
+        x: position in m.
+        force: force along z in N.
+        moment: moment in N·m, positive towards a larger slope.
         depth: compression of a stop in m; None for other reactions.
         along: axial force towards the tip in N.
     """
@@ -44,9 +44,9 @@ class Reaction:
 
 
 class Statics(NamedTuple):
-    """The boom at rest under the loads of t = 0, as beam elements, and the same without play.
+    """Static states of the boom under the loads at t = 0 as beam elements, with and without play.
 
-    Both are without play if no model of the case has any.
+    Both are without play if no model of the case has play.
     """
 
     with_play: StaticState
@@ -82,7 +82,7 @@ def reactions(state: StaticState) -> list[Reaction]:
 
 
 def _between_segments(boom: Boom) -> set[tuple[int, float]]:
-    """Return the places where joints press, by the inner segment and x in m."""
+    """Return the places where joints can press, by inner segment and x in m."""
     return {
         (joint.inner, x)
         for joint in boom.joints
@@ -92,7 +92,7 @@ def _between_segments(boom: Boom) -> set[tuple[int, float]]:
 
 
 def contact_and_support_reactions(state: StaticState) -> dict[tuple[int, float], Reaction]:
-    """Return the reactions of ground and joints by segment and x in m, without round-off."""
+    """Return the reactions of ground and joints by segment and x in m; round-off counts as zero."""
     boom, depths, along = state.boom, _depths(state), _along(state)
     places = _between_segments(boom)
     places |= {(number, one.x) for number, s in enumerate(boom.segments) for one in s.supports}
@@ -116,7 +116,7 @@ def contact_and_support_reactions(state: StaticState) -> dict[tuple[int, float],
 
 
 def _along(state: StaticState) -> dict[tuple[int, float], float]:
-    """Return the axial forces of feet and cylinders in N, by segment and x in m; default 0."""
+    """Return the axial forces of feet and cylinders in N, by segment and x in m."""
     boom = state.boom
     found: dict[tuple[int, float], float] = defaultdict(float)
     for number, segment in enumerate(boom.segments):
@@ -132,7 +132,7 @@ def _along(state: StaticState) -> dict[tuple[int, float], float]:
 
 
 def _depths(state: StaticState) -> dict[tuple[int, float], float]:
-    """Return the compression in m of stations along z, by the inner segment and x in m."""
+    """Return the compression in m of stations along z, by inner segment and x in m."""
     boom = state.boom
     joints = [joint for joint in boom.joints if not joint.tied]
     inner = [

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Stresses of a motion, in outer fibres and in the walls of shells, and their fatigue damage.
+"""Stresses of a motion in outer fibres and in walls of shells, and their fatigue damage.
 
-σ = N/A + M z/J + M_y y/J_y, as beams have it (Navier 1826); of a shell with the integrals of its
-walls' stresses, so that both give the nominal stress of the same section.
+σ = N/A + M z/J + M_y y/J_y (Navier 1826). Section forces of a shell are the integrals of its wall
+stresses, so that beams and shells give the same nominal stress of a section.
 
-Cycles are counted by the rainflow method (Matsuishi and Endo 1968; ASTM E1049). A range does damage
-by the curve of its detail category after EN 1993-1-9, 7.1, in Miner's sum: N = 2e6 (C/Δσ)³ up to
-5e6 cycles, from there on of the slope 5, and none below the cut-off at 1e8.
+Cycles are counted by the rainflow method (Matsuishi and Endo 1968; ASTM E1049). Miner's sum uses
+the S-N curve of the detail category (EN 1993-1-9, 7.1): N = 2e6 (C/Δσ)³ up to 5e6 cycles, slope 5
+beyond, and no damage below the cut-off limit at 1e8.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ from geometry.section import Section
 from runs.case.schema import LifeTable
 from runs.pipeline.section_forces import rounded
 
-# Reference cycles of a category, cycles of the constant-amplitude limit, and of the cut-off.
+# Numbers of cycles: reference of a category, constant-amplitude limit, cut-off limit.
 NAMED, LIMIT, CUT_OFF = 2.0e6, 5.0e6, 1.0e8
 STEEP, FLAT = 3.0, 5.0
 
-# Debian's own packages have no such counter: there a run omits the count.
+# Debian has no package with this counter; without it a run omits the fatigue assessment.
 COUNTS = find_spec("rainflow") is not None
 
-# Stress in Pa of the unit in which categories are named.
+# Unit in Pa of the numbers that name detail categories.
 _MEGA = 1.0e6
 
 # Number of classes of stored ranges.
@@ -43,16 +43,16 @@ _CLASSES = 20
 
 @dataclass(frozen=True, slots=True)
 class FibreStress:
-    """The largest stress along x in an outer fibre of a segment, from section forces.
+    """Largest axial stress in an outer fibre of a segment, from section forces.
 
     Args:
-        segment: its name.
+        segment: name of the segment.
         x, y, z: position in m; y is 0 in a flat boom.
         stress: stress in Pa, positive in tension.
-        time: its time in s.
-        utilisation: utilisation of the yield strength; None if the case does not give that.
-        at_rest: the largest |stress| of the segment at rest under the largest loads in Pa; None
-            without an equilibrium.
+        time: time of the stress in s.
+        utilisation: utilisation of the yield strength; None if the case has no yield strength.
+        at_rest: largest |stress| in Pa of the segment at rest under the extreme loads; None without
+            an equilibrium.
     """
 
     segment: str
@@ -67,15 +67,15 @@ class FibreStress:
 
 @dataclass(frozen=True, slots=True)
 class WallStress:
-    """The largest von Mises stresses of a shell's segment near stations and supports.
+    """Largest von Mises stresses of a segment of a shell near stations and supports.
 
     Args:
-        segment: its name.
-        x: position of the station or support near the patch in m.
-        patch: mean over a patch of a wall in Pa, which converges with the mesh.
-        time: its time in s.
-        triangle: largest stress of a triangle in Pa, which may grow as the mesh refines.
-        utilisation: that of the patch, as in :class:`FibreStress`.
+        segment: name of the segment.
+        x: position in m of the station or support near the patch.
+        patch: mean over a patch of a wall in Pa, which converges with mesh refinement.
+        time: time of the stress in s.
+        triangle: largest stress of a triangle in Pa, which may grow with mesh refinement.
+        utilisation: utilisation of the patch, as in :class:`FibreStress`.
     """
 
     segment: str
@@ -88,18 +88,18 @@ class WallStress:
 
 @dataclass(frozen=True, slots=True)
 class Life:
-    """The fatigue damage of a detail at the outer fibre of a segment, where the stress varies most.
+    """Fatigue damage of a detail at the outer fibre of a segment where the stress varies most.
 
     Args:
-        segment: its name.
+        segment: name of the segment.
         x, y, z: position in m.
-        cycles: number of cycles of any range in the run.
-        largest: largest range in Pa.
-        equivalent: range in Pa whose single cycle does the same damage as the run at a slope of 3.
-        ranges: rising middles of classes of ranges (num_classes) in Pa.
-        counts: number of cycles of each class.
-        damage: damage of the run for the case's detail category; None without one.
-        life_damage: damage of the number of runs in the case.
+        cycles: number of all cycles in the run.
+        largest: largest stress range in Pa.
+        equivalent: stress range in Pa of a single cycle with the same damage, for the slope 3.
+        ranges: centres (num_classes) of the classes of stress ranges in Pa, ascending.
+        counts: number of cycles in each class.
+        damage: damage of the run for the case's detail category; None without a category.
+        life_damage: damage of all repetitions that the case specifies.
     """
 
     segment: str
@@ -116,7 +116,7 @@ class Life:
 
 
 class Varying(NamedTuple):
-    """The stress history (num_times,) of a segment in Pa at (x, y, z) in m."""
+    """Stress history (num_times,) of a segment in Pa at (x, y, z) in m."""
 
     segment: str
     at: tuple[float, float, float]
@@ -130,9 +130,9 @@ class Fibres:
     Args:
         x: (num_places,) in m.
         y, z: (num_fibres, num_places) in m.
-        of_moment, of_lateral: stress (num_fibres, num_places) of a moment of 1 N·m, along z and
-            along y, in Pa.
-        of_normal: stress (num_places,) of a normal force of 1 N, in Pa.
+        of_moment, of_lateral: stress (num_fibres, num_places) in Pa for a moment of 1 N·m, vertical
+            and lateral.
+        of_normal: stress (num_places,) in Pa for a normal force of 1 N.
     """
 
     x: Array
@@ -169,7 +169,7 @@ def _each(segments: Sequence[Segment], number: str) -> Array:
 def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
     """Return y and z (num_fibres, num_places) of the corners in m.
 
-    For a flat boom only those of different z, at y = 0.
+    For a flat boom they are the corners of different z, at y = 0.
     """
     different = x.tolist() if segment.head_section is not None else [float(x[0])]
     corners = np.array([outer_corners(segment.section_at(place)) for place in different])
@@ -184,13 +184,13 @@ def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
 def outer_corners(section: Section) -> tuple[Array, Array]:
     """Return y and z (num_corners,) in m of the outer corners of the plates, from the centroid.
 
-    At a corner, the surface whose normal is nearer to the direction counts, for each of y and z.
+    For y and for z, the plate counts at a corner whose normal is nearer to that direction.
     """
     places, beyond = [], []
     for before, after in zip(
         section.plates[-1:] + section.plates[:-1], section.plates, strict=True
     ):
-        # A normal has the components of the tangent, exchanged.
+        # The normal has the components of the tangent, exchanged.
         normals = [0.5 * plate.thickness * np.abs(plate.tangent[::-1]) for plate in (before, after)]
         places.append(after.start)
         beyond.append(np.maximum(*normals))
@@ -205,12 +205,12 @@ def largest_stresses(
     still: Mapping[Quantity, Array],
     time: Array,
 ) -> tuple[FibreStress, Varying]:
-    """Return the stress of a segment where it is largest, and where it varies most.
+    """Return the largest stress of a segment, and the stress history where it varies most.
 
     Args:
         segment, fibres: the segment and its fibres.
-        curves: its section forces (num_times, num_places).
-        still: those at rest (num_rests, num_places).
+        curves: section forces (num_times, num_places) in motion.
+        still: section forces (num_rests, num_places) at rest.
         time: (num_times,) in s.
     """
     largest, where = 0.0, (0, 0, 0)
@@ -239,17 +239,17 @@ def largest_stresses(
 
 
 def utilisation(segment: Segment, stress: float) -> float | None:
-    """Return the utilisation of the yield strength; None where that is not known."""
+    """Return the utilisation of the yield strength; None if the segment has none."""
     strength = segment.material.yield_strength
     return None if strength is None else abs(stress) / strength
 
 
 def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
-    """Return the largest wall stresses of each segment of a shell near stations and supports.
+    """Return the largest wall stresses near stations and supports, for each segment of a shell.
 
     Args:
-        boom: that of the shell.
-        stresses: those of :func:`shell_model.stress.history.stress_near_places`.
+        boom: boom of the shell.
+        stresses: stresses of :func:`shell_model.stress.history.stress_near_places`.
     """
     found = []
     for segment in boom.segments:
@@ -272,14 +272,14 @@ def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
 
 
 class Ranges(NamedTuple):
-    """Ranges (num_ranges,) in Pa and the number of cycles of each, with half cycles."""
+    """Stress ranges (num_ranges,) in Pa and the number of cycles of each, in halves."""
 
     sizes: Array
     counts: Array
 
 
 def counted(stress: Sequence[float] | Array) -> Ranges:
-    """Return the cycles of a stress in Pa by rainflow counting."""
+    """Return the stress ranges of a stress history in Pa, by rainflow counting."""
     import rainflow
 
     found = [(size, count) for size, count in rainflow.count_cycles(stress) if size > 0.0]
@@ -288,10 +288,10 @@ def counted(stress: Sequence[float] | Array) -> Ranges:
 
 
 def endurance(sizes: Array, category: float) -> Array:
-    """Return the cycles (num_ranges,) to failure of ranges in Pa; infinite below the cut-off.
+    """Return the cycles to failure (num_ranges,) of stress ranges; infinite below the cut-off.
 
     Args:
-        sizes: the ranges in Pa.
+        sizes: stress ranges in Pa.
         category: detail category in Pa.
     """
     limit = category * (NAMED / LIMIT) ** (1.0 / STEEP)
@@ -305,8 +305,8 @@ def life(varying: Varying, table: LifeTable) -> Life:
     """Return the fatigue damage of a segment where its stress varies most.
 
     Args:
-        varying: the stress.
-        table: the case's table of fatigue.
+        varying: stress history there.
+        table: table of the case with the data of the assessment.
     """
     sizes, counts = counted(varying.stress)
     damage = None

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The content of ``summary.json``: results of a run and of each model.
+"""Content of ``summary.json``: results of a run and of each model, in SI units.
 
-Fields are the file's keys, in its order; SI units. A field that was never set has no key; one that
-is None stands in the file as null.
+Fields are the keys of the file, in its order. A field that was never set has no key; None becomes
+null.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from runs.pipeline.metrics import Metric
 from runs.pipeline.pads import PadLoad
 from shell_model.stress.history import StressSummary
 
-# A number, and None for NaN and infinity, which JSON does not have.
+# Type of numbers in JSON: None replaces NaN and infinity.
 Known = Annotated[
     float | None,
     BeforeValidator(lambda n: None if isinstance(n, float) and not math.isfinite(n) else n),
@@ -34,13 +34,13 @@ Known = Annotated[
 
 
 class SummaryTable(BaseModel):
-    """A table of the summary, which has no other keys than its own."""
+    """Table of the summary, without unknown keys."""
 
     model_config = ConfigDict(extra="forbid", validate_assignment=True)
 
 
 class FirstPeak(NamedTuple):
-    """Time in s and height in m; None where there is no peak."""
+    """First peak: time in s and height in m; both None without a peak."""
 
     time: Known
     height: Known
@@ -49,8 +49,8 @@ class FirstPeak(NamedTuple):
 class EnsembleSummary(SummaryTable):
     """Summary of a model's ensemble.
 
-    ``horizons`` has the time in s from which the members are a part of the tip's range apart, by
-    that part; ``energy_residual`` is the largest of all members.
+    ``horizons`` has the times in s from which members differ by a share of the tip's range, by
+    share; ``energy_residual`` is the largest one of all members.
     """
 
     horizons: dict[str, Known]
@@ -63,10 +63,10 @@ class EnsembleSummary(SummaryTable):
 
 
 class Predictability(SummaryTable):
-    """Times at which changes of several sizes have grown to parts of the tip's range.
+    """Times at which changes of several sizes have grown to shares of the tip's range.
 
     ``times`` (relatives, shares) and ``of_step`` (shares) in s; ``rate`` (shares) in 1/s;
-    ``limits`` (shares) as :class:`dynamics.predictability.horizon.Horizons` has them.
+    ``limits`` (shares) as in :class:`dynamics.predictability.horizon.Horizons`.
     """
 
     relatives: list[float]
@@ -79,7 +79,7 @@ class Predictability(SummaryTable):
 
 
 class Trial(SummaryTable):
-    """A motion in longer steps: ``step`` in s, and whether it keeps the slow peaks."""
+    """Motion with longer steps: ``step`` in s, and whether it preserves the slow peaks."""
 
     step: float
     steps: int
@@ -88,9 +88,9 @@ class Trial(SummaryTable):
 
 
 class StepsForPeaks(SummaryTable):
-    """Fewest steps that keep a number of slow peaks ``within`` a part; ``duration`` in s.
+    """Fewest steps that preserve a number of slow peaks ``within`` a tolerance.
 
-    ``fewest`` is None where no trial holds.
+    ``duration`` in s; ``fewest`` is None if no trial preserves them.
     """
 
     peaks: int
@@ -101,10 +101,10 @@ class StepsForPeaks(SummaryTable):
 
 
 class BeamStiffness(SummaryTable):
-    """Stiffness of a segment as a beam, taken from its shell.
+    """Stiffness of a segment as a beam, determined from its shell.
 
-    E I in N·m² and G A_s in N, along z and in space along y, and G J_t in N·m² in space; parts are
-    ratios to the stiffness that follows from the section.
+    E I in N·m² and G A_s in N, along z and in space along y, and G J_t in N·m² in space. ``part``
+    fields are ratios to the stiffness that follows from the section.
     """
 
     segment: str
@@ -117,10 +117,10 @@ class BeamStiffness(SummaryTable):
 
 
 class StationSpring(SummaryTable):
-    """The local compliance of a pressed place beyond the beams, in series with the contact there.
+    """Spring of a station: the local compliance of walls, in series with the contact.
 
-    ``x`` is its station's in m, ``side`` that of the outer segment's walls which the inner one
-    presses, ``stiffness`` in N/m; none where it is rigid.
+    ``x`` is the position of the station in m, ``side`` the loaded wall of the outer segment,
+    ``stiffness`` in N/m; None for rigid walls.
     """
 
     x: float
@@ -129,7 +129,7 @@ class StationSpring(SummaryTable):
 
 
 class CalibrationCard(SummaryTable):
-    """Stiffness that a calibrated beam takes from its shell, for other programs."""
+    """Stiffness of a calibrated beam, for use in other programs."""
 
     segments: list[BeamStiffness]
     springs: list[StationSpring]
@@ -138,16 +138,14 @@ class CalibrationCard(SummaryTable):
 class ModelSummary(SummaryTable):
     """Results of one model: ``frequencies`` in Hz, ``seconds`` of wall time by the stage.
 
-    ``wall_time`` in s is what has passed without the compilation of the time loop, while a stage
-    whose results earlier runs have kept has the seconds that it took then.
-    ``first_peak`` by the place; ``peak_contact_force`` in N is a mean over a step where
-    ``resolving_step`` names the step in s that would resolve the blow; ``step_error`` is the change
-    of the tip by the time step, as a part of its range;
-    ``static_tip`` in m is where the tip rests under the constant loads; ``critical_factor`` is that
-    of the axial forces at which the boom with its joints pressed buckles; ``stick_slip`` is what
-    drives of a given stiffness do, by the names of what trajectories hold of their forces. Four are
-    a shell's: ``reduction_errors`` by their kind, ``local_compliance`` in m/N, ``mesh_error`` as a
-    part of it, ``stress``.
+    ``wall_time`` in s excludes the compilation of the time loop. A stage whose results come from an
+    earlier run has the time of that run. ``first_peak`` by place; ``peak_contact_force`` in N is
+    the mean over a step if the step does not resolve the impact, and ``resolving_step`` in s would
+    resolve it; ``step_error`` is the error of the tip by the time step, as a fraction of its range;
+    ``static_tip`` in m is the tip deflection under the constant loads; ``critical_factor``
+    multiplies the axial forces up to buckling with closed joints; ``stick_slip`` has the results of
+    elastic drives, by the names of their forces in trajectories. Shells have ``reduction_errors``
+    by kind, ``local_compliance`` in m/N, ``mesh_error`` as a fraction of it, and ``stress``.
     """
 
     kind: str
@@ -199,7 +197,7 @@ class ModelSummary(SummaryTable):
 
 
 class Whole(SummaryTable):
-    """Two tips until several times in s, as parts of the larger range."""
+    """Differences between two tips until several times in s, as fractions of the larger range."""
 
     until: list[float]
     largest: list[Known]
@@ -207,7 +205,7 @@ class Whole(SummaryTable):
 
 
 class Comparisons(SummaryTable):
-    """Each model against the reference, by its name; ``whole`` where segments rub."""
+    """Comparisons of models with the reference, by name; ``whole`` with friction."""
 
     reference: str
     ensembles: dict[str, Comparison] = {}
@@ -215,23 +213,23 @@ class Comparisons(SummaryTable):
 
 
 class Ensembles(EnsembleTable):
-    """Ensembles as the case requests them, and the cut-off of the slow motion in Hz."""
+    """Data of the ensembles in the case, and the cut-off of the slow motion in Hz."""
 
     slow_below: float | None
 
 
 class Snapshots(SummaryTable):
-    """Names of the pictures, or why there are none."""
+    """Names of the pictures, or the reason why there are none."""
 
     written: list[str]
     skipped: str | None
 
 
 class Summary(SummaryTable):
-    """Content of ``summary.json``: ``models`` that ran, ``failures`` with the reasons of others.
+    """Content of ``summary.json``.
 
-    ``pads`` are those of all models and stations, ``cautions`` lines on the limits of the
-    results.
+    ``models`` has the models that ran, ``failures`` the reasons why others failed; ``pads`` has the
+    pads of all models and stations, ``cautions`` lines on the limits of the results.
     """
 
     title: str
@@ -248,24 +246,24 @@ class Summary(SummaryTable):
 
     @classmethod
     def load(cls, path: Path) -> Summary:
-        """Read a file.
+        """Read ``summary.json``.
 
         Raises:
-            OSError, ValidationError: it cannot be read, or holds something else.
+            OSError, ValidationError: the file cannot be read, or has other content.
         """
         return cls.model_validate_json(path.read_bytes())
 
     def __str__(self) -> str:
-        """Return the file's content."""
+        """Return the content of the file."""
         content = self.model_dump(exclude_unset=True)
         return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def check_finite(part: object) -> None:
-    """Refuse a part of a summary with numbers that JSON cannot hold.
+    """Check that all numbers of a part of a summary are finite.
 
     Raises:
-        NumericsError: a number is infinite, or none.
+        NumericsError: a number is NaN or infinite.
     """
     try:
         json.dumps(to_jsonable_python(part), allow_nan=False)

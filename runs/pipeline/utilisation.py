@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Utilisation of strengths by the motion of a model: steel, slide pads, fatigue details."""
+"""Utilisation of steel, slide pads and fatigue details in the motion of a model."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from geometry.typography import signed
 if TYPE_CHECKING:
     from runs.pipeline.results import Results
 
-# Part of the boom → limit of its load.
+# Kind of part → strength of it.
 LIMITS: Mapping[str, str] = {
     "plate": "yield",
     "outer fibre": "yield",
@@ -21,14 +21,14 @@ LIMITS: Mapping[str, str] = {
 
 
 class Utilisation(NamedTuple):
-    """The largest load on a kind of part, against its strength.
+    """Largest load on a kind of part, compared with its strength.
 
     Args:
-        part: kind of the part, of :data:`LIMITS`; plates are those of shells near pads.
-        segment: its segment.
-        x: in m.
-        load: stress or pressure in Pa; damage of a detail.
-        value: utilisation; None where the strength is not given.
+        part: kind of the part, a key of :data:`LIMITS`; plates are walls of shells near pads.
+        segment: name of the segment.
+        x: position in m.
+        load: stress or pressure in Pa, or damage of a detail.
+        value: utilisation; None if the case gives no strength.
     """
 
     part: str
@@ -38,7 +38,7 @@ class Utilisation(NamedTuple):
     value: float | None
 
     def __str__(self) -> str:
-        """Return value, place and comparison with 1; only with a value."""
+        """Return value, place and comparison with 1; not to be called without a value."""
         assert self.value is not None
         relation = "exceeds" if self.value > 1.0 else "below"
         return (
@@ -48,7 +48,7 @@ class Utilisation(NamedTuple):
 
 
 def utilisations(results: Results, model: str) -> dict[str, Utilisation]:
-    """Return the governing utilisation of each kind of part in a model, else the largest load."""
+    """Return the governing utilisation of each kind of part, or without strengths the load."""
     found: dict[str, Utilisation] = {}
     for one in _loads(results, model):
         other = found.setdefault(one.part, one)

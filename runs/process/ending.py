@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The early end of a process, by Ctrl-C or SIGTERM, or by an error on one rank.
+"""Early end of a process: by Ctrl-C, by SIGTERM, or by an error on one rank.
 
-A signal ends a command with one line at any time. There is no clean-up: incomplete files lie
-beside their places until they are complete, so that a process may end at any moment. Python runs a
-signal's handler between two of its own instructions. Where a compiled loop, or a message of another
-rank, delays the handler, a separate thread does the same.
-
-MPI starts only for a shell: a beam's run neither needs nor imports mpi4py, and the
-other processes of ``mpirun -n N protractile`` have nothing to do.
+A signal ends a command at any time with one line. No clean-up is necessary, since incomplete files
+are never at their final place. Python runs a signal's handler between two of its own instructions.
+If a compiled loop or a message to another rank delays the handler, a separate thread does its work.
+MPI starts only for a shell: a run of beams does not import mpi4py, and the other processes of
+``mpirun -n N protractile`` then have no work.
 """
 
 from __future__ import annotations
@@ -32,18 +30,18 @@ if TYPE_CHECKING:
 
 LINE = b"protractile: interrupted\n"
 
-# Time in s that the thread leaves to the handler.
+# Time in s that the thread waits for the handler.
 GRACE = 1.0
 
-# Clears the line of a progress bar, and shows the cursor again.
+# Escape sequence that clears the line of a progress bar and shows the cursor.
 _CLEAR = b"\r\x1b[K\x1b[?25h"
 
-# Rank from the launcher before MPI starts: Open MPI, PMIx, MPICH and its kin.
+# Environment variables with the rank, before MPI starts: Open MPI, PMIx, MPICH and its derivatives.
 _LAUNCHERS = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK")
 
-# Time in s that another rank's message waits: if rank 0 has failed too, it alone reports.
+# Time in s by which other ranks delay their message: if rank 0 has failed too, it alone reports.
 _GRACE_OF_RANKS = 5.0
-# Time in s that a message may wait for its reader, and between checks whether it was read.
+# Longest time in s that a message waits for its reader, and interval of the checks.
 _UNREAD, _LOOK = 5.0, 1.0e-3
 
 _cleanups: list[Callable[[], object]] = []
@@ -78,7 +76,7 @@ def when_interrupted(work: Callable[[], object]) -> Iterator[None]:
 def launched_rank() -> int | None:
     """Return the rank that a launcher has given this process, None without a launcher."""
     given = (os.environ.get(name, "") for name in _LAUNCHERS)
-    # A value that is no number is ignored.
+    # Values that are not numbers are ignored.
     return next((int(number) for number in given if number.isdecimal()), None)
 
 
@@ -88,9 +86,9 @@ def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
     Args:
         line: the error.
         code: exit status.
-        comm: None before MPI starts. Until then all ranks do the same and end by themselves; the
-            status is rank 0's, since a launcher would cut its message short if another one ended
-            before it with a status other than 0.
+        comm: communicator; None before MPI starts. Until then all ranks fail alike and end by
+            themselves, and only rank 0 has a status other than 0: a launcher truncates its message
+            if another rank ends earlier with an error.
     """
     if comm is None or comm.size == 1:
         if launched_rank():
@@ -107,9 +105,9 @@ def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
 
 
 def _wait_until_read(stream: int) -> None:
-    """Wait until a pipe is empty, so that its reader's own message follows this one.
+    """Wait until a pipe is empty, so that a message of its reader follows this one.
 
-    Otherwise Open MPI 5 puts our line after its own on the abort, on the same line.
+    Otherwise Open MPI 5 appends our line to its own message on the abort.
 
     Args:
         stream: a writable file descriptor; the function waits for pipes only.
@@ -133,13 +131,13 @@ def _watch(caught: int) -> None:
 
 def _end(number: int, frame: object = None) -> None:
     if not _ending.acquire(blocking=False):
-        # The other thread or handler already does this.
+        # The other thread, or the handler, is already ending the process.
         Event().wait()
     _signals.append(number)
     if len(_signals) > 1:
-        # A second signal interrupts this very function, which continues.
+        # A second signal may interrupt this function, which then continues.
         return
-    # The first rank reports for all; it is interrupted when another one is.
+    # The first rank reports for all ranks; an interrupt reaches all of them.
     if not launched_rank():
         with suppress(OSError):
             os.write(2, _CLEAR + LINE if os.isatty(2) else LINE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The progress of a command: bars on a terminal, otherwise occasional lines."""
+"""Display of progress: bars on a terminal, otherwise occasional lines."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from rich.progress import Progress as ProgressBars
 
 from runs.process.terminal import printable, say
 
-# Called with the model's name, the stage, and the completed part of the stage.
+# Callback that receives the name of the model, the stage, and the completed fraction of the stage.
 Progress = Callable[[str, str, float], None]
 
-# Least time in s between two lines; shorter stages print nothing.
+# Shortest time in s between two lines; shorter stages print nothing.
 EVERY = 5.0
 
 
 @contextmanager
 def display(models: Sequence[str] = ()) -> Iterator[Progress]:
-    """Give a function that displays the progress of each stage on stderr.
+    """Yield a function that displays the progress of each stage on stderr.
 
     Args:
         models: names of the models to run, in order.
@@ -45,12 +45,12 @@ def display(models: Sequence[str] = ()) -> Iterator[Progress]:
 
 
 class Lines:
-    """A printer of each model's stage and of the elapsed time.
+    """Printer of each model's stage and of the elapsed time.
 
     Args:
         models: names, in order.
-        say: receives each line.
-        clock: returns the time in s.
+        say: function that receives each line.
+        clock: function that returns the time in s.
     """
 
     def __init__(
@@ -72,7 +72,7 @@ class Lines:
         self._last_time = now
         state = f"{stage} begins"
         if part >= 1.0:
-            # Some stages report their end only.
+            # Some stages report only their end.
             state = f"{stage} took {passed:.0f} s" if passed else f"{stage} is done"
         elif part > 0.0:
             left = passed * (1.0 - part) / part

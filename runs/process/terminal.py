@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Standard output and standard error: printable texts, notices, closed streams."""
+"""Standard output and standard error: printable text, notices, closed streams."""
 
 from __future__ import annotations
 
@@ -13,29 +13,29 @@ from contextlib import contextmanager, suppress
 
 from rich.console import Console
 
-# Users of the package may listen as to any logger of Python's.
+# Logger of notices, which users of the package may configure.
 NOTICES = logging.getLogger("protractile")
 
-# Characters of a message, with its newline, and of a path or a key in it.
+# Maximum number of characters of a message with its newline, and of a path or key in it.
 LONGEST, LONGEST_PART = 300, 120
 
 _GAP = " ... "
 
 
 class Terminal(Console):
-    """A console whose reader may leave early, as ``head`` does."""
+    """Console whose reader may close the pipe early, like ``head``."""
 
     def on_broken_pipe(self) -> None:
-        """Continue: the reader has enough."""
+        """Ignore a closed pipe: the reader needs no more output."""
         _discard_output()
 
 
 def prepare() -> None:
-    """Make closed streams discard output, and others print every letter they can."""
+    """Make closed streams discard output, and others replace characters they cannot print."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:
-            # Open for the life of the process.
+            # This file stays open until the process ends.
             swallowed = io.TextIOWrapper(io.FileIO(os.devnull, "w"), encoding="utf-8")
             setattr(sys, name, swallowed)
         elif isinstance(stream, io.TextIOWrapper):
@@ -44,10 +44,10 @@ def prepare() -> None:
 
 @contextmanager
 def flushed() -> Iterator[None]:
-    """Flush all output of the context, while an error can still be reported.
+    """Flush all output of the context, so that errors can still be reported.
 
     Raises:
-        OSError: the output cannot be written. There is no second attempt.
+        OSError: the output cannot be written; it is not written again.
     """
     try:
         yield
@@ -62,7 +62,7 @@ def flushed() -> Iterator[None]:
 
 
 def say(line: str) -> None:
-    """Write a line to stderr at once, so that no other text comes between it and its newline."""
+    """Write a line with its newline to stderr in one call, so that other output cannot split it."""
     with suppress(OSError):
         sys.stderr.write(f"{line}\n")
         sys.stderr.flush()
@@ -74,8 +74,8 @@ def message(text: str) -> str:
 
 
 def shown(text: str, longest: int = LONGEST_PART) -> str:
-    """Return a printable text, its middle left out if it is long."""
-    # Escaping makes it longer, never shorter: ends of this length are enough.
+    """Return a text in printable form; the middle of a long text is left out."""
+    # Escapes only lengthen a text, so that two ends of this length suffice.
     safe = printable(text if len(text) <= 2 * longest else text[:longest] + text[-longest:])
     if len(safe) <= longest:
         return safe
@@ -92,18 +92,18 @@ def printable(text: str) -> str:
 
 
 def show_notices() -> None:
-    """Print notices from now on, and suppress the warnings of libraries to their callers.
+    """Print notices from now on, and suppress warnings of libraries, which users cannot fix.
 
-    A user cannot fix these. Filters hold as before: tests turn warnings into errors.
+    Explicit warning filters still hold: tests turn warnings into errors.
     """
     NOTICES.addHandler(_LINES)
-    # Some warn while they are imported.
+    # Some libraries warn during import.
     warnings.showwarning = lambda *_, **__: None
     logging.getLogger().addHandler(logging.NullHandler())
 
 
 class _Lines(logging.Handler):
-    """A handler that prints each notice as a line on stderr, once."""
+    """Log handler that prints each notice once, as a line on stderr."""
 
     def __init__(self) -> None:
         super().__init__(logging.WARNING)

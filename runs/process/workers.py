@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Worker processes on other cores: the one place that starts and ends them."""
+"""Worker processes on other cores: the only module that starts and ends processes."""
 
 from __future__ import annotations
 
@@ -15,22 +15,23 @@ from typing import Any
 from runs.process.ending import when_interrupted
 from runs.process.terminal import show_notices
 
-# A process has one thread, though its libraries would use all cores. They give no warnings while
-# imported, nor does the process that counts shared resources when all are killed.
+# Environment of workers: one thread, since libraries would use all cores; no warnings during
+# import, nor from Python's resource tracker when the workers are killed.
 _OF_WORKERS = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 ) | {"PYTHONWARNINGS": "ignore"}
 # Time in s to wait for a killed process.
 _SECONDS_TO_DIE = 1.0
-# Environment variables that turn a process into a rank: Open MPI, PMIx, MPICH and its kin.
+# Prefixes of environment variables that make a process a rank: Open MPI, PMIx, MPICH and its
+# derivatives.
 _OF_RANKS = ("OMPI_", "PMIX_", "PMI_")
 
 
 class _Shielded(ProcessPoolExecutor):
-    """A pool whose processes ignore signals to a whole group, such as Ctrl-C."""
+    """Pool of processes that ignore signals to the process group, such as Ctrl-C."""
 
     def submit(self, work: Callable[..., Any], /, *given: Any, **named: Any) -> Future[Any]:
-        """Submit work as to any executor; the processes start now."""
+        """Submit work, as with any executor; the processes start at the first call."""
         signals = {signal.SIGINT, signal.SIGTERM}
         signal.pthread_sigmask(signal.SIG_BLOCK, signals)
         try:
@@ -41,15 +42,15 @@ class _Shielded(ProcessPoolExecutor):
 
 @contextmanager
 def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[Executor]:
-    """Give an executor of several processes, which end with this one.
+    """Yield an executor of several processes, which end with this one.
 
     Arguments and results are pickled.
 
     Args:
-        count: number of processes; None for one on each core.
-        prepare: first call of each process.
+        count: number of processes; None for one per core.
+        prepare: function that each process calls first.
     """
-    # A process takes these from here when it starts.
+    # New processes inherit these variables.
     outside = {name: os.environ[name] for name in _OF_WORKERS if name in os.environ}
     os.environ.update(_OF_WORKERS)
     pool = _Shielded(count or os.cpu_count(), get_context("spawn"), _start, (prepare,))
@@ -68,12 +69,12 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
 
 @contextmanager
 def helper(prepare: Callable[[], object] = int) -> Iterator[Executor | None]:
-    """Give an executor of one process on another core; None where there is only one core.
+    """Yield an executor of one process on another core; None if there is only one core.
 
-    The process starts with its first work, and ends with this one.
+    The process starts with the first work, and ends with this one.
 
     Args:
-        prepare: its first call.
+        prepare: function that the process calls first.
     """
     if len(os.sched_getaffinity(0)) == 1:
         yield None
@@ -83,7 +84,7 @@ def helper(prepare: Callable[[], object] = int) -> Iterator[Executor | None]:
 
 
 def end() -> None:
-    """End all worker processes of this process, and wait until they have ended."""
+    """End all worker processes, and wait until they have ended."""
     children = active_children()
     for process in children:
         process.kill()
@@ -92,7 +93,7 @@ def end() -> None:
 
 
 def _start(prepare: Callable[[], object]) -> None:
-    """Prevent a process from being a rank, and end it with its parent, which handles interrupts."""
+    """Initialise a worker: it is no rank, ends with its parent, and leaves interrupts to it."""
     show_notices()
     for name in [name for name in os.environ if name.startswith(_OF_RANKS)]:
         del os.environ[name]

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Presentation of a run: tables, figures, pictures, one HTML page."""
+"""Presentation of a run: tables, figures, pictures and an HTML page."""

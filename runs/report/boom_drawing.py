@@ -32,19 +32,18 @@ from runs.report import formatting, theme
 from runs.report.figure_context import LETTERS, Figure, FigureContext
 from runs.report.symbols import PINNED, Symbol, abbreviated, boom_symbols, edges, marker_style
 
-# Part of the panel's height that the outermost section takes where heights are exaggerated.
+# Height of the outermost section as a fraction of the panel, if heights are exaggerated.
 SECTION_SHARE = 0.2
-# Size of the symbols in pt: usual, and where there are many.
+# Size of the symbols in pt: standard, and for many symbols.
 SIGN, SMALL = 15.0, 9.0
-# Heights in inches: of the panel along the boom, of the panel to scale (maximum, minimum), of the
-# sections, of a line of the legend.
+# Heights in inches: panel along the boom, panel to scale (maximum, minimum), sections, line of the
+# legend.
 LYING, HIGHEST, LEAST, SECTIONS, LEGEND_LINE = 1.8, 2.6, 0.7, 1.6, 0.24
-# Above this angle in degrees, this number of sections fits beside the boom.
+# Above this angle in degrees, so many sections fit beside the boom.
 STEEP, BESIDE = 25.0, 3
-# Margin beside the boom, as a part of its length.
+# Margin beside the boom, as a fraction of its length.
 MARGIN = 0.06
-# Maximum number of sections side by side, and the distance between two as a part of the largest
-# width.
+# Maximum number of sections side by side, and their distance as a fraction of the largest width.
 MOST, GAP = 8, 0.35
 
 CAPTION = (
@@ -55,15 +54,15 @@ CAPTION = (
 
 @dataclass(slots=True)
 class Panel:
-    """A drawing of the boom with the meanings of its symbols.
+    """Panel with a drawing of the boom, and the meanings of its symbols.
 
     Args:
-        axes: of the drawing.
-        boom: to be drawn.
-        angle: of the boom, in degrees.
+        axes: axes of the drawing.
+        boom: the boom.
+        angle: angle of the boom in degrees.
         larger: factor by which heights are exaggerated.
-        whole: whether the panel shows all of the boom without details.
-        meanings: text of the legend → its symbol.
+        whole: whether the panel shows the whole boom without details.
+        meanings: symbols by their texts in the legend.
     """
 
     axes: Axes
@@ -75,7 +74,7 @@ class Panel:
 
     @property
     def turn(self) -> Transform:
-        """Transform from x and z in m to the panel's coordinates."""
+        """The transform from x and z in m to coordinates of the panel."""
         return Affine2D().scale(1.0, self.larger).rotate_deg(self.angle)
 
     def outline(self, corners: Sequence[tuple[float, float]] | Array, **given: Any) -> None:
@@ -107,23 +106,23 @@ def boom(run: FigureContext) -> list[Figure]:
 
 
 def draw_boom_of(case: Case, path: Path) -> None:
-    """Draw a case's boom: to scale, along itself with exaggerated heights, and its sections.
+    """Draw a case's boom to scale, then with exaggerated heights, and its sections.
 
     Args:
-        case: with the boom.
-        path: of the PNG file.
+        case: case with the boom.
+        path: path of the PNG file.
     """
     with rc_context(theme.RC):
         boom_sheet(case, build_boom(case)).savefig(path, format="png")
 
 
 def save_drawing(case: Case, file: str, picture: str) -> None:
-    """Draw a case's boom into a file, written completely or not at all.
+    """Draw a case's boom into a file, which is complete or absent.
 
     Args:
-        case: with the boom.
+        case: case with the boom.
         file: name of the case in messages.
-        picture: path of the drawing, as the user gave it.
+        picture: path of the drawing as the user gave it.
 
     Raises:
         BadInput: the path does not end with ``.png``.
@@ -135,7 +134,7 @@ def save_drawing(case: Case, file: str, picture: str) -> None:
 
 
 def boom_sheet(case: Case, boom: Boom) -> Sheet:
-    """Return the sheet of the drawing, not yet written to the disk."""
+    """Return the sheet of the drawing."""
     angle = 0.0 if case.gravity is None else case.gravity.angle
     low, high = _extent(boom, angle)
     sections = [
@@ -207,7 +206,7 @@ def _draw_along(panel: Panel, symbols: Sequence[Symbol]) -> None:
     _draw(panel, symbols)
     boom, axes, larger = panel.boom, panel.axes, panel.larger
     for number, segment in enumerate(boom.segments):
-        # Many names stand on two lines above the visible part.
+        # Many names are written on two lines above the visible part.
         hidden = boom.segments[number - 1].end if number else segment.start
         middle = 0.5 * (max(hidden, segment.start) + segment.end)
         axes.annotate(
@@ -283,7 +282,7 @@ def _draw_stations(panel: Panel, joint: Joint) -> None:
 
 
 def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
-    """Draw a cylinder from lug to ground; without its lower part where details are shown."""
+    """Draw a cylinder from lug to ground; the detailed panel omits its lower part."""
     lug, ground = np.array([cylinder.x, -cylinder.depth]), np.array(cylinder.ground)
     if not panel.whole:
         ground = lug + (ground - lug) * min(1.0, 0.6 / panel.larger)
@@ -338,7 +337,7 @@ def _several(values: Iterable[float]) -> str:
 
 
 def _draw_sections(axes: Axes, sections: Sequence[tuple[str, Section]]) -> None:
-    """Draw sections side by side to one scale, with their dimensions in mm below."""
+    """Draw sections side by side to one scale, with their dimensions in mm below them."""
     widest = max(section.size("y") for _, section in sections)
     lowest = min(section.reach("z")[0] for _, section in sections)
     highest = max(section.reach("z")[1] for _, section in sections)
@@ -372,7 +371,7 @@ def _thick(plate: Plate) -> Array:
 
 
 def _walls(section: Section) -> str:
-    """Return thicknesses in mm, by name where webs (shear along z) and flanges differ."""
+    """Return the wall thicknesses in mm as text, of webs (shear along z) and flanges."""
     webs = {number for number, _ in section.shear_plates("z")}
     thick = [round(1e3 * plate.thickness, 1) for plate in section.plates]
     web, flange = (

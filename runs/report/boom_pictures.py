@@ -27,22 +27,22 @@ from runs.report.symbols import marker_style
 
 PIXELS = (SHEET[0], 470)
 
-# Size of the symbols in pt, and length of a cylinder in pixels.
+# Size of the symbols in pt, and drawn length of a cylinder in pixels.
 SIGN, CYLINDER = 30.0, 70.0
 
 
 @dataclass(frozen=True, slots=True)
 class BoomView:
-    """View settings that all pictures of a boom share, for comparison.
+    """View settings that all pictures of a boom share, so that they can be compared.
 
     Args:
-        scene: in motion.
-        scale: of displacements and play.
-        largest: magnitude of deflection in mm.
-        camera: shows the boom at every instant.
-        span: the least and the largest x in m of the boom.
+        scene: scene of the boom in motion.
+        scale: magnification of displacements and play.
+        largest: largest magnitude of the deflection in mm.
+        camera: camera that shows the boom at every instant.
+        span: smallest and largest x of the boom in m.
         rest: pyvista surface of the undeformed boom.
-        edges: its sharp edges.
+        edges: sharp edges of the undeformed boom.
     """
 
     scene: Scene
@@ -61,9 +61,9 @@ class BoomView:
         pixels: tuple[int, int] = PIXELS,
         displacement: float = DISPLACEMENT_DRAWN,
     ) -> BoomView:
-        """Return the view for pictures of these instants, of a given number of pixels each way.
+        """Return the view for pictures of these instants, with a size in pixels.
 
-        Displacements are magnified up to a part of the boom's length.
+        Displacements are magnified up to a fraction of the boom's length.
         """
         times = [instant.time for instant in instants]
         heights = [moved[:, 2] for moved in scene.displacements(times)]
@@ -79,7 +79,7 @@ class BoomView:
         return cls(
             scene=scene,
             scale=scale,
-            # A colour scale needs two different ends, even at rest.
+            # A colour scale needs two different ends, even for a boom at rest.
             largest=1.0e3 * max(high, -low, SAME_PLACE),
             camera=Camera(centre, width, pixels, elevation=10.0),
             span=(begin, end),
@@ -88,19 +88,19 @@ class BoomView:
         )
 
     def places(self, moved: Array, time: float) -> Array:
-        """Return points (num_points, 3) in the picture, displaced by (num_points, 3) in m."""
+        """Return the displayed points (num_points, 3), for displacements (num_points, 3) in m."""
         places = self.scene.magnify(moved, self.scale)
         places[:, 0] += self.scene.along(time)
         return places
 
     def edges_at(self, places: Array) -> Any:
-        """Return the sharp edges of the boom as a pyvista mesh at the displaced points."""
+        """Return the sharp edges of the boom at the displayed points, as a pyvista mesh."""
         edges = self.edges.copy()
         edges.points = places[edges["number"]]
         return edges
 
     def draw_marks(self, sheet: Sheet, places: Array) -> str:
-        """Draw the symbols of supports and loads on a sheet; return their meanings in words."""
+        """Draw the symbols of supports and loads on a sheet; return the text of a legend."""
         scene, axes = self.scene, sheet.picture
         shown = [symbol for symbol in scene.symbols if len(symbol.places) == 1]
         for symbol in shown:
@@ -131,11 +131,11 @@ def draw_boom(
     """Draw the deformed boom above the deflection of its tip over time.
 
     Args:
-        view: of the boom.
-        instants: of the pictures.
+        view: view of the boom.
+        instants: instants of the pictures.
         until: last time in s of the tip's curve.
         pace: speed of a film relative to real time.
-        part: see :class:`runs.report.sheet.Sheet`.
+        part: size factor of the sheet, see :class:`runs.report.sheet.Sheet`.
     """
     scene, camera = view.scene, view.camera
     time, tip = scene.motion["time"].values, 1.0e3 * scene.motion["tip"].values
@@ -151,7 +151,8 @@ def draw_boom(
     curve.plot(time, tip, color=theme.FAINT, linewidth=2)
     curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
     with stage(camera.pixels, part) as plotter:
-        # Slightly behind the boom, where it would otherwise show through parts that hardly move.
+        # The undeformed boom is drawn slightly behind, so that it does not show through parts that
+        # hardly move.
         behind = view.edges_at(view.rest.points + np.array([0.0, 0.02, 0.0]))
         plotter.add_mesh(behind, color=theme.FAINT, line_width=3.0 * part, lighting=False)
         boom = view.rest.copy()

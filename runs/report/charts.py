@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Interactive curves over time (zoom, hover, hide) beside their static pictures, by plotly.
+"""Interactive charts of curves over time by plotly, in addition to static pictures.
 
-A page carries plotly.js once, compressed, and the numbers of each chart as 32-bit floats: seven
-digits of the values in the netCDF file.
+A page contains plotly.js once, compressed, and the numbers of each chart as 32-bit floats, which
+have seven digits.
 """
 
 from __future__ import annotations
@@ -20,28 +20,28 @@ import numpy as np
 from geometry.arrays import Array
 from runs.report import theme
 
-# A curve with more samples is reduced to the minimum and maximum of each of half as many intervals:
-# more than a screen has columns.
+# Maximum number of samples of a curve. Longer curves are reduced to the minimum and maximum of half
+# as many intervals, which are more than a screen has columns.
 MOST = 12_000
-# Heights in pixels of a panel, and of the legend and the axis below all panels.
+# Heights in pixels: panel; legend and axis below all panels.
 PANEL, BELOW = 150, 314
-# Part of the height between panels.
+# Fraction of the height between panels.
 GAP = 0.14
 
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """One line of a chart.
+    """Curve of a chart.
 
     Args:
-        name: of the model or of another source.
+        name: name of the model or of another source.
         values: (num_times,) in the unit of the chart.
-        color: as CSS has it.
-        dashes: by plotly's name.
-        shown: whether the curve is visible at first, else on demand.
-        panel: position of its panel.
-        band: (num_times,) each, lower and upper limit.
-        at: (num_times,) its own abscissa; that of the chart unless given.
+        color: colour in CSS notation.
+        dashes: plotly's name of the line style.
+        shown: whether the curve is visible at first, or only on demand.
+        panel: index of its panel.
+        band: lower and upper limit, (num_times,) each.
+        at: abscissa (num_times,); that of the chart unless given.
     """
 
     name: str
@@ -56,14 +56,14 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """Curves over a common time, in panels above one another.
+    """Chart of curves over a common time, in panels above one another.
 
     Args:
         time: (num_times,) in s, or another abscissa.
-        heading: of the ordinate, with its unit.
-        curves: of all panels.
-        panels: their titles.
-        window: of time shown at first, in s; all of it unless given.
+        heading: heading of the ordinate, with its unit.
+        curves: curves of all panels.
+        panels: titles of the panels.
+        window: initially visible time window in s; the whole time unless given.
         along: heading of the abscissa.
     """
 
@@ -76,12 +76,12 @@ class Chart:
 
     @property
     def thinned(self) -> bool:
-        """Whether the chart leaves out samples."""
+        """True if the chart omits samples."""
         return self.time.size > MOST
 
     @property
     def figure(self) -> Any:
-        """Figure of plotly; curves without an abscissa have ``layout.meta.x``."""
+        """The figure for plotly; curves without an abscissa use ``layout.meta.x``."""
         from plotly.graph_objects import Figure
 
         count = len(self.panels)
@@ -125,7 +125,7 @@ class Chart:
         return Figure(traces, layout)
 
     def _traces(self, curve: Curve, named: bool) -> Iterator[dict[str, Any]]:
-        """Yield the limits of the curve's band, and its line, in the legend where it is named."""
+        """Yield the limits of a curve's band, then its line; ``named`` puts it into the legend."""
         common: dict[str, Any] = {
             "type": "scatter",
             "mode": "lines",
@@ -160,12 +160,12 @@ class Chart:
 
 
 def _axis(name: str, panel: int) -> str:
-    """Return plotly's name of the axis of a panel: ``y``, ``y2`` and so forth."""
+    """Return plotly's name of an axis of a panel: ``y``, ``y2`` and so on."""
     return f"{name}{panel + 1 if panel else ''}"
 
 
 def extremes(values: Array, stretches: int) -> np.ndarray[Any, np.dtype[np.intp]]:
-    """Return sorted numbers (num_kept,) of the minimum and maximum sample of each interval."""
+    """Return the sorted indices (num_kept,) of the minimum and maximum sample of each interval."""
     ends = np.linspace(0, values.size, stretches + 1).astype(int)
     known = np.nan_to_num(values)
     kept = {
@@ -177,7 +177,7 @@ def extremes(values: Array, stretches: int) -> np.ndarray[Any, np.dtype[np.intp]
 
 
 def packed_charts(charts: Mapping[str, Chart]) -> str:
-    """Return all charts of a page by the names of their figures, as JSON escaped for HTML."""
+    """Return the charts of a page, by the names of their figures, as JSON escaped for HTML."""
     from plotly.io.json import to_json_plotly
 
     return str(to_json_plotly({name: chart.figure.to_dict() for name, chart in charts.items()}))

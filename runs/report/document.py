@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Presentation of a run: one self-contained HTML file, and the tables of the terminal."""
+"""The report of a run: one self-contained HTML file."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from runs.report.summary_table import (
 )
 from runs.report.tables import Table
 
-# Kinds of pictures in the order of their numbers.
+# Kinds of pictures, in the order of their numbers.
 PARTS = "case", "motion", "rest", "snapshots", "horizons", "numerics"
 
 
@@ -36,16 +36,16 @@ def render(
     snapshots: Sequence[Figure],
     viewer: str = "",
 ) -> str:
-    """Return the report as HTML: every picture and script inside, no external resource.
+    """Return the report as HTML, with all pictures and scripts embedded.
+
+    Without plotly the report has only static pictures of curves.
 
     Args:
-        results: one run.
-        addition: of a client.
-        figures: on disk.
-        snapshots: on disk.
+        results: results of the run.
+        addition: addition of a client.
+        figures: figures on the disk.
+        snapshots: snapshots on the disk.
         viewer: file of the interactive viewer beside the report.
-
-    Without plotly the report shows static pictures of curves only.
     """
     summary = summary_table(results)
     tables: dict[str, list[Table]] = {
@@ -94,7 +94,7 @@ def render(
 
 
 def _numbered(kind: str, things: Iterable[Table | Figure]) -> list[tuple[Table | Figure, str]]:
-    """Return each item with its label, *Table 1* and so forth, with a no-break space."""
+    """Return each item with its label, such as *Table 1*, with a no-break space."""
     return [(thing, f"{kind}\N{NO-BREAK SPACE}{i}") for i, thing in enumerate(things, start=1)]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Context that all figures of a run share: numbers, one line style per model, sheets, the disk."""
+"""Context of all figures of a run: data, one line style per model, sheets, files."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ from runs.report.charts import Chart, Curve
 # Parts of the report to which figures belong.
 Part = Literal["case", "motion", "rest", "horizons", "numerics"]
 
-# Widths of background curves, as a part of those of the leading curves.
+# Widths of background curves, as a fraction of those of the leading curves.
 BEHIND = 0.5
-# A close-up lasts this multiple of the time of the first peak.
+# Duration of a close-up, as a multiple of the time of the first peak.
 PAST = 1.3
-# An axis spans at least this part of its quantity's scale.
+# Least span of an axis, as a fraction of the scale of its quantity.
 HARDLY_CHANGES = 0.02
 # Line styles of drives.
 EXTENSIONS = ("-", "--", "-.", ":")
-# Characters of a label that fit in one of two columns of a legend.
+# Number of characters that fit in one of two columns of a legend.
 LETTERS = 30
 # Plotly's names of the line styles.
 CHART_DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
@@ -47,14 +47,14 @@ THINNED = (
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A picture on disk with its title and caption.
+    """Picture on the disk with title and caption.
 
     Args:
-        path: PNG or GIF.
+        path: path of the PNG or GIF file.
         title: one line.
         caption: sentences.
-        part: of the report to which the figure belongs.
-        chart: the same curves as an interactive chart.
+        part: part of the report to which the figure belongs.
+        chart: interactive chart of the same curves.
     """
 
     path: Path
@@ -65,7 +65,7 @@ class Figure:
 
     @property
     def anchor(self) -> str:
-        """Target of links in the report."""
+        """The target of links in the report."""
         return f"figure-{self.path.stem}"
 
 
@@ -99,7 +99,7 @@ class FigureContext:
         return np.asarray(values.transpose(*dims).values, dtype=float)
 
     def stations(self) -> list[str]:
-        """Return the names of the stations' panels."""
+        """Return the titles of the stations' panels."""
         places = self.data["station"]
         lateral = places["direction"] == "y" if "direction" in places.coords else places.isnull()
         return [
@@ -117,7 +117,7 @@ class FigureContext:
         marker: str = "",
         alone: bool = False,
     ) -> None:
-        """Draw a curve of one model, without dashes where it is alone in its panel."""
+        """Draw a curve of one model; it has no dashes if it is alone in its panel."""
         stroke = self.strokes[name]
         behind = not alone and name not in self.leading
         axes.plot(
@@ -133,7 +133,7 @@ class FigureContext:
         )
 
     def curve(self, name: str, values: Array, panel: int = 0, **more: Any) -> Curve:
-        """Return the curve for a chart, whose axes are in the unit of the values."""
+        """Return a model's curve for a chart; values are in the unit of the axis."""
         stroke = self.strokes[name]
         dashes, shown = CHART_DASHES[stroke.linestyle], name in self.leading
         return Curve(self.labels[name], values, stroke.color, dashes, shown, panel, **more)
@@ -149,13 +149,13 @@ class FigureContext:
     def over_time(
         self, panels: int, height: float, end: float | None = None, share_y: bool = False
     ) -> tuple[Sheet, list[Axes]]:
-        """Return a sheet of :func:`new_sheet` over time, with the extension by the drives.
+        """Return a sheet of :func:`new_sheet` over time, with the extension by drives.
 
-        The time ends with the run unless an end is given in s.
+        Time ends with the run unless an end is given in s.
         """
         sheet, column = new_sheet(panels, height, share_y)
         column[-1].set(xlabel="time (s)", xlim=(0.0, self.time[-1] if end is None else end))
-        # Segments that move together are one line.
+        # Segments that move together share one line.
         together: dict[tuple[float, ...], list[str]] = {}
         for suffix, inner in self.case.driven.items():
             if f"drawn_out{suffix}" in self.data:
@@ -174,19 +174,19 @@ class FigureContext:
 
     @cached_property
     def tips(self) -> list[str]:
-        """Displacements of the tip, that of the largest amplitude first."""
+        """The displacements of the tip, largest amplitude first."""
         return tip_directions(self.data)
 
     @property
     def stays_pressed(self) -> bool:
-        """Whether no contact opens, so that no impact amplifies small differences."""
+        """True if no contact opens, so that no impact amplifies small differences."""
         touching = self.with_play if "contact_force" in self.data else ()
         forces = [self.of(name, "contact_force") for name in touching]
         return all(bool((np.nan_to_num(force) != 0.0).all()) for force in forces)
 
     @property
     def first_stretch(self) -> float:
-        """Time until shortly after the first tip peaks in s; the whole run without peaks."""
+        """The time in s until shortly after the first tip peaks; the whole run without peaks."""
         found = (self.summary[name].first_peak[self.tips[0]].time for name in self.models)
         peaks = [time for time in found if time is not None]
         end = float(self.time[-1])
@@ -202,7 +202,7 @@ class FigureContext:
         part: Part = "motion",
         chart: Chart | None = None,
     ) -> Figure:
-        """Add title and legend, write the file, and return the :class:`Figure`."""
+        """Add title and legend to a sheet, write the file, and return the :class:`Figure`."""
         if legend_of is not None:
             named: dict[str, Artist] = {}
             for axes in sheet.axes:
@@ -212,7 +212,7 @@ class FigureContext:
             sheet.legend([*named.values()], [*named], loc="outside lower left", ncols=columns)
         sheet.suptitle(title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
         path = self.folder / f"{stem}.png"
-        # An existing file shows the same numbers.
+        # An existing file has the same data.
         if not path.exists():
             sheet.savefig(path)
         if chart is not None and chart.thinned:
@@ -221,19 +221,19 @@ class FigureContext:
 
 
 def tip_directions(trajectories: xr.Dataset) -> list[str]:
-    """Return the names of the tip's displacements, that of the largest amplitude first."""
+    """Return the names of the tip's displacements, largest amplitude first."""
     places = [name for name in ("tip", "tip_lateral") if name in trajectories]
     spans = {name: float(np.ptp(trajectories[name].values, axis=-1).max()) for name in places}
     return sorted(places, key=lambda name: -spans[name])
 
 
 def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet, list[Axes]]:
-    """Return a sheet with panels above one another that share their time.
+    """Return a sheet with panels above one another, which share the time axis.
 
     Args:
         panels: number of panels.
-        height: of the sheet in inches.
-        share_y: whether the panels share a scale.
+        height: height of the sheet in inches.
+        share_y: whether the panels share the vertical scale.
     """
     sheet = Sheet(figsize=(theme.WIDTH, height))
     theme.Canvas(sheet)
@@ -242,7 +242,7 @@ def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet,
 
 
 def no_closer(axes: Axes) -> None:
-    """Widen the limits around an almost constant curve, so that round-off is not drawn."""
+    """Widen the limits of an axis around an almost constant curve, to hide round-off."""
     low, high = axes.get_ylim()
     least = HARDLY_CHANGES * max(abs(low), abs(high))
     if high - low < least:
@@ -251,23 +251,23 @@ def no_closer(axes: Axes) -> None:
 
 
 def farthest(values: Sequence[float] | Array) -> float:
-    """Return the finite value of largest magnitude, with its sign; NaN if there are none."""
+    """Return the finite value of largest magnitude, with its sign; NaN without finite values."""
     finite = np.asarray(values)[np.isfinite(values)]
     return float(finite[np.abs(finite).argmax()]) if finite.size else float("nan")
 
 
 def highest(values: Sequence[float] | Array) -> float:
-    """Return the largest finite value, NaN if there are none."""
+    """Return the largest finite value; NaN without finite values."""
     finite = np.asarray(values)[np.isfinite(values)]
     return float(finite.max()) if finite.size else float("nan")
 
 
 def of_start(case: Case) -> str:
-    """Return a sentence on initial positions for figures over x; empty without telescoping."""
+    """Return the sentence that x is the initial position; empty without telescoping."""
     return " Positions x are those of t = 0 and move with their segments." if case.driven else ""
 
 
 def of_rests(case: Case, rests: Iterable[StaticResult]) -> str:
-    """Return a sentence on the extension of the boom at rest; empty without telescoping."""
+    """Return a sentence on the extensions of the states at rest; empty without telescoping."""
     times = [f"{time:g}" for time in sorted({rest.time for rest in rests})]
     return f" Extension as at {listed(times)} s." if case.driven and times else ""

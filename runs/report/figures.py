@@ -60,11 +60,11 @@ FIGURES: Sequence[Callable[[FigureContext], list[Figure]]] = (
 
 
 def draw(results: Results, folder: Path) -> list[Figure]:
-    """Draw all figures for which a run has the numbers.
+    """Draw all figures for which a run has data.
 
     Args:
-        results: one run.
-        folder: of the PNG files; it must exist. Existing files are kept.
+        results: results of the run.
+        folder: folder of the PNG files; it must exist. Existing files are kept.
     """
     with matplotlib.rc_context(theme.RC):
         run = FigureContext(results, folder)
@@ -72,7 +72,7 @@ def draw(results: Results, folder: Path) -> list[Figure]:
 
 
 def draw_in(results: Results, folder: Path) -> list[Figure]:
-    """Draw figures into a run's folder, in place of all earlier ones of other data."""
+    """Draw the figures into a run's folder; remove figures of other data."""
     figures, known = folder / FOLDER, folder / DRAWN_OF
     drawn_of = _drawn_of(results, folder)
     figures.mkdir(exist_ok=True)
@@ -87,7 +87,7 @@ def draw_in(results: Results, folder: Path) -> list[Figure]:
 
 
 def _drawn_of(results: Results, folder: Path) -> str:
-    """Return the SHA-256 of all that determines the figures: data and this program."""
+    """Return the SHA-256 of the data and of this program, which determine the figures."""
     bare = results.summary.model_copy(update={"snapshots": Snapshots(written=[], skipped=None)})
     digest = sha256(json.dumps([str(bare), program(), matplotlib.__version__]).encode())
     for path in (folder / name for name in (CASE, TRAJECTORIES, ENSEMBLES)):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Forces and stresses over time: contact and friction at stations, drives, stresses near these."""
+"""Figures of forces and stresses over time: contact, friction, drives, walls of shells."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ from runs.report.figure_context import (
 )
 from runs.report.formatting import fixed
 
-# Over a whole run only the maximum of each of this number of intervals is visible.
+# Number of intervals of a run whose maxima are drawn.
 FORCE_BINS = 100
-# Contact forces below this value in N count as zero in a picture.
+# Contact force in N below which it counts as zero in a picture.
 LEAST_FORCE = 1000.0
-# Impacts follow one another within milliseconds; the mean over this time in s supports the boom.
+# Averaging time in s of contact forces: impacts follow one another within milliseconds.
 FORCE_WINDOW = 0.010
-# Labels of a logarithmic axis that fit a panel of two inches.
+# Number of labels of a logarithmic axis that fit a panel of two inches.
 MOST_LABELS = 7
-# Margin above the largest and below the smallest mark, as a factor.
+# Margin factor above the largest and below the smallest mark.
 LOG_MARGIN = 1.2
 
 
 def first_contacts(run: FigureContext) -> list[Figure]:
-    """Draw the mean contact force at each station while single contacts are distinguishable."""
+    """Draw the mean contact force at each station during the first contacts."""
     if not _touches(run):
         return []
     end = run.first_stretch
@@ -116,7 +116,7 @@ def friction(run: FigureContext) -> list[Figure]:
 
 
 def running_mean(run: FigureContext, force: Array) -> Array:
-    """Return the running mean (num_times,) over the window of impacts, at most over the run."""
+    """Return the running mean (num_times,) of a force over the averaging time, at most the run."""
     width = min(max(1, round(FORCE_WINDOW / (run.time[1] - run.time[0]))), force.size)
     window = np.ones(width)
     held = np.convolve(np.ones(force.size), window, mode="same")
@@ -128,7 +128,7 @@ def _touches(run: FigureContext) -> bool:
 
 
 def _log_scale(panels: Sequence[Axes], values: Array) -> None:
-    """Set one logarithmic scale for all panels, with labels however few decades it spans."""
+    """Set one logarithmic scale for all panels, with labels even if it spans few decades."""
     known = values[np.isfinite(values)]
     if known.size == 0:
         return
@@ -210,7 +210,7 @@ def _of_drive(
     title: str,
     caption: str,
 ) -> Figure:
-    """Draw two results of a drive in all models, given by their headings."""
+    """Draw several results of a drive, one panel for each, in all models."""
     sheet, panels = run.over_time(2, 5.2)
     curves = []
     for panel, (axes, (label, values)) in enumerate(zip(panels, shown.items(), strict=True)):

@@ -13,7 +13,7 @@ _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def scientific(number: float, digits: int = 1) -> str:
-    """Return 8 × 10⁻⁵ for 8e-05, with at most a given number of significant digits."""
+    """Return a number in scientific notation, such as 8 × 10⁻⁵, with at most some digits."""
     mantissa, exponent = f"{number:.{digits - 1}e}".split("e")
     return f"{signed(f'{float(mantissa):g}')} × 10{str(int(exponent)).translate(_SUPERSCRIPT)}"
 
@@ -22,7 +22,7 @@ NONE = "–"
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """Return a number with a given number of significant digits; ``NONE`` for none."""
+    """Return a number with a given number of significant digits; ``NONE`` for None."""
     if value is None or not math.isfinite(value):
         return NONE
     if value == 0.0 or 1.0e-3 <= abs(value) < 1.0e5:
@@ -43,23 +43,23 @@ def amount(value: float, unit: str) -> str:
 
 
 def percent(part: float, digits: int = 3) -> str:
-    """Return a part in percent, with a given number of significant digits."""
+    """Return a fraction in percent, with a given number of significant digits."""
     return f"{number(TO_PERCENT * part, digits)} %"
 
 
 def fixed(value: float | None, decimals: int, factor: float = 1.0) -> str:
-    """Return a number times a factor, with a given number of decimals; ``NONE`` for none."""
+    """Return a number times a factor, with a given number of decimals; ``NONE`` for None."""
     if value is None or not math.isfinite(value):
         return NONE
-    # Adding zero removes the sign of a number that is rounded to zero.
+    # Adding 0 removes the sign of a number that is rounded to zero.
     return signed(f"{round(factor * value, decimals) + 0.0:.{decimals}f}")
 
 
 def repeated(values: Sequence[float]) -> str:
-    """Return the median of repetitions with the digits that their spread leaves.
+    """Return the median of repeated measurements, with the digits that their spread leaves.
 
-    The text starts with ``~`` where no digit is left. The spread is half the range; its first digit
-    is the last that is shown. A single value has no known spread and is shown with one digit.
+    The spread is half the range; its first digit is the last digit of the text. The text starts
+    with ``~`` if no digit is left. A single value has no known spread and gets one digit.
     """
     middle = median(values)
     if middle == 0.0 or not math.isfinite(middle):
@@ -74,5 +74,5 @@ def repeated(values: Sequence[float]) -> str:
 
 
 def count(whole: float) -> str:
-    """Return an integer as ``11 194 798``, with no-break spaces."""
+    """Return an integer as text like ``11 194 798``, with no-break spaces."""
     return f"{whole:,.0f}".replace(",", "\N{NO-BREAK SPACE}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Models of a run as tables: results, steps, contact laws, calibrations, section forces."""
+"""Tables of the models of a run: results, steps, contact laws, calibrations, wall forces."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def model_tables(results: Results) -> list[Table]:
-    """Return the tables of the models' results and methods, where they apply."""
+    """Return the tables of the models' results and methods that apply to a run."""
     found = (
         model_table(results),
         step_table(results),
@@ -36,7 +36,7 @@ def model_tables(results: Results) -> list[Table]:
 
 
 def model_table(results: Results) -> Table:
-    """Return the results of each model in the case's order, failed models last."""
+    """Return the table of the models' results, in the order of the case; failed models are last."""
     summary, duration = results.summary, results.case.time.duration
     models = list(summary.models.values())
     failed = [model for model in results.case.models if model.name in summary.failures]
@@ -78,7 +78,7 @@ def model_table(results: Results) -> Table:
 
 
 def metric_columns(kind: type, rows: Sequence[object]) -> list[Column]:
-    """Return the columns that a kind of record declares for tables, a row for each record."""
+    """Return the columns of a kind of record, with a row for each record."""
     return [
         Column(one.heading, [getattr(row, name) for row in rows], one.form, one.unit_of_heading)
         for name, one in metrics(kind).items()
@@ -87,16 +87,16 @@ def metric_columns(kind: type, rows: Sequence[object]) -> list[Column]:
 
 
 def _peak_force(model: ModelSummary) -> Cell:
-    """Return the peak contact force, marked where the step does not resolve the impact."""
+    """Return the peak contact force, with a mark if the step does not resolve the impact."""
     if model.resolving_step is None or model.peak_contact_force is None:
         return model.peak_contact_force
     return f"≥ {number(TO_KILO * model.peak_contact_force)}"
 
 
 def horizon_column(models: list[ModelSummary], share: float, duration: float) -> Column:
-    """Return the time at which members of each ensemble differ by a share of the tip's range.
+    """Return the times at which members of each ensemble differ by a share of the tip's range.
 
-    The cell is ``> 10`` where they do not within 10 s.
+    A cell is, for example, ``> 10`` if they do not differ so much within 10 s.
     """
 
     def horizon(model: ModelSummary) -> Cell:
@@ -110,7 +110,7 @@ def horizon_column(models: list[ModelSummary], share: float, duration: float) ->
 
 
 def step_table(results: Results) -> Table:
-    """Return the number of steps of each model, and the number that its motion needs."""
+    """Return the table of the models' numbers of steps, and of the necessary numbers."""
     models = results.summary.models.values()
     columns = [
         Column("model", list(results.summary.models)),
@@ -138,7 +138,7 @@ def step_table(results: Results) -> Table:
 
 
 def law_table(results: Results) -> Table | None:
-    """Return the contact law of each joint in each model, with the resulting first peak."""
+    """Return the table of the contact laws of joints in each model, with the first peak."""
     found = [
         (model.name, joint, seen.contact)
         for model in results.ran
@@ -172,7 +172,7 @@ def law_table(results: Results) -> Table | None:
 
 
 def space_table(results: Results) -> Table | None:
-    """Return first peaks along both directions against the reference; None for a planar boom."""
+    """Return the table of first peaks along y and z; None for a planar boom."""
     models, duration = results.summary.models, results.case.time.duration
     reference = results.reference
     if reference is None or "tip_lateral" not in models[reference].first_peak:
@@ -191,7 +191,7 @@ def space_table(results: Results) -> Table | None:
 
 
 def buckling_table(results: Results) -> Table | None:
-    """Return ratios of axial forces to buckling loads; None without axial forces."""
+    """Return the table of axial forces over buckling loads; None without axial forces."""
     models = results.summary.models
     factors = [model.critical_factor for model in models.values()]
     tips = [model.static_tip for model in models.values()]
@@ -211,7 +211,7 @@ def buckling_table(results: Results) -> Table | None:
 
 
 def _first_peak(peak: FirstPeak, duration: float) -> tuple[Cell, Cell]:
-    """Return time and height of the first peak, or a remark where there is none."""
+    """Return time and height of the first peak, or a remark if there is none."""
     return peak if peak.height is not None else ("no peak", f"within {duration:g} s")
 
 
@@ -220,7 +220,7 @@ def _off(height: float | None, other: float | None) -> float | None:
 
 
 def wall_table(results: Results) -> Table | None:
-    """Return section forces of plates at the time of maximum stress; None without shells."""
+    """Return the table of wall forces at the time of maximum stress; None without shells."""
     shells = {n: model.stress for n, model in results.summary.models.items() if model.stress}
     walls = [
         (name, section, wall, carried)
@@ -251,7 +251,7 @@ def wall_table(results: Results) -> Table | None:
 
 
 def _largest(case: Case, stress: StressSummary) -> str:
-    """Return the design stress, a mean over a patch, before the stress at the instant."""
+    """Return the design stress, which is a mean over a patch, and the stress at the instant."""
     triangle = (
         f"single triangle, beside a line of contact the more the finer the mesh: "
         f"{number(TO_MEGA * stress.von_mises, 3)} MPa{_of_yield(case, stress)} at "
@@ -268,7 +268,7 @@ def _largest(case: Case, stress: StressSummary) -> str:
 
 
 def _of_yield(case: Case, stress: StressSummary | LargestPatch) -> str:
-    """Return the utilisation of the yield strength, where the case specifies it."""
+    """Return the utilisation of the yield strength, if the case specifies it."""
     names = [segment.name for segment in case.segments]
     strength = material_of(case, names.index(stress.segment)).yield_strength
     if strength is None:
@@ -277,7 +277,7 @@ def _of_yield(case: Case, stress: StressSummary | LargestPatch) -> str:
 
 
 def calibration_tables(results: Results) -> list[Table]:
-    """Return segments and springs of calibrated beams; those of one shell share them."""
+    """Return the tables of segments and springs of calibrated beams, one pair per shell."""
     cards = {
         name: model.calibration
         for name, model in results.summary.models.items()

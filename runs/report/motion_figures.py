@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Motion over time: tip and heads with their ensembles, predictability, energies."""
+"""Figures of motion over time: tip and heads with ensembles, predictability, energies."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ from runs.report.charts import Chart
 from runs.report.figure_context import Figure, FigureContext, farthest, highest, new_sheet
 from runs.report.formatting import fixed, scientific
 
-# This percentage of an ensemble's members lies in its band.
+# Percentage of an ensemble's members in its band.
 BAND = (5.0, 95.0)
-# Opacity of the overlaid bands of all models.
+# Opacity of the bands, which overlap.
 SHADE = 0.8
-# One line style for each part of the range.
+# Line style of each share of the range.
 DASHES = ("-", ":", "--")
-# Among the terms that an energy sums up.
+# Energies that are sums of others, which the figure omits.
 ROUND_OFF = 1.0e-16
-# Shades of stored energy, of the model's colour, and of dissipated energy.
+# Shades of stored energies, which have the model's colour, and of dissipated energies.
 HELD = {"strain_energy": 0.65, "kinetic_energy": 0.3, "contact_energy": 1.0}
 LOST = (0.75, 0.45, 0.2)
 
 
-# Displacement of the tip → its direction in titles and captions.
+# Direction of each tip displacement in titles and captions.
 DIRECTIONS = {"tip": "", "tip_lateral": ", lateral"}
 
 
 def tip(run: FigureContext) -> list[Figure]:
-    """Draw the tip deflection of all models in one panel, that of larger amplitude first."""
+    """Draw the tip displacements of all models, one panel per direction, larger amplitude first."""
     figures = []
     for place in run.tips:
         sheet, (axes,) = run.over_time(1, 3.9)
@@ -51,7 +51,7 @@ def tip(run: FigureContext) -> list[Figure]:
 
 
 def close_up(run: FigureContext) -> list[Figure]:
-    """Draw the tip until shortly after its first peak; nothing where no model has a peak."""
+    """Draw the tip until shortly after its first peak; nothing if no model has a peak."""
     place = run.tips[0]
     if not any(run.summary[name].first_peak[place].time for name in run.models):
         return []
@@ -90,7 +90,7 @@ def close_up(run: FigureContext) -> list[Figure]:
 
 
 def heads(run: FigureContext) -> list[Figure]:
-    """Draw the heads of the outer segments, with a panel per model because they rattle."""
+    """Draw the heads of the outer segments, one panel per model, since they rattle."""
     joints = range(1, len(run.case.joints) + 1)
     places = ["head", *(f"head-{number}" for number in joints if number > 1)]
     return [_head(run, place) for place in places if place in run.data]
@@ -123,7 +123,7 @@ def _head(run: FigureContext, place: str) -> Figure:
 
 
 def _chart(run: FigureContext, place: str) -> Chart:
-    """Return the chart of one place in all models, with the bands of their ensembles."""
+    """Return the chart of one place in all models, with bands of ensembles."""
     curves = [
         run.curve(name, TO_MILLI * run.of(name, place), band=_band(run, name, place))
         for name in run.models
@@ -132,7 +132,7 @@ def _chart(run: FigureContext, place: str) -> Chart:
 
 
 def _reach(run: FigureContext, place: str) -> str:
-    """Return the maximum deflection at one place over the models, those with play if any."""
+    """Return the largest deflection at one place over the models with play, or else all models."""
     reaches = {name: farthest(run.of(name, place)) for name in run.with_play or run.models}
     name = max(reaches, key=lambda one: np.nan_to_num(abs(reaches[one]), nan=-1.0))
     most = fixed(reaches[name], 0, TO_MILLI)
@@ -155,7 +155,7 @@ def _members(run: FigureContext, axes: Axes, name: str, place: str) -> None:
 
 
 def _band(run: FigureContext, name: str, place: str) -> tuple[Array, Array] | None:
-    """Return the limits (num_times,) in mm between which most members of an ensemble lie."""
+    """Return the limits (num_times,) in mm of the band that contains most of an ensemble."""
     if run.ensembles is None or name not in run.ensembles["model"] or place not in run.ensembles:
         return None
     members = TO_MILLI * run.ensembles[place].sel(model=name).values
@@ -229,7 +229,7 @@ def slow_peaks(run: FigureContext) -> list[Figure]:
 
 
 def horizons(run: FigureContext) -> list[Figure]:
-    """Draw the horizon over the size of the perturbation, of models with measured growth."""
+    """Draw horizons over the size of the perturbation, for models with measured growth."""
     measured = {name: found for name in run.with_play if (found := run.summary[name].horizons)}
     if not measured:
         return []
@@ -262,7 +262,7 @@ def horizons(run: FigureContext) -> list[Figure]:
 
 
 def energies(run: FigureContext) -> list[Figure]:
-    """Draw the energies of one model: the last with play, which is the most detailed."""
+    """Draw the energies of one model: the last one with play, which is the most detailed."""
     name = (run.with_play or run.models)[-1]
     columns = dict(zip(DRIVEN_ENERGIES, _energies(run, name).T, strict=False))
     drawn = columns.pop("drive_work", None)
@@ -283,7 +283,7 @@ def energies(run: FigureContext) -> list[Figure]:
         linewidth=0,
     )
     for area in areas[len(held) :]:
-        # Independent of the model's colour.
+        # The colour of losses is independent of the model's colour.
         area.set(hatch="///", edgecolor="white")
     start = float(sum(values[0] for values in parts.values()))
     total = f"start and {of}" if start else of
@@ -301,7 +301,7 @@ def energies(run: FigureContext) -> list[Figure]:
 
 
 def residuals(run: FigureContext) -> list[Figure]:
-    """Draw the energy residual of every model, as its running maximum."""
+    """Draw the running maximum of every model's energy residual."""
     sheet, (axes,) = new_sheet(1, 3.9)
     worst = []
     for name in run.models:
@@ -325,5 +325,5 @@ def _energies(run: FigureContext, name: str) -> Array:
 
 
 def _named(energy: str) -> str:
-    """Return the name of an energy: ``strain_energy`` as *strain*."""
+    """Return the displayed name of an energy: *strain* for ``strain_energy``."""
     return energy.removesuffix("_energy").replace("_", " ")

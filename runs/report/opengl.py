@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Test of VTK's rendering, in another process because VTK aborts without a working OpenGL."""
+"""Test of VTK's rendering in another process, since VTK aborts without a working OpenGL."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ REMEDY = "install libegl1 and libgl1-mesa-dri beside pip's vtk, or give Debian's
 
 
 class RenderingUnavailable(RuntimeError):
-    """Failure of rendering on this machine; the message gives the reason in one line."""
+    """Error for rendering on this machine; the message is the reason, in one line."""
 
 
 def first_picture() -> None:
-    """Draw a ball.
+    """Draw a ball as a test.
 
     Raises:
         ImportError: VTK is not installed.
@@ -43,7 +43,7 @@ def require_opengl() -> None:
     """Check that VTK can render.
 
     Raises:
-        RenderingUnavailable: it cannot.
+        RenderingUnavailable: VTK cannot render.
     """
     try:
         probe = subprocess.run(
@@ -62,5 +62,5 @@ def require_opengl() -> None:
 
 
 def too_late() -> RenderingUnavailable:
-    """Return the error for a VTK that renders nothing and does not end."""
+    """Return the error for a process of VTK that neither renders nor ends."""
     return RenderingUnavailable(f"VTK makes no picture within {PROBE_SECONDS:g} s; {REMEDY}")

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Export of a boom of beam elements as an OpenSeesPy script that is independent of this program.
+"""Export of a boom of beam elements as an independent OpenSeesPy script.
 
-Beam elements, the gaps as elastic zero-length materials through points of the contact law, in
-series with the spring of a calibrated station, friction under prescribed forces as an
-elastic-plastic slip, loads at the nodes. The script omits the coupling between springs of different
-stations, and the higher functions of the section.
+The script has beam elements with loads at their nodes. Gaps are zero-length elements, whose elastic
+material follows points of the contact law, in series with the spring of a calibrated station.
+Friction under prescribed forces is an elastic-plastic slip. The script omits the coupling between
+springs of different stations, and the higher functions of the section.
 """
 
 from __future__ import annotations
@@ -38,29 +38,29 @@ if TYPE_CHECKING:
 
 TEMPLATE = Path(__file__).parent / "templates" / "opensees_script.py.txt"
 
-# Force in N up to which a contact law is followed, and points of a nonlinear law.
+# Force in N up to which the script follows a contact law, and number of points of a nonlinear law.
 LARGEST, POINTS = 1.0e7, 80
-# Force in N at the edge of an open gap, which prevents a singular matrix.
+# Force in N at the edge of an open gap; it prevents a singular matrix.
 OPEN = 1.0e-5
 
 
 class Part(NamedTuple):
-    """Elements of a segment, with loads as in :class:`geometry.load.Member`.
+    """Elements of a segment, which take loads like a :class:`geometry.load.Member`.
 
     Args:
-        component: planar one of the segment.
-        free: degrees of freedom that no rigid support holds.
+        component: planar component of the segment.
+        free: degrees of freedom without rigid support.
     """
 
     component: Component
     free: Array
 
     def node(self, x: float) -> int:
-        """Return the number of the nearest node, from 0."""
+        """Return the index of the node nearest to x."""
         return int(np.argmin(np.abs(self.component.breaks - x)))
 
     def nodal(self, row: Array) -> list[list[float]]:
-        """Return the loaded nodes: their numbers, N and N·m."""
+        """Return the loaded nodes: number, force in N and moment in N·m of each."""
         whole = np.zeros(2 * self.component.breaks.size)
         whole[self.free] = row
         pairs = whole.reshape(-1, 2)
@@ -71,10 +71,10 @@ def script(case: Case, joined: Joined, model: BeamElements, calibration: Calibra
     """Return the script.
 
     Args:
-        case: a checked one.
-        joined: its planar boom with its contacts.
-        model: of the case.
-        calibration: of a model that a shell calibrates.
+        case: a checked case.
+        joined: planar boom of the case with its contacts.
+        model: model of the case.
+        calibration: calibration of a model that a shell calibrates.
 
     Raises:
         BoomError: the boom has a feature that the script does not support.
@@ -132,7 +132,7 @@ def _check(case: Case, joined: Joined) -> None:
 
 
 def _touching(boom: Boom, *, calibrated: bool) -> list[tuple[int, float]]:
-    """Return segments and x in m of contact points."""
+    """Return the segments and x in m of the contact points."""
     found = [(stop.segment, stop.x) for _, stop in boom.numbered_stops]
     for pad in pads(boom):
         x = pad.middle if calibrated else pad.x
@@ -162,7 +162,7 @@ def _part(
 
 
 def _segment(boom: Boom, number: int, part: Part, model: BeamElements) -> dict[str, object]:
-    """Return the script's data of a segment in SI units."""
+    """Return the data of a segment for the script, in SI units."""
     segment = boom.segments[number]
     material = segment.material
     sheared = model.theory == "timoshenko" or model.calibrated_by is not None
@@ -173,7 +173,7 @@ def _segment(boom: Boom, number: int, part: Part, model: BeamElements) -> dict[s
         "E": material.youngs_modulus,
         "G": material.shear_modulus,
         "I": segment.second_moment_of_area,
-        # None: rigid in shear.
+        # None means rigid in shear.
         "shear_area": None if shear is None else shear / material.shear_modulus,
         "mass_per_length": segment.mass_per_length,
         "rotary_inertia": segment.rotary_inertia if model.rotary_inertia else 0.0,
@@ -193,7 +193,7 @@ def _segment(boom: Boom, number: int, part: Part, model: BeamElements) -> dict[s
 def _contacts(
     joined: Joined, parts: Sequence[Part], calibration: Calibration | None
 ) -> Iterator[dict[str, object]]:
-    """Yield both nodes, and points (m, N) of the contact law, in the order of calibrated rows."""
+    """Yield two nodes and the points (m, N) of the contact law, for each contact row."""
     boom, row = joined.boom, 0
 
     def points(law: ContactLaw) -> list[list[float]]:
@@ -218,7 +218,7 @@ def _contacts(
 
 
 def _points(law: ContactLaw, compliance: float) -> list[list[float]]:
-    """Return approaches (m, rising) and forces (N) of a one-sided law behind a spring (m/N)."""
+    """Return ascending approaches in m, and forces in N, of a one-sided law and a spring in m/N."""
     side, onset = law.terms[0].side, min(term.onset for term in law.terms)
     straight = len(law.terms) == 1 and law.terms[0].exponent == 1.0
     deepest = 1.0
@@ -234,7 +234,7 @@ def _points(law: ContactLaw, compliance: float) -> list[list[float]]:
 
 
 def _frictions(boom: Boom, parts: Sequence[Part], *, calibrated: bool) -> Iterator[list[object]]:
-    """Yield both nodes and the friction force in N."""
+    """Yield two nodes and the friction force in N, for each friction."""
     for pad in pads(boom):
         if pad.joint.friction > 0.0:
             assert pad.normal_force is not None
@@ -243,7 +243,7 @@ def _frictions(boom: Boom, parts: Sequence[Part], *, calibrated: bool) -> Iterat
 
 
 def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, object]]:
-    """Yield nodal loads with their factors at every output time."""
+    """Yield the nodal loads, with their factors at all output times."""
     for number, part in enumerate(parts):
         own = part.nodal(part.component.load)
         if own:
@@ -263,21 +263,21 @@ def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, 
 
 
 def _ends(pad: Pad, parts: Sequence[Part], *, calibrated: bool) -> list[list[int]]:
-    """Return segment and node on both sides of a pad, the outer one first."""
+    """Return segment and node on both sides of a pad, the outer segment first."""
     x = pad.middle if calibrated else pad.x
     return [[number, parts[number].node(x)] for number in (pad.joint.outer, pad.joint.inner)]
 
 
 def exported(case: Case, file: str, name: str | None = None) -> BeamElements:
-    """Return the model with a name, or the last of beam elements with play.
+    """Return the model with a name, by default the last beam-element model with play.
 
     Args:
-        case: a checked one.
-        file: its name in messages.
-        name: of the model.
+        case: a checked case.
+        file: name of the case in messages.
+        name: name of the model.
 
     Raises:
-        BadInput: no such model exists.
+        BadInput: the model does not exist.
     """
     of = {m.name: m for m in of_kind(BeamElements, case.models) if not m.tied}
     if not of:
@@ -294,16 +294,16 @@ def write(
     """Write the script of the model that :func:`exported` returns.
 
     Args:
-        case: a checked one.
-        file: its name in messages.
-        comm: for a model that a shell calibrates.
-        path: of the script.
-        cache: of reduced shells.
+        case: a checked case.
+        file: name of the case in messages.
+        comm: communicator, for a model that a shell calibrates.
+        path: path of the script.
+        cache: cache of reduced shells.
 
     Raises:
-        BadInput: no such model exists, or the script does not support one of its features.
+        BadInput: the model does not exist, or has a feature that the script does not support.
     """
-    # Beam elements of other programs lack the higher functions of the section.
+    # Beam elements of other programs do not have the higher functions of the section.
     model = exported(case, file).model_copy(update={"section_fields": False})
     boom = build_boom(case)
     calibration = None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Folder of a run, which replaces an earlier one when all its files are written."""
+"""Files of a run, in a folder that replaces an earlier one when it is complete."""
 
 from __future__ import annotations
 
@@ -36,11 +36,12 @@ def prepare(out: str, file: str) -> Path:
     """Return the folder of a run, which may contain an earlier run.
 
     Args:
-        out: the folder as the user gave it.
+        out: folder as the user gave it.
         file: the case file, for messages.
 
     Raises:
-        BadInput: it cannot be made or replaced, holds other files or the current directory.
+        BadInput: the folder cannot be created or replaced, contains other files, or is the current
+            directory.
     """
     folder = Path(out)
     key = f"--out {out}"
@@ -75,11 +76,11 @@ def write(
     """Write all files of a run.
 
     Args:
-        run: a finished one.
-        addition: of a client.
-        folder: an empty one.
-        snapshots_now: whether they are drawn; else on request later.
-        helper: the process that draws them; a new one unless given.
+        run: a finished run.
+        addition: addition of a client.
+        folder: an empty folder.
+        snapshots_now: whether snapshots are drawn now, or later on request.
+        helper: process that draws them; a new one unless given.
     """
     results = run.results
     results.save(folder)
@@ -110,9 +111,9 @@ def write_report(results: Results, addition: Addition, folder: Path) -> None:
     """Write the files derived from the trajectories: summary, figures, report.
 
     Args:
-        results: of the folder.
-        addition: of a client.
-        folder: of these files.
+        results: results of the run.
+        addition: addition of a client.
+        folder: folder of the files.
     """
     _write_pages(results, addition, folder, draw_in(results, folder))
 
@@ -138,10 +139,7 @@ def _write_pages(
 
 
 def write_csv(trajectories: xr.Dataset, path: Path) -> None:
-    """Write a line for each model and time, columns of stations under ``NAME@X``.
-
-    X is the station's ``place``.
-    """
+    """Write a line for each model and time, with columns ``NAME@PLACE`` for stations."""
     columns = {}
     places = trajectories["place"].values if "place" in trajectories.coords else ()
     for name, variable in trajectories.data_vars.items():
@@ -158,7 +156,7 @@ def write_csv(trajectories: xr.Dataset, path: Path) -> None:
         table = csv.writer(file)
         table.writerow(["model", "time", *columns])
         for name, rows in zip(trajectories["model"].values, values, strict=True):
-            # The formatting of csv.writer takes four times as long.
+            # This is four times as fast as csv.writer.
             begin = StringIO()
             csv.writer(begin, lineterminator="").writerow([name])
             numbers = np.column_stack([time, rows]).tolist()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Pictures of an overlap cut open: contact forces between segments, and von Mises stresses."""
+"""Pictures of an overlap in a sectional view: contact forces and von Mises stresses."""
 
 from __future__ import annotations
 
@@ -44,42 +44,42 @@ from runs.report.sheet import (
 )
 from shell_model.stress.stresses import ShellStress
 
-# The clearance, and the displacements of walls beside the stations relative to the outer segment,
-# are drawn up to these parts of the outer section's height; margin in m beside the stations.
+# Limits of the drawn clearance, and of the drawn wall displacements relative to the outer segment,
+# as fractions of the outer section's height; margin in m beside the stations.
 CLEARANCE_DRAWN, DISPLACEMENT_DRAWN, MARGIN = 0.08, 0.25, 0.6
 
 PIXELS = (SHEET[0], 625)
 
-# Sizes in pixels of the pictures of stresses, in the overlap and in the whole boom, whose
-# displacements are drawn up to this part of its length.
+# Sizes in pixels of the stress pictures of the overlap and of the whole boom; limit of the boom's
+# drawn displacements as a fraction of its length.
 STRESS_PIXELS, BOOM_PIXELS = (SHEET[0], 475), (1160, 195)
 BOOM_DISPLACEMENT = 0.1
 
-# Colours of cut walls of the segments beside stresses.
+# Colours of the segments' cut walls in stress pictures.
 CUT_OUTER, CUT_INNER = "#ffffff", "#c8c8c8"
 
-# A peak within this factor of its mean is shown as the mean.
+# Factor between peak and mean below which only the mean is shown.
 PEAK = 1.02
 
-# Shortest and longest arrow, and the room above and below the section for them, in pixels.
+# Shortest and longest arrow, and the space for arrows above and below the section, in pixels.
 SHORTEST, LONGEST, ARROW_ROOM = 60.0, 110.0, 120.0
 
-# This part of the walls' area lies below the end of the stress scale: the few triangles at a line
-# of contact would use most of the scale otherwise.
+# Fraction of the walls' area within the stress scale. A few triangles at a line of contact would
+# otherwise use most of the scale.
 SHOWN_AREA = 0.995
 
-# Stresses below this value in Pa count as zero.
+# Stress in Pa below which it counts as zero.
 LEAST = 1.0
 
-# Elements across a web that resolve its stresses.
+# Number of elements across a web that resolve its stresses.
 ENOUGH = 4
 
-# Above this part of the scale there is no room for a number before the end.
+# Fraction of the scale above which its end leaves no space for a number.
 LAST_TICK = 0.65
 
 
 class Half(NamedTuple):
-    """Half of a segment's box in a picture: a pyvista surface, its style, the cut's colour."""
+    """Half of a segment's box in a picture: pyvista surface, style, colour of the cut."""
 
     surface: Any
     look: Mapping[str, Any]
@@ -88,12 +88,12 @@ class Half(NamedTuple):
 
 @dataclass(frozen=True)
 class OverlapView:
-    """View settings that all pictures of an overlap share, with its stations and contact forces.
+    """View settings that all pictures of an overlap share, with stations and contact forces.
 
     Args:
-        scene: a shell in motion.
-        overlap: one of the scene's.
-        times: of the pictures in s.
+        scene: scene of the boom in motion.
+        overlap: an overlap of the scene.
+        times: times of the pictures in s.
         pixels: width and height of the picture.
     """
 
@@ -104,28 +104,28 @@ class OverlapView:
 
     @property
     def stress(self) -> ShellStress:
-        """Stresses of the shell; a beam has no walls to cut."""
+        """The stresses of the shell; beams have no walls in a sectional view."""
         assert self.scene.stress is not None
         return self.scene.stress
 
     @cached_property
     def motion(self) -> xr.Dataset:
-        """Trajectories at the overlap's stations alone."""
+        """The trajectories at the stations of the overlap."""
         return self.scene.motion.isel(station=self.overlap.stations)
 
     @property
     def stations(self) -> Array:
-        """Positions x of the stations (num_stations,) in m: of their pads' centres."""
+        """The positions (num_stations,) in m of the stations, at the centres of their pads."""
         return np.asarray(self.overlap.centres)
 
     @property
     def middle(self) -> float:
-        """Centre x between the stations in m."""
+        """The x in m of the centre between the stations."""
         return float(0.5 * (self.stations.min() + self.stations.max()))
 
     @cached_property
     def scale(self) -> float:
-        """Magnification of displacements and play, limited by the larger of both."""
+        """The magnification of displacements and play, which the larger of both limits."""
         height = 2.0 * self.scene.half_height(self.overlap.outer)
         half = 0.5 * np.ptp(self.stations) + MARGIN
         near = np.abs(self.scene.points[:, 0] - self.middle) <= half
@@ -141,7 +141,7 @@ class OverlapView:
 
     @cached_property
     def width(self) -> float:
-        """Width of the view in m."""
+        """The width of the view in m."""
         ends = [self.ends(self.places(time)) for time in self.times]
         tallest = float(np.ptp(ends, axis=1).max()) + self.scene.wall(self.overlap)
         room = tallest * self.pixels[0] / (self.pixels[1] - 2.0 * ARROW_ROOM)
@@ -149,48 +149,48 @@ class OverlapView:
 
     @cached_property
     def behind(self) -> Mask:
-        """Mask (num_triangles,) of the half behind the cut."""
+        """The mask (num_triangles,) of the half behind the cut."""
         corners = self.scene.points[self.scene.triangles]
         near = (np.abs(corners[..., 0] - self.middle) < self.width).all(axis=1)
         return np.asarray(near & (corners[..., 1].mean(axis=1) > 0.0))
 
     @property
     def numbers(self) -> tuple[int, int]:
-        """Numbers of the outer and of the inner segment."""
+        """The numbers of the outer and the inner segment."""
         return self.overlap.outer, self.overlap.inner
 
     @property
     def names(self) -> tuple[str, str]:
-        """Names of the outer and of the inner segment."""
+        """The names of the outer and the inner segment."""
         outer, inner = (self.scene.boom.segments[number].name for number in self.numbers)
         return outer, inner
 
     def places(self, time: float) -> Array:
-        """Return displayed places (num_points, 3) of the points at a time (s), in m."""
+        """Return the displayed points (num_points, 3) in m at a time in s."""
         return self.scene.magnify(self._beside(time), self.scale, 1.0)
 
     def _beside(self, time: float) -> Array:
-        """Return displacements (num_points, 3) in m relative to the outer segment."""
+        """Return the displacements (num_points, 3) in m relative to the outer segment."""
         between = (float(self.stations.min()), float(self.stations.max()))
         return self.scene.beside(time, self.overlap.outer, between)
 
     def flange(self, places: Array, segment: int, side: int) -> Array:
-        """Return places (num_points, 3) of a flange in the plane of bending, from base to tip."""
+        """Return the points (num_points, 3) of a flange in the plane of bending, base to tip."""
         return places[self.scene.flange_in_plane(segment, side)]
 
     def ends(self, places: Array) -> tuple[float, float]:
-        """Return the lowest and highest z in m of the outer segment's flanges at the stations."""
+        """Return the lowest and highest z in m of the outer flanges at the stations."""
         flanges = [self.flange(places, self.overlap.outer, side) for side in (-1, 1)]
         heights = [_at(line, x)[2] for line in flanges for x in self.stations]
         return min(heights), max(heights)
 
     def camera(self, places: Array) -> Camera:
-        """Return a camera at the displayed outer segment, at its stations."""
+        """Return a camera that shows the stations of the displayed outer segment."""
         centre = np.array([self.middle, 0.0, np.mean(self.ends(places))])
         return Camera(centre, self.width, self.pixels, elevation=8.0)
 
     def half(self, segment: int) -> Numbers:
-        """Return triangles (num_seen, 3) of half a segment's box."""
+        """Return the triangles (num_seen, 3) of half a segment's box."""
         mine = self.scene.segment == segment
         return np.asarray(self.scene.triangles[self.behind & mine])
 
@@ -198,10 +198,10 @@ class OverlapView:
         """Draw both segments and the forces between them on a sheet.
 
         Args:
-            sheet: of the picture.
-            time: in s.
-            places: of the points at that time.
-            halves: the outer and the inner segment's.
+            sheet: sheet of the picture.
+            time: time in s.
+            places: displayed points at that time.
+            halves: halves of the outer and the inner segment.
         """
         camera, wall = self.camera(places), self.scene.wall(self.overlap)
         with stage(self.pixels) as plotter:
@@ -232,7 +232,7 @@ class OverlapView:
             sheet.arrow(camera.project(outside), side * length, text)
 
     def explain_forces(self, time: float) -> str:
-        """Return the meaning of the arrows' numbers, or that no forces act at a time (s)."""
+        """Return a sentence on the arrows' numbers, or that no forces act at a time in s."""
         now = self.motion.sel(time=time, method="nearest")
         if not np.nan_to_num(now["contact_force"].values).any():
             return "no contact here"
@@ -246,7 +246,7 @@ class OverlapView:
 def draw_overlap(
     scene: Scene, instants: Sequence[Instant], overlap: Overlap
 ) -> Iterator[Image.Image]:
-    """Draw an overlap without its front half, with the forces at its stations."""
+    """Draw the rear half of an overlap, with the forces at its stations."""
     view = OverlapView(scene, overlap, [instant.time for instant in instants])
     outer, inner = view.names
     labels = {theme.OUTER: outer, theme.INNER: inner, theme.FORCE: f"force of {inner} on {outer}"}
@@ -276,11 +276,11 @@ def draw_overlap(
 
 @dataclass(frozen=True, slots=True)
 class StressScale:
-    """Colour scale of von Mises stresses, the same in all pictures that are compared.
+    """Colour scale of von Mises stresses, the same in all pictures of a shell.
 
     Args:
         end: stress of the darkest colour in Pa, to three digits.
-        largest: of all triangles and instants, in Pa.
+        largest: largest stress of all triangles and instants in Pa.
     """
 
     end: float
@@ -288,7 +288,7 @@ class StressScale:
 
     @classmethod
     def of(cls, shell: ShellStress, times: Iterable[float]) -> StressScale:
-        """Return the scale for all triangles at these times (s)."""
+        """Return the scale for all triangles at these times in s."""
         end, largest = LEAST, 0.0
         for stress in shell.instants([*times]):
             values = stress.largest()
@@ -297,13 +297,13 @@ class StressScale:
             place = int(np.searchsorted(covered, SHOWN_AREA * covered[-1]))
             end = max(end, float(values[rising[place]]))
             largest = max(largest, float(values.max()))
-        # Rounded down to three digits, so that the text does not exceed the value.
+        # The end is rounded down to three digits, so that its text does not exceed the value.
         unit = 10.0 ** (np.floor(np.log10(end)) - 2.0)
         return cls(float(f"{np.floor(end / unit + 1.0e-9) * unit:.3g}"), largest)
 
     @property
     def look(self) -> dict[str, Any]:
-        """Style of surfaces with a ``stress`` in MPa."""
+        """The style of surfaces with a ``stress`` in MPa."""
         ends = (0.0, TO_MEGA * self.end)
         return {"scalars": "stress", "cmap": theme.STRESS, "clim": ends, **COLOUR_READ}
 
@@ -320,7 +320,7 @@ class StressScale:
         last = f"≥ {end:.3g}" if goes_on else f"{end:.3g}"
         labels = {**{t: f"{t:g}" for t in ticks}, end: last}
         if self.largest < self.end:
-            # Without stresses the scale has no end.
+            # A scale without stresses has no end.
             labels = {0.0: "0"}
         bar.set_ticks(list(labels), labels=list(labels.values()))
         bar.set_label("von Mises stress (MPa),\nthe larger of both faces", fontsize=18)
@@ -329,7 +329,7 @@ class StressScale:
 def draw_stress(
     scene: Scene, instants: Sequence[Instant], scale: StressScale, overlap: Overlap
 ) -> Iterator[Image.Image]:
-    """Draw von Mises stresses of the whole boom, and of an overlap cut open below it."""
+    """Draw von Mises stresses of the whole boom, and below it a sectional view of an overlap."""
     times = [instant.time for instant in instants]
     view = OverlapView(scene, overlap, times, STRESS_PIXELS)
     whole = BoomView.of(scene, instants, BOOM_PIXELS, BOOM_DISPLACEMENT)
@@ -367,7 +367,7 @@ def draw_stress(
 
 
 def _coloured(points: Array, triangles: Numbers, values: Array) -> Any:
-    """Return a surface whose triangles have points of their own, which may differ in colour.
+    """Return a surface whose triangles do not share points, so that colours may jump.
 
     Points (num_points, 3) are in m, stresses (num_triangles, 3) at the corners in Pa.
     """
@@ -378,7 +378,7 @@ def _coloured(points: Array, triangles: Numbers, values: Array) -> Any:
 
 
 def smoothed(shell: ShellStress, triangles: Numbers, values: npt.ArrayLike) -> Array:
-    """Return corner values (num_triangles, 3): means over triangles of a wall around a point."""
+    """Return corner values (num_triangles, 3): means over a wall's triangles around each point."""
     walls = int(shell.wall.max()) + 1
     of = (triangles.astype(np.int64) * walls + shell.wall[:, None]).ravel()
     _, number = np.unique(of, return_inverse=True)
@@ -387,7 +387,7 @@ def smoothed(shell: ShellStress, triangles: Numbers, values: npt.ArrayLike) -> A
 
 
 def _largest(view: OverlapView, time: float) -> str:
-    """Return the largest stress of a triangle of both segments, visible or not, and its place."""
+    """Return the largest triangle stress of both segments, even if hidden, and its place."""
     stress, segment = view.stress.at(time).largest(), view.scene.segment
     triangle = int(np.where(np.isin(segment, view.numbers), stress, 0.0).argmax())
     x, _, _ = view.stress.centroids[triangle]
@@ -399,7 +399,7 @@ def _largest(view: OverlapView, time: float) -> str:
 
 
 def _ring_largest(sheet: Sheet, view: OverlapView, places: Array, values: Array) -> str:
-    """Mark the largest smoothed stress of the visible half with a ring; return its meaning."""
+    """Mark the largest smoothed stress of the visible half with a ring; return a legend text."""
     scene = view.scene
     shown = view.behind & np.isin(scene.segment, view.numbers)
     triangle = int(np.where(shown, values.max(axis=1), 0.0).argmax())
@@ -412,25 +412,25 @@ def _ring_largest(sheet: Sheet, view: OverlapView, places: Array, values: Array)
 
 
 def _coarse(view: OverlapView) -> str:
-    """Return a caution where webs have too few elements to resolve their stresses."""
+    """Return a caution if webs have too few elements to resolve their stresses."""
     fewest = min(_across_web(view.scene, number) for number in view.numbers)
     return "" if fewest >= ENOUGH else f";  webs of {fewest} elements are coarse for stresses"
 
 
 def _across_web(scene: Scene, segment: int) -> int:
-    """Return the number of element edges across a web, at most places."""
+    """Return the typical number of element edges across a web."""
     x, _, z = scene.points[scene.owner == segment].T
     middle, half = 0.5 * (z.min() + z.max()), 0.5 * np.ptp(z)
     inside = np.abs(z - middle) < 0.999 * half
     counts = np.unique(x[inside].round(6), return_counts=True)[1]
-    # Two webs, without the points at their ends.
+    # Count the points of two webs, without those at their ends.
     return int(np.median(counts)) // 2 + 1
 
 
 def _band(line: Array, thickness: float) -> Any:
     """Return the cut wall along a line (num_points, 3) in m as a pyvista surface.
 
-    It lies slightly before the plane of bending, in which the halves of the boxes end.
+    It is slightly in front of the plane of bending, where the halves of the boxes end.
     """
     low, high = (line + np.array([0.0, -0.002, 0.5 * side * thickness]) for side in (-1.0, 1.0))
     number = np.arange(len(line) - 1, dtype=np.int32)
@@ -439,5 +439,5 @@ def _band(line: Array, thickness: float) -> Any:
 
 
 def _at(line: Array, x: float) -> Array:
-    """Return the place (3,) in m at which a line (num_points, 3) passes x."""
+    """Return the point (3,) in m of a line (num_points, 3) at x."""
     return np.array([np.interp(x, line[:, 0], line[:, i]) for i in range(3)])

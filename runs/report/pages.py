@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""HTML pages of one file each: every picture and script inside, no external resource."""
+"""HTML pages of one file, with all pictures and scripts embedded."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from PIL import Image
 
 TEMPLATES = Path(__file__).parent / "templates"
-# A picture in a page is compressed to a third of its size on the disk without visible loss; it has
-# at most twice the pixels of its width in the page.
+# Quality and largest width of pictures in a page: a third of their size on the disk without visible
+# loss, and at most two pixels per pixel of the page.
 WIDEST = 1240
 _WEBP: dict[str, Any] = {"format": "WEBP", "quality": 85, "method": 1}
-# Classes of marks that fill a cell alone.
+# CSS classes of cells that contain only a mark.
 TONES = {"✓": "yes", "✗": "no", "?": "open"}
 
 
@@ -27,10 +27,10 @@ class Addition:
     """Additions of a client to the report of a run.
 
     Args:
-        template: extends ``report.html`` and fills its blocks ``added_…``.
+        template: path of a template that extends ``report.html`` and fills its blocks ``added_…``.
         content: further variables of the template.
-        remarks: sentences below tables and figures, by their anchors.
-        files: for the run's folder, their text by name.
+        remarks: sentences below tables and figures, by anchor.
+        files: texts of further files for the run's folder, by name.
     """
 
     template: Path = TEMPLATES / "report.html"
@@ -40,10 +40,10 @@ class Addition:
 
 
 def page(template: str | Path, **content: Any) -> str:
-    """Return a page as HTML, its content escaped.
+    """Return a page as HTML, with escaped content.
 
     Args:
-        template: the name of one in ``TEMPLATES``, or the path of another that extends these.
+        template: name of a template in ``TEMPLATES``, or path of another template that extends one.
         content: variables of the template.
     """
     path = TEMPLATES / template

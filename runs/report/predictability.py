@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Predictability of a run's motion, and comparison of its models, as tables."""
+"""Tables of the predictability of a run's motion, and of the comparison of its models."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ from runs.report.formatting import NONE, fixed, number, percent, scientific
 from runs.report.model_tables import horizon_column
 from runs.report.tables import Column, Table
 
-# Texts of a table for ``limits``.
+# Text in tables for each kind of limit.
 LIMITS = {
     "physics": "the motion",
     "step": "the step",
     "nothing": "nothing in the run",
 }
-# Format and unit of times.
+# Number format and unit of times.
 _TIME = ".2f", "s"
 VARIED_DATA = {"load": "loads", "clearance": "clearances", "velocity": "initial velocities"}
 
 
 def predictability_tables(results: Results) -> list[Table]:
-    """Return the tables of each model's ensembles; empty without any."""
+    """Return the tables of the models' ensembles; empty without ensembles."""
     models, ensembles = results.summary.models, results.summary.ensemble
     sampled = {name: model for name, model in models.items() if model.ensemble}
     measured = {name: model.horizons for name, model in models.items() if model.horizons}
@@ -57,7 +57,7 @@ def predictability_tables(results: Results) -> list[Table]:
 
 
 def comparison_tables(results: Results) -> list[Table]:
-    """Return the differences of the models from the reference; empty without comparisons."""
+    """Return the tables of differences from the reference; empty without comparisons."""
     compared = results.summary.comparisons
     tables: list[Table] = []
     if compared is not None and compared.ensembles:
@@ -137,7 +137,7 @@ def _heights(found: SlowPeaks) -> list[str]:
 
 
 def _differences(found: PeakDifferences) -> list[str]:
-    """Return the differences of each peak from the reference, in time and height."""
+    """Return the differences of each peak from the reference, in time and in height."""
     signed_milli = partial(_spread, factor=TO_MILLI, sign="+")
     times = map(partial(signed_milli, decimals=0), found.time, found.time_spread)
     heights = map(partial(signed_milli, decimals=2), found.height, found.height_spread)
@@ -147,7 +147,7 @@ def _differences(found: PeakDifferences) -> list[str]:
 
 
 def _level_tables(reference: str, levels: Mapping[str, Comparison]) -> list[Table]:
-    """Return comparisons at every instant, peak by peak, and of all values afterwards."""
+    """Return the tables of comparisons by instants, by peaks, and by distributions."""
     points = [level.pointwise for level in levels.values()]
     spreads = [level.distributions for level in levels.values()]
     models = Column("model", list(levels))
@@ -210,7 +210,7 @@ def _whole_table(reference: str, whole: Mapping[str, Whole]) -> Table:
 def _spread(
     value: float | None, spread: float | None, decimals: int, factor: float = 1.0, sign: str = ""
 ) -> str:
-    """Return a mean and its spread, ``1.058 ± 0.031``; ``NONE`` where there is no value."""
+    """Return a mean and its spread, such as ``1.058 ± 0.031``; ``NONE`` without a value."""
     if value is None or spread is None:
         return NONE
     return signed(f"{factor * value:{sign}.{decimals}f}") + f" ± {fixed(spread, decimals, factor)}"

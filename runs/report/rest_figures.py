@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Figures along the boom: deflection and section forces at rest, envelopes in motion, modes."""
+"""Figures along the boom: deflections and section forces at rest, envelopes, modes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from runs.report import formatting, theme
 from runs.report.charts import Chart, Curve
 from runs.report.figure_context import Figure, FigureContext, new_sheet, of_rests, of_start
 
-# Quantity → heading of its panel, and the conversion factor to its unit.
+# Heading of each quantity's panel, and conversion factor to its unit.
 _PANELS: Mapping[str, tuple[str, float]] = {
     "deflection": ("deflection (mm)", TO_MILLI),
     "lateral": ("lateral deflection (mm)", TO_MILLI),
@@ -29,14 +29,14 @@ _PANELS: Mapping[str, tuple[str, float]] = {
 }
 # Quantities of an envelope.
 _FORCES = ("normal", "shear", "moment", "lateral_moment", "torque")
-# Kind of a mode → its largest displacement.
+# Displacement that is drawn for each kind of mode.
 _DISPLACED = {"bending in z": "deflection", "bending in y": "lateral", "twist": "twist"}
 # Number of modes in the figure.
 MODES = 4
 
 
 class _Line(NamedTuple):
-    """Curve of one segment."""
+    """Curve of one segment in a panel."""
 
     name: str
     x: Array
@@ -46,14 +46,14 @@ class _Line(NamedTuple):
 
 
 def at_rest(run: FigureContext) -> list[Figure]:
-    """Draw the boom's deflection and section forces at rest, with and without play."""
+    """Draw deflection and section forces at rest, with and without play."""
     found = dict(_read_first(run))
     farthest = {name: own.farthest_static for name, own in found.items()}
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     if not rests:
         return []
     lines = {name: _rest_lines(rest, name, run.strokes[name].color) for name, rest in rests.items()}
-    # None stands for the position at the end of telescoping.
+    # None means the position at the end of telescoping.
     tied = [
         rest
         for name in rests
@@ -151,7 +151,7 @@ def _stacked(
     title: str,
     caption: str,
 ) -> list[Figure]:
-    """Draw panels of the non-zero quantities above one another; nothing where all are zero."""
+    """Draw panels of all non-zero quantities above one another; nothing if all are zero."""
     of = {
         what: [line for each in lines.values() for line in each.get(what, ())] for what in _PANELS
     }

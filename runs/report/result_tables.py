@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Design results of a boom as tables: rest, modes, motion, drives, pads, stress, fatigue life."""
+"""Tables of design results: rest, modes, motion, drives, pads, stresses, fatigue."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from runs.report.formatting import NONE, amount, number
 from runs.report.model_tables import metric_columns
 from runs.report.tables import Column, Table
 
-# Share of a number that is negligible.
+# Fraction of a number that is negligible.
 HARDLY = 0.005
-# Share of the values of the other models that counts as zero.
+# Fraction of other models' values that counts as zero.
 ROUND_OFF = 1.0e-9
 
 
 def result_tables(results: Results) -> list[Table]:
-    """Return all tables but the summary for which a run has numbers, in the report's order."""
+    """Return all tables for which a run has data, except the summary, in the report's order."""
     found = [
         play_table(results),
         *rest_tables(results),
@@ -41,7 +41,7 @@ def result_tables(results: Results) -> list[Table]:
 
 
 def play_table(results: Results) -> Table | None:
-    """Return the results with play beside those of the same boom with bonded joints."""
+    """Return the table of results with play and with bonded joints."""
     found = results.play
     if found is None:
         return None
@@ -59,7 +59,7 @@ def play_table(results: Results) -> Table | None:
 
 
 def rest_tables(results: Results) -> list[Table]:
-    """Return tilts by play, contact forces and support reactions in the state of rest."""
+    """Return the tables of tilts by play, contact forces and support reactions at rest."""
     farthest = {name: own.farthest_static for name, own in results.summary.design.models.items()}
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     as_extended = of_rests(results.case, rests.values())
@@ -122,7 +122,7 @@ def _reaction_table(results: Results) -> Table | None:
 
 
 def _unless_none(title: str, carried: list[float], form: str, unit: str) -> Iterator[Column]:
-    """Yield columns of section forces, round-off set to zero, without columns of zeros."""
+    """Yield columns of section forces, with round-off set to zero; columns of zeros are omitted."""
     most = max(map(abs, carried), default=0.0)
     if most > 0.0:
         cells = [each if abs(each) > ROUND_OFF * most else 0.0 for each in carried]
@@ -130,7 +130,7 @@ def _unless_none(title: str, carried: list[float], form: str, unit: str) -> Iter
 
 
 def mode_table(results: Results) -> Table | None:
-    """Return the first modes of the boom with closed contacts, of all models side by side."""
+    """Return the table of the first modes with closed contacts, all models side by side."""
     of = {
         name: {(mode.motion, mode.number): mode.frequency for mode in own.modes}
         for name, own in results.summary.design.models.items()
@@ -152,7 +152,7 @@ def mode_table(results: Results) -> Table | None:
 
 
 def peak_table(results: Results) -> Table | None:
-    """Return the maxima of the motion beside the values at rest, of the leading models."""
+    """Return the table of maxima in motion and values at rest, for the leading models."""
     of = {
         name: {(peak.what, peak.where, peak.unit): peak for peak in own.peaks}
         for name, own in results.motions.items()
@@ -169,7 +169,7 @@ def peak_table(results: Results) -> Table | None:
 
 
 def hardly(one: PlayDifference) -> bool:
-    """Return whether play adds a negligible part."""
+    """Return whether play adds a negligible amount."""
     return one.share is not None and abs(one.share) < HARDLY
 
 
@@ -180,7 +180,7 @@ def _peak_cell(peak: Peak | None) -> str:
 
 
 def times(peak: Peak) -> str:
-    """Return the ratio of a maximum to the value at rest; empty where the latter is zero."""
+    """Return the ratio of a maximum to the value at rest; empty if the latter is zero."""
     return "" if peak.factor is None else f" (× {number(peak.factor)})"
 
 
@@ -195,7 +195,7 @@ def _named(what: str, where: str) -> str:
 
 
 def drive_table(results: Results) -> Table | None:
-    """Return forces, power and work of every model and drive; None without telescoping."""
+    """Return the table of forces, powers and work of drives; None without telescoping."""
     data = results.trajectories
     rows = [
         (str(model), inner, *_effort(results, str(model), suffix))
@@ -222,7 +222,7 @@ def drive_table(results: Results) -> Table | None:
 
 
 def _effort(results: Results, model: str, suffix: str) -> tuple[float, float, float, float]:
-    """Return mean and maximum force in N, maximum power in W and work in J of a drive."""
+    """Return a drive's mean and maximum force in N, maximum power in W and work in J."""
     data = results.trajectories.sel(model=model)
     way, friction, power = (
         np.asarray(data[name + suffix].values, dtype=float)
@@ -235,7 +235,7 @@ def _effort(results: Results, model: str, suffix: str) -> tuple[float, float, fl
 
 
 def stick_slip_table(results: Results) -> Table | None:
-    """Return stick-slip results of every elastic drive and model; None where all are rigid."""
+    """Return the table of stick-slip results; None without elastic drives."""
     rows = [
         (model, inner, own.stick_slip[name])
         for suffix, inner in results.case.driven.items()
@@ -266,7 +266,7 @@ def stick_slip_table(results: Results) -> Table | None:
 
 
 def record_tables(results: Results) -> Iterator[Table]:
-    """Yield a table for each result that is one record of numbers per model."""
+    """Yield a table for each result that has one record per model."""
     design = results.summary.design.models
     for name, kind in records(ModelDesignResults).items():
         found = {m: getattr(own, name) for m, own in design.items() if getattr(own, name)}
@@ -276,7 +276,7 @@ def record_tables(results: Results) -> Iterator[Table]:
 
 
 def pad_table(results: Results) -> Table | None:
-    """Return forces and pressures of the pads of each joint; None without pads of a given size."""
+    """Return the table of pad forces and pressures; None without pads of given size."""
     pads = results.summary.pads
     if not pads:
         return None
@@ -297,7 +297,7 @@ def pad_table(results: Results) -> Table | None:
 
 
 def stress_table(results: Results) -> Table | None:
-    """Return the maximum stresses of each segment: outer fibres of all models, plates of shells."""
+    """Return the table of maximum stresses: outer fibres of all models, plates of shells."""
     rows = []
     for name, own in results.motions.items():
         walls = {wall.segment: wall for wall in sorted(own.walls, key=lambda wall: wall.patch)}
@@ -326,7 +326,7 @@ def stress_table(results: Results) -> Table | None:
 
 
 def life_table(results: Results) -> Table | None:
-    """Return rainflow ranges of each segment, of the leading models."""
+    """Return the table of rainflow stress ranges of segments, for the leading models."""
     models = results.summary.design.models
     rows = [
         (name, life)

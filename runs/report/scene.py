@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Scene of a boom in motion: its surfaces, supports and loads, with magnified displacements.
 
-Displacements of millimetres are invisible on a boom of many metres, so pictures magnify them.
-They magnify the play alike, at the cost of the inner section's height: segments touch in the
-picture when they touch in the run. Shells and beams are scenes alike, which VTK renders
-(:mod:`runs.report.boom_pictures`) and a page shows in three dimensions (:mod:`runs.report.viewer`).
+Displacements of millimetres are invisible on a boom of many metres, so pictures magnify them. They
+magnify the play by the same factor and reduce the inner section accordingly: segments touch in the
+picture when they touch in the run. Scenes of shells and of beams have the same interface for VTK's
+pictures (:mod:`runs.report.boom_pictures`) and the interactive page (:mod:`runs.report.viewer`).
 """
 
 from __future__ import annotations
@@ -34,20 +34,21 @@ from shell_model.stress.stresses import ShellStress
 
 Numbers = npt.NDArray[np.int32]
 
-# Displacements are drawn up to this part of the boom's length, sections magnified by this factor,
-# of which the play takes up to this part.
+# Limit of drawn displacements as a fraction of the boom's length; magnification of sections;
+# largest fraction of the section that the drawn play may take.
 DISPLACEMENT_DRAWN, SECTION_DRAWN, PLAY_OF_SECTION = 0.2, 2.0, 0.5
 
-# Walls are drawn with this part of the outer section's height: true thicknesses are invisible.
+# Drawn thickness of walls as a fraction of the outer section's height; true thicknesses are
+# invisible.
 WALL_DRAWN = 0.03
 
 # Tolerance in m for equal lengths.
 SAME_PLACE = 1.0e-6
 
-# Number of times for which displacements are computed together.
+# Number of times in a batch of displacements.
 AT_ONCE = 10
 
-# x stays, y becomes upward, z points to the viewer.
+# Rotation for the view from above: x stays, y points up, z points to the viewer.
 _FROM_ABOVE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 
 
@@ -55,9 +56,9 @@ class Overlap(NamedTuple):
     """Two telescoping segments that overlap.
 
     Args:
-        outer, inner: their numbers.
-        stations: of contact, as positions in the trajectories.
-        centres: x in m of their pads' centres.
+        outer, inner: numbers of the segments.
+        stations: indices of the contact stations in the trajectories.
+        centres: x in m of the centres of the stations' pads.
         clearance: Δ in m.
     """
 
@@ -69,13 +70,13 @@ class Overlap(NamedTuple):
 
 
 class Instant(NamedTuple):
-    """A time in s, and its event."""
+    """A time in s with its event."""
 
     time: float
     title: str = ""
 
     def heading(self, scene: Scene) -> str:
-        """Return the line above a picture: the time, and the deflection of the tip."""
+        """Return the line above a picture, with time and tip deflection."""
         title = f"{self.title}:  " if self.title else ""
         tip = float(scene.motion["tip"].sel(time=self.time, method="nearest"))
         aside = " sideways" if scene.from_above else ""
@@ -84,19 +85,19 @@ class Instant(NamedTuple):
 
 @dataclass(frozen=True)
 class Scene:
-    """A boom and its motion.
+    """A boom in motion, for pictures.
 
     Args:
         boom: the boom.
-        symbols: of its supports and loads.
+        symbols: symbols of its supports and loads.
         points: (num_points, 3) in m.
         triangles: (num_triangles, 3) point numbers.
-        segment: (num_triangles,) of each triangle.
-        modes: (num_modes, num_points, 3) displacement of a unit of each coordinate.
+        segment: (num_triangles,) segment of each triangle.
+        modes: (num_modes, num_points, 3) displacements for unit coordinates.
         state: (time, mode) coordinates.
-        motion: trajectories of this model alone, in which ``tip`` is along the third direction.
-        stress: of the triangles of a shell.
-        from_above: whether y has taken the place of z, see :meth:`views`.
+        motion: trajectories of this model, in which ``tip`` is along the third direction.
+        stress: stresses of the triangles of a shell.
+        from_above: whether y replaces z, see :meth:`views`.
     """
 
     boom: Boom
@@ -112,15 +113,15 @@ class Scene:
 
     @classmethod
     def views(cls, fields: xr.Dataset, motion: xr.Dataset, case: Case) -> list[Scene]:
-        """Return scenes of a shell from a run's files: from the side, in space also from above.
+        """Return the scenes of a shell from a run's files: from the side, in space also from above.
 
-        For the view from above the boom is turned about x, so that y points up.
+        For the view from above the boom is rotated about x, so that y points up.
 
         Args:
-            fields: what ``shell_model.stress.fields`` gathers, and ``state`` (time, mode).
+            fields: dataset of ``shell_model.stress.fields``, with ``state`` (time, mode).
             motion: dims ``time``, ``station``: ``tip``, in space ``tip_lateral``, in m,
                 ``contact_force`` and ``contact_force_peak`` in N, of drives ``drawn_out`` in m.
-            case: of the run.
+            case: case of the run.
         """
         boom = build_boom(case)
         side = cls(
@@ -157,10 +158,10 @@ class Scene:
         of the plates.
 
         Args:
-            case: of the run.
-            boom: of the model.
-            output: of its motion.
-            motion: its trajectories.
+            case: case of the run.
+            boom: boom of the model.
+            output: further output of the motion.
+            motion: trajectories of the model.
         """
         tubes = [
             _tube(boom, segment, moved)
@@ -168,7 +169,7 @@ class Scene:
         ]
         first = np.cumsum([0, *(len(tube.points) for tube in tubes)])
         numbered = [tube.triangles + k for tube, k in zip(tubes, first, strict=False)]
-        # Each frame is a mode of its own.
+        # Every frame becomes a mode.
         frames = np.eye(output.time.size)
         scene = cls(
             boom=boom,
@@ -186,19 +187,19 @@ class Scene:
 
     @property
     def direction(self) -> Direction:
-        """Third direction of the picture."""
+        """The third direction of the picture."""
         return "y" if self.from_above else "z"
 
     @cached_property
     def owner(self) -> Numbers:
-        """Segments (num_points,) of the points."""
+        """The segments (num_points,) of the points."""
         owner = np.zeros(len(self.points), dtype=np.int32)
         owner[self.triangles] = self.segment[:, None]
         return owner
 
     @cached_property
     def overlaps(self) -> list[Overlap]:
-        """Overlaps of the joints with play along the third direction, from the base to the tip."""
+        """The overlaps of joints with play along the third direction, from base to tip."""
         middles: dict[int, list[float]] = {}
         for pad in pads(self.boom):
             middles.setdefault(pad.station, []).append(pad.middle)
@@ -216,19 +217,19 @@ class Scene:
         return found
 
     def displacement(self, t: float) -> Array:
-        """Return displacements (num_points, 3) in m, at the output time next to ``t`` (s)."""
+        """Return displacements (num_points, 3) in m at the output time nearest to ``t`` in s."""
         return next(self.displacements([t]))
 
     def displacements(self, times: Sequence[float]) -> Iterator[Array]:
-        """Yield displacements (num_points, 3) in m, at the output times next to ``times`` (s)."""
+        """Yield the displacements (num_points, 3) in m at the output times nearest to ``times``."""
         states = self.state.sel(time=list(times), method="nearest").values
-        # The modes do not fit into a processor's cache; each is read once for several times.
+        # The modes exceed a processor's cache, so that each is read once for a batch of times.
         for begin in range(0, len(states), AT_ONCE):
             moved = np.tensordot(states[begin : begin + AT_ONCE], self.modes, axes=1)
             yield from moved.astype(np.float64)
 
     def travel(self, segment: int) -> Array:
-        """Return a segment's extension (num_times,) by drives, in m, at the motion's times."""
+        """Return the extension (num_times,) in m of a segment by drives, at the output times."""
         names = [
             f"drawn_out-{n + 1}" if n else "drawn_out"
             for n in drives_below(self.boom.joints, segment)
@@ -237,26 +238,26 @@ class Scene:
         return np.asarray(sum((self.motion[name].values for name in names), none))
 
     def along(self, t: float) -> Array:
-        """Return the extension (num_points,) of each point along x in m, at a time in s."""
+        """Return the extension (num_points,) in m of each point by drives, at a time in s."""
         step = int(np.abs(self.motion["time"].values - t).argmin())
         ways = [self.travel(number)[step] for number in range(len(self.boom.segments))]
         return np.array(ways)[self.owner]
 
     def slides(self, overlap: Overlap) -> bool:
-        """Return whether a drive moves the inner segment of an overlap in the outer one."""
+        """Return whether a drive moves the inner segment of an overlap within the outer one."""
         return bool((self.travel(overlap.outer) != self.travel(overlap.inner)).any())
 
     def reach(self, times: Sequence[float]) -> tuple[float, float]:
-        """Return the minimum and maximum x in m of the boom, telescoping included."""
+        """Return the minimum and maximum x in m of the boom at given times, with telescoping."""
         x = self.points[:, 0]
         places = [x, *(x + self.along(time) for time in times)]
         return float(np.min(places)), float(np.max(places))
 
     def beside(self, t: float, segment: int, between: tuple[float, float]) -> Array:
-        """Return displacements (num_points, 3) in m relative to a part of a segment.
+        """Return the displacements (num_points, 3) in m relative to a part of a segment.
 
-        The rigid motion of that part, ``between`` two x in m, in the picture's plane is subtracted
-        from all points: magnified it would tilt a sloping boom, and it does not affect contacts.
+        The in-plane rigid motion of the part ``between`` two x in m is subtracted from all points:
+        it does not affect contacts, and magnification would tilt the boom.
         """
         moved = self.displacement(t)
         x, _, z = self.points.T
@@ -269,14 +270,13 @@ class Scene:
         )
 
     def at(self, places: Array, segment: int, x: float, z: float) -> tuple[Array, int]:
-        """Return the displayed place (3,) of a point in a section's plane of symmetry, in m.
+        """Return the displayed position (3,) in m of a point in a section's plane of symmetry.
 
-        The section is that at the mesh line next to x in m, whose lowest point is returned, too.
+        The section is that at the mesh line nearest to x. Its lowest point is returned, too.
 
         Args:
-            places: (num_points, 3) displayed places of the points in m.
-            segment: its number.
-            x, z: of the point in m.
+            places: (num_points, 3) displayed points in m.
+            segment: number of the segment. x, z: x and z of the point in m.
         """
         mine = np.flatnonzero(self.owner == segment)
         off = np.abs(self.points[mine, 0] - x)
@@ -288,18 +288,18 @@ class Scene:
         return place, int(mine[section[:, 2].argmin()])
 
     def edges(self, segment: int, x: float) -> tuple[float, float]:
-        """Return the lowest and highest z in m of a segment's section at x in m."""
+        """Return the lowest and highest z in m of a section at x in m."""
         return edges(self.boom, self.boom.segments[segment], x, self.direction)
 
     def half_height(self, segment: int, x: float | None = None) -> float:
-        """Return half the height of a segment's section at x in m, by default the maximum, in m."""
+        """Return half the height in m of a segment's section at x, by default the largest."""
         ends = self.boom.segments[segment].ends if x is None else (x,)
         return max(0.5 * float(np.ptp(self.edges(segment, end))) for end in ends)
 
     def flange_in_plane(self, segment: int, side: int) -> Numbers:
-        """Return points (num_points,) of a flange in the plane of bending, from base to tip.
+        """Return the points (num_points,) of a flange in the plane of bending, from base to tip.
 
-        ``side`` is 1 for the top, -1 for the bottom.
+        ``side`` is 1 for the top flange, -1 for the bottom flange.
         """
         mine = np.flatnonzero((self.owner == segment) & (np.abs(self.points[:, 1]) < SAME_PLACE))
         x, _, z = self.points[mine].T
@@ -308,13 +308,13 @@ class Scene:
         return np.asarray(order[outermost], dtype=np.int32)
 
     def wall(self, overlap: Overlap) -> float:
-        """Return the thickness in m with which the walls of an overlap are drawn."""
+        """Return the drawn wall thickness in m of an overlap."""
         return 2.0 * WALL_DRAWN * self.half_height(overlap.outer)
 
     def fitting_scale(self, times: Sequence[float], part: float = DISPLACEMENT_DRAWN) -> float:
-        """Return a rounded magnification of displacements and play for pictures of the whole boom.
+        """Return a rounded magnification of displacements and play for the whole boom.
 
-        Magnified displacements at these times (s) stay below a part of the boom's length.
+        Magnified displacements at these times in s stay below a fraction of the boom's length.
         """
         largest = max(float(np.abs(moved[:, 2]).max()) for moved in self.displacements(times))
         tallest = max(self.half_height(number) for number in range(len(self.boom.segments)))
@@ -327,15 +327,15 @@ class Scene:
         )
 
     def magnify(self, moved: Array, scale: float, section: float = SECTION_DRAWN) -> Array:
-        """Return the displayed places (num_points, 3) of the points in m.
+        """Return the displayed points (num_points, 3) in m.
 
         A magnified section also rotates with its magnified height. Displacements along the line of
         sight are not magnified.
 
         Args:
-            moved: (num_points, 3) displacement in m.
-            scale: of displacement and play.
-            section: of the outermost section.
+            moved: (num_points, 3) displacements in m.
+            scale: magnification of displacements and play.
+            section: magnification of the outermost section.
         """
         factor = self._section_factors(scale, section)[self.owner]
         middles = [np.mean(self.edges(k, s.start)) for k, s in enumerate(self.boom.segments)]
@@ -346,7 +346,7 @@ class Scene:
         )
 
     def _section_factors(self, scale: float, section: float) -> Array:
-        """Return factors (num_segments,) of y and z; inner segments leave room for the play."""
+        """Return magnifications (num_segments,) of sections; inner ones leave space for play."""
         factors = np.full(len(self.boom.segments), section)
         for overlap in sorted(self.overlaps, key=lambda o: -self.half_height(o.outer)):
             x = float(np.mean(np.array([at for at, _ in self.boom.stations])[overlap.stations]))
@@ -369,7 +369,7 @@ class _Tube(NamedTuple):
 
 
 def _tube(boom: Boom, segment: Segment, output: SegmentMotion) -> _Tube:
-    """Return rings (place, corner) of a segment, joined by two triangles per plate and interval."""
+    """Return the tube of a segment: rings of corners, with two triangles per plate and interval."""
     x, read = output.x, output.read
     corners = np.array([_corners(boom, segment, place) for place in x.tolist()])
     none = np.zeros_like(read["deflection"])
@@ -395,7 +395,7 @@ def _tube(boom: Boom, segment: Segment, output: SegmentMotion) -> _Tube:
 
 
 def _corners(boom: Boom, segment: Segment, x: float) -> Array:
-    """Return y and z (num_corners, 2) in m at x in m around a section; without plates a square."""
+    """Return y and z (num_corners, 2) in m of a section at x; without plates a square."""
     if segment.section is not None:
         return np.array([plate.start for plate in segment.section_at(x).plates])
     _, half = edges(boom, segment, x)
@@ -403,14 +403,15 @@ def _corners(boom: Boom, segment: Segment, x: float) -> Array:
 
 
 def _bending(moments: Array, there: Sequence[Segment], number: str) -> Array:
-    """Return curvature times Young's modulus (num_frames, num_places, 1), in Pa/m."""
+    """Return the curvature times Young's modulus, (num_frames, num_places, 1) in Pa/m."""
     return np.asarray(moments / [attrgetter(number)(segment) for segment in there])[..., None]
 
 
 def rigid_motion(places: Array, moved: Array) -> Array:
-    """Return two shifts and a rotation (3,) fitted to a motion of places (num_places, 2).
+    """Return two translations and a rotation (3,) that fit the motion of points (num_places, 2).
 
-    The first coordinate moves by shift − turn · second, the second by shift + turn · first.
+    The first coordinate moves by its translation − rotation · second, the second coordinate by its
+    translation + rotation · first.
     """
     first, second = places.T
     none, unit = np.zeros_like(first), np.ones_like(first)
@@ -421,12 +422,12 @@ def rigid_motion(places: Array, moved: Array) -> Array:
 
 
 def means_around(groups: Numbers, areas: Array, values: npt.ArrayLike) -> Array:
-    """Return means (num_groups,) of triangles' values around points, weighted by area.
+    """Return the area-weighted means (num_groups,) of triangles' values around points.
 
     Args:
         groups: (num_triangles, 3) group of each corner, usually its point.
-        areas: (num_triangles,).
-        values: (num_triangles,).
+        areas: (num_triangles,) areas.
+        values: (num_triangles,) values.
     """
     weights, around = np.repeat(areas, 3), groups.ravel()
     total = np.bincount(around, weights * np.repeat(np.asarray(values, dtype=float), 3))
@@ -434,6 +435,6 @@ def means_around(groups: Numbers, areas: Array, values: npt.ArrayLike) -> Array:
 
 
 def round_scale(largest: float) -> float:
-    """Return the largest of …, 1, 2, 5, 10, 20, … that is not above ``largest``."""
+    """Return the largest number of …, 1, 2, 5, 10, 20, … that does not exceed ``largest``."""
     decade = 10.0 ** np.floor(np.log10(largest))
     return float(decade * max(step for step in (1.0, 2.0, 5.0) if step * decade <= largest))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Sheet around a rendered boom: one camera, and annotations of the rendered picture.
+"""Sheet with a rendered boom and annotations.
 
-VTK renders the surfaces, matplotlib draws the annotations. They share the camera's projection, so
+VTK renders the surfaces, matplotlib draws the annotations. Both use the same camera projection, so
 that labels and axes have the correct positions.
 """
 
@@ -26,18 +26,19 @@ from runs.report import theme
 
 Pixels = npt.NDArray[np.uint8]
 
-# Light enough for a face to match the colour bar, dark enough to distinguish faces.
+# Light that is bright enough for faces to match the colour bar, and dark enough to distinguish
+# them.
 MATTE = {"ambient": 0.35, "diffuse": 0.75, "specular": 0.0, "show_scalar_bar": False}
 COLOUR_READ = MATTE | {"ambient": 0.75, "diffuse": 0.3}
 MESHED = {"show_edges": True, "edge_color": theme.INK, "line_width": 1.5}
 
-# Width and height of a sheet in pixels, and pixels per inch. VTK renders each pixel as a square of
-# four, for smooth edges.
+# Width and height of a sheet in pixels, and pixels per inch. VTK renders four pixels per pixel of
+# the sheet, for smooth edges.
 SHEET = (1600, 900)
 DPI = 100
 FINER = 2
 
-# Angle in degrees above which two walls have an edge between them.
+# Angle in degrees between two walls above which their edge is drawn.
 SHARP = 30.0
 
 # Vertical angle of view in degrees: enough perspective for a box.
@@ -49,8 +50,8 @@ class Camera:
     """Camera along y, from negative y and slightly from above, so that x runs to the right.
 
     Args:
-        centre: (3,) the middle of the picture in m.
-        width: of the view at the centre in m.
+        centre: (3,) centre of the picture in m.
+        width: width of the view at the centre in m.
         pixels: width and height of the picture.
         elevation: angle from above in degrees.
     """
@@ -62,7 +63,7 @@ class Camera:
 
     @property
     def axes(self) -> Array:
-        """Unit vectors (3, 3) to the right, up and into the picture."""
+        """The unit vectors (3, 3) to the right, up and into the picture."""
         tilt = np.radians(self.elevation)
         right = np.array([1.0, 0.0, 0.0])
         into = np.array([0.0, np.cos(tilt), -np.sin(tilt)])
@@ -70,20 +71,20 @@ class Camera:
 
     @property
     def position(self) -> Array:
-        """Position (3,) in m."""
+        """The position (3,) in m."""
         half_height = 0.5 * self.width * self.pixels[1] / self.pixels[0]
         distance = half_height / np.tan(np.radians(0.5 * VIEW_ANGLE))
         return np.asarray(self.centre - distance * self.axes[2])
 
     def project(self, points: npt.ArrayLike) -> Array:
-        """Return pixels (..., 2) right of and above the lower left corner, for (..., 3) in m."""
+        """Return the pixels (..., 2) from the lower left corner of points (..., 3) in m."""
         right, up, depth = np.moveaxis((np.asarray(points) - self.position) @ self.axes.T, -1, 0)
         magnification = 0.5 * self.pixels[1] / np.tan(np.radians(0.5 * VIEW_ANGLE)) / depth
         middle = 0.5 * np.array(self.pixels)
         return np.asarray(np.stack([right, up], axis=-1) * magnification[..., None] + middle)
 
     def see(self, plotter: Any) -> Pixels:
-        """Return pixels (height, width, 3) of a :func:`stage`."""
+        """Return the pixels (height, width, 3) of a :func:`stage`."""
         plotter.camera_position = [self.position, self.centre, self.axes[1]]
         plotter.camera.view_angle = VIEW_ANGLE
         plotter.reset_camera_clipping_range()
@@ -94,12 +95,12 @@ class Camera:
 
 @contextmanager
 def stage(pixels: tuple[int, int], part: float = 1.0) -> Iterator[Any]:
-    """Yield a pyvista plotter off-screen on white, for a part of a whole sheet's size each way."""
-    # VTK's libraries may be missing on a machine that draws no pictures.
+    """Yield an off-screen pyvista plotter on white, for a sheet of reduced size."""
+    # Imported here, since VTK's libraries may be missing on a machine that draws no pictures.
     import pyvista
     from vtkmodules.vtkCommonCore import vtkLogger
 
-    # VTK warns about a missing display before it uses EGL, which needs none.
+    # VTK warns about a missing display before it uses EGL, which needs no display.
     verbosity = vtkLogger.GetCurrentVerbosityCutoff()
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
     size = [FINER * round(part * n) for n in pixels]
@@ -128,7 +129,7 @@ def sharp_edges(mesh: Any) -> Any:
 
 
 class Sheet:
-    """Sheet of heading, picture, x along the picture's lower edge, and room below it.
+    """Sheet with heading, picture, x axis along the picture's lower edge, and space below.
 
     The coordinates of ``picture`` are the pixels of :meth:`Camera.project`. Temporary artists
     belong to one image; all others are drawn once, for the first image.
@@ -136,7 +137,7 @@ class Sheet:
     Args:
         pixels: width and height of the picture.
         floor: height of the picture's lower edge in pixels.
-        part: of this size that the sheet has, in each direction.
+        part: factor of the sheet's size in each direction.
     """
 
     def __init__(self, pixels: tuple[int, int], floor: int, part: float = 1.0) -> None:
@@ -151,7 +152,7 @@ class Sheet:
         self.picture.set(xlim=(0, pixels[0]), ylim=(0, pixels[1]), yticks=[])
 
     def axes(self, left: int, bottom: int, width: int, height: int) -> Axes:
-        """Return axes at a place on the sheet, in pixels."""
+        """Return axes at a position on the sheet in pixels."""
         return self.figure.add_axes(
             (left / SHEET[0], bottom / SHEET[1], width / SHEET[0], height / SHEET[1])
         )
@@ -166,27 +167,27 @@ class Sheet:
         self.picture.set_xlabel("x along the boom (m)")
 
     def show(self, pixels: Pixels, left: int = 0, bottom: int | None = None) -> None:
-        """Show a camera's view in the picture, or at a place on the sheet, in pixels."""
+        """Show a camera's pixels in the picture, or at a position on the sheet."""
         up = self._floor if bottom is None else bottom
         self._seen.append((pixels, round(self._part * left), round(self._part * up)))
 
     def pass_by(self, *artists: Artist) -> None:
-        """Show a temporary artist, in the next image alone."""
+        """Show a temporary artist in the next image only."""
         for artist in artists:
             artist.set_animated(True)
         self._passing += artists
 
     def write(self, heading: str, explanation: str) -> None:
-        """Write the lines above the picture: a heading, and an explanation of all images."""
+        """Write the heading of this image, and the explanation of all images, above the picture."""
         centred: dict[str, Any] = {"ha": "center", "va": "top"}
         self.pass_by(self.figure.text(0.5, 0.98, heading, size=26, weight="bold", **centred))
         if self._still is None:
-            # The longest of three lines exceeds the sheet's width unless they are smaller.
+            # Three lines have smaller letters, since the longest would exceed the sheet's width.
             size = 17 if explanation.count("\n") > 1 else 19
             self.figure.text(0.5, 0.925, explanation, size=size, **centred)
 
     def arrow(self, foot: Array, length: float, text: str) -> None:
-        """Draw a vertical arrow from (2,) pixels, down by negative lengths, with a label."""
+        """Draw a vertical arrow with a label from (2,) pixels; negative lengths point down."""
         x, y = (float(pixel) for pixel in foot)
         shaft = {"width": 8, "headwidth": 24, "headlength": 22, "color": theme.FORCE}
         letters: dict[str, Any] = {
@@ -196,13 +197,13 @@ class Sheet:
         }
         mark = self.picture.annotate
         self.pass_by(
-            # Matplotlib omits an arrow whose tip is beyond the picture.
+            # Matplotlib omits an arrow whose tip is outside the picture.
             mark("", (x, y + length), (x, y), arrowprops=shaft, annotation_clip=False),
             mark(text, (x + 22.0, y + 0.6 * length), **letters),
         )
 
     def ring(self, x: float, y: float, text: str) -> None:
-        """Draw a ring around a place, in pixels, with a label."""
+        """Draw a ring with a label around a position in pixels."""
         look: dict[str, Any] = {"ms": 26, "mfc": "none", "mec": theme.INK, "mew": 3}
         self.pass_by(
             *self.picture.plot([x], [y], "o", path_effects=theme.OUTLINED, **look),
@@ -210,7 +211,7 @@ class Sheet:
         )
 
     def image(self) -> Image.Image:
-        """Return the current image of the sheet; artists of one image are removed afterwards."""
+        """Return the current image of the sheet, and remove temporary artists."""
         if self._still is None:
             self._canvas.draw()
             self._still = self._canvas.copy_from_bbox(self.figure.bbox)
@@ -219,7 +220,7 @@ class Sheet:
         for pixels, left, bottom in self._seen:
             top, (height, width, _) = len(page) - bottom, pixels.shape
             place = page[top - height : top, left : left + width, :3]
-            # Characters that reach down into the picture stay.
+            # Characters that reach down into the picture are kept.
             np.minimum(place, pixels, out=place)
         for artist in sorted(self._passing, key=Artist.get_zorder):
             self.figure.draw_artist(artist)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Snapshots of a run's shells: their instants, files and captions."""
+"""Snapshots of a run's shells: instants, files and captions."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ from runs.report.scene import Instant, Scene
 
 SNAPSHOTS = "snapshots"
 
-# The animation: seconds of the run, number of pictures, seconds on the screen, part of a sheet.
+# Animation: seconds of the run, number of pictures, seconds on the screen, size factor of the
+# sheet.
 ANIMATION = "motion.gif"
 ANIMATED, FRAMES, SHOWN, SMALL = 2.5, 50, 5.0, 0.6
 
@@ -47,16 +48,16 @@ TITLES = {
 # Events at one station, of a joint or a stop.
 AT_A_STATION = ("largest-force", "first-contact")
 
-# Instants closer together than this part of the run look the same.
+# Fraction of the run below which two instants look the same.
 SAME = 0.02
 
-# Meaning of an arrow where a station has several points.
+# Meaning of an arrow if a station has several contact points.
 ON_SURFACES = (
     " The segments touch over surfaces: each arrow is the sum of the forces of the points nearest "
     "to its station."
 )
 
-# A time in s that the user has requested.
+# Name of an instant whose time in s the user requests.
 _GIVEN = re.compile(r"[0-9.e+-]+s")
 _NAME = re.compile(
     r"(?P<view>boom|overlap|stress)(?P<above>-above)?(-(?P<joint>\d+))?-(?P<when>.+)"
@@ -70,14 +71,14 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
     """Draw a shell at given instants.
 
     Args:
-        views: of its motion, see :meth:`Scene.views`.
-        folder: of ``boom-WHEN.png``, ``overlap-WHEN.png`` and ``stress-WHEN.png`` of each
-            instant (from the second joint on ``overlap-2-WHEN.png``), those of a boom in space
-            seen from above too (``boom-above-WHEN.png``).
-        times: in s; those of :func:`telling_instants` unless given.
+        views: scenes of its motion, see :meth:`Scene.views`.
+        folder: folder of ``boom-WHEN.png``, ``overlap-WHEN.png`` and ``stress-WHEN.png`` of each
+            instant (from the second joint on ``overlap-2-WHEN.png``), for a boom in space also
+            ``boom-above-WHEN.png``, from above.
+        times: times in s; those of :func:`telling_instants` unless given.
 
     Returns:
-        The files.
+        The paths of the files.
 
     Raises:
         ValueError: a time lies outside the run.
@@ -99,7 +100,7 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
             pictures = {f"boom{above}": draw_boom(view, instants, end)}
             for number, overlap in enumerate(seen.overlaps, start=1):
                 if seen.slides(overlap):
-                    # Its stations move out of these pictures' view.
+                    # The stations of a driven overlap move out of the view.
                     continue
                 joint = above if number == 1 else f"{above}-{number}"
                 pictures[f"overlap{joint}"] = draw_overlap(seen, instants, overlap)
@@ -112,8 +113,8 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
 
 
 def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Path]:
-    """Draw the initial motion of a shell, magnified as in :func:`render_stills`: ``motion.gif``."""
-    # In the direction that moves.
+    """Draw a shell's initial motion as ``motion.gif``, magnified as by :func:`render_stills`."""
+    # Choose the view in whose direction the tip moves most.
     scene = max(views, key=lambda seen: float(np.ptp(seen.motion["tip"].values)))
     film, (begin, _) = _film(scene), _ends(scene)
     with rc_context(theme.PAGE_RC):
@@ -122,8 +123,7 @@ def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> li
         slow = SHOWN / (last - begin) if last > begin else 1.0
         pace = f"; {slow:.3g} times slower than it is" if slow > 1.0 else ""
         pictures = list(draw_boom(view, film, last, pace, SMALL))
-    # All frames share one palette, that of an image of several frames: colours would flicker
-    # otherwise.
+    # All frames share one palette, computed from several frames; otherwise colours would flicker.
     some = np.concatenate([np.asarray(picture) for picture in pictures[:: len(pictures) // 5 or 1]])
     palette = Image.fromarray(some).quantize(256, Image.Quantize.FASTOCTREE)
     first, *rest = (
@@ -139,21 +139,21 @@ def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> li
     return [folder / ANIMATION]
 
 
-# Pictures of each shell, one at a time.
+# A function that draws the pictures of a shell.
 RENDERED: Sequence[Render] = (render_stills, render_film)
 
 
 def render_files(
     render: Render, fields: Path, trajectories: Path, case: Case, folder: Path, times: Times
 ) -> list[Path]:
-    """Draw the pictures of netCDF files, ``model`` being the attribute of the fields."""
+    """Draw the pictures of a shell from netCDF files; the fields have its name as ``model``."""
     shell, motion = (xr.load_dataset(path, engine="scipy") for path in (fields, trajectories))
     views = Scene.views(shell, motion.sel(model=shell.attrs["model"]), case)
     return render(views, folder, times)
 
 
 def _ends(scene: Scene) -> tuple[float, float]:
-    """Return start and end of its motion in s."""
+    """Return start and end of a scene's motion in s."""
     begin, end = scene.motion["time"].values[[0, -1]]
     return float(begin), float(end)
 
@@ -164,7 +164,7 @@ def _film(scene: Scene) -> list[Instant]:
 
 
 def _when(motion: xr.Dataset, times: Times) -> dict[str, float]:
-    """Return times in s by the names in their file names."""
+    """Return the times in s, by their names in file names."""
     return telling_instants(motion) if times is None else {f"{t:g}s": t for t in times}
 
 
@@ -176,12 +176,12 @@ def _instants(views: Sequence[Scene], when: Mapping[str, float]) -> list[Instant
 
 
 def telling_instants(motion: xr.Dataset) -> dict[str, float]:
-    """Return characteristic times in s of a model's trajectories, by their events.
+    """Return characteristic times in s of a model's trajectories, by event.
 
-    ``first-peak`` of the tip, or ``largest-deflection`` where there is no peak; the
-    ``largest-force`` of the run, at any station, unless that is at nearly the same time; the
+    The events are ``first-peak`` of the tip, or ``largest-deflection`` without a peak;
+    ``largest-force`` of the run at any station, unless it occurs at nearly the same time; and
     ``first-contact``, unless a contact is closed from the start. Without contact only the first
-    exists.
+    event exists.
     """
     time = np.asarray(motion["time"].values)
     peak, _ = Trajectory(motion, np.empty((time.size, 0))).first_peak()
@@ -200,7 +200,7 @@ def telling_instants(motion: xr.Dataset) -> dict[str, float]:
 
 
 def where_pressed(views: Sequence[Scene], time: float) -> str:
-    """Return the place of the maximum force at a time (s); nothing where only one exists."""
+    """Return text with the place of the maximum force at a time in s, if there are several."""
     scene = views[0]
     places = [
         (f"joint {number}{' sideways' if seen.from_above else ''}", overlap.stations)
@@ -218,7 +218,7 @@ def shells_in(folder: Path) -> list[Path]:
     """Return the files of the fields of all shells in a run's folder.
 
     Raises:
-        BadInput: files are missing, damaged, or of another version.
+        BadInput: files are missing, damaged, or written by another version.
     """
     shells = list(folder.glob(f"*{FIELDS}"))
     for path in shells:
@@ -237,18 +237,15 @@ def drawing(
     times: Times = None,
     helper: Executor | None = None,
 ) -> Iterator[Callable[[], list[str]]]:
-    """Render the deformed shells of a run in a process beside this one.
-
-    Args:
-        results: of the run.
-        shells: files of fields, ``[SHELL-]fields.nc``.
-        trajectories: file of all models.
-        folder: of the run; pictures of other instants stay in it.
-        times: in s; the characteristic ones unless given.
-        helper: the process; a new one unless given.
+    """Render the deformed shells of a run in another process.
 
     The yielded function waits for the pictures, adds them to the summary, and returns their names.
-    It raises RenderingUnavailable where no picture can be made.
+    It raises RenderingUnavailable if rendering is impossible.
+
+    Args: results: results of the run. shells: files of fields, ``[SHELL-]fields.nc``. trajectories:
+        file of all models. folder: folder of the run; pictures of other instants stay in it. times:
+        times in s; the characteristic times unless given.
+        helper: process that renders; a new one unless given.
     """
     if not shells:
         yield list
@@ -287,14 +284,14 @@ def drawing(
 def _finished(
     first: Future[None], drawn: Sequence[tuple[str, Future[list[Path]]]]
 ) -> list[tuple[str, list[Path]]]:
-    """Return the pictures of each shell when all are finished."""
+    """Wait for all pictures, and return those of each shell."""
     try:
         first.result(opengl.PROBE_SECONDS)
         return [(prefix, pictures.result()) for prefix, pictures in drawn]
     except TimeoutError:
         raise opengl.too_late() from None
     except BrokenProcessPool:
-        # Another process reports its cause of death.
+        # The other process reports why it ended.
         opengl.require_opengl()
         raise MemoryError("the system has killed the process that draws") from None
     except (ImportError, RuntimeError):
@@ -303,7 +300,7 @@ def _finished(
 
 
 def describe(results: Results, folder: Path) -> list[Figure]:
-    """Return the snapshots of a run's folder, each with a title and a caption."""
+    """Return the snapshots in a run's folder, each with a title and a caption."""
     return [
         describe_one(results, folder / SNAPSHOTS / name)
         for name in results.summary.snapshots.written
@@ -314,9 +311,9 @@ def describe_one(results: Results, path: Path) -> Figure:
     """Return a snapshot with a title and a caption.
 
     Args:
-        results: of the run whose shell it shows.
-        path: named by :func:`render_stills`, with the shell's name before it where the case
-            has several.
+        results: results of the run.
+        path: path with a name of :func:`render_stills`, after the name of the shell if the case has
+            several shells.
     """
     lines = {m.name: m.contact_line for m in of_kind(Shell, results.case.models)}
     shells = list(lines)
@@ -369,7 +366,7 @@ def describe_one(results: Results, path: Path) -> Figure:
 
 
 def _instant(name: str, motion: xr.Dataset) -> tuple[str, str]:
-    """Return texts of an event and of the tip then; the event alone without such a time."""
+    """Return texts on an event and on the tip at its time; only the first without such a time."""
     event = TITLES.get(name, name.replace("-", " "))
     instants = telling_instants(motion)
     if name in instants:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Summary of the design results on the first screen: effect of play, results, model quality."""
+"""Summary of the design results at the top of a report: effect of play, results, model quality."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ from runs.report.formatting import NONE, SHOWN, amount, fixed, number, percent
 from runs.report.result_tables import hardly, times
 from runs.report.tables import Column, Table
 
-# Decay time: until the vibration has fallen to this part.
+# Fraction of the initial vibration that remains after the decay time.
 TENTH = 0.1
-# Utilisation from which on a number is highlighted.
+# Utilisation above which a number is highlighted.
 NEAR = 0.9
 
 
 def summary_table(results: Results) -> Table | None:
-    """Return the design results of the leading models, the reference's before the others'."""
+    """Return the table of the leading models' design results, starting with the reference."""
     names, design = results.leading_models, results.summary.design.models
     if not design:
         return None
     own = [design[name] for name in names]
     tips = [results.trajectories["tip"].sel(model=name).values for name in names]
     hertz = [one.modes[0].frequency if one.modes else None for one in own]
-    # By modal damping, of a vibration without other dissipation.
+    # The decay follows from modal damping, without other dissipation.
     decay = 2.0 * pi * results.case.damping.modal / log(1.0 / TENTH)
     decay_times = [1.0 / (decay * f) if f and decay else None for f in hertz]
     used = [utilisations(results, name) for name in names]
@@ -45,7 +45,7 @@ def summary_table(results: Results) -> Table | None:
     pads = {name: _pad(pad) for name, pad in hardest.items()}
     stations = [None if hardest else _largest(one, "contact force", at="\nat {} m") for one in own]
     time = np.asarray(results.trajectories["time"].values, dtype=float)
-    # Of the direction that moves.
+    # Take the direction in which the tip moves most.
     main = results.trajectories[tip_directions(results.trajectories)[0]]
     found = [mean_period(time, main.sel(model=name).values) for name in names]
     periods = [period if np.isfinite(period) else None for period in found]
@@ -64,7 +64,7 @@ def summary_table(results: Results) -> Table | None:
         Column("Static tip deflection (maximum load)", at_most, ".1f", "mm"),
         Column("Static tip deflection (end of telescoping)", extended, ".1f", "mm"),
         Column("Maximum dynamic tip deflection (factor φ)", dynamic, unit="mm"),
-        # A motion that starts undeformed needs no initial state.
+        # A motion that starts undeformed has no static state at t = 0 to show.
         Column("Tip travel from t = 0", travel, ".1f", "mm"),
         Column("Residual vibration of the tip", [_vibration(one) for one in own], unit="mm"),
         Column("Lateral tip deflection, maximum", _each(own, "lateral deflection"), unit="mm"),
@@ -90,7 +90,7 @@ def summary_table(results: Results) -> Table | None:
 
 
 def deviation_note(results: Results) -> str:
-    """Return the deviation of the other models with play from the reference; else empty."""
+    """Return a sentence on the deviation of other models with play; empty without them."""
     design, reference = results.summary.design.models, results.reference
     if not design or reference is None:
         return ""
@@ -112,7 +112,7 @@ def deviation_note(results: Results) -> str:
 
 
 def play_effect(results: Results) -> str:
-    """Return a sentence on the effect of play, of the reference model; else empty."""
+    """Return a sentence on the effect of play in the reference model; empty without play."""
     found = results.play
     if found is None:
         return ""
@@ -133,9 +133,9 @@ def play_effect(results: Results) -> str:
 
 
 def utilisation_verdict(results: Results) -> str:
-    """Return the utilisations of the leading model, the governing one first, or an empty text.
+    """Return text with the utilisations of the leading model, the governing one first.
 
-    The text is empty where neither strengths, allowable pressures nor a fatigue life are known.
+    It is empty if the case gives no strengths, allowable pressures or fatigue life.
     """
     first = results.leading_models[0]
     known = [one for one in utilisations(results, first).values() if one.value is not None]
@@ -147,7 +147,7 @@ def utilisation_verdict(results: Results) -> str:
 
 
 def _not_given(results: Results, model: str) -> str:
-    """Return which strengths are missing: of the steel, and of pads that a model loads."""
+    """Return text with the missing strengths: steel, and pads that carry load in a model."""
     steels = [one.name for one in results.boom.segments if one.material.yield_strength is None]
     pressed = (pad for pad in results.summary.pads if pad.model == model and pad.force > 0.0)
     pads = {pad.inner: None for pad in pressed if pad.utilisation is None}
@@ -168,14 +168,14 @@ def _more(one: PlayDifference) -> str:
 
 
 def governing_pads(results: Results) -> dict[str, PadLoad]:
-    """Return each model's pad of the highest utilisation, else of the largest pressure."""
+    """Return each model's pad with the highest utilisation, or with the largest pressure."""
     pads = results.summary.pads[::-1]
     pads = sorted(pads, key=lambda pad: (pad.utilisation or 0.0, pad.pressure))
     return {pad.model: pad for pad in pads}
 
 
 def _pad(pad: PadLoad) -> str:
-    """Return force, pressure and position of a pad."""
+    """Return text with force, pressure and position of a pad."""
     used = _used(pad.utilisation, "allowable")
     force, pressure = amount(pad.force, "N"), amount(pad.pressure, "Pa")
     return f"{force}\n{pressure}{used}\n{pad.inner} {_FACES[pad.side]}, x = {pad.x:g} m"
@@ -246,19 +246,19 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
 
 
 def _span(values: Iterable[float | None]) -> str:
-    """Return the range from minimum to maximum in MPa; empty where no value is known."""
+    """Return text with minimum and maximum in MPa; empty without values."""
     known = sorted({TO_MEGA * value for value in values if value is not None})
     return f"{' to '.join(map(number, dict.fromkeys((known[0], known[-1]))))} MPa" if known else ""
 
 
 def _farthest(own: ModelDesignResults, tip: Array) -> str:
-    """Return the maximum tip deflection with its sign, and its ratio to the value at rest."""
+    """Return text with the signed maximum tip deflection, and its ratio to the value at rest."""
     peak = largest_peak(own, "deflection")
     return _milli(farthest(tip)) + (times(peak) if peak else "")
 
 
 def _vibration(own: ModelDesignResults) -> str | None:
-    """Return the residual vibration of the tip, and that of the boom where drives end."""
+    """Return text with the residual vibration, and the vibration at the final extension."""
     if (found := own.residual_vibration) is None:
         return None
     static = f"{_milli(found.initial)}, {_milli(found.final)}"
@@ -274,7 +274,7 @@ def _each(own: Sequence[ModelDesignResults], what: str) -> list[str | None]:
 
 
 def _largest(own: ModelDesignResults, what: str, at: str = "") -> str | None:
-    """Return the maximum of a kind in kN or mm, with its position."""
+    """Return text with the maximum of a kind in kN or mm, and its position."""
     if (peak := largest_peak(own, what)) is None:
         return None
     return f"{number(SHOWN[peak.unit][1] * peak.largest, 4)}{times(peak)}{at.format(peak.where)}"

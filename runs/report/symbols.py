@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Marks of a picture: symbols of supports and loads at their places on the boom.
+"""Symbols of supports and loads in pictures.
 
-A symbol keeps its size and its upright orientation, whatever the boom's angle. It is a matplotlib
-path in units of its own size, about the place that it marks.
+Most symbols keep their size and orientation at any angle of the boom. A symbol is a matplotlib path
+in units of its own size, relative to its position.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from runs.case.schema import Case, HistoryTable, LoadTable
 from runs.report import theme
 from runs.report.formatting import number
 
-# A segment of unknown plates is drawn with this part of the boom's length as its height.
+# Drawn height of a segment without plates, as a fraction of the boom's length.
 UNKNOWN = 0.015
-# Distance of the arrows of a distributed load, as a part of the boom's length.
+# Distance of the arrows of a distributed load, as a fraction of the boom's length.
 APART = 0.07
-# Strokes of a zigzag, and their amplitude.
+# Number of strokes of a zigzag, and their amplitude.
 TURNS, SWING = 6, 0.18
 
-# Edge of a segment at which a symbol stands, or z in m.
+# Position of a symbol: an edge of the segment, or z in m.
 Edge = Literal["top", "bottom"] | float
 
 _KILO = {"N": "kN", "N/m": "kN/m", "N m": "kN m"}
@@ -38,7 +38,7 @@ _MORE = {"N/m": (("GN/m", 1e9), ("MN/m", 1e6), ("kN/m", 1e3))}
 
 
 def _strokes(*lines: Sequence[tuple[float, float]]) -> Path:
-    """Return a path of lines that are not joined."""
+    """Return a path of separate lines."""
     return Path.make_compound_path(*map(Path, lines))
 
 
@@ -53,7 +53,7 @@ def _circle(z: float, radius: float) -> Path:
 
 
 def _rotated(path: Path, degrees: float) -> Path:
-    """Return a symbol rotated to the left by an angle."""
+    """Return a symbol rotated counter-clockwise by an angle in degrees."""
     return path.transformed(Affine2D().rotate_deg(degrees))
 
 
@@ -86,19 +86,19 @@ MOMENT = CLOCKWISE.transformed(Affine2D().scale(-1.0, 1.0))
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """A support or a load of a boom.
+    """Symbol of a support or a load.
 
     Args:
         kind: name of the kind.
-        segment: its number.
-        places: x in m of its symbols.
-        edge: of the segment at which they stand, or z in m.
-        path: of the symbol.
-        meaning: in words.
-        color: of the symbol.
+        segment: number of the segment.
+        places: x in m of its positions.
+        edge: edge of the segment where it is drawn, or z in m.
+        path: path of the symbol.
+        meaning: text of the legend.
+        color: colour of the symbol.
         turns: whether the symbol rotates with the boom.
-        clearance: in m between edge and symbol.
-        grounded: whether it keeps its initial place when the boom moves.
+        clearance: distance in m between edge and symbol.
+        grounded: whether the symbol stays in place when the boom moves.
     """
 
     kind: Literal["supports", "springs", "stops", "masses", "loads"]
@@ -124,7 +124,7 @@ class Symbol:
 
 
 def marker_style(path: Path, color: str, size: float) -> dict[str, Any]:
-    """Return matplotlib's style of a symbol of a size in pt, scaled by its farthest point."""
+    """Return matplotlib's marker style of a symbol with a size in pt."""
     return {
         "marker": path,
         "markersize": 2.0 * size * float(np.abs(path.vertices).max()),
@@ -138,13 +138,13 @@ def marker_style(path: Path, color: str, size: float) -> dict[str, Any]:
 def edges(
     boom: Boom, segment: Segment, x: float, direction: Direction = "z"
 ) -> tuple[float, float]:
-    """Return the lowest and highest z in m of a section at x in m, estimated without its plates."""
+    """Return the lowest and highest z in m of a section at x in m; without plates an estimate."""
     half = 0.5 * UNKNOWN * boom.length
     return (-half, half) if segment.section is None else segment.section_at(x).reach(direction)
 
 
 def abbreviated(value: float, unit: str) -> str:
-    """Return a number with its unit, in thousands or millions where it is large."""
+    """Return a number with its unit; large numbers have the prefixes k or M."""
     for larger, factor in _MORE.get(unit, ()):
         if abs(value) >= factor:
             return f"{number(value / factor, 4)} {larger}"
@@ -154,7 +154,7 @@ def abbreviated(value: float, unit: str) -> str:
 
 
 def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
-    """Yield supports and stops, then masses, loads and axial forces, those of segments first."""
+    """Yield the symbols of supports and stops, then those of masses, loads and axial forces."""
     yield from _support_symbols(boom)
     for index, segment in enumerate(boom.segments):
         given = case.segments[index]
@@ -223,7 +223,7 @@ def _load(table: LoadTable, boom: Boom, index: int) -> Symbol:
 def _spread(
     boom: Boom, index: int, span: tuple[float, float], load: float, direction: str, how: str
 ) -> Symbol:
-    """Return arrows along a part of a segment."""
+    """Return the symbol of a distributed load along a part of a segment."""
     start, end = span
     arrows = max(2, round((end - start) / (APART * boom.length)))
     places = start + (np.arange(arrows) + 0.5) / arrows * (end - start)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Tables for the terminal, the report, Markdown and programs."""
+"""Tables for the terminal, the report, Markdown files and programs."""
 
 from __future__ import annotations
 
@@ -23,38 +23,39 @@ from runs.report.formatting import NONE, count, fixed, number, repeated
 if TYPE_CHECKING:
     import pandas as pd
 
-# Characters that fit in a line of the report with its usual font, on a telephone, and in a file.
+# Characters per line in the report with its standard font, on a telephone, and in a file.
 ROOMY, NARROW = 115, 40
 WIDE = 180
 
-# Conversion from SI units to those in headings; others are SI units.
+# Conversion factors from SI units to units of headings; all other units are SI units.
 _FACTORS = {"%": TO_PERCENT, "mm": TO_MILLI, "mrad": TO_MILLI, "ms": TO_MILLI, "µs": TO_MICRO}
 _FACTORS |= dict.fromkeys(("kN", "kW", "kJ"), TO_KILO)
 _FACTORS |= dict.fromkeys(("MPa", "MN", "MN/m"), TO_MEGA)
 
-# A cell: text, a number, repetitions of one, or none.
+# Type of a cell: text, a number, repeated measurements of a number, or None.
 Cell = str | float | list[float] | None
-# The same in JSON, without numbers that are not finite.
+# Type of a cell in JSON, which has no infinity or NaN.
 Plain = str | float | list[float | None] | None
 
 
 def wide_console() -> Console:
-    """Return the console for tables, as wide as the tables where the output is no terminal."""
+    """Return the console for tables; it is as wide as the tables if the output is no terminal."""
     console = Console()
     return console if console.is_terminal else Console(width=WIDE)
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """Numbers or text under a heading.
+    """Column of a table.
 
     Args:
         title: the heading.
-        cells: one for each row, numbers in SI units; None for none, a text for what is no number;
-            repetitions are shown with the digits that they have in common, whatever the form.
-        form: ".2f" with two decimals, ".3g" with three significant digits, else a count.
-        unit: in which the numbers are shown, "kN m" or "% of the range" say; empty where they stay
-            as they are.
+        cells: one cell per row: a number in SI units, text, or None for an empty cell; repeated
+            measurements are shown with the digits that their spread leaves.
+        form: number format: ".2f" with two decimals, ".3g" with three significant digits, else a
+            count.
+        unit: displayed unit, such as "kN m" or "% of the range"; numbers are not converted if it is
+            empty.
     """
 
     title: str
@@ -64,7 +65,7 @@ class Column:
 
     @property
     def heading(self) -> str:
-        """Title, with the unit in its second line."""
+        """The title, with the unit in its second line."""
         if not self.unit or not self.title:
             return self.title or self.unit
         between = ", " if "\n" in self.title else "\n"
@@ -72,17 +73,17 @@ class Column:
 
     @property
     def factor(self) -> float:
-        """Conversion factor from SI units to the unit of the heading."""
+        """The conversion factor from SI units to the unit of the heading."""
         return _FACTORS.get(self.unit.partition(" ")[0], 1.0)
 
     @property
     def text(self) -> list[str]:
-        """Cells as displayed."""
+        """The cells as displayed."""
         return [self._shown(cell) for cell in self.cells]
 
     @property
     def plain(self) -> list[Plain]:
-        """Cells in the unit of the heading."""
+        """The cells in the unit of the heading."""
         return [self._plain(cell) for cell in self.cells]
 
     def _shown(self, cell: Cell) -> str:
@@ -105,7 +106,7 @@ class Column:
         return cell if isinstance(cell, str) or cell is None else self._number(cell)
 
     def _number(self, value: float) -> float | None:
-        """Return a number, an integer where the cell is one and keeps its unit."""
+        """Return a number in its displayed unit; integers without conversion stay integers."""
         if isinstance(value, int) and self.factor == 1.0:
             return value
         return float(self.factor * value) if math.isfinite(value) else None
@@ -113,15 +114,15 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table for people and for programs.
+    """Table for people and for programs.
 
     Args:
-        title: above it.
-        columns: the first is flush left, the others are right; one that ends before the others has
-            none of its cells then. A cell may have several lines.
-        notes: sentences below it.
-        name: of its place in the report.
-        strong: texts of cells that stand out.
+        title: title above the table.
+        columns: columns; the first is aligned left, the others right. Missing cells at the end of a
+            column are empty. A cell may have several lines.
+        notes: sentences below the table.
+        name: name of its anchor in the report.
+        strong: texts of highlighted cells.
     """
 
     title: str
@@ -139,12 +140,12 @@ class Table:
         rows: Sequence[Sequence[Cell]],
         notes: Sequence[str] = (),
     ) -> Table:
-        """Return the table of rows whose numbers are in the units of the headings.
+        """Return the table of rows whose numbers are already in the units of the headings.
 
         Args:
-            name, title, notes: of the table.
-            columns: heading → format of its numbers; headings alone where all cells are text.
-            rows: a cell for each heading.
+            name, title, notes: name, title and notes of the table.
+            columns: number format by heading; only headings if all cells are text.
+            rows: rows with a cell for each heading.
         """
         forms = columns if isinstance(columns, Mapping) else dict.fromkeys(columns, "")
         parts = [
@@ -155,17 +156,17 @@ class Table:
 
     @property
     def headings(self) -> tuple[str, ...]:
-        """Headings of the columns, with the unit in the second line."""
+        """The headings of the columns, with the unit in the second line."""
         return tuple(column.heading for column in self.columns)
 
     @property
     def rows(self) -> list[tuple[str, ...]]:
-        """Cells as displayed, row by row."""
+        """The cells as displayed, row by row."""
         return list(zip_longest(*(column.text for column in self.columns), fillvalue=NONE))
 
     @property
     def frame(self) -> pd.DataFrame:
-        """Cells by their headings, numbers in their units; None for empty cells.
+        """The cells by their headings, numbers in displayed units; None for empty cells.
 
         Raises:
             ValueError: two columns have the same heading.
@@ -181,7 +182,7 @@ class Table:
 
     @property
     def data(self) -> list[dict[str, Plain]]:
-        """Rows of :attr:`frame`, as JSON values."""
+        """The rows of :attr:`frame` as JSON values."""
         return [
             {str(heading): cell for heading, cell in row.items()}
             for row in self.frame.to_dict("records")
@@ -189,22 +190,22 @@ class Table:
 
     @property
     def anchor(self) -> str:
-        """Target of links in the report."""
+        """The target of links in the report."""
         return f"table-{self.name}"
 
     @property
     def crowded(self) -> bool:
-        """Whether the table needs smaller letters to fit the report's page."""
+        """True if the table needs smaller letters to fit the report's page."""
         return self._letters > ROOMY
 
     @property
     def stacked(self) -> bool:
-        """Whether a telephone shows its rows one below the other, each cell with its heading."""
+        """True if a telephone shows a row's cells below one another, each with its heading."""
         return self._letters > NARROW
 
     @property
     def _letters(self) -> int:
-        """Characters in a line; headings are broken between words, cells at their line breaks."""
+        """The number of characters in a line; headings break at spaces, cells at line breaks."""
         letters = [
             max(len(part) for part in ("", *of.heading.split(), *"\n".join(of.text).split("\n")))
             for of in self.columns
@@ -214,11 +215,11 @@ class Table:
     def show(self, console: Console) -> None:
         """Print the table."""
         if self.title:
-            # The title of a grid would be broken at the width of its columns.
+            # Printed separately, since the title of a grid would be broken at the grid's width.
             console.print(Text(self.title, style="italic"))
         grid = Grid(box=SIMPLE_HEAD, pad_edge=False)
         for i, heading in enumerate(self.headings):
-            # Small numbers stay on one line: 1 × 10⁻¹².
+            # Small numbers, such as 1 × 10⁻¹², stay on one line.
             whole = i == 0 or ("\n" in heading and any(" × 10" in row[i] for row in self.rows))
             grid.add_column(heading, justify="right" if i else "left", no_wrap=whole)
         for row in self.rows:
@@ -238,21 +239,21 @@ class Table:
 
 
 def as_json(data: Any) -> str:
-    """Return data as the text of a JSON file."""
+    """Return data as JSON text."""
     return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def write(
     folder: Path, name: str, title: str, data: Mapping[str, Any], tables: Sequence[Table]
 ) -> None:
-    """Write NAME.json and NAME.md, each completely or not at all.
+    """Write NAME.json and NAME.md; each is complete or absent.
 
     Args:
-        folder: made where it is missing.
-        name: of the files.
+        folder: folder, which is created if it is missing.
+        name: name of the files.
         title: heading of the Markdown file.
-        data: of the tables.
-        tables: in their order.
+        data: data of the JSON file.
+        tables: tables of the Markdown file.
     """
     folder.mkdir(parents=True, exist_ok=True)
     texts = {

@@ -21,7 +21,7 @@ from runs.report.summary_table import (
 )
 from runs.report.tables import Cell, Column, Table
 
-# Columns of the models' table for the terminal → their headings there.
+# Headings in the terminal of columns of the models' table.
 SHOWN = {
     "model": "model",
     "degrees of freedom": "dofs",
@@ -45,7 +45,7 @@ def print_models(results: Results, console: Console) -> None:
 
 
 def print_results(results: Results, console: Console) -> None:
-    """Print the governing design results of each model, the utilisation of the leading one last."""
+    """Print the governing design results of each model, then the leading model's utilisation."""
     if not results.summary.design.models:
         return
     result_table(results).show(console)
@@ -55,7 +55,7 @@ def print_results(results: Results, console: Console) -> None:
 
 
 def result_table(results: Results) -> Table:
-    """Return the governing design results, a row for each model."""
+    """Return the table of governing design results, with a row for each model."""
     designs, pads = results.summary.design.models, governing_pads(results)
     names = [name for name in results.summary.models if name in designs]
     static = [[state.tip for state in designs[name].static] for name in names]
@@ -83,7 +83,7 @@ def result_table(results: Results) -> Table:
 
 
 def _model_notes(results: Results) -> Iterator[str]:
-    """Yield the accuracy of shells and the residual vibration of tips during telescoping."""
+    """Yield notes on the accuracy of shells and on residual vibration during telescoping."""
     for name, model in results.summary.models.items():
         if errors := model.reduction_errors:
             yield (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Style of figures: readable on a telephone, one colour per model everywhere."""
+"""Style of figures: readable on a telephone, one colour per model in all figures."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 
-# A telephone shows a figure about half as wide as drawn: 11 pt stay readable.
+# A telephone shows a figure at about half its width: 11 pt stay readable.
 WIDTH = 5.4
 DPI = 150
 
@@ -19,18 +19,18 @@ INK = "#222222"
 RULE = "#d9d9d9"
 PLAY_FREE = "#6b6b6b"
 FAINT = "#a8a8a8"
-# Colours of energy losses, beside those of the models.
+# Colours of energy losses.
 LOSS = "#8c6d1f"
 
-# Okabe and Ito (2008), without colours too pale for lines on white; the purple is slightly darker,
-# and a violet and an ochre extend it to more models.
+# Okabe and Ito (2008), without colours too pale for lines on white; the purple is slightly darker;
+# violet and ochre are added for more models.
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#111111", "#b0568c", "#6a3fd0", "#8a6d00")
 
-# Colours of two segments and their contact force, safe for the colour-blind.
+# Colours of two segments and their contact force, distinguishable by the colour-blind.
 OUTER, INNER, FORCE = "#56b4e9", "#e69f00", "#b03000"
-# Outline of letters above a picture.
+# Outline of letters on a picture.
 OUTLINED: list[AbstractPathEffect] = [withStroke(linewidth=3, foreground="white")]
-# Colour maps of deflections and of stresses, light at zero.
+# Colour maps of deflections and of stresses; zero is light.
 DEFLECTION, STRESS = "viridis_r", "cividis_r"
 
 RC: dict[Any, Any] = {
@@ -48,7 +48,7 @@ RC: dict[Any, Any] = {
     "axes.spines.right": False,
     "axes.grid": True,
     "axes.axisbelow": True,
-    # Numbers along axes are written in full, without an offset at the end of the axis.
+    # Axes have full numbers, without an offset.
     "axes.formatter.useoffset": False,
     "axes.titlelocation": "left",
     "axes.titlesize": 11.0,
@@ -61,33 +61,33 @@ RC: dict[Any, Any] = {
     "lines.solid_capstyle": "round",
     "legend.frameon": False,
     "legend.fontsize": 11.0,
-    # The longest trajectories overflow the renderer's path buffer unless cut into pieces; the gap
-    # between two pieces must be too short to be visible.
+    # Long trajectories are split, since they overflow the renderer's path buffer; the gap between
+    # two pieces is too short to be visible.
     "agg.path.chunksize": 1_000_000,
 }
 
-# Style of sheets around VTK's pictures, which are shown at the width of a screen.
+# Style of sheets with VTK's pictures, which are as wide as a screen.
 PAGE_RC: dict[Any, Any] = {
     name: value for name, value in RC.items() if name.endswith(("color", "top", "right"))
 } | {"font.size": 20.0}
 
 
 class Canvas(FigureCanvasAgg):
-    """Canvas that saves a sheet with a single drawing, where matplotlib otherwise needs two."""
+    """Canvas that draws a sheet only once to save it, where matplotlib draws it twice."""
 
     def print_figure(self, filename: Any, *_: Any, **__: Any) -> None:
-        """Write a PNG file, whatever the ending of its name."""
+        """Write a PNG file; the suffix of its name does not matter."""
         canvas: Any = self
         canvas.print_png(filename)
 
 
 def segment_color(number: int) -> str:
-    """Return the colour of a segment in the order of the boom, the same in all figures."""
+    """Return the colour of a segment by its number, the same in all figures."""
     return PALETTE[number % len(PALETTE)]
 
 
 def tint(color: str, strength: float) -> tuple[float, float, float]:
-    """Return a colour mixed with white; strength 1 leaves it unchanged."""
+    """Return a colour mixed with white; strength 1 returns the colour itself."""
     red, green, blue = to_rgb(color)
     paper = 1.0 - strength
     return strength * red + paper, strength * green + paper, strength * blue + paper
@@ -102,16 +102,16 @@ class Stroke:
 
 
 def strokes(models: Sequence[str], bonded: Sequence[str]) -> dict[str, Stroke]:
-    """Return a stroke for each model, independent of the models in a figure.
+    """Return the stroke of each model, the same in all figures.
 
     Args:
         models: names in the order of the case.
-        bonded: those without play, which are the background of the others: grey, dashed.
+        bonded: names of models without play, whose curves are grey and dashed.
     """
     with_play = [name for name in models if name not in bonded]
     drawn = {name: Stroke(PLAY_FREE, "--") for name in bonded}
     for i, name in enumerate(with_play):
-        # Beyond the palette the colours are repeated, dashed.
+        # If the palette is too short, its colours are repeated with dashes.
         again, color = divmod(i, len(PALETTE))
         drawn[name] = Stroke(PALETTE[color], ("-", "-.", ":")[again % 3])
     return {name: drawn[name] for name in models}

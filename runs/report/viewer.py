@@ -32,18 +32,18 @@ from runs.report.scene import SECTION_DRAWN, Scene, means_around
 
 VIEWER = "viewer.html"
 
-# Truncation error of the shapes, as a part of the largest displacement.
+# Truncation error of the shapes, as a fraction of the largest displacement.
 LEFT = 2.0e-3
-# Limit of a page's mesh; finer meshes need dedicated programs.
+# Maximum number of triangles in a page; finer meshes need dedicated programs.
 MOST_POINTS = 60_000
-# Largest part of the stresses, in percent, that the colour scale resolves.
+# Percentile of the stresses at the end of the colour scale.
 PERCENTILE = 99.0
-# Size of a symbol as a part of the boom's length, a smaller one's as a part of it, and the margin
-# around the boom.
+# Size of a symbol as a fraction of the boom's length, of a small symbol as a fraction of this, and
+# margin around the boom.
 SYMBOL, SMALL, MARGIN = 0.03, 0.6, 0.02
-# Scale at which matplotlib makes smooth polygons of a symbol's curves.
+# Scale at which matplotlib converts a symbol's curves into smooth polygons.
 FINE = 100.0
-# Largest numbers of 16 and of 8 bits.
+# Largest integers of 16 and of 8 bits.
 _SHORT, _BYTE = 32767, 255
 
 
@@ -51,8 +51,8 @@ class View(NamedTuple):
     """Boom and stresses of a page.
 
     Args:
-        model: of the motion.
-        scene: the boom.
+        model: name of the model.
+        scene: scene of the boom.
         time: (num_frames,) in s.
         stress: (num_frames, num_points) in MPa.
         quantity: name of the stress, with its unit.
@@ -66,12 +66,12 @@ class View(NamedTuple):
 
     @property
     def end(self) -> float:
-        """End of the colour scale in MPa, for larger stresses too: peaks would use most of it."""
+        """The end of the colour scale in MPa, which stress peaks may exceed."""
         return float(np.percentile(self.stress, PERCENTILE)) or 1.0
 
     @classmethod
     def of_shell(cls, model: str, scene: Scene, time: Array) -> View:
-        """Return the von Mises stresses of plates: larger of both faces, means around points."""
+        """Return a shell's view, with larger von Mises stresses of both faces, averaged."""
         stress = scene.stress
         assert stress is not None
         means = [
@@ -82,9 +82,9 @@ class View(NamedTuple):
 
 
 def viewer(run: Run) -> str | None:
-    """Return the page as HTML: library and numbers inside, no external resource.
+    """Return the page as HTML, with library and data embedded.
 
-    Return None without plotly, and for a mesh that is too fine for a page.
+    Return None without plotly, or if the mesh is too fine for a page.
     """
     view = _view(run) if find_spec("plotly") else None
     if view is None:
@@ -101,7 +101,7 @@ def viewer(run: Run) -> str | None:
 
 
 def _view(run: Run) -> View | None:
-    """Return the first shell in motion, or the leading beam; None for finer meshes."""
+    """Return the view of the first shell or the leading beam; None if its mesh is too fine."""
     results = run.results
     for name, shell in run.shells.items():
         if shell.fields.sizes["point"] > MOST_POINTS:
@@ -119,7 +119,7 @@ def _view(run: Run) -> View | None:
 
 
 def packed(view: View, angle: float) -> dict[str, Any]:
-    """Return the numbers of a page, for a boom at an angle in degrees about y."""
+    """Return the data of a page, for a boom at an angle in degrees about y."""
     scene = view.scene
     scale = scene.fitting_scale(view.time.tolist())
     rest = scene.magnify(np.zeros_like(scene.points), scale)
@@ -131,7 +131,7 @@ def packed(view: View, angle: float) -> dict[str, Any]:
     )
     parts, flat = few_shapes(moved.reshape(view.time.size, -1))
     ways = extensions(scene, view.time)
-    # Drives move segments along x by true distances, not magnified.
+    # Telescoping is not magnified: drives move segments along x by true distances.
     along = [own[None, :, None] * [1.0, 0.0, 0.0] for own, _ in ways.values()]
     parts = np.column_stack([parts, *(way for _, way in ways.values())])
     rise = Rotation.from_euler("y", -angle, degrees=True).as_matrix().T
@@ -164,9 +164,9 @@ def packed(view: View, angle: float) -> dict[str, Any]:
 
 
 class Lines(NamedTuple):
-    """Lines of one look: vertices (num_vertices, 3) in m from mesh points, which they follow.
+    """Lines of one style: vertices (num_vertices, 3) in m relative to mesh points that they follow.
 
-    The points are -1 for vertices that stay, and at gaps, where the vertices are NaN.
+    The point is -1 for a fixed vertex, and for a gap in a line, whose vertex is NaN.
     """
 
     color: str
@@ -176,14 +176,14 @@ class Lines(NamedTuple):
 
 
 def symbol_lines(scene: Scene, rest: Array, rise: Array, angle: float, scale: float) -> list[Lines]:
-    """Return the symbols of supports and loads, and the cylinders.
+    """Return the lines of cylinders and of the symbols of supports and loads.
 
     Args:
-        scene: with the boom.
-        rest: (num_points, 3) displayed places of the undeformed boom, in m.
-        rise: (3, 3) rotation of places by the boom's angle.
-        angle: of the boom in degrees.
-        scale: of displacements and play.
+        scene: scene of the boom.
+        rest: (num_points, 3) displayed points of the undeformed boom in m.
+        rise: (3, 3) rotation by the boom's angle.
+        angle: angle of the boom in degrees.
+        scale: scale of displacements and play.
     """
     found: dict[tuple[str, float], list[tuple[Array, Array]]] = {}
     gap = np.full((1, 3), np.nan)
@@ -193,7 +193,7 @@ def symbol_lines(scene: Scene, rest: Array, rise: Array, angle: float, scale: fl
             place, near = scene.at(rest, symbol.segment, x, symbol.z(scene.boom, x))
             place[2] += (1.0 if symbol.edge == "top" else -1.0) * scale * symbol.clearance
             if not isinstance(symbol.edge, str):
-                # In front of the wall that would hide it.
+                # In front of the wall, which would otherwise hide the symbol.
                 place[1] = 1.02 * rest[scene.owner == symbol.segment, 1].min()
             fixed = np.zeros(3) if symbol.grounded else rest[near]
             path = symbol.turned(angle).transformed(Affine2D().scale(FINE))
@@ -216,7 +216,7 @@ def symbol_lines(scene: Scene, rest: Array, rise: Array, angle: float, scale: fl
 
 
 def _figure(view: View, lines: Sequence[Lines], reach: Array) -> dict[str, Any]:
-    """Return plotly's traces and layout; ``reach`` (2, 3) are the ends of all places in m."""
+    """Return plotly's traces and layout; ``reach`` (2, 3) has the limits of all points in m."""
     from plotly.graph_objects import Figure
 
     colors = colormaps[theme.STRESS](np.linspace(0.0, 1.0, 9))
@@ -271,9 +271,10 @@ def _figure(view: View, lines: Sequence[Lines], reach: Array) -> dict[str, Any]:
 
 
 def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
-    """Return the extension by drives: name of the inner segment → its points, and distances.
+    """Return the points that each drive moves, and the distances, by the name of the inner segment.
 
-    1 for each of (num_points,) that moves, else 0; (num_frames,) in m at times (num_frames,) in s.
+    The points (num_points,) are 1 where they move and else 0; distances (num_frames,) are in m at
+    times (num_frames,) in s.
     """
     boom, found = scene.boom, {}
     for number, joint in enumerate(boom.joints):
@@ -287,13 +288,13 @@ def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
 
 
 def few_shapes(moved: Array) -> tuple[Array, Array]:
-    """Return parts (num_frames, num_shapes) and shapes (num_shapes, num_values) of a motion.
+    """Return factors (num_frames, num_shapes) and shapes (num_shapes, num_values) of a motion.
 
-    Singular vectors (Eckart and Young 1936), as many as leave at most ``LEFT`` of the largest value
-    anywhere.
+    They follow from the singular value decomposition (Eckart and Young 1936), truncated with an
+    error of at most ``LEFT`` times the largest value.
 
     Args:
-        moved: (num_frames, num_values).
+        moved: displacements (num_frames, num_values).
     """
     left, sizes, right = np.linalg.svd(moved, full_matrices=False)
     largest = float(np.abs(moved).max())
@@ -305,7 +306,7 @@ def few_shapes(moved: Array) -> tuple[Array, Array]:
 
 
 def _typed(values: Array) -> dict[str, str]:
-    """Return an array in the format of the page's script."""
+    """Return an array in the data format of the page's script."""
     return {
         "kind": values.dtype.name,
         "bytes": base64.b64encode(values.tobytes()).decode("ascii"),

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Local compliance of walls at contacts, to which errors of mesh and reduction are related.
+"""Local compliance of walls at contacts, the reference of errors of mesh and reduction.
 
-The compliance of a contact row, B (Ω² + σ)⁻¹ Bᵀ at a slow shift, is nearly all rigid motion: some
-1e-6 m/N around 3e-9 of wall. A squeeze of a station, equal and opposite forces on its two sides, is
-in balance. It moves no segment and bends no beam, and half of what the station opens is the *local
-compliance* of each side. Errors of the compliance are given as parts of it.
+Rigid motion dominates the compliance of a contact row, B (Ω² + σ)⁻¹ Bᵀ at a low shift: about 1e-6
+m/N, compared with 3e-9 m/N of the wall. Equal and opposite forces on the two sides of a station are
+in equilibrium. They cause no rigid motion and no beam bending, and half of the station's opening
+under unit forces is the *local compliance* of each side. Errors of the compliance are fractions of
+it.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import ShiftedSolver
 
-# Hz: above rigid motion, below all elastic motion.
+# Frequency of the shift in Hz, above rigid motion and below all elastic motion.
 SLOW = 20.0
 
 
@@ -44,15 +45,15 @@ def full_compliance(
         touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
         parts = [shell.row(contacts[i].reading[number]) for i in touching]
         rows = np.array(parts).reshape(-1, shell.free.size).T
-        # Only the symmetry reductions of these shells are used.
+        # The function needs only the symmetry reductions of these shells.
         found[np.ix_(touching, touching)] += shell_compliance(SymmetryReduction(shell), rows)
     return found
 
 
 def shell_compliance(symmetry: SymmetryReduction, rows: Array, frequency: float = SLOW) -> Array:
-    """Return the compliance (num_rows, num_rows) in m/N of rows of an unreduced shell.
+    """Return the compliance (num_rows, num_rows) in m/N of an unreduced shell. Collective.
 
-    Rows are (num_owned, num_rows); the shift is of a frequency in Hz. Collective.
+    Rows are (num_owned, num_rows); a frequency in Hz determines the shift.
     """
 
     def answers(_: int, job: Job) -> Array:
@@ -70,8 +71,8 @@ def local_compliance(
     """Return the local compliance (num_rows,) in m/N; NaN without a contact on the other side.
 
     Args:
-        whole: (num_rows, num_rows) the compliance.
-        laws, station_of_row: of its rows.
+        whole: compliance (num_rows, num_rows) in m/N.
+        laws, station_of_row: contact law and station of each row.
     """
     found = np.full(len(laws), np.nan)
     for up, down in _opposite(laws, station_of_row):
@@ -81,11 +82,11 @@ def local_compliance(
 
 
 def extrapolated_error(fine: Array, coarse: Array, order: float) -> Array:
-    """Estimate the relative error of values of a mesh by extrapolation (Richardson 1911).
+    """Estimate the relative discretisation error of values by extrapolation (Richardson 1911).
 
     Args:
-        fine, coarse: of the mesh, and of one with edges of twice the length.
-        order: of the values in the edge length.
+        fine, coarse: values of the mesh, and of a mesh with edges of twice the length.
+        order: convergence order of the values.
     """
     return np.asarray(np.abs(1.0 - coarse / fine) / (2.0**order - 1.0))
 
@@ -95,7 +96,7 @@ def _opposite(
 ) -> Iterator[tuple[int, int]]:
     """Pair the rows that press up with those that press down at the same place of their station.
 
-    Where there are more pads on one side, several have the same one opposite.
+    If one side has more pads, several of them have the same opposite pad.
     """
     for station in set(station_of_row):
         there = [i for i, at in enumerate(station_of_row) if at == station]
@@ -107,9 +108,10 @@ def _opposite(
 
 
 def probe_segment(boom: Boom, number: int, symmetry: SymmetryReduction) -> ProbeResponses:
-    """Compute the unit responses of a segment, with all degrees of freedom. Collective.
+    """Compute the unit responses of a segment with all degrees of freedom. Collective.
 
-    In space this includes lateral bending and torsion. The mesh has lines at the places used.
+    In space they include lateral bending and torsion. The mesh must have lines at the places of
+    unit loads.
     """
     places, shell = probe_places(boom, number), symmetry.shell
     probes: dict[ProbedMotion, list[Array]] = {

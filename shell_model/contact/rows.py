@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rows of contacts, friction and ties between the shells of a boom.
 
-At a station the inner segment's top flange may press up against the outer one's, its bottom
-flange down, and in space its webs to the sides. Which side is which comes from the joint, never
-from a facet's normal, whose direction a mesh does not promise. Contact over the whole overlap
-leaves the stations to friction.
+At a station, the top flange of the inner segment can press upwards, its bottom flange downwards,
+and in space its webs sideways. The joint determines the sides, since the direction of facet normals
+is arbitrary in a mesh. With surface contact, stations have friction only.
 
 The points of each wall have weights that sum to one, so that a uniform approach gives the paper's
 law (4) exactly.
@@ -30,21 +29,21 @@ from shell_model.segment.segment_shell import SegmentShell
 
 _SIDES: tuple[Side, Side] = (1, -1)
 
-# Gauss's rule over a patch, along x and across.
+# Numbers of Gauss points of a patch, along x and across.
 _POINTS = 4
 
 
-# Side, weight and approach of a pair of points.
+# A pair of contact points: side, weight and approach.
 _Point = tuple[Side, float, Reading]
 
 
 @dataclass(frozen=True, slots=True)
 class _PadReadings:
-    """Relative displacements u − w of the two segments of a pad.
+    """Readings of the relative displacements u − w of the two segments at a pad.
 
     Args:
         pad: the pad.
-        corners, walls: those of all segments; no walls unless they are read.
+        corners, walls: corners and walls of all segments; walls are empty if no contact reads them.
     """
 
     pad: Pad
@@ -52,7 +51,7 @@ class _PadReadings:
     walls: Sequence[WallPoints]
 
     def contact(self, line: ContactLine) -> tuple[list[_Point], Reading]:
-        """Return the pairs of points of the pad, and its sliding. Collective."""
+        """Return the point pairs of the pad, and the reading of its sliding. Collective."""
         pad = self.pad
         if pad.joint.lateral_play is not None:
             if pad.patch is None:
@@ -73,7 +72,7 @@ class _PadReadings:
         else:
             offsets = [(side, (0.0, side)) for side in _SIDES]
             points = [(side, 1.0, self.at_corners("z", at, at)) for side, at in offsets]
-        # Both flanges together slide as their mean does.
+        # The sliding of both flanges is their mean.
         first, *others = (0.5 * weight * approach for _, weight, approach in points)
         return points, sum(others, first)
 
@@ -84,14 +83,14 @@ class _PadReadings:
         return self._approach(*rows)
 
     def across(self) -> Iterator[_Point]:
-        """Return the approach over the width of the inner section's faces. Collective."""
+        """Return the approaches over the width of the inner section's faces. Collective."""
         for side in _SIDES:
             width = self._touching.face("z", side).width
             across, shares = gauss(-0.5 * width, 0.5 * width, 8)
             for y, share in zip(across[across > 0.0], 2.0 * shares[across > 0.0], strict=True):
                 rows = []
                 for number, stretch in zip(self._ends, self.pad.pressed, strict=True):
-                    # At ±y along the stretch, with weights that sum to one.
+                    # Points at ±y along the interval, with weights that sum to one.
                     x, weights = gauss(stretch.start, stretch.end, _POINTS)
                     force = 0.5 * weights * (stretch.end - stretch.start) * stretch.density(x)
                     places = np.column_stack([np.tile(x, 2), np.repeat([y, -y], x.size)])
@@ -100,9 +99,9 @@ class _PadReadings:
                 yield side, share, self._approach(*rows)
 
     def over_patch(self, patch: Patch, side: Side, half: int) -> Reading:
-        """Return the mean approach over a patch; its transpose is a uniform pressure on both walls.
+        """Return the mean approach over a patch. Collective.
 
-        Collective.
+        The transposed row is a uniform pressure on both walls.
         """
         x, along = gauss(patch.start, patch.end, _POINTS)
         near, far = patch.across(self._touching.face(self.pad.direction, side))
@@ -118,7 +117,7 @@ class _PadReadings:
 
     @property
     def _touching(self) -> Section:
-        """Section of the inner segment at the pad."""
+        """Return the section of the inner segment at the pad."""
         inner = self.walls[self.pad.joint.inner].segment
         return inner.section_at(self.pad.x + self.pad.moved[0])
 
@@ -135,9 +134,9 @@ class ShellContacts:
     """Possible contacts, friction and dashpots of a boom's shells.
 
     Args:
-        boom: has the joints and stops.
+        boom: boom with joints and stops.
         line: contact line on the walls.
-        corners, walls: those of the segments; no walls unless they are read.
+        corners, walls: corners and walls of the segments; walls are empty if no contact reads them.
         points: contact points of a surface; none without surface contact.
     """
 
@@ -158,8 +157,8 @@ class ShellContacts:
         """Create the contacts of shells. Collective.
 
         Args:
-            boom, line: see above.
-            shells: one for each segment.
+            boom, line: boom and contact line of the class.
+            shells: shell of each segment.
             surface: options of surface contact, if it is used.
 
         Raises:
@@ -172,9 +171,9 @@ class ShellContacts:
         return cls(boom, line, [CornerLines(shell) for shell in shells], walls, points)
 
     def rows(self, extensions: Mapping[int, float]) -> GapBuilder[Reading]:
-        """Return the rows of every pad, surface, stop and dashpot at the extensions of joints in m.
+        """Return the rows of pads, surfaces, stops and dashpots. Collective.
 
-        Collective.
+        ``extensions`` are the extensions of joints in m.
         """
         boom, points = self.boom, self.points
         rows = GapBuilder([LawRow(point.reading, point.law, point.station) for point in points])
@@ -192,7 +191,7 @@ class ShellContacts:
             segment, drives = rest.stop.segment, drives_below(boom.joints, rest.stop.segment)
             extension = sum(extensions.get(number, 0.0) for number in drives)
             pressed, lines = rest.extended(boom, extension).pressed, self.corners[segment]
-            # It meets a flange above its webs, both at once.
+            # A stop touches a flange at both webs at once.
             flanges = [
                 (side, 1.0, Reading({segment: lines.deflection(pressed, "z", 0.0, side)}))
                 for side in _SIDES
@@ -204,7 +203,7 @@ class ShellContacts:
 def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
     """Return the constraints of bonded joints: deflections, and in space the twist. Collective.
 
-    Each is read in the walls that carry its force in their own plane.
+    Each constraint reads the walls that carry its force in their own plane.
     """
     reads: list[Callable[[Outline], Row]] = [
         partial(Outline.wall_deflection, direction=direction) for direction in boom.directions

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Surface contact over the whole overlap: points on the facing walls of two segments.
 
-Gauss's rule along the overlap, and across each half of the inner segment's wall, so that a wall's
-points mirror each other. A point carries the penalty k_A times its area, k_A in N/mⁿ⁺². Neither
-mesh needs a node there: both segments are read in the triangles that hold the point. Which side
-touches comes from the joint, never from a facet's normal.
+The points follow Gauss's rule along the overlap, and across each half of the inner segment's wall,
+so that they are symmetric. The stiffness of a point is the penalty k_A in N/mⁿ⁺² times its area.
+Neither mesh needs a node at the point: both displacements are interpolated in the triangles that
+contain it. The joint determines the side in contact, since the direction of facet normals is
+arbitrary.
 """
 
 from __future__ import annotations
@@ -26,11 +27,12 @@ from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
 
-# The part of a row's flexibility that may be left out. With it the tip of the paper's boom with
-# friction moves by 0.01 % of its range.
+# Fraction of a row's compliance that may be neglected. It changes the tip of the paper's boom with
+# friction by 0.01 % of its range.
 STIFF = 1.0e-4
 
-# With more the first tip peak of the paper's boom moves by less than 0.3 %.
+# Default numbers of points; more points change the first tip peak of the paper's boom by less than
+# 0.3 %.
 POINTS = (8, 4)
 
 
@@ -39,13 +41,13 @@ class SurfaceOptions:
     """Discretisation and stiffness of surface contact.
 
     Args:
-        points: number along the overlap, and number across each half of a wall.
-        stiffness: k_A in N/mⁿ⁺² of the stiffer side of every joint. Unless given it is the law of
-            all the joint's stations together over the area, so that segments that approach each
-            other uniformly press as they would at the stations.
-        shifts, moments: of the reduction, see :class:`shell_model.reduction.krylov.KrylovOptions`.
-            Each point is an input of its own; against these many a few suffice: with more, the tip
-            of the paper's boom with friction moves by 0.05 % of its range.
+        points: numbers of points along the overlap, and across each half of a wall.
+        stiffness: k_A in N/mⁿ⁺² of the stiffer side of every joint. By default it is the sum of the
+        stations' laws over the area, so that a uniform approach causes the same force as at the
+        stations. shifts, moments: shifts and moments of the reduction, see
+            :class:`shell_model.reduction.krylov.KrylovOptions`. Every point is an input, so that
+            few shifts and moments suffice: more of them change the tip of the paper's boom with
+            friction by 0.05 % of its range.
     """
 
     points: tuple[int, int] = POINTS
@@ -55,14 +57,14 @@ class SurfaceOptions:
 
 
 class SurfacePoint(NamedTuple):
-    """Contact point of a surface; in a flat boom a mirrored pair of points, which move alike.
+    """Contact point of a surface; in a flat boom a symmetric pair of points.
 
     Args:
-        reading: the mean approach.
-        law: one-sided, with the area's part of the penalty.
-        station: the nearest one of the joint along the same direction.
-        side: of the inner segment's wall that touches, 1 or −1.
-        half: of this wall on which the point lies, 1 or −1; 0 for a mirrored pair.
+        reading: reading of the mean approach.
+        law: one-sided contact law, with the penalty of the point's area.
+        station: nearest station of the joint in the same direction.
+        side: side of the inner segment's wall that touches, 1 or −1.
+        half: half of this wall on which the point lies, 1 or −1; 0 for a mirrored pair.
     """
 
     reading: Reading
@@ -83,7 +85,7 @@ def surface_points(
     shells: Sequence[SegmentShell],
     options: SurfaceOptions,
 ) -> list[SurfacePoint]:
-    """Return all contact points of all joints without a bond. Collective."""
+    """Return the contact points of all joints that are not bonded. Collective."""
     walls = [WallPoints(shell) for shell in shells]
     found: list[SurfacePoint] = []
     first = 0
@@ -108,27 +110,27 @@ def _on_wall(
     options: SurfaceOptions,
     first: int,
 ) -> Iterator[SurfacePoint]:
-    """Return the points on one wall of the inner segment from the joint's ``first`` station on."""
+    """Return the points on a wall of the inner segment; ``first`` is the joint's first station."""
     one_sided = law.one_sided(wall.side)
     if one_sided is None:
         return
     section = boom.segments[joint.inner].section
     assert section is not None
     width, (start, end) = section.face(wall.normal, wall.side).width, boom.overlap(joint)
-    # The penalty of the whole wall over the joint's stiffness at one station.
+    # Ratio of the whole wall's penalty to the joint's stiffness at one station.
     share = float(len(joint.stations))
     if options.stiffness is not None:
         area = width * (end - start)
         share = options.stiffness * area / max(term.stiffness for term in law.terms)
     pressing = one_sided.shared(share)
     along, across = gauss(start, end, options.points[0]), gauss(0.0, 0.5 * width, options.points[1])
-    # Mirrored pairs stand for parts of the wall's area.
+    # Symmetric pairs represent fractions of the wall's area.
     weights = np.outer(along[1], across[1]).ravel()
     x, beside = np.repeat(along[0], across[0].size), np.tile(across[0], along[0].size)
     stations = np.abs(np.subtract.outer(x, joint.stations)).argmin(axis=1) + first
 
     def approaches(half: int) -> list[Reading]:
-        """Return u − w along the wall's normal at the places on one half of it."""
+        """Return the readings of u − w along the wall's normal at the points of one half."""
         places, ends = np.column_stack([x, half * beside]), (joint.inner, joint.outer)
         rows = (walls[number].rows(wall, places, wall.normal) for number in ends)
         return [
@@ -149,12 +151,12 @@ def _on_wall(
 def without_stiff_modes(comm: MPI.Comm, reduced: ReducedSegment, rows: Array) -> ReducedSegment:
     """Return the segment without its highest modes, which hardly affect any row. Collective.
 
-    Many points leave modes up to the frequencies at which a plate shears through its thickness.
-    These would need short steps, and do not contribute to the compliance of the rows.
+    With many contact points, the basis has modes up to the frequencies of thickness shear of
+    plates. They would need short time steps, and do not contribute to the compliance of the rows.
 
     Args:
-        comm: the ranks that share the segment.
-        reduced: its coordinates.
+        comm: ranks that share the segment.
+        reduced: reduced coordinates of the segment.
         rows: (num_owned, num_rows) this rank's part of the rows of contacts, friction and ties.
     """
     gains = np.array([exact_product(comm, row, reduced.shapes) for row in rows.T])

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rows that read a shell's walls: along the corners of a section, and at any point of a wall.
 
-The compliance under a force at one point of a fold does not converge: it grows with the logarithm
-of the edge length. A force that is spread along the fold has a finite one. Corner rows are exact
-for any mesh, whose lines need not lie at their ends. For a point on a wall, the triangle that holds
-it is found on the rank that has it; its six quadratic shape functions there are the row. So the
-meshes of two segments need not match.
+The compliance under a point force at a fold diverges with the logarithm of the edge length; a force
+along an interval of the fold has a finite compliance. Corner rows are exact for any mesh, even
+without mesh lines at the ends of the interval. The row of a point on a wall consists of the six
+quadratic shape functions of the triangle that contains it. So the meshes of two segments need not
+match.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from shell_model.segment.segment_shell import SegmentShell
 
 
 class _CornerLine(NamedTuple):
-    """Displacement nodes along a corner: ends and middles of its edges alternate.
+    """Displacement nodes along a corner: ends and middles of edges in turn.
 
     Args:
-        x: (num_nodes,) in m, rising.
+        x: (num_nodes,) in m, ascending.
         dofs: (num_nodes, 3) global rows of the displacement components.
     """
 
@@ -36,7 +36,7 @@ class _CornerLine(NamedTuple):
     dofs: Indices
 
     def mean(self, stretch: Stretch, direction: Direction) -> Row:
-        """Return the mean displacement weighted by a force's density; Simpson's rule is exact."""
+        """Return the mean displacement, weighted by the density of a force, by Simpson's rule."""
         left, right = self.x[:-2:2], self.x[2::2]
         low, high = np.maximum(left, stretch.start), np.minimum(right, stretch.end)
         (edges,) = np.nonzero(low < high)
@@ -66,14 +66,14 @@ class CornerLines:
     def deflection(self, stretch: Stretch, direction: Direction, y: float, z: float) -> Row:
         """Return u_z or u_y of a face in m, on the straight line through its two corners.
 
-        A force there is shared by the corners by the law of the lever, as through a flange on
-        its webs. No plate bends under it, and a rotation of the section is read exactly.
+        The corners share a force on the face by the law of the lever, as webs do under a flange.
+        The force bends no plate, and the reading of a section's rotation is exact.
 
         Args:
             stretch: interval of x on the corners.
             direction: component of the displacement.
-            y, z: offsets from the axis in m. The sign of ``z`` selects the face along z, the
-                sign of ``y`` the one along y.
+            y, z: offsets from the axis in m. The sign of ``z`` selects the upper or lower face, the
+                sign of ``y`` the lateral one.
         """
         side, across = (z, y) if direction == "z" else (y, z)
         section = self._segment.section_at(stretch.station)
@@ -88,25 +88,25 @@ class CornerLines:
         return 0.5 * (1.0 - along) * low + 0.5 * (1.0 + along) * high
 
 
-# A point this far outside a triangle, in barycentric coordinates, lies on its edge.
+# Tolerance, in barycentric coordinates, for points on the edge of a triangle.
 _ON_EDGE = 1.0e-8
 
 
 @dataclass(frozen=True, slots=True)
 class Wall:
-    """Face of a section on the positive side of the axis if ``side`` is 1, else negative."""
+    """Face of a section on the positive side of the axis (``side`` 1) or the negative one."""
 
     normal: Direction
     side: int
 
     @property
     def across(self) -> int:
-        """Index of the coordinate across the wall, perpendicular to x."""
+        """The index of the coordinate across the wall, perpendicular to x."""
         return COMPONENT["y" if self.normal == "z" else "z"]
 
 
 class _Candidate(NamedTuple):
-    """Corners of a triangle, (6,) coordinates on the wall in m, and the row."""
+    """Corners (6,) of a triangle on the wall in m, and its row."""
 
     corners: tuple[float, ...]
     row: Row
@@ -116,7 +116,7 @@ class WallPoints:
     """Triangles of a segment's walls with their nodes. Collective.
 
     Attributes:
-        segment: the one with these walls.
+        segment: segment with these walls.
     """
 
     def __init__(self, shell: SegmentShell) -> None:
@@ -133,9 +133,9 @@ class WallPoints:
         """Return a row for each place, the same on every rank. Collective.
 
         Args:
-            wall: the wall of the places.
-            places: (num_places, 2) of x and the coordinate across the wall, in m.
-            direction: of the displacement.
+            wall: wall with the places.
+            places: (num_places, 2) x and the coordinate across the wall, in m.
+            direction: direction of the displacement.
 
         Raises:
             ValueError: a place is not on the wall.
@@ -152,12 +152,12 @@ class WallPoints:
         return rows
 
     def mean(self, wall: Wall, places: Array, weights: Array, direction: Direction) -> Row:
-        """Return the weighted sum of the rows of places. Collective."""
+        """Return the weighted sum of the rows of several places. Collective."""
         rows = self.rows(wall, places, direction)
         return sum((w * row for w, row in zip(weights.tolist(), rows, strict=True)), Row())
 
     def _near(self, wall: Wall, x: Array) -> Indices:
-        """Return nodes (num_cells, 6) of the triangles that may contain places at these x."""
+        """Return the nodes (num_cells, 6) of triangles that may contain places at these x."""
         margin = self._along.near
         plate = self.segment.widest.face(wall.normal, wall.side).plate
         flat = self._along.distance(plate, self._places[:, 1:]) < margin
@@ -168,14 +168,15 @@ class WallPoints:
     def _candidate(
         self, cells: Indices, wall: Wall, place: Array, direction: Direction
     ) -> _Candidate | None:
-        """Return the row of the first triangle that contains a place; None without any."""
+        """Return the row of the first triangle that contains a place; None if no triangle does."""
         if not len(cells):
             return None
         corners = self._places[cells[:, :3]][:, :, [0, wall.across]]
         holding = np.flatnonzero(_shares(corners, place).min(axis=1) > -_ON_EDGE)
         if not holding.size:
             return None
-        # This order depends on the places, not on a rank: round-off is the same on any number.
+        # The order depends on places, not on ranks, so that round-off is the same for any number of
+        # ranks.
         orders = [np.lexsort(corners[cell].T[::-1]) for cell in holding]
         first = min(
             range(holding.size),
@@ -183,7 +184,7 @@ class WallPoints:
         )
         cell, order = holding[first], orders[first]
         a, b, c = _shares(corners[cell][order][None], place)[0]
-        # Nodes of Lagrange's quadratic triangle: its corners, then the middles opposite to them.
+        # Nodes of Lagrange's quadratic triangle: corners, then mid-sides opposite to them.
         weights = (
             a * (2.0 * a - 1.0), b * (2.0 * b - 1.0), c * (2.0 * c - 1.0),
             4.0 * b * c, 4.0 * a * c, 4.0 * a * b,
@@ -197,15 +198,15 @@ class WallPoints:
 
 
 def gauss(start: float, end: float, count: int) -> tuple[Array, Array]:
-    """Return places of Gauss's rule on an interval and weights that sum to one, (count,) each."""
+    """Return points (count,) of Gauss's rule on an interval, and weights that sum to one."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return 0.5 * (start + end) + 0.5 * (end - start) * nodes, 0.5 * weights
 
 
 def _shares(corners: Array, place: Array) -> Array:
-    """Return barycentric coordinates (num_triangles, 3) of a place.
+    """Return the barycentric coordinates (num_triangles, 3) of a place.
 
-    The corners are (num_triangles, 3, 2).
+    Corners are (num_triangles, 3, 2).
     """
     sides = corners[:, 1:] - corners[:, :1]
     offset = place - corners[:, 0]

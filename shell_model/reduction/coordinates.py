@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Modal coordinates of the boom: those of its segments, without the constrained ones."""
+"""Modal coordinates of the boom: those of its segments under the constraints of bonded joints."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
 
-# Constraints with less than this part of the largest stiffness are neglected.
+# Fraction of the largest stiffness below which a constraint is neglected.
 ROUND_OFF = 1.0e-9
 
-# Rows whose products are in memory at once.
+# Number of rows whose products are in memory at once.
 _AT_ONCE = 1 << 14
 
-# Part of the sizes of its terms below which a sum is round-off.
+# Fraction of the terms' magnitudes below which a sum is round-off.
 _CANCELLED = 1.0e-14
 
 
@@ -30,16 +30,17 @@ class BoomCoordinates:
     """Mass-normalised coordinates a of a boom with its ties and cylinders. Collective.
 
     Args:
-        comm: the ranks that share the shells.
-        shells, reduced: one each for each segment.
-        ties: constraints, whose rows stay at zero.
-        lines: connections to the ground, whose springs the shells do not contain.
+        comm: ranks that share the shells.
+        shells, reduced: shell and reduced coordinates of each segment.
+        ties: constraints: their rows stay at zero.
+        lines: connections to the ground; the shells do not include their springs.
 
     Attributes:
         omega2: (num_modes,) in rad²/s², rigid motions exactly 0; negative if an axial force
             makes a segment unstable.
-        critical_factor: of the axial forces, see :func:`dynamics.second_order.buckling_factor`;
-            infinite without any, None if there is an unconstrained rigid motion.
+        critical_factor: critical factor of the axial forces, see
+            :func:`dynamics.second_order.buckling_factor`; infinite without axial forces, None if a
+            rigid motion is free.
     """
 
     def __init__(
@@ -62,7 +63,7 @@ class BoomCoordinates:
         self.critical_factor: float | None = np.inf
         geometric = block_diag(*(segment.geometric for segment in reduced))
         if geometric.any():
-            # To the modes under the axial forces of the segments.
+            # Transform to the modes under the axial forces of the segments.
             tied = np.eye(self.omega2.size) if self._combination is None else self._combination
             taken = tied.T @ geometric @ tied
             held = not (self.omega2 == 0.0).any()
@@ -76,30 +77,30 @@ class BoomCoordinates:
         return np.asarray(np.sum(rows, axis=0))
 
     def push(self, number: int, force: Array) -> Array:
-        """Return the modal load (num_modes,) of this rank's part (num_owned,) of a force."""
+        """Return the modal load (num_modes,) of a force, given by this rank's part (num_owned,)."""
         parts = [np.zeros(segment.omega2.size) for segment in self._reduced]
         parts[number] = exact_product(self._comm, force, self._reduced[number].shapes)
         return self.of_rows(np.concatenate(parts))
 
     def of_rows(self, apart: Array) -> Array:
-        """Return rows (…, num_modes) in the boom's modes from rows in the segments' own modes."""
+        """Return rows (…, num_modes) in the boom's modes, from rows in the segments' modes."""
         if self._combination is None:
             return apart
         return np.asarray(apart @ self._combination.astype(apart.dtype, copy=False))
 
 
 def _held_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array, Array]:
-    """Return ω² and modes (num_modes, num_held_modes) with springs of the row √k p each.
+    """Return ω² and modes (num_modes, num_held_modes) under constraints and springs.
 
     Args:
-        omega2: (num_modes,) without springs.
-        tied: (num_ties, num_modes) constraints, whose rows stay at zero.
-        pulls: (num_springs, num_modes) in 1/s.
+        omega2: ω² (num_modes,) without constraints and springs.
+        tied: rows (num_ties, num_modes) that stay at zero.
+        pulls: rows √k p (num_springs, num_modes) of the springs in 1/s.
     """
     free = null_space(tied) if tied.size else np.eye(omega2.size)
     held = pulls @ free
     held_omega2, combination = eigh(free.T @ (omega2[:, None] * free) + held.T @ held)
-    # The remaining rigid motions of the segments are still rigid.
+    # The rigid motions that the constraints leave keep the frequency 0.
     rigid = [rows[:, omega2 == 0.0] for rows in (tied, pulls) if rows.size]
     scaled = np.concatenate(
         [rows / np.abs(rows).max(initial=np.finfo(float).tiny) for rows in rigid]
@@ -111,10 +112,10 @@ def _held_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array, Array]
 
 
 def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
-    """Return products (num_columns,) with all columns, bitwise equal on any number of ranks.
+    """Return products (num_columns,) that are bitwise equal on any number of ranks. Collective.
 
-    The factors are (num_owned,) and (num_owned, num_columns). Sums have twice the digits, so that
-    their order has no effect. Collective.
+    The factors are (num_owned,) and (num_owned, num_columns). Sums have twice the precision, so
+    that their order has no effect.
     """
     rows = np.flatnonzero(left != 0.0)
     parts = [np.zeros((1, right.shape[1]))]
@@ -129,13 +130,13 @@ def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
     gathered = comm.allgather((np.concatenate(parts), lost, size))
     total, off = _sum(np.concatenate([part for part, _, _ in gathered]))
     total += off + np.sum([lost for _, lost, _ in gathered], axis=0)
-    # A result that cancels but for the last bits of its terms is zero.
+    # A sum that cancels except for the last bits of its terms is zero.
     total[np.abs(total) < _CANCELLED * np.sum([size for _, _, size in gathered], axis=0)] = 0.0
     return total
 
 
 def _sum(terms: Array) -> tuple[Array, Array]:
-    """Return sums over the first axis and their rounding errors (Knuth 1969)."""
+    """Return the sums over the first axis, and their rounding errors (Knuth 1969)."""
     lost = np.zeros(terms.shape[1:])
     while len(terms) > 1:
         half = len(terms) // 2

@@ -17,10 +17,10 @@ from geometry.arrays import Array, Mask
 from shell_model.segment.shell import Shell
 from shell_model.segment.solver import ShiftedSolver, times
 
-# A direction of which less than this part of its length remains is in the space already.
+# Fraction of a vector's length below which its new part is round-off.
 _DEPENDENT = 1.0e-9
 
-# Blocks at each shift; a tolerance that is not met with these is not met with more.
+# Maximum number of blocks at each shift; more blocks do not reduce the error.
 _MAX_MOMENTS = 12
 
 
@@ -30,11 +30,12 @@ class KrylovOptions:
 
     Args:
         shifts: frequencies in Hz at which the response is matched.
-        moments: number of derivatives with respect to ω² that are matched at each.
-        tolerance: largest relative error of the contact compliance and of the transfer to the
-            readings; moments are then matched, one at each shift in turn, until it is met.
-        most: largest number of coordinates of a segment; each of its classes keeps its rigid
-            motions and one coordinate at least.
+        moments: number of moments (derivatives with respect to ω²) that are matched at each shift.
+        tolerance: permitted relative error of the contact compliance and of the transfer to the
+            readings. With it, moments are added at the shifts in turn until the error is small
+            enough.
+        most: maximum number of coordinates of a segment; each symmetry class keeps its rigid
+            motions and at least one coordinate.
     """
 
     shifts: tuple[float, ...] = (5.0, 50.0, 300.0, 1500.0)
@@ -44,10 +45,10 @@ class KrylovOptions:
 
     @property
     def order(self) -> Iterator[float]:
-        """Shifts of the blocks, one after another.
+        """The shifts of the blocks, in order.
 
-        Several blocks at a shift take one factorisation. But a basis that may end early takes one
-        block at each shift first.
+        Several blocks at a shift need only one factorisation. A basis with a tolerance may end
+        early, and therefore starts with one block at each shift.
         """
         if self.tolerance is None and self.most is None:
             return chain.from_iterable(repeat(shift, self.moments) for shift in self.shifts)
@@ -56,7 +57,7 @@ class KrylovOptions:
 
     @property
     def tests(self) -> Sequence[float]:
-        """Frequencies in Hz between the shifts at which errors are measured, descending."""
+        """The test frequencies in Hz between the shifts, in descending order."""
         shifts = np.sort(self.shifts)
         between = np.sqrt(shifts[:-1] * shifts[1:]) if shifts.size > 1 else shifts
         return [float(frequency) for frequency in between[::-1]]
@@ -66,11 +67,11 @@ class ClassCoordinates(NamedTuple):
     """Mass-normalised coordinates of a symmetry class.
 
     Args:
-        omega2: (num_modes,) in rad²/s², rising, rigid motions first and exactly 0.
-        shapes: (num_rows, num_modes) in 1/√kg.
-        compliance_error, reading_error, lost_compliance: see ``ReducedSegment``.
-        accurate: (num_modes,) whether some natural frequency is within 0.1 %.
-        geometric: (num_modes, num_modes) K_G, reduction of diag(ω²) by axial forces.
+        omega2: ω² (num_modes,) in rad²/s², ascending, rigid motions first and exactly 0.
+        shapes: shapes (num_rows, num_modes) in 1/√kg.
+        compliance_error, reading_error, lost_compliance: errors as in ``ReducedSegment``.
+        accurate: (num_modes,) whether a natural frequency is within 0.1 %.
+        geometric: K_G (num_modes, num_modes), which axial forces subtract from diag(ω²).
     """
 
     omega2: Array
@@ -89,14 +90,14 @@ def reduce_class(
     options: KrylovOptions,
     progress: Callable[[float], None],
 ) -> ClassCoordinates:
-    """Reduce a shell that is stored on this rank alone.
+    """Reduce a shell that is stored on this rank only.
 
     Args:
         shell: the full model.
-        inputs: (num_rows, num_inputs) forces, in any order, zero and dependent ones among them.
-        readings: (num_rows, num_readings).
-        options: ``most`` counts the coordinates of this shell.
-        progress: called with the part done, 0 to 1.
+        inputs: forces (num_rows, num_inputs) in any order; they may be zero or dependent.
+        readings: rows (num_rows, num_readings).
+        options: options; ``most`` counts the coordinates of this shell.
+        progress: callback that receives the completed fraction, 0 to 1.
 
     Raises:
         NumericsError: a compliance is not finite, or the tolerance is not met.
@@ -120,7 +121,7 @@ def reduce_class(
         ):
             break
     if shell.geometric is not None:
-        # Behind the others, whose moments go from block to block.
+        # These vectors come last, since blocks build on the vectors of the previous block.
         solve.move(order[0])
         basis.add_axial_responses(shell.geometric, solve)
     if options.tolerance is None:
@@ -151,10 +152,10 @@ class _FullResponse(NamedTuple):
 
     Args:
         sigma: (2π frequency)² in rad²/s².
-        compliance: (num_inputs, num_inputs) of the forces.
-        scale: the geometric means of its diagonal.
-        transfer: (num_readings, num_inputs) responses of the readings to the forces.
-        transfer_scale: the geometric means of both compliances.
+        compliance: compliance (num_inputs, num_inputs) of the forces.
+        scale: geometric means of pairs of its diagonal entries.
+        transfer: responses (num_readings, num_inputs) of the readings to the forces.
+        transfer_scale: geometric means of both compliances.
     """
 
     sigma: float
@@ -182,7 +183,7 @@ class _FullResponse(NamedTuple):
 
 
 class _Basis:
-    """M-orthonormal vectors, rigid motions first, and the stiffness in their space."""
+    """M-orthonormal basis, rigid motions first, with the stiffness in its space."""
 
     def __init__(self, shell: Shell, forces: Array, most: int | None) -> None:
         self._shell, self._forces = shell, forces
@@ -200,7 +201,7 @@ class _Basis:
         return int(self._vectors.shape[1])
 
     def grow(self, solve: ShiftedSolver) -> bool:
-        """Add the next block; return whether the basis has grown."""
+        """Add the next block; return whether the basis grew."""
         block = self._append(solve(self._pushes))
         self._pushes = times(self._shell.mass, block)
         return bool(block.shape[1])
@@ -209,7 +210,7 @@ class _Basis:
         """Add the responses of the rigid motions and the first block to axial forces."""
         pushes = times(geometric, self._vectors[:, : self._rigid + self._pushed])
         sizes = np.linalg.norm(pushes, axis=0)
-        # Only round-off excites a motion that translates or twists.
+        # Translations and twist are excited by round-off only.
         self._append(solve(pushes[:, sizes > _DEPENDENT * sizes.max(initial=0.0)]))
 
     def errors(self, full: Sequence[_FullResponse], rows: Array) -> tuple[float, float]:
@@ -226,11 +227,11 @@ class _Basis:
         return compliance, transfer
 
     def lost(self, full: Sequence[_FullResponse], parts: Array) -> Array:
-        """Return the largest loss of compliance (num_inputs,) against the full model, in m/N.
+        """Return the largest loss of compliance (num_inputs,) against the full model in m/N.
 
         Args:
             full: responses of the full model.
-            parts: (num_forces, num_inputs) of the forces in the inputs.
+            parts: components (num_forces, num_inputs) of the inputs in the forces.
         """
         gains = self._vectors.T @ self._forces @ parts
         lost = np.zeros(parts.shape[1])
@@ -242,14 +243,14 @@ class _Basis:
         return lost
 
     def modes(self) -> tuple[Array, Array]:
-        """Return ω² and shapes in the space, rigid motions first."""
+        """Return ω² and the shapes in the basis, rigid motions first."""
         rigid, elastic = self._vectors[:, : self._rigid], self._vectors[:, self._rigid :]
         omega2, combination = eigh(self._stiffness[self._rigid :, self._rigid :])
-        # The slide along x has to be in the basis, or round-off would find it; but nothing
-        # moves it.
+        # The translation along x must be in the basis, where round-off would otherwise add it; no
+        # force excites it.
         moved = np.abs(rigid.T @ self._forces).max(axis=1, initial=0.0) > _DEPENDENT
         shapes = np.hstack([rigid[:, moved], elastic @ combination])
-        # Every shape gets the sign of an input that excites it strongly.
+        # The sign of every shape is positive for an input that excites it strongly.
         gains = shapes.T @ self._forces
         much = np.abs(gains) > 0.5 * np.abs(gains).max(axis=1, keepdims=True)
         first = gains[np.arange(len(gains)), much.argmax(axis=1)]
@@ -257,7 +258,7 @@ class _Basis:
         return np.concatenate([np.zeros(moved.sum()), omega2]), shapes * signs
 
     def _append(self, block: Array) -> Array:
-        """Add the new part of a block, column by column; return it orthonormalised."""
+        """Append the new directions of a block to the basis; return them orthonormalised."""
         before = self.size
         vectors = np.empty((len(block), before + block.shape[1]), order="F")
         vectors[:, :before] = self._vectors
@@ -267,7 +268,7 @@ class _Basis:
                 break
             weighed = self._weighed(column)
             length = np.sqrt(column @ weighed)
-            for _ in range(2):  # twice is enough (Kahan; Parlett 1980)
+            for _ in range(2):  # two passes suffice (Kahan; Parlett 1980)
                 column = column - vectors[:, :size] @ (vectors[:, :size].T @ weighed)
                 weighed = self._weighed(column)
             left = np.sqrt(column @ weighed)
@@ -302,11 +303,11 @@ def _independent(block: Array) -> Array:
 
 
 def _find_accurate(shell: Shell, omega2: Array, shapes: Array, solve: ShiftedSolver) -> Mask:
-    """Return whether each ω is within 0.1 % of a natural one, up to the first that may not be.
+    """Return whether each ω is within 0.1 % of a natural frequency, up to the first failure.
 
     With the residual r = (K − ω² M) x of a mass-normalised x, some eigenvalue λ satisfies
-    (λ − ω²)² / (λ + σ) ≤ rᵀ (K + σ M)⁻¹ r (expand r in eigenvectors). It is a bound: the
-    error itself is of the order of its square.
+    (λ − ω²)² / (λ + σ) ≤ rᵀ (K + σ M)⁻¹ r (expand r in eigenvectors). The error itself is of the
+    order of the square of this bound.
     """
     accurate = np.asarray(omega2 == 0.0)
     for i in np.flatnonzero(~accurate):

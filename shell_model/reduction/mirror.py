@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Symmetry classes of motions of a section with mirror planes in y, in z, or in both.
 
-Mirrored motions stay mirrored: bending along z, bending along y, twisting, and breathing with
-stretching do not couple within a segment that has both mirrors; with that of y alone, bending
-along z couples with breathing and stretching, and bending along y with twist. The motion
-of a symmetry class follows from the part of the section on the positive side of its mirrors, a
-quarter or a half: it is that of this part with symmetry conditions on its cut edges, and its mirror
-images.
+Symmetric and antisymmetric motions do not couple. In a segment with both mirrors, vertical bending,
+lateral bending, twist, and breathing with stretching are separate classes. With the mirror in y
+only, vertical bending couples with breathing and stretching, and lateral bending with twist. The
+motion of a class is computed on the part of the section on the positive side of its mirrors, a
+quarter or a half, with symmetry conditions on the cut edges; mirror images complete it.
 """
 
 from __future__ import annotations
@@ -24,15 +23,15 @@ from geometry.arrays import Array, Indices, Mask
 from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT, Direction
 
-# Nodes closer than this part of a mesh's extent to a place lie on it; meshes are exact to
-# round-off.
+# Distance of a node from a place, as a fraction of the mesh's extent, that counts as zero; meshes
+# are exact to round-off.
 _ON_PLACE = 1.0e-8
 
 
 class SymmetryClass(NamedTuple):
-    """Symmetry class: 1 for a motion that equals its mirror image, −1 for its opposite.
+    """Symmetry class of motions, with a number for each mirror.
 
-    There is a number for each mirror, 0 if the section does not have it.
+    It is 1 for symmetric motions, −1 for antisymmetric ones, and 0 if the section lacks the mirror.
     """
 
     y: int
@@ -40,10 +39,10 @@ class SymmetryClass(NamedTuple):
 
     @property
     def signs(self) -> Array:
-        """Factors (4, 6) of the components in each image relative to the cell.
+        """The factors (4, 6) of the components in each image relative to the cell.
 
-        Rows are the images (see :func:`image_of`), columns the components of the displacement,
-        which mirrors as an arrow, then those of the rotation, which mirrors as an axis.
+        Rows are images (see :func:`image_of`). Columns are the components of the displacement, a
+        polar vector, then those of the rotation, an axial vector.
         """
         signs = np.ones((4, 6))
         for axis, parity in ((1, self.y), (2, self.z)):
@@ -55,7 +54,7 @@ class SymmetryClass(NamedTuple):
         return signs
 
     def fixed_components(self, axis: int) -> list[tuple[int, int]]:
-        """Return the components that are zero in a mirror.
+        """Return the components that are zero in a mirror plane.
 
         They are (0, i) of the displacement and (1, i) of the rotation.
         """
@@ -63,7 +62,7 @@ class SymmetryClass(NamedTuple):
         return [(int(i) // 3, int(i) % 3) for i in np.flatnonzero(signs < 0.0)]
 
 
-# Images at negative y, and at negative z.
+# The images at negative y, and those at negative z.
 _BEYOND: Final = {1: [1, 3], 2: [2, 3]}
 
 BREATHING, ALONG_Z, ALONG_Y, TWISTING = (
@@ -81,16 +80,16 @@ def symmetry_classes(mirrors: Sequence[Direction]) -> list[SymmetryClass]:
 
 
 def image_of(places: Array, mirrors: Sequence[Direction]) -> Indices:
-    """Return the image (num_places,): 1 at negative y, 2 at negative z, 3 at both, 0 at neither.
+    """Return the image of each place: 1 at negative y, 2 at negative z, 3 at both, 0 at neither.
 
-    Of the mirrors' axes alone: without that of z there are the halves 0 and 1.
+    The result is (num_places,). Without the mirror in z there are only the halves 0 and 1.
     """
     beyond = [COMPONENT[axis] * (places[:, COMPONENT[axis]] < -_near(places)) for axis in mirrors]
     return np.asarray(sum(beyond, np.zeros(len(places))), dtype=np.int64)
 
 
 def to_cell(places: Array, mirrors: Sequence[Direction]) -> Array:
-    """Return the images of places (num_places, 3) on the positive side of the mirrors."""
+    """Return places (num_places, 3), mirrored to the positive side of all mirrors."""
     images = places.copy()
     for axis in mirrors:
         images[:, COMPONENT[axis]] = np.abs(images[:, COMPONENT[axis]])
@@ -98,12 +97,12 @@ def to_cell(places: Array, mirrors: Sequence[Direction]) -> Array:
 
 
 def on_plane(places: Array, axis: int) -> Mask:
-    """Return which (num_places,) of places (num_places, 3) lie in the mirror of an axis."""
+    """Return the mask (num_places,) of places (num_places, 3) in the mirror plane of an axis."""
     return np.asarray(np.abs(places[:, axis]) <= _near(places))
 
 
 def matches(places: Array, among: Array) -> Indices | None:
-    """Return the numbers (num_places,) of the same places in a list; None if one has no match."""
+    """Return the indices (num_places,) of the same places in a list; None if a place is missing."""
     distance, number = cKDTree(among).query(places)
     if distance.max(initial=0.0) > _near(among):
         return None
@@ -114,7 +113,7 @@ def cell_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
     """Return the part of a segment's mesh on the positive side of its section's mirrors.
 
     Raises:
-        NumericsError: the mesh or its thickness is not its own image.
+        NumericsError: the mesh or its thickness is not symmetric.
     """
     ours = _sorted(mesh.triangles, mesh.thickness)
     for axis in mirrors:

@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Springs that move with pads, for the compliance of walls beyond the modes of their segments.
+"""Springs that move with pads: the compliance of walls that modes of segments do not contain.
 
-The response to forces at a place x beyond the modes ω_k with the rows b_k(x),
-
-    R(x, σ) = B(x) (K + σ M)⁻¹ B(x)ᵀ − Σ_k b_k(x) b_k(x)ᵀ / (ω_k² + σ),
-
-is a compliance of walls with hardly any inertia, up to some 1000 Hz. It becomes coordinates with
-the frequencies W^½ and the rows L(x) = R^½ Q (W + σ)^½. At the shift σ of springs L (W + σ)⁻¹ Lᵀ
-is R everywhere (residual flexibility; MacNeal 1971). W and the orthogonal Q take its inertia
-R′ = −dR/dσ (Rubin 1975), in the mean of R^−½ R′ R^−½ = Q (W + σ)⁻¹ Qᵀ over all extensions. The
-symmetric root is smooth where R is.
+The residual response to forces at x, R(x, σ) = B(x) (K + σ M)⁻¹ B(x)ᵀ − Σ_k b_k(x) b_k(x)ᵀ / (ω_k²
++ σ), with the rows b_k(x) of the modes ω_k, is a compliance of walls with small inertia, up to
+about 1000 Hz. It is represented by coordinates with the frequencies W^½ and the rows L(x) = R^½ Q
+(W + σ)^½. At the shift σ of springs, L (W + σ)⁻¹ Lᵀ equals R for all x (residual flexibility;
+MacNeal 1971). W and the orthogonal Q represent the inertia R′ = −dR/dσ (Rubin 1975), by the mean of
+R^−½ R′ R^−½ = Q (W + σ)⁻¹ Qᵀ over all extensions. The symmetric root is smooth where R is smooth.
 """
 
 from __future__ import annotations
@@ -22,11 +19,11 @@ from geometry.arrays import Array
 from shell_model.reduction.symmetry import Job, SymmetryReduction
 from shell_model.segment.solver import ShiftedSolver, times
 
-# Hz of the shift at which springs are matched, above rigid motions and below all that they take,
-# and of the fastest spring.
+# Frequencies in Hz: the shift at which springs are matched, above rigid motions and below all
+# residual modes, and the fastest spring.
 SLOW, _FASTEST = 50.0, 10000.0
 
-# A pattern of forces with less than this part of the largest compliance is taken as rigid.
+# Fraction of the largest compliance below which a force pattern meets rigid walls.
 _NOTHING = 1.0e-4
 
 
@@ -35,8 +32,8 @@ class PadResponses(NamedTuple):
 
     Args:
         compliance: B (K + σ M)⁻¹ Bᵀ in m/N at ``SLOW``.
-        inertia: B (K + σ M)⁻¹ M (K + σ M)⁻¹ Bᵀ in m s²/N, its decrease with σ.
-        tested: the compliance at another shift.
+        inertia: B (K + σ M)⁻¹ M (K + σ M)⁻¹ Bᵀ in m s²/N, the decrease of the compliance with σ.
+        tested: compliance at another shift.
     """
 
     compliance: Array
@@ -53,7 +50,7 @@ def pad_responses(symmetry: SymmetryReduction, columns: Array, test: float) -> P
     def of_class(_: int, job: Job) -> Array:
         shell = job.shell(symmetry.cell)
         solve = ShiftedSolver(shell, SLOW)
-        # Pads press at few of all places.
+        # Pads press at few places, so that columns are sparse.
         pressed = np.flatnonzero((job.forces != 0.0).any(axis=1))
         forces = job.forces[pressed]
         moved = solve(job.forces)
@@ -70,8 +67,8 @@ def pad_responses(symmetry: SymmetryReduction, columns: Array, test: float) -> P
 def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
     """Return ω² (num_springs,) and rows (num_extensions, num_rows, num_springs) of springs.
 
-    They represent R (num_extensions, num_rows, num_rows) in m/N at the shift ``SLOW``, and R′ in
-    m s²/N. Units of ω² are rad²/s², those of rows 1/√kg.
+    The springs represent R (num_extensions, num_rows, num_rows) in m/N at the shift ``SLOW``, and
+    R′ in m s²/N. ω² is in rad²/s², rows in 1/√kg.
     """
     sizes = np.sqrt(np.einsum("wjj->j", residual) / len(residual))
     scale = np.outer(sizes, sizes)

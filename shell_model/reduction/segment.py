@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Reduction of a segment: a block rational Krylov basis of its loads and contact points.
 
-The space holds (K + σ M)⁻¹ F and its moments for several shifts σ > 0, so the response to a
-contact force is right from statics to the frequencies of the shifts, its local flexibility
-included; natural modes alone would need thousands of vectors for the latter (Ruhe 1984;
-Craig and Hurty's static modes are the case σ = 0, one moment). Rigid motions are kept apart,
-which leaves their frequency exactly zero.
-
-Each symmetry class has a basis of its own, on a quarter of the shell and on one rank,
-which makes the coordinates the same to the last bit on any number of ranks
+The basis spans (K + σ M)⁻¹ F and its moments for several shifts σ > 0. So the response to contact
+forces is accurate from statics to the frequencies of the shifts, including local compliance, for
+which natural modes would need thousands of vectors (Ruhe 1984; the static modes of Craig and Hurty
+are the case σ = 0 with one moment). Rigid motions are separate, so that their frequency is exactly
+zero. Each symmetry class has its own basis, on a quarter of the shell and on one rank, so that the
+coordinates are the same to the last bit on any number of ranks
 (:mod:`shell_model.reduction.symmetry`). Errors are measured against full solves at frequencies
 between the shifts.
 """
@@ -33,17 +31,18 @@ class ReducedSegment:
     """Mass-normalised coordinates of one segment.
 
     Args:
-        omega2: (num_modes,) in rad²/s², rising, rigid motions first and exactly 0.
-        shapes: (num_owned, num_modes) this rank's rows of each shape, in 1/√kg.
+        omega2: ω² (num_modes,) in rad²/s², ascending, rigid motions first and exactly 0.
+        shapes: this rank's rows (num_owned, num_modes) of the shapes in 1/√kg.
         compliance_error: largest relative error of the contact compliance matrix at the test
             frequencies between the shifts, against full solves.
-        reading_error: the same of the response of the readings to the inputs, over the geometric
-            mean of the compliances of both.
-        lost_compliance: (num_inputs,) largest loss of the compliance of each input against the
-            full model at these frequencies, in m/N; no pair loses more than the geometric mean
-            of both, since the space is a part of the full one (Galerkin).
-        frequency_limit: Hz up to which every natural frequency is right within 0.1 %.
-        geometric: (num_modes, num_modes) reduction of diag(ω²) by axial forces.
+        reading_error: largest error of the readings' response to the inputs, relative to the
+            geometric mean of both compliances.
+        lost_compliance: largest loss (num_inputs,) of each input's compliance against the full
+            model at these frequencies in m/N; the loss of a pair is at most the geometric mean of
+            both (Galerkin).
+        frequency_limit: frequency in Hz up to which every natural frequency is accurate within 0.1
+            %.
+        geometric: K_G (num_modes, num_modes), which axial forces subtract from diag(ω²).
     """
 
     omega2: Array
@@ -67,12 +66,12 @@ def reduce_segment(
 
     Args:
         symmetry: symmetry reduction of the full model.
-        inputs: (num_owned, num_inputs) forces that act on it, in any order; zero and dependent
-            ones cost nothing.
+        inputs: forces (num_owned, num_inputs) on the segment, in any order; they may be zero or
+            dependent.
         options: shifts and moments, or a tolerance.
-        progress: called with the part done, 0 to 1.
-        readings: (num_owned, num_readings) rows whose response has to be accurate too.
-        helper: a process that reduces every second symmetry class of this rank.
+        progress: callback that receives the completed fraction, 0 to 1.
+        readings: rows (num_owned, num_readings) whose response must be accurate, too.
+        helper: second process, which reduces every second symmetry class of this rank.
 
     Raises:
         NumericsError: a compliance is not finite, all inputs are zero, or the tolerance is not met.
@@ -108,14 +107,14 @@ def reduce_segment(
     omega2 = np.concatenate([part.omega2 for part in parts])
     accurate = np.concatenate([part.accurate for part in parts])
     order = np.argsort(omega2, kind="stable")
-    # The shapes of a class go to their places at once: a second block of all is large.
+    # The shapes of a class are inserted immediately, since a second block of all shapes is large.
     shapes = np.empty((len(inputs), omega2.size), order="F")
     places = np.split(np.argsort(order), np.cumsum([part.omega2.size for part in parts])[:-1])
     for symmetry_class, (root, one), columns in zip(symmetry_classes, found, places, strict=True):
         on_cell = None if one is None else one.shapes
         shapes[:, columns] = symmetry.expand(on_cell, symmetry_class, root)
     tell(1.0)
-    # Up to this frequency all are accurate.
+    # All natural frequencies up to this one are accurate.
     accurate = accurate[order]
     first_inaccurate = accurate.size if accurate.all() else int(np.argmin(accurate))
     limit = (

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Symmetry classes of a segment's motions, each as a quarter or half of its shell on one rank.
 
-The matrices of a class are those of a part of the segment, so they are small, a motion cannot
-drift into another class, and the numbers are the same to the last bit whichever rank computes them:
-what ranks exchange are forces and shapes, taken apart and put together by sums of fixed order.
-Round-off that depended on the number of ranks would not do, since contact amplifies the last bit.
+The matrices of a class are those of a part of the segment. So they are small, a motion cannot drift
+into another class, and results are the same to the last bit on any rank. Ranks exchange only forces
+and shapes, by sums of fixed order. Round-off must not depend on the number of ranks, since contact
+amplifies it.
 """
 
 from __future__ import annotations
@@ -49,20 +49,20 @@ _Found = TypeVar("_Found")
 # Components of the displacement, and of the rotation.
 _COMPONENTS = np.arange(6).reshape(2, 3)
 
-# A force with less than this part of its largest value in a class has no part in it.
+# Fraction of a force's largest value below which its part in a class is zero.
 _NO_PART = 1.0e-9
 
 
 @dataclass(frozen=True)
 class SymmetryCell:
-    """Part of a segment, a quarter or half, whose mirror images are the rest.
+    """Part of a segment, a quarter or half, which mirror images complete.
 
-    Each rank assembles it once for all classes that it computes; its matrices stay there.
+    Each rank assembles and keeps its matrices for all classes that it computes.
 
     Args:
         segment: the whole segment.
-        mirrors: those of its section.
-        mesh: that of the cell.
+        mirrors: mirrors of the section.
+        mesh: mesh of the cell.
     """
 
     segment: Segment
@@ -71,20 +71,20 @@ class SymmetryCell:
 
     @cached_property
     def plates(self) -> Plates:
-        """Plates of the cell on this rank alone, with the energies of the whole segment."""
+        """The plates of the cell on this rank only, with the energies of the whole segment."""
         copies = 2.0 ** len(self.mirrors)
         return assemble_plates(MPI.COMM_SELF, self.segment, self.mesh, copies)
 
     @cached_property
     def component(self) -> Indices:
-        """Component (num_rows,) of each row: 0 to 2 of the displacement, 3 to 5 of the rotation."""
+        """The component (num_rows,) of each row: 0 to 2 displacement, 3 to 5 rotation."""
         component = np.empty(sum(rows.size for _, rows in self.plates.nodes), dtype=np.int64)
         for (_, rows), components in zip(self.plates.nodes, _COMPONENTS, strict=True):
             component[rows] = components
         return component
 
     def in_mirror(self, axis: int) -> Mask:
-        """Return which rows (num_rows,) lie in the mirror of an axis."""
+        """Return the mask (num_rows,) of rows in the mirror plane of an axis."""
         within = np.empty(self.component.size, dtype=bool)
         for places, rows in self.plates.nodes:
             within[rows] = on_plane(places, axis)[:, None]
@@ -92,7 +92,7 @@ class SymmetryCell:
 
     @cached_property
     def _matrices(self) -> dict[Any, _FreeMatrix]:
-        """Matrices of the plates without supports, by their forms, as far as they are assembled."""
+        """The assembled matrices of the plates without supports, by form."""
         return {}
 
     def matrix(self, form: Any) -> _FreeMatrix:
@@ -112,7 +112,7 @@ class SymmetryCell:
 
 
 class _FreeMatrix(NamedTuple):
-    """Entries of a matrix: (num_entries,) each, those of a row together, with its diagonal."""
+    """Entries of a matrix, sorted by row, (num_entries,) each, and its diagonal."""
 
     row: Indices
     column: Indices
@@ -121,11 +121,10 @@ class _FreeMatrix(NamedTuple):
 
 @dataclass(frozen=True)
 class _ClassShell(Shell):
-    """Shell of a symmetry class on one rank, by the matrices of its cell.
+    """Shell of a symmetry class on one rank, with the matrices of its cell.
 
-    They have none of the zeros in the pattern of their forms: motions of a plane wall in its plane
-    and across it do not couple, nor do the masses of different components. Factors would store
-    these zeros too.
+    The matrices omit zeros in the sparsity pattern of their forms, which factors would store:
+    in-plane and out-of-plane motions of a wall do not couple, and masses do not couple components.
     """
 
     cell: SymmetryCell
@@ -149,8 +148,8 @@ class Job:
 
     Args:
         symmetry_class: the symmetry class.
-        forces, readings: (num_rows, num_columns) on the cell's rows, images added up.
-        springs, masses: of the segment, on these rows.
+        forces, readings: sums over the images, (num_rows, num_columns) on the cell's rows.
+        springs, masses: springs and masses of the segment on these rows.
     """
 
     symmetry_class: SymmetryClass
@@ -174,13 +173,13 @@ class SymmetryReduction:
     """Map between the distributed rows of a segment and those of its symmetry cell. Collective.
 
     Args:
-        shell: that of the whole segment.
+        shell: shell of the whole segment.
 
     Attributes:
-        cell: assembled on rank 0, and on each other rank that computes a class.
+        cell: symmetry cell, assembled on each rank that computes a class.
 
     Raises:
-        NumericsError: it is not its own mirror image.
+        NumericsError: the segment is not symmetric.
     """
 
     def __init__(self, shell: SegmentShell) -> None:
@@ -190,7 +189,7 @@ class SymmetryReduction:
             if shell.mesh is None:
                 return None
             cell = SymmetryCell(shell.segment, self._mirrors, cell_mesh(shell.mesh, self._mirrors))
-            # Assembled here, where all ranks receive an error.
+            # Assembled here, so that all ranks receive an error.
             assert cell.plates.nodes
             return cell
 
@@ -212,7 +211,7 @@ class SymmetryReduction:
             self._component[dofs - first] = _COMPONENTS[part]
 
     def jobs(self, inputs: Array, readings: Array) -> list[Job]:
-        """Return a job for each class that an input excites, on rank 0; none elsewhere. Collective.
+        """Return a job for each class that an input excites, on rank 0. Collective.
 
         Inputs and readings are (num_owned, num_columns) of the whole segment.
         """
@@ -235,9 +234,9 @@ class SymmetryReduction:
     def sum_classes(
         self, columns: Array, total: Array, compute: Callable[[int, Job], Array]
     ) -> Array:
-        """Add the results of each class that columns (num_owned, num_columns) excite.
+        """Add the results of each class that columns (num_owned, num_columns) excite to ``total``.
 
-        ``total`` holds the sum. Collective.
+        Collective.
         """
         jobs = self.jobs(columns, columns[:, :0])
         for root, found in share_jobs(self._comm, jobs, compute):
@@ -247,7 +246,8 @@ class SymmetryReduction:
     def expand(self, shapes: Array | None, symmetry_class: SymmetryClass, root: int) -> Array:
         """Return shapes (num_owned, num_shapes) of a class on the whole segment. Collective.
 
-        On the cell they are (num_rows, num_shapes) on the rank ``root``, None elsewhere.
+        The given shapes are (num_rows, num_shapes) on the cell, on the rank ``root``; None
+        elsewhere.
         """
         comm = self._comm
         count = comm.bcast(None if shapes is None else shapes.shape[1], root)
@@ -258,10 +258,10 @@ class SymmetryReduction:
         signs = symmetry_class.signs[self._image_of_row, self._component]
         expanded = np.empty((self._row.size, count), order="F")
         for column in range(count):
-            # One after another, so that no rank holds the whole block.
+            # Columns are sent one by one, so that no rank needs memory for the whole block.
             whole = None if shapes is None else shapes[every, column]
             if comm.size == 1:
-                # Open MPI takes ten times as long to send a column to its own process.
+                # A message of Open MPI to its own process would take ten times as long.
                 expanded[:, column] = whole
             else:
                 comm.Scatterv(None if whole is None else (whole, sizes), expanded[:, column], root)
@@ -294,15 +294,15 @@ def share_jobs(
     compute: Callable[[int, Job], _Found],
     submit: Callable[[int, Job], Future[Any]] | None = None,
 ) -> Iterator[tuple[int, _Found | None]]:
-    """Compute each job of rank 0 on one rank; yield the rank and its result. Collective.
+    """Compute each job of rank 0 on one rank; yield the rank and the result. Collective.
 
-    ``submit`` has a job computed by a process beside this rank, which takes every second one.
+    ``submit`` passes every second job of this rank to another process.
     """
     roots = [number % comm.size for number in range(comm.bcast(len(jobs)))]
     mine = {number: job for number, job in enumerate(_sent(comm, jobs, roots)) if job is not None}
     futures: dict[int, Future[Any]] = {}
     if submit is not None:
-        # A process that has died leaves its jobs to this one.
+        # If the other process has died, this one computes its jobs.
         with suppress(BrokenExecutor):
             futures |= {number: submit(number, mine[number]) for number in list(mine)[1::2]}
 
@@ -317,7 +317,7 @@ def share_jobs(
 
 
 def outcome(future: Future[Any] | None, compute: Callable[[], _Found]) -> _Found:
-    """Return the result of a process beside this one; compute it without one, or if it has died."""
+    """Return the result of the other process; compute it here if there is none or it has died."""
     with suppress(BrokenExecutor):
         if future is not None:
             found: _Found = future.result()
@@ -329,7 +329,8 @@ def run_collectively(comm: MPI.Comm, work: Callable[[], _Found]) -> _Found:
     """Return each rank's result of its own work. Collective, but the work must not communicate.
 
     Raises:
-        NumericsError: on every rank, if the work of any raises it, or its memory does not suffice.
+        NumericsError: the work of a rank raises this error or needs too much memory; it is raised
+            on every rank.
     """
     results: list[_Found] = []
     problem = ""
@@ -346,7 +347,7 @@ def run_collectively(comm: MPI.Comm, work: Callable[[], _Found]) -> _Found:
 
 
 def _sent(comm: MPI.Comm, jobs: Sequence[Job], roots: Sequence[int]) -> Iterator[Job | None]:
-    """Send every job of rank 0 in turn to the rank that computes it; None on the others."""
+    """Send the jobs of rank 0 to their ranks; yield each job there and None elsewhere."""
     for number, root in enumerate(roots):
         if comm.rank == 0 and root != 0:
             comm.send(jobs[number], root)
@@ -358,7 +359,7 @@ def _sent(comm: MPI.Comm, jobs: Sequence[Job], roots: Sequence[int]) -> Iterator
 
 
 class _Entries(NamedTuple):
-    """Entries of a block: (num_entries,) each, and the number of columns of the block."""
+    """Nonzero entries of a block, (num_entries,) each, and its number of columns."""
 
     row: Indices
     image: Indices
@@ -367,7 +368,7 @@ class _Entries(NamedTuple):
     columns: int
 
 
-# Images that meet in the mirror of an axis.
+# Pairs of images that meet in the mirror plane of an axis.
 _IMAGES: Mapping[Direction, Sequence[tuple[int, int]]] = {
     "y": ((0, 1), (2, 3)),
     "z": ((0, 2), (1, 3)),
@@ -375,7 +376,7 @@ _IMAGES: Mapping[Direction, Sequence[tuple[int, int]]] = {
 
 
 def _added_up(images: Array, signs: Array) -> Array:
-    """Return the part (num_rows, num_columns) of a symmetry class; exactly 0 if it has none."""
+    """Return the part (num_rows, num_columns) in a symmetry class; round-off is set to 0."""
     part = np.zeros(images.shape[1:])
     for image, sign in zip(images, signs, strict=True):
         part += sign[:, None] * image

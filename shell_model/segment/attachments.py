@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Springs and masses attached to a reading of the section, such as its mean deflection.
 
-With the row r of the reading, a spring k adds k r rᵀ to the stiffness: its force is spread as r
-reads, and every other motion of the section stays as free as it was.
+A spring k on the reading r adds k r rᵀ to the stiffness. The reading distributes its force, and all
+other motions of the section stay free.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from geometry.arrays import Array
 from geometry.boom import Direction, Segment
 from shell_model.segment.cross_section import Outline, Row
 
-# Stiffness of a support that fixes a rotation, over G J_t / L or E J / L of its segment: no
-# segment can tell it from a rigid one.
+# Stiffness of a support that fixes a rotation, relative to G J_t / L or E J / L of its segment,
+# which makes it practically rigid.
 RIGID_TURN = 1.0e5
 
 
@@ -28,8 +28,8 @@ class Attached(NamedTuple):
     """Springs or masses with the rows on which they act.
 
     Args:
-        rows: (num_owned, num_attached) this rank's part of the row of each.
-        factors: (num_attached,) stiffness in N/m or N·m, or mass in kg.
+        rows: this rank's parts (num_owned, num_attached) of the rows.
+        factors: stiffnesses (num_attached,) in N/m or N·m, or masses in kg.
     """
 
     rows: Array
@@ -41,7 +41,7 @@ class Attached(NamedTuple):
         return cls(np.array(rows).reshape(-1, num_owned).T, np.array(factors, dtype=np.float64))
 
     def add_to(self, comm: MPI.Comm, matrix: PETSc.Mat) -> None:
-        """Add factor · r rᵀ of each to a matrix that is distributed by rows. Collective."""
+        """Add factor · r rᵀ of each row to a matrix that is distributed by rows. Collective."""
         for row, factor in zip(self.rows.T, self.factors, strict=True):
             _add_outer_product(comm, matrix, row, float(factor))
 

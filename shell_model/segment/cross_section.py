@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rows that read a section of the shell: mean deflection, rotation, distortion, points.
 
-An outline is a mesh line around the section; displacement is quadratic along each of its edges,
-so Simpson's rule and quadratic interpolation on the edges' nodes are exact. A row read the other
-way round is a force that is spread over the section.
+An outline is a mesh line around the section. Displacements are quadratic along each of its edges,
+so that Simpson's rule and quadratic interpolation are exact. The transpose of a row is a force that
+is distributed over the section.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ _X = 0
 
 
 class Row(dict[int, float]):
-    """Linear combination of degrees of freedom: global number → weight."""
+    """Linear combination of degrees of freedom: weights by global number."""
 
     @classmethod
     def of(cls, dofs: Indices, weights: Array) -> Row:
-        """Create a row from degrees of freedom with their weights; one may occur twice."""
+        """Create a row from degrees of freedom with weights; weights of repeated ones are added."""
         row = cls()
         for dof, weight in zip(dofs.tolist(), weights.tolist(), strict=True):
             row[dof] = row.get(dof, 0.0) + weight
@@ -44,10 +44,10 @@ class Row(dict[int, float]):
 
 
 class Reading(dict[int, Row]):
-    """Reading of a boom's segments: number of a segment → row."""
+    """Reading of a boom's segments: rows by the number of the segment."""
 
     def __add__(self, other: Reading) -> Reading:
-        """Return the sum of both readings over all segments of either, in their common unit."""
+        """Return the sum of two readings in the same unit."""
         both = {number: self.get(number, Row()) + row for number, row in other.items()}
         return Reading(self | both)
 
@@ -56,13 +56,13 @@ class Reading(dict[int, Row]):
 
 
 def on_outline(places: Array, section: Section, x: float) -> Mask:
-    """Return which (num_places,) of places (num_places, 3) are on the walls at x."""
+    """Return the mask (num_places,) of places (num_places, 3) that are on the walls at x."""
     at_x = np.abs(places[:, 0] - x) < section.near
     return np.asarray(section.on_plates(places[:, 1:]) & at_x)
 
 
 def quadratic(s: Array) -> Array:
-    """Return shape functions (..., 3) of an edge's first end, middle, last end at its parts s."""
+    """Return an edge's shape functions (..., 3): first end, middle, last end; s from 0 to 1."""
     return np.stack([(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)], axis=-1)
 
 
@@ -71,10 +71,10 @@ class Outline:
     """Displacement nodes around the section at one x.
 
     Args:
-        x: in m.
+        x: x in m.
         places: (num_nodes, 3) in m.
         dofs: (num_nodes, 3) global rows of the displacement components.
-        section: that of the plates.
+        section: section of the plates.
     """
 
     x: float
@@ -89,10 +89,10 @@ class Outline:
         """Create the outline at x, the same on every rank. Collective.
 
         Args:
-            comm: the ranks that share the nodes.
-            nodes: (num_owned_nodes, 3) in m.
-            node_dofs: (num_owned_nodes, 3) global rows of their displacements.
-            section, x: see above.
+            comm: ranks that share the nodes.
+            nodes: positions (num_owned_nodes, 3) in m.
+            node_dofs: global rows (num_owned_nodes, 3) of their displacements.
+            section, x: section of the plates and position in m.
         """
         at = on_outline(nodes, section, x)
         places = np.concatenate(comm.allgather(nodes[at]))
@@ -100,7 +100,7 @@ class Outline:
         return cls(x, places, dofs, section)
 
     def mean_deflection(self, direction: Direction = "z") -> Row:
-        """Return u_z or u_y averaged over the area: the neutral axis' deflection, in m."""
+        """Return the mean of u_z or u_y over the area in m, the deflection of the neutral axis."""
         return self.mean_displacement(COMPONENT[direction])
 
     def mean_displacement(self, component: int) -> Row:
@@ -118,7 +118,7 @@ class Outline:
     def distortion(self) -> Row:
         """Return the increase of the section's height: mean u_z of the top less the bottom, in m.
 
-        Where they are folds or bends, of the plates whose middles are the highest and the lowest.
+        If these are folds or bends, the plates with the highest and lowest middles count.
         """
         plates = self.section.plates
         levels = np.array([plate.middle[1] for plate in plates])
@@ -133,10 +133,10 @@ class Outline:
         return next(rows) - next(rows)
 
     def wall_deflection(self, direction: Direction) -> Row:
-        """Return u_z or u_y of the plates that carry its shear force in their own plane, in m.
+        """Return the mean u_z or u_y of the shear-carrying plates in m.
 
-        Each plate moves in its plane, with a weight by the force that it carries: such a force
-        bends none.
+        Each plate contributes its in-plane displacement, weighted by its share of the shear force,
+        so that the transposed force bends no plate.
         """
         carriers = self.section.shear_plates(direction)
         plates = self.section.plates
@@ -145,9 +145,9 @@ class Outline:
     def twist(self) -> Row:
         """Return the twist about x in rad: the circulation of displacement over twice the area.
 
-        It is exact for a rigid rotation by Stokes' theorem; the area is the enclosed one. A box's
-        distortion into a parallelogram, which
-        turns webs and flanges by opposite angles, is not read.
+        It is exact for a rigid rotation by Stokes' theorem; the area is the enclosed one. The
+        distortion of a box into a parallelogram, which rotates webs and flanges by opposite angles,
+        does not contribute.
         """
         turn = Row()
         for plate in self.section.plates:
@@ -155,7 +155,7 @@ class Outline:
         return turn
 
     def flange_deflection(self, side: float, y: float) -> Row:
-        """Return u_z of the top (``side`` 1) or bottom (−1) averaged over the points ±y, in m."""
+        """Return the mean u_z in m of the points ±y on the top (``side`` 1) or bottom (−1)."""
         face = self.section.face("z", side)
         nodes, along = self._along(self.section.plates[face.plate])
         rows = []
@@ -179,9 +179,9 @@ class Outline:
         return Row.of(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
 
     def _along(self, plate: Plate) -> tuple[Indices, Array]:
-        """Return nodes of one plate's line, ends and middles in turn, and their places in m.
+        """Return the nodes of one plate's line, ends and middles in turn, and their positions in m.
 
-        They rise with y, or with z where the plate is steep.
+        They are in the order of y, or of z if the plate is steep.
         """
         on_plate = np.flatnonzero(plate.distance(self.places[:, 1:]) < self.section.near)
         tangent = plate.tangent
@@ -190,7 +190,7 @@ class Outline:
         return on_plate[order], along[order]
 
     def _simpson(self, plate: Plate) -> tuple[Indices, Array]:
-        """Return nodes of one plate's line and their weights in m."""
+        """Return the nodes of one plate's line, and their weights in m by Simpson's rule."""
         nodes, along = self._along(plate)
         lengths = along[2::2] - along[:-2:2]
         weights = np.zeros(nodes.size)
@@ -200,7 +200,7 @@ class Outline:
         return nodes, weights
 
     def _area_weights(self) -> tuple[Indices, Array]:
-        """Return nodes of all plates (corners twice) and their shares of the area in m²."""
+        """Return the nodes of all plates (corners twice), and their shares of the area in m²."""
         parts = [(*self._simpson(plate), plate.thickness) for plate in self.section.plates]
         return (
             np.concatenate([nodes for nodes, _, _ in parts]),

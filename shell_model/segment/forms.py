@@ -2,11 +2,10 @@
 """Shell forms in UFL: flat facets with displacement u and rotation θ, both vectors in space.
 
 Reissner-Mindlin kinematics in the facet's own frame: membrane strain ε, bending strain κ,
-transverse shear γ. The rotation about the normal (drilling) has no stiffness of its own in
-this theory; it is tied to the rotation that the displacement has in the facet's plane (Hughes
-and Brezzi 1989), so that folded plates transfer their bending moments to one another.
-Displacement quadratic and rotation Crouzeix-Raviart (Campello, Pimenta and Wriggers 2003) do
-not lock as the wall becomes thin.
+transverse shear γ. The rotation about the normal (drilling) has no stiffness in this theory. A
+penalty couples it to the in-plane rotation of the displacement (Hughes and Brezzi 1989), so that
+folded plates transfer bending moments to one another. Quadratic displacements with Crouzeix-Raviart
+rotations (Campello, Pimenta and Wriggers 2003) do not lock in thin walls.
 """
 
 from __future__ import annotations
@@ -23,18 +22,19 @@ from geometry.boom import Material
 
 SHEAR_CORRECTION = 5.0 / 6.0
 
-# Part of G t that ties the drilling rotation. It does not depend on the mesh, so refinement
-# does not stiffen the shell. With the wall's own inertia it has a frequency, from
-# √(12 DRILLING G/ρ)/(2π t) on: 27 kHz in a wall of 6.5 mm.
+# Drilling penalty as a fraction of G t. It is independent of the mesh, so that refinement does not
+# stiffen the shell. The drilling frequency is at least √(12 DRILLING G/ρ)/(2π t), 27 kHz for a wall
+# of 6.5 mm.
 #
-# Where plates meet at an angle the tie must be soft: the rotation of one plate in its plane, which
-# has half of its shear strain in it, is the slope of the other. A stiff tie takes both for the same
-# and resists the shear flow around a box.
+# Where plates meet at an angle, the penalty must be soft: the in-plane rotation of one plate, which
+# includes half of its shear strain, is the slope of the other. A stiff penalty equates both and
+# resists the shear flow around a box.
 DRILLING = 1.0e-2
 
-# Where facets approach a curved surface it must be stiff: a surface with the twist b (1/m)
-# transfers a couple b M about its normal, and a soft tie gives way to it by some (b t)² / DRILLING
-# of the bending. This is the modulus G, as the skew strain counts twice (Hughes and Brezzi 1989).
+# Drilling penalty as a fraction of G t for facets of a curved surface, where it must be stiff. A
+# surface with the twist b (1/m) transfers a couple b M about its normal, and a soft penalty yields
+# by about (b t)² / DRILLING of the bending. This fraction is the modulus G, since the skew strain
+# counts twice (Hughes and Brezzi 1989).
 DRILLING_OF_CURVED = 2.0
 
 
@@ -47,7 +47,7 @@ class Strains(NamedTuple):
         membrane: (2, 2) ε.
         bending: (2, 2) κ in 1/m.
         shear: (2,) γ.
-        drilling: turn of the facet in its plane beyond the rotation about e3, in rad.
+        drilling: in-plane rotation of the facet less the rotation about e3, in rad.
     """
 
     membrane: Any
@@ -59,7 +59,7 @@ class Strains(NamedTuple):
 def facet_frame(domain: Any) -> tuple[Any, Any, Any]:
     """Return orthonormal e1, e2 in the facet and e3 normal to it, from the cell's Jacobian.
 
-    e3 has no preferred side: every strain is even in it, so the energy does not depend on it.
+    The sign of e3 is arbitrary: the energy does not depend on it.
     """
     jacobian = ufl.Jacobian(domain)
     t1, t2 = (ufl.as_vector([jacobian[i, k] for i in range(3)]) for k in range(2))
@@ -96,17 +96,16 @@ class ShellForms:
     Args:
         space: displacement and rotation, see :func:`compat.shell_space`.
         thickness: wall thickness t in m, constant on each cell.
-        material: isotropic.
-        drilling: part of G t that ties the drilling rotation.
-        shear_correction: part of G t that resists transverse shear; a large one is a thin shell
-            after Kirchhoff and Love, whatever its thickness.
-        compression: membrane force along x in N/m, constant on each cell, positive where it
-            presses; none unless given.
+        material: isotropic material.
+        drilling: drilling penalty as a fraction of G t.
+        shear_correction: transverse shear stiffness as a fraction of G t; a large value gives the
+            thin shell of Kirchhoff and Love.
+        compression: membrane force along x in N/m, constant on each cell, positive in compression.
 
     Attributes:
-        loaded: thickness in m that carries the unit load, constant on each cell; all of it unless
-            whoever assembles the load sets another.
-        load_direction: (3,) a constant that whoever assembles the load sets.
+        loaded: thickness in m that carries the unit load, constant on each cell; the caller may
+            change it before assembly.
+        load_direction: (3,) constant that the caller sets before assembly.
     """
 
     def __init__(
@@ -126,9 +125,9 @@ class ShellForms:
 
     @cached_property
     def stiffness(self) -> Any:
-        """Bilinear form of K (num_dofs, num_dofs), in N/m, N and N·m between u and θ.
+        """The bilinear form of K (num_dofs, num_dofs), in N/m, N and N·m between u and θ.
 
-        Twice the strain energy of a motion with itself.
+        Its value for a motion with itself is twice the strain energy.
         """
         domain, t, material = self._space.mesh, self._thickness, self._material
         young, nu = map(self._constant, (material.youngs_modulus, material.poissons_ratio))
@@ -146,9 +145,9 @@ class ShellForms:
 
     @cached_property
     def mass(self) -> Any:
-        """Bilinear form of M (num_dofs, num_dofs), in kg for u and kg·m² for θ.
+        """The bilinear form of M (num_dofs, num_dofs), in kg for u and kg·m² for θ.
 
-        Twice the kinetic energy of velocities with themselves; u and θ do not couple.
+        Its value for a velocity with itself is twice the kinetic energy; u and θ do not couple.
         """
         t, density = self._thickness, self._constant(self._material.density)
         (u, theta), (v, eta) = self._trial_and_test()
@@ -157,9 +156,10 @@ class ShellForms:
 
     @cached_property
     def geometric(self) -> Any:
-        """Bilinear form of K_G (num_dofs, num_dofs), in N/m for u and 0 for θ.
+        """The bilinear form of K_G (num_dofs, num_dofs), in N/m for u and 0 for θ.
 
-        It is twice the work that the membrane forces do as a motion shortens the walls along x.
+        Its value for a motion with itself is twice the work of the membrane forces in the
+        shortening of the walls along x.
         """
         (u, _), (v, _) = self._trial_and_test()
         work = self._compression * ufl.dot(ufl.grad(u)[:, 0], ufl.grad(v)[:, 0])
@@ -167,7 +167,7 @@ class ShellForms:
 
     @cached_property
     def unit_load(self) -> Any:
-        """Linear form of the unit load (num_dofs,), in N for u and 0 for θ."""
+        """The linear form of the unit load (num_dofs,), in N for u and 0 for θ."""
         _, (v, _) = self._trial_and_test()
         load = self.loaded * ufl.dot(self.load_direction, v)
         return fem.form(load * ufl.dx(degree=2, domain=self._space.mesh))
@@ -177,5 +177,5 @@ class ShellForms:
         return ufl.split(ufl.TrialFunction(self._space)), ufl.split(ufl.TestFunction(self._space))
 
     def _constant(self, value: float) -> Any:
-        """Return a form constant instead of a number: the compiled form serves every material."""
+        """Return a constant of the form, so that one compiled form serves all materials."""
         return fem.Constant(self._space.mesh, PETSc.ScalarType(value))

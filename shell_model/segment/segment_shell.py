@@ -20,7 +20,7 @@ from shell_model.segment.cross_section import Outline, Row
 from shell_model.segment.shell import Shell, assemble_plates, free_rows
 from shell_model.segment.solver import times
 
-# Part of the largest value below which a value of a load is round-off.
+# Fraction of a load's largest value below which a value is round-off.
 _ROUND_OFF = 1.0e-10
 
 
@@ -29,9 +29,9 @@ class SegmentShell(Shell):
     """Shell of one segment, with the loads of a :class:`geometry.load.Member`.
 
     Args:
-        section: that of the plates.
-        segment: its geometry and material.
-        mesh: on rank 0.
+        section: section of the plates.
+        segment: geometry and material.
+        mesh: mesh of the segment, on rank 0.
     """
 
     section: Section
@@ -40,18 +40,19 @@ class SegmentShell(Shell):
 
     @cached_property
     def unit_loads(self) -> Mapping[Direction, Array]:
-        """Uniform load (num_owned,) of 1 N/m along each direction, zero in fixed rows. Collective.
+        """The uniform loads (num_owned,) of 1 N/m in each direction, zero in fixed rows.
+        Collective.
 
-        It is spread over the plain section, without collars and diaphragms.
+        They act on the plain section, without collars and diaphragms.
         """
         loads = self._loads_on(lambda mesh: mesh.even)
         return {direction: load / self.segment.area for direction, load in loads.items()}
 
     @cached_property
     def plain_loads(self) -> Mapping[Direction, Array]:
-        """Inertia (num_owned,) of the plain section under an acceleration along each direction.
+        """The inertia loads (num_owned,) of the plain section in each direction. Collective.
 
-        It is 1 N/m on average: ``unit_loads`` unless the segment tapers. Collective.
+        They are 1 N/m on average, and equal ``unit_loads`` unless the segment tapers.
         """
         loads = self._loads_on(lambda mesh: mesh.plain)
         return {direction: load / self.segment.area for direction, load in loads.items()}
@@ -82,8 +83,7 @@ class SegmentShell(Shell):
         return self.row(self.outline(x).twist())
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
-        """Return the load (num_owned,) of 1 N/m between mesh lines at two x in m, or all along.
-
+        """Return the load (num_owned,) of 1 N/m between two mesh lines, or along the segment.
         Collective.
         """
         if span is None:
@@ -93,9 +93,9 @@ class SegmentShell(Shell):
         return loads[direction] / self.segment.area
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        """Return the load (num_owned,) of an acceleration, given in N/m on the plain segment.
+        """Return the inertia load (num_owned,) of an acceleration. Collective.
 
-        Collective.
+        ``force`` is the load in N/m on the plain segment.
         """
         acceleration = force / self.segment.mass_per_length
         of_stiffeners = self._loads_on(lambda mesh: mesh.thickness - mesh.plain)[direction]
@@ -103,9 +103,9 @@ class SegmentShell(Shell):
         return whole + acceleration * (self.segment.material.density * of_stiffeners)
 
     def turning(self, direction: Direction) -> Array:
-        """Return the inertia (num_owned,) of all plates under 1 rad/s² about x = 0. Collective."""
+        """Return the inertia load (num_owned,) of plates for 1 rad/s² about x = 0. Collective."""
         axis = np.cross([1.0, 0.0, 0.0], np.eye(3)[COMPONENT[direction]])
-        # Constrained degrees of freedom contribute to the inertia of the free ones.
+        # The mass couples free degrees of freedom with constrained ones.
         mass = compat.assemble_matrix(self.plates.forms.mass, [], 0.0)
         inertia = times(mass, self.turn(axis, 0.0)[:, None])[:, 0] * self.free
         mass.destroy()
@@ -114,9 +114,9 @@ class SegmentShell(Shell):
     def _loads_on(self, thickness: Callable[[PlatedMesh], Array]) -> dict[Direction, Array]:
         """Return loads (num_owned,) by direction: 1 N/m³ on a thickness (num_triangles,) in m.
 
-        They are zero in fixed rows, and exactly at the vertices, where a quadratic function has no
-        mean; elsewhere at most two cells carry them, so that no order of summation is left in that
-        of a plain box. Collective.
+        They are zero in fixed rows, and exactly zero at vertices, where the integral of a quadratic
+        shape function vanishes. Elsewhere at most two cells contribute in a plain box, so that the
+        order of summation has no effect. Collective.
         """
         of_cells = self.comm.bcast(None if self.mesh is None else thickness(self.mesh))
         forms = self.plates.forms
@@ -131,25 +131,25 @@ class SegmentShell(Shell):
         return found
 
     def row(self, weights: Row) -> Array:
-        """Return this rank's part (num_owned,) of a row given as global dof → weight."""
+        """Return this rank's part (num_owned,) of a row, given as weights by global dof."""
         return _local_row(self.owned[0], self.free, weights)
 
 
 def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) -> SegmentShell:
     """Assemble a segment's shell. Collective.
 
-    A rigid support fixes the section's outline along y and z, which leaves it free to tilt; a
-    clamped one fixes every displacement and rotation of it. An elastic support is a spring on
-    the mean deflection of the walls, along z and along y, with the twist fixed. A support that
-    fixes or elastically restrains one slope alone is a spring on the rotation of the section.
-    Point masses move with the same means. The segment is neither fixed nor loaded along x. A
-    diaphragm is fixed, loaded and read through the outline to which it is welded alone.
+    A rigid support fixes the section's outline along y and z, and leaves its slope free; a clamped
+    support fixes all displacements and rotations of the outline. An elastic support is a spring on
+    the mean deflection of the walls, along z and y, with the twist fixed. A support that fixes or
+    elastically restrains only a slope is a spring on the rotation of the section. Point masses move
+    with the same mean deflections. The segment is neither fixed nor loaded along x. Supports, loads
+    and readings act on the outline of a diaphragm only.
 
     Args:
-        comm: the ranks that share it.
-        segment: whose section is known.
-        mesh: of its walls and diaphragms, on rank 0, with mesh lines at supports, masses and the
-            ends of collars; None elsewhere.
+        comm: ranks that share the shell.
+        segment: segment with a section.
+        mesh: mesh of its walls and diaphragms, on rank 0, with mesh lines at supports, masses and
+            the ends of collars; None elsewhere.
     """
     section = segment.section
     assert section is not None

@@ -23,12 +23,12 @@ from shell_model.segment.attachments import Attached
 from shell_model.segment.cross_section import on_outline
 from shell_model.segment.forms import ShellForms
 
-# Nodes closer than this (m) to a place lie on it; mesh lines are exact to round-off.
+# Distance in m of a node from a place that counts as zero; mesh lines are exact to round-off.
 ON_LINE = 1.0e-7
 
 
-# Condition of a support: 0 of the displacement or 1 of the rotation, component, and a function
-# of places (num_places, 3) in m.
+# Condition of a support: 0 (displacement) or 1 (rotation), component, and a function that selects
+# places (num_places, 3) in m.
 _Condition = tuple[int, int, Callable[[Array], Mask]]
 
 
@@ -37,11 +37,11 @@ class Plates:
     """Plates before assembly.
 
     Args:
-        space: function space, which owns the communicator that the matrices live on.
-        forms: compiled forms of one copy, see :class:`ShellForms`.
+        space: function space, which owns the communicator of the matrices.
+        forms: compiled forms of one part, see :class:`ShellForms`.
         supports: Dirichlet conditions of the rigid supports.
-        compressed: whether they carry an axial force.
-        copies: number of congruent parts whose energies they have together.
+        compressed: whether the plates carry an axial force.
+        copies: number of congruent parts whose total energy the forms give.
     """
 
     space: Any
@@ -52,9 +52,9 @@ class Plates:
 
     @cached_property
     def nodes(self) -> Sequence[tuple[Array, Indices]]:
-        """Places (num_owned, 3) in m and global rows (num_owned, 3) of the nodes on this rank.
+        """The positions (num_owned, 3) in m and global rows (num_owned, 3) of this rank's nodes.
 
-        Those of the displacement, then those of the rotation.
+        Nodes of the displacement come first, then those of the rotation.
         """
         return [self._nodes(part) for part in (0, 1)]
 
@@ -72,10 +72,10 @@ class Shell:
     """Shell model K u = f and M ü, distributed by rows; matrices are assembled on first use.
 
     Args:
-        comm: the ranks that share it.
-        plates: its plates.
+        comm: ranks that share the shell.
+        plates: plates of the shell.
         conditions: Dirichlet conditions.
-        springs, masses: attached ones.
+        springs, masses: attached springs and masses.
     """
 
     comm: MPI.Comm
@@ -86,21 +86,20 @@ class Shell:
 
     @cached_property
     def stiffness(self) -> PETSc.Mat:
-        """Stiffness (num_dofs, num_dofs), decoupled and positive in fixed rows. Collective."""
+        """The stiffness (num_dofs, num_dofs), positive diagonal in fixed rows. Collective."""
         return self._assembled(self.plates.forms.stiffness, 1.0, self.springs)
 
     @cached_property
     def mass(self) -> PETSc.Mat:
-        """Mass matrix (num_dofs, num_dofs), with 0 on the diagonal of fixed rows.
+        """The mass matrix (num_dofs, num_dofs), with 0 on the diagonal of fixed rows. Collective.
 
-        These degrees of freedom are at infinite frequency. Collective.
+        So fixed degrees of freedom have infinite frequency.
         """
         return self._assembled(self.plates.forms.mass, 0.0, self.masses)
 
     @cached_property
     def geometric(self) -> PETSc.Mat | None:
-        """Matrix K_G (num_dofs, num_dofs), the softening by axial forces; None without any.
-
+        """The matrix K_G (num_dofs, num_dofs) of axial forces; None without axial forces.
         Collective.
         """
         if not self.plates.compressed:
@@ -117,40 +116,40 @@ class Shell:
 
     @cached_property
     def free(self) -> Mask:
-        """Mask (num_owned,), False in fixed rows."""
+        """The mask (num_owned,) of free rows."""
         return free_rows(self.plates.space, self.conditions)
 
     @property
     def nodes(self) -> Array:
-        """Places (num_owned_nodes, 3) of the displacement nodes in m."""
+        """The positions (num_owned_nodes, 3) of the displacement nodes in m."""
         return self.plates.nodes[0][0]
 
     @property
     def node_dofs(self) -> Indices:
-        """Global rows (num_owned_nodes, 3) of their displacements."""
+        """The global rows (num_owned_nodes, 3) of the displacement nodes."""
         return self.plates.nodes[0][1]
 
     @property
     def space(self) -> Any:
-        """Function space of displacement and rotation."""
+        """The function space of displacement and rotation."""
         return self.plates.space
 
     @property
     def num_dofs(self) -> int:
-        """Number of degrees of freedom over all ranks."""
+        """The number of degrees of freedom over all ranks."""
         return int(self.space.dofmap.index_map.size_global)
 
     @property
     def owned(self) -> tuple[int, int]:
-        """First and past-the-last global row of this rank."""
+        """The first global row of this rank, and the first row after its last one."""
         first, last = self.space.dofmap.index_map.local_range
         return int(first), int(last)
 
     def rigid_motions(self) -> Array:
         """Return the free rigid motions (num_owned, num_free), six for a segment without supports.
 
-        Displacement nodes get ω × (x − middle), rotation nodes ω itself; combinations that
-        move a held row or stretch a spring drop out. Collective.
+        Displacement nodes have ω × (x − middle), rotation nodes ω. Motions of fixed rows, or with
+        strained springs, are not free. Collective.
         """
         first, _ = self.owned
         motions = np.zeros((self.free.size, 6))
@@ -161,8 +160,8 @@ class Shell:
             motions[:, 3 + i] = self.turn(axis, middle)
         held = np.concatenate(self.comm.allgather(motions[~self.free]))
         held = np.concatenate([held, self.comm.allreduce(self.springs.rows.T @ motions)])
-        # One rank chooses the basis of the remaining motions for all. Where nothing slides along x
-        # the slide comes first and by itself, since nothing pushes it.
+        # One rank chooses the basis of the free motions for all ranks. The translation along x
+        # comes first, separately, since no force excites it.
         unheld = np.eye(6)
         if held.size:
             slides = 0 if held[:, 0].any() else 1
@@ -171,7 +170,7 @@ class Shell:
         return np.asarray(motions @ self.comm.bcast(unheld))
 
     def turn(self, axis: Array, x: float) -> Array:
-        """Return the motion (num_owned,) of a turn by 1 rad about an axis (3,) through x in m."""
+        """Return the motion (num_owned,) of a rotation by 1 rad about an axis (3,) through x."""
         first, _ = self.owned
         motion = np.zeros(self.free.size)
         motion[self.node_dofs - first] = np.cross(axis, self.nodes - [x, 0.0, 0.0])
@@ -193,7 +192,7 @@ def dirichlet_condition(
 ) -> Any:
     """Return the condition of zero displacement (part 0) or rotation (part 1) in a component.
 
-    ``where`` returns which of places (num_places, 3) in m are fixed.
+    ``where`` returns the mask of the fixed ones among places (num_places, 3) in m.
     """
     fixed = space.sub(part).sub(component)
     collapsed, _ = fixed.collapse()
@@ -206,10 +205,10 @@ def dirichlet_condition(
 def assemble_plates(
     comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None, copies: float = 1.0
 ) -> Plates:
-    """Assemble the plates of a mesh, that of a whole segment or a part of it. Collective."""
+    """Assemble the plates of a mesh of a whole segment or a part of it. Collective."""
     points, triangles, of_cells = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64), None
     if mesh is not None:
-        # The plain walls carry the whole axial force, so that it is the same in each section.
+        # Only the plain walls carry the axial force, so that it is the same in each section.
         pressed = segment.compression(mesh.along) / segment.area * mesh.even
         points, triangles, of_cells = mesh.points, mesh.triangles, (mesh.thickness, pressed)
     domain = compat.create_triangle_mesh(comm, points, triangles)
@@ -223,7 +222,7 @@ def assemble_plates(
 
 
 def _rigid_supports(segment: Segment) -> Iterator[_Condition]:
-    """Return the conditions of rigid supports: y and z of the outline, all parts if clamped."""
+    """Return the conditions of rigid supports: y and z of the outline, or all if clamped."""
     for support in segment.supports:
         if support.stiffness is not None:
             continue

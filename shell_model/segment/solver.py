@@ -30,7 +30,7 @@ def times(matrix: PETSc.Mat, block: Array) -> Array:
 
 
 def quadratic_form(matrix: PETSc.Mat, vector: Array) -> float:
-    """Return uᵀ A u of a vector (num_owned,): twice an energy in J, for example. Collective."""
+    """Return uᵀ A u of a vector (num_owned,), for example twice an energy in J. Collective."""
     right, left = matrix.createVecs()
     right.array[:] = vector
     matrix.mult(right, left)
@@ -47,17 +47,17 @@ def gram(comm: MPI.Comm, left: Array, right: Array) -> Array:
     return product
 
 
-# MUMPS's ICNTL(7): approximate minimum fill. A boom is long and thin: this ordering leaves as
-# little fill as those that cut it into parts, and is found in half the time. PETSc heeds it as an
-# option alone: what is set on a factor matrix before it is analysed is lost. It reports options
-# that are left when a process ends, so this one is gone before.
+# ICNTL(7) of MUMPS: approximate minimum fill. For a long and thin boom, this ordering has as little
+# fill as nested dissection, and takes half the time. PETSc accepts it only as an option: values
+# that are set on a factor matrix before its analysis are lost. The option is removed after use,
+# since PETSc reports unused options at the end of a process.
 _PREFIX, _ORDERING = "shifted_", "mat_mumps_icntl_7"
 
 
 class ShiftedSolver:
-    """Solver (K + σ M)⁻¹ with σ = (2π frequency)², factorised for one frequency (Hz) at a time.
+    """Solver (K + σ M)⁻¹ with σ = (2π frequency)². Collective.
 
-    Collective.
+    It is factorised for one frequency in Hz at a time.
     """
 
     def __init__(self, shell: Shell, frequency: float) -> None:
@@ -67,7 +67,7 @@ class ShiftedSolver:
         self._matrix.axpy(
             self.sigma,
             shell.mass,
-            # Springs and point masses couple nodes that the shell does not.
+            # Springs and point masses couple nodes that the plates do not couple.
             structure=PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN,
         )
         self._matrix.setOption(PETSc.Mat.Option.SPD, True)

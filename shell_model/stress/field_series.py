@@ -14,30 +14,31 @@ import xarray as xr
 
 from shell_model.stress.stresses import COMPONENTS, FACES, ShellStress, Stress
 
-# A series has at most this number of frames, and fewer of a fine mesh: all triangles of all frames,
-# of about 110 bytes each, make 110 MB at most. Stresses hardly pack and so stay unpacked.
+# Maximum number of frames of a series, and of triangles in all frames: with about 110 bytes per
+# triangle, a series has at most 110 MB. Stresses are stored uncompressed, since they hardly
+# compress.
 FRAMES, TRIANGLES = 51, 1_000_000
 
 
 def series_times(fields: xr.Dataset) -> list[float]:
-    """Return the permitted number of times, evenly spread over the run with its ends, in s."""
+    """Return the times of a series in s, evenly spaced over the run, including its ends."""
     times = fields["time"].values
     frames = max(2, min(FRAMES, TRIANGLES // fields.sizes["triangle"]))
     return [float(t) for t in np.linspace(times[0], times[-1], frames)]
 
 
 def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float]) -> list[Path]:
-    """Write displacement and stresses at some times; ParaView opens them by the ``.pvd``.
+    """Write displacements and stresses at some times; ParaView opens the ``.pvd`` file.
 
-    Each ``.vtu`` has at the points the displacement in m, and on the triangles the number of
-    the segment, von Mises stresses of both faces and the middle, and the six ``COMPONENTS``,
-    all in Pa. The times in the ``.pvd`` are those of the output that are next to the given ones.
+    Each ``.vtu`` file has displacements in m at points, and on triangles the number of the segment,
+    the von Mises stresses of both faces and the middle, and the six ``COMPONENTS``, in Pa. The
+    ``.pvd`` file has the output times nearest to the given times.
 
     Args:
-        fields: those of ``shell_model.stress.fields``, and the modal coordinates ``state``
+        fields: fields of ``shell_model.stress.fields``, and the modal coordinates ``state``
             (time, mode); attribute ``model``.
-        folder: gets ``MODEL.pvd`` and ``MODEL-NUMBER.vtu``.
-        times: in s.
+        folder: folder for ``MODEL.pvd`` and ``MODEL-NUMBER.vtu``.
+        times: times in s.
 
     Returns:
         The files, the ``.pvd`` last.
@@ -78,7 +79,7 @@ def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float])
 
 
 def _named(stress: Stress) -> dict[str, list[npt.NDArray[np.float32]]]:
-    """Return the data of the one block of triangles by their names."""
+    """Return the data of the block of triangles by name."""
     components = np.concatenate([stress.membrane, stress.bending], axis=1)
     return {f"von Mises, {face} (Pa)": [stress.von_mises(face)] for face in FACES} | {
         f"{name.replace('_', ' ')} (Pa)": [values]

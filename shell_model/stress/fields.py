@@ -32,9 +32,9 @@ from shell_model.stress.stresses import COMPONENTS, Modes, triangle_areas
 
 
 def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:
-    """Return ``COMPONENTS`` (num_modes, num_triangles, 6) in Pa of displacement shapes on rank 0.
+    """Return ``COMPONENTS`` (num_modes, num_triangles, 6) in Pa of shapes, on rank 0. Collective.
 
-    Shapes are (num_owned, num_modes), this rank's rows. Collective; None elsewhere.
+    Shapes are this rank's rows (num_owned, num_modes); other ranks return None.
     """
     form, component = _stress_form(shell.space, shell.segment)
     columns = []
@@ -54,18 +54,18 @@ def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:
     for triangles, values in gathered:
         modes[:, triangles, :] = values.transpose(2, 1, 0)
     modes /= triangle_areas(mesh.points, mesh.triangles)[:, None].astype(np.float32)
-    # The form contains the curvature; a face is half a thickness away.
+    # The form gives the stress per distance from the mid-surface; faces are half a thickness away.
     modes[:, :, 3:] *= 0.5 * mesh.thickness[:, None].astype(np.float32)
     return modes
 
 
 def wall_frame(domain: Any) -> tuple[Any, Any, Any]:
-    """Return unit vectors x, s and the outward normal of each triangle, see the module."""
+    """Return the unit vectors x, s and the outward normal of each triangle."""
     _, _, e3 = facet_frame(domain)
     place = ufl.SpatialCoordinate(domain)
-    # A length beside which no section is large, so that the normal of a diaphragm decides.
+    # A length that is larger than any section, so that a diaphragm's normal dominates.
     far = fem.Constant(domain, PETSc.ScalarType(1.0e6))
-    # Of the two one is zero: the place's distance from the axis, or the slope to the axis.
+    # One of the two is zero: the distance of the place from the axis, or the slope to the axis.
     side = place[1] * e3[1] + place[2] * e3[2] + far * e3[0]
     outward = ufl.conditional(ufl.gt(side, 0.0), 1.0, -1.0) * e3
     across = ufl.gt(abs(e3[0]), 0.5)
@@ -77,9 +77,9 @@ def wall_frame(domain: Any) -> tuple[Any, Any, Any]:
 
 
 def _stress_form(space: Any, segment: Segment) -> tuple[Any, Any]:
-    """Compile the (cell, dof) form of a component times the area; return it and the component.
+    """Compile the (cell, dof) form of a stress component times the area; return both.
 
-    The bending part is for a unit of the distance from the mid-surface.
+    The bending component is per unit of distance from the mid-surface.
     """
     domain = space.mesh
     component = fem.Constant(domain, np.zeros(len(COMPONENTS), dtype=PETSc.ScalarType))
@@ -118,20 +118,19 @@ def gather_fields(
     """Gather the shapes and their stresses on rank 0. Collective; None elsewhere.
 
     Args:
-        boom: its foot supports carry the forces of its cylinders.
-        shells, reduced: one each for each segment.
-        coordinates: the first ones of the system.
-        system: its observers read the cylinders' forces.
+        boom: boom whose foot supports carry the forces of its cylinders.
+        shells, reduced: shell and reduced coordinates of each segment.
+        coordinates: coordinates of the boom, which are the first ones of the system.
+        system: gap system whose observers read the forces of cylinders.
 
     Returns:
         ``points`` (point, component) in m, ``triangles`` (triangle, corner), ``segment`` and
         ``wall`` (triangle), ``thickness`` (triangle) in m, ``modes`` (mode, point, component) in
         1/√kg: the displacement in m is the sum of the modal coordinates times ``modes``. For
-        segment k, from 1 on, ``coordinates_k`` (own_k, mode) times the modal coordinates are its
-        own ones and the forces of its cylinders, and the sum of these times ``stress_k``
-        (own_k, triangle_k, stress) are its stresses in Pa; ``plate_k`` names the plates that
-        ``wall`` numbers. Other segments' coordinates have no stress there, so half of the numbers
-        of two segments and two thirds of those of three need not be kept.
+        segment k, from 1 on, ``coordinates_k`` (own_k, mode) times the modal coordinates gives the
+        coordinates of the segment and the forces of its cylinders. These times ``stress_k`` (own_k,
+        triangle_k, stress) give its stresses in Pa. ``plate_k`` has the names of the plates that
+        ``wall`` numbers. Coordinates of other segments cause no stress and are not stored.
     """
     moved = [_at_vertices(shell, one.shapes) for shell, one in zip(shells, reduced, strict=True)]
     stresses = [
@@ -187,15 +186,15 @@ def _at_vertices(shell: SegmentShell, shapes: Array) -> _Numbers | None:
 
 
 def _along(segment: Segment, mesh: PlatedMesh, force: Callable[[Array], Array]) -> Array:
-    """Return the stress along x (num_triangles,) in Pa of normal forces in N at x in m.
+    """Return the axial stress (num_triangles,) in Pa of normal forces in N at x in m.
 
-    The plain walls carry them and transfer them to collars.
+    The plain walls carry the forces and share them with collars.
     """
     return force(mesh.along) / segment.area * mesh.even / mesh.thickness
 
 
 def _axial_stress(boom: Boom, meshes: Sequence[PlatedMesh]) -> dict[str, _Variable]:
-    """Return the stresses of axial forces, if there are any."""
+    """Return the stresses of axial forces; empty without axial forces."""
     if not boom.compressed:
         return {}
     stresses = [
@@ -212,7 +211,7 @@ def _own_stresses(
     coordinates: BoomCoordinates,
     system: GapSystem,
 ) -> dict[str, _Variable]:
-    """Return the variables of every segment that give its stresses."""
+    """Return the variables of each segment that determine its stresses."""
     modes = [one for one in stresses if one is not None]
     sizes = [len(one) for one in modes]
     every = coordinates.of_rows(np.eye(sum(sizes)))
@@ -230,9 +229,9 @@ def _own_stresses(
 
 
 def _pushed(boom: Boom, number: int, mesh: PlatedMesh) -> Iterator[tuple[str, Modes]]:
-    """Return luffing cylinders' forces, and stresses (1, num_triangles, 6) in Pa per 1 N axial.
+    """Return a segment's cylinder forces, and stresses (1, num_triangles, 6) in Pa per 1 N.
 
-    They are those of one segment; each 1 N acts along the boom.
+    Each 1 N acts along the boom.
     """
     segment = boom.segments[number]
     for k, cylinder in enumerate(boom.cylinders, start=1):

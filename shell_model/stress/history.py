@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Stress maxima of a run: near stations and supports at every output time, and overall.
 
-Where a force enters at a line, as beside a web, the stress of the nearest triangles grows as
-the mesh refines: it shows the place and time of the maximum, and is no design stress. The mean over
-a patch of fixed size converges.
+Where a force acts along a line, for example beside a web, the stress of the nearest triangles grows
+with mesh refinement. It gives the place and time of the maximum, but is no design stress. The mean
+over a patch of fixed size converges.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from shell_model.stress.stresses import Face, ShellStress, WallForces, wall_forc
 
 @dataclass(frozen=True, slots=True)
 class LargestPatch:
-    """Largest mean stress of a patch in Pa, its time in s, segment, and nearest place x in m."""
+    """Largest mean stress of a patch in Pa, with time in s, segment, and nearest x in m."""
 
     von_mises: float
     time: float
@@ -31,7 +31,7 @@ class LargestPatch:
 
 @dataclass(frozen=True, slots=True)
 class CarriedAt:
-    """Forces of a segment's walls at the cross-section x in m, by the names of the walls."""
+    """Forces of a segment's walls at the cross-section x in m, by the name of the wall."""
 
     segment: str
     x: float
@@ -40,7 +40,7 @@ class CarriedAt:
 
 @dataclass(frozen=True, slots=True)
 class PlaceHistory:
-    """Largest stresses in Pa of a segment near x in m, in each part of the run."""
+    """Largest stresses in Pa of a segment near x in m, in each interval of the run."""
 
     segment: str
     x: float
@@ -50,7 +50,7 @@ class PlaceHistory:
 
 @dataclass(frozen=True, slots=True)
 class StressHistory:
-    """Middles of the parts of a run in s, and the stresses of each place in them."""
+    """Largest stresses near each place in intervals of a run, whose middles are in s."""
 
     time: list[float]
     places: list[PlaceHistory]
@@ -58,16 +58,16 @@ class StressHistory:
 
 @dataclass(frozen=True, slots=True)
 class StressSummary:
-    """Largest stress of a run, and the wall forces at that time.
+    """Largest stress of a run, and the wall forces at its time.
 
     Args:
         von_mises: largest stress of a triangle in Pa.
         time: time of this stress in s.
-        segment, wall, face: its location.
-        x, y, z: coordinates of the triangle in m.
-        band: reach of the places of ``history`` to each side, in m.
-        patch: None if no segment comes near a place.
-        walls: forces of each segment at each place.
+        segment, wall, face: location of this stress.
+        x, y, z: centroid of the triangle in m.
+        band: half-width in m of the bands at the places of ``history``.
+        patch: largest patch stress; None if no segment comes near a place.
+        walls: wall forces of each segment at each place.
         history: maxima over the run.
     """
 
@@ -85,18 +85,18 @@ class StressSummary:
     history: StressHistory
 
 
-# Reach of a band to each side of its place, in m; a patch is half a wall of it.
+# Half-width in m of the band at a place; a patch is half of a wall in the band.
 BAND = 0.25
 
-# Number of parts of the run in the history of a summary.
+# Number of intervals in the history of a summary.
 PARTS = 80
 
-# Away from the bands the stress changes with the slow motion; this many instants suffice.
+# Number of instants for stresses outside the bands, which follow the slow motion.
 INSTANTS = 400
 
 
 class Largest(NamedTuple):
-    """Von Mises stress in Pa, the position of its output time, and its triangle."""
+    """Von Mises stress in Pa, with the indices of its output time and its triangle."""
 
     von_mises: float
     step: int
@@ -109,14 +109,14 @@ def stress_near_places(
     """Return the largest stresses of each segment in a band around each place, over time.
 
     Args:
-        shell: in motion.
+        shell: stresses of the shell in motion.
         places: x in m.
-        names: of the segments.
+        names: names of the segments.
 
     Returns:
-        ``von_mises`` (time, segment, place), the largest of any triangle at either face, and
-        ``von_mises_patch``, the largest of the mean stresses of the patches, in Pa; NaN where
-        a segment does not come.
+        ``von_mises`` (time, segment, place) in Pa, the maximum over triangles and faces, and
+        ``von_mises_patch``, the maximum of the mean stresses of patches; NaN where a segment is
+        absent.
     """
     shape = (shell.time.size, len(names), len(places))
     largest, patched = (np.full(shape, np.nan, dtype=np.float32) for _ in range(2))
@@ -154,7 +154,7 @@ def stress_near_places(
 
 
 def summarise(shell: ShellStress, history: xr.Dataset) -> StressSummary:
-    """Return the maxima of triangles and patches of a run, with wall forces."""
+    """Return the largest triangle and patch stresses of a run, with wall forces."""
     names = [str(name) for name in history["segment"].values]
     places = [float(x) for x in history["place"].values]
     worst = _largest(shell, history)
@@ -197,7 +197,7 @@ def summarise(shell: ShellStress, history: xr.Dataset) -> StressSummary:
 
 
 def _summed_history(history: xr.Dataset) -> StressHistory:
-    """Return the largest values of each part of the run."""
+    """Return the largest values in each interval of the run."""
     time = history["time"].values
     parts = np.array_split(np.arange(time.size), min(PARTS, time.size))
     rows = []
@@ -214,7 +214,7 @@ def _summed_history(history: xr.Dataset) -> StressHistory:
 
 
 def _largest(shell: ShellStress, history: xr.Dataset) -> Largest:
-    """Return the largest stress of the bands at every output time, and of all triangles at some."""
+    """Return the largest stress, of the bands at every output time and of all triangles at some."""
     bands = history["von_mises"].values
     stride = max(1, shell.time.size // INSTANTS)
     segments = np.unique(shell.segment)
@@ -229,7 +229,7 @@ def _largest(shell: ShellStress, history: xr.Dataset) -> Largest:
 
 
 def _search(shell: ShellStress, triangles: Indices, first: int, stride: int) -> Largest:
-    """Return the largest stress of some triangles at every n-th output time from a given one."""
+    """Return the largest stress of some triangles at every n-th output time from a first one on."""
     worst = Largest(-1.0, 0, 0)
     for part, stress in shell.over_time(triangles, slice(first, None, stride)):
         values = stress.largest()
@@ -241,9 +241,9 @@ def _search(shell: ShellStress, triangles: Indices, first: int, stride: int) -> 
 
 
 def _patches(shell: ShellStress, band: Indices) -> Array:
-    """Return area weights (num_patches, num_triangles) of the halves of the walls in a band."""
+    """Return the area weights (num_patches, num_triangles) of wall halves in a band."""
     wall, places = shell.wall[band], shell.centroids[band, 1:]
-    # A flat wall is halved at its middle, a steep one or a diaphragm at half its height.
+    # A level wall is divided at its middle, a steep wall or a diaphragm at half its height.
     flat = np.abs(shell.outward[band, 2]) > np.sqrt(0.5)
     along = np.where(flat, *places.T)
     lowest, highest = (np.zeros(wall.max() + 1) for _ in range(2))

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Deflections and section forces along segments of shells.
 
-A segment is cut where a line of its mesh goes all around it. Between two cuts its deflections are
-the means over the walls, its section forces the integrals of their membrane and bending stresses
-over the area, divided by the length. Across the straight axis walls under an axial force P carry
-P times their mean slope besides.
+Mesh lines all around a segment divide it into bands. Deflections of a band are means over its
+walls; section forces are integrals of the walls' membrane and bending stresses, divided by the
+length of the band. Walls under an axial force P also contribute P times their mean slope to the
+shear force.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from geometry.arrays import Array, Indices
 from geometry.boom import Boom
 from shell_model.stress.stresses import SAME_LINE, ShellStress, lines_around, within
 
-# Bands of a segment, at most.
+# Maximum number of bands of a segment.
 _BANDS = 60
 
 
@@ -64,11 +64,11 @@ def _line(shell: ShellStress, fields: xr.Dataset, boom: Boom, number: int) -> Li
 
 
 def cuts_around(spans: Array, places: Sequence[float]) -> Array:
-    """Return x in m, rising, of mesh lines that no triangle crosses, with the segment's ends.
+    """Return ascending x in m of mesh lines that no triangle crosses, with the segment's ends.
 
     Args:
-        spans: (num_triangles, 2) the smallest and the largest x of each in m.
-        places: x in m of such lines as have to be cuts, rising.
+        spans: smallest and largest x (num_triangles, 2) of the triangles in m.
+        places: ascending x in m of lines that must be cuts.
     """
     free = lines_around(spans)
     near = np.abs(np.subtract.outer(free, places)).min(axis=1, initial=np.inf) < SAME_LINE
@@ -85,7 +85,7 @@ def cuts_around(spans: Array, places: Sequence[float]) -> Array:
 def _moved(
     shell: ShellStress, fields: xr.Dataset, triangles: Indices, band: Indices, num_bands: int
 ) -> tuple[Array, Array, Array]:
-    """Return mean deflections along y and z and the twist (num_bands, num_modes) of all walls."""
+    """Return the mean deflections along y and z, and the twist, (num_bands, num_modes) each."""
     corners = fields["triangles"].values[triangles]
     y, z = (fields["points"].values[corners, way] for way in (1, 2))
     area = np.repeat(shell.areas[triangles, None] / 3.0, 3, axis=1)
@@ -112,11 +112,12 @@ def _moved(
 def _slopes(
     shell: ShellStress, fields: xr.Dataset, triangles: Indices, band: Indices, num_bands: int
 ) -> Array:
-    """Return mean slopes (2, num_bands, num_modes) along y and z of all walls, by volume."""
+    """Return the mean slopes (2, num_bands, num_modes) along y and z, weighted by volume."""
     corners = fields["triangles"].values[triangles]
     points = fields["points"].values[corners]
     across = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
-    # The gradient of a corner's linear function: the normal times the opposite edge over 2 A.
+    # The gradient of a corner's linear shape function is the normal times the opposite edge over 2
+    # A.
     opposite = np.roll(points, 1, axis=1) - np.roll(points, -1, axis=1)
     along = np.cross(across[:, None], opposite)[..., 0] / (across**2).sum(axis=1)[:, None]
     volume = shell.areas[triangles] * shell.thickness[triangles]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Stresses of a reduced shell in motion: at an instant, over time, and as forces of the walls."""
+"""Stresses of a reduced shell in motion: at an instant, over time, and as wall forces."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ import xarray as xr
 from geometry.arrays import Array, Indices
 
 if TYPE_CHECKING:
-    # gmsh takes long to load, and a run of beams makes no mesh.
+    # Imported only for types: gmsh takes long to load, and a run of beams needs no mesh.
     from geometry.plating import PlatedMesh
 
 Modes = npt.NDArray[np.float32]
 
 Face = Literal["outer", "middle", "inner"]
 
-# Membrane stress, and the bending stress at the outer face, along x, along s, and their shear.
+# Stress components along x, along s and in shear: of the membrane, then of bending at the outer
+# face.
 COMPONENTS = (
     "membrane_x",
     "membrane_s",
@@ -34,16 +35,16 @@ COMPONENTS = (
 # Factor of the bending stress at each face.
 FACES: dict[Face, float] = {"outer": 1.0, "middle": 0.0, "inner": -1.0}
 
-# Lengths that differ by less are equal, in m.
+# Tolerance in m for equal lengths.
 SAME_LINE = 1.0e-6
 
-# In m².
+# Tolerance in m² for areas.
 _NOTHING = 1.0e-300
 
-# Numbers in memory at once when a history is computed, for the processor's cache.
+# Number of values in memory during the computation of a history, for the processor's cache.
 _AT_ONCE = 1_000_000
 
-# Instants that are computed together.
+# Number of instants that are computed together.
 _TOGETHER = 10
 
 
@@ -53,10 +54,10 @@ class WallForces:
 
     Args:
         axial: force along x in N, positive in tension.
-        shear: force in the wall's plane in N, along y in a flange and along z in a web or in any
-            wall steeper than 45°, of the part beyond the section on the part before it.
-        moment: of its axial stresses about the section's y-axis in N m, positive in tension
-            at the top.
+        shear: in-plane force in N of the part beyond the section on the part before it, along y in
+            a flange, along z in a web or in any wall steeper than 45°.
+        moment: moment of the wall's axial stresses about the section's y-axis in N m, positive in
+            tension at the top.
     """
 
     axial: float
@@ -68,8 +69,9 @@ class Stress(NamedTuple):
     """Stresses at the centroids of triangles, in Pa.
 
     Args:
-        membrane: (..., 3) σ_x, σ_s, τ_xs of the mid-surface.
-        bending: (..., 3) excess of the outer face over that, and deficit of the inner face.
+        membrane: σ_x, σ_s, τ_xs (..., 3) of the mid-surface.
+        bending: difference (..., 3) of the outer face from the mid-surface; the inner face has its
+            opposite.
     """
 
     membrane: npt.NDArray[np.float32]
@@ -85,7 +87,7 @@ class Stress(NamedTuple):
         return np.asarray(np.sqrt(x * x - x * s + s * s + 3.0 * xs * xs))
 
     def largest(self) -> npt.NDArray[np.float32]:
-        """Return the larger von Mises stress (...) of both faces in Pa; the middle has no more."""
+        """Return the larger von Mises stress (...) of both faces in Pa."""
         return np.maximum(self.von_mises("outer"), self.von_mises("inner"))
 
 
@@ -94,19 +96,20 @@ class ShellStress:
     """Stresses of a shell in motion.
 
     Args:
-        centroids: (num_triangles, 3) in m.
-        areas: (num_triangles,) in m².
-        thickness: (num_triangles,) in m.
-        spans: (num_triangles, 2) the smallest and the largest x in m.
-        segment: (num_triangles,) of each triangle, rising.
-        outward: (num_triangles, 3) unit normals, away from the axis.
-        wall: (num_triangles,) position in its segment's ``plates``; beyond it, a diaphragm.
-        plates: for each segment the names of its section's plates.
-        modes: for each segment (num_own, num_triangles_of_it, 6) ``COMPONENTS`` in Pa for a unit
-            of each of its own coordinates.
-        states: for each segment (num_times, num_own) these coordinates.
-        time: (num_times,) in s.
-        axial: (num_triangles,) in Pa, constant stress of axial forces along x.
+        centroids: centroids (num_triangles, 3) in m.
+        areas: areas (num_triangles,) in m².
+        thickness: thicknesses (num_triangles,) in m.
+        spans: smallest and largest x (num_triangles, 2) in m.
+        segment: segment (num_triangles,) of each triangle, ascending.
+        outward: unit normals (num_triangles, 3) away from the axis.
+        wall: index (num_triangles,) of the wall in its segment's ``plates``; larger indices are
+            diaphragms.
+        plates: names of the plates of each segment.
+        modes: ``COMPONENTS`` (num_own, num_triangles_of_it, 6) in Pa of each segment, for unit
+            values of its coordinates.
+        states: coordinates (num_times, num_own) of each segment.
+        time: times (num_times,) in s.
+        axial: constant axial stress (num_triangles,) of axial forces in Pa.
     """
 
     centroids: Array
@@ -124,7 +127,7 @@ class ShellStress:
 
     @classmethod
     def of(cls, fields: xr.Dataset) -> ShellStress:
-        """Create the stresses from the fields of a run, see ``shell_model.stress.fields``."""
+        """Create the stresses from the fields of a run (:mod:`shell_model.stress.fields`)."""
         segment, state = fields["segment"].values, fields["state"].values
         numbers = range(1, int(segment.max()) + 2)
         own = [fields[f"coordinates_{k}"].values for k in numbers]
@@ -144,7 +147,7 @@ class ShellStress:
 
     @classmethod
     def still(cls, mesh: PlatedMesh, modes: Modes) -> ShellStress:
-        """Return ``COMPONENTS`` (1, num_triangles, 6) of one segment in one state, in Pa."""
+        """Return the stresses of one segment in one state, given as ``COMPONENTS`` in Pa."""
         return cls(
             **_geometry(mesh.points, mesh.triangles),
             thickness=mesh.thickness,
@@ -158,13 +161,13 @@ class ShellStress:
         )
 
     def at(self, t: float) -> Stress:
-        """Return the stress of all triangles at the output time next to ``t`` (s)."""
+        """Return the stress of all triangles at the output time nearest to ``t`` in s."""
         return next(self.instants([t]))
 
     def instants(self, times: Sequence[float]) -> Iterator[Stress]:
-        """Yield the stress of all triangles at the output times next to ``times`` (s)."""
+        """Yield the stress of all triangles at the output times nearest to ``times`` in s."""
         steps = [int(np.abs(self.time - t).argmin()) for t in times]
-        # The modes, which do not fit into a processor's memory, are read once for several times.
+        # The modes exceed a processor's cache, so that each is read once for a batch of times.
         for begin in range(0, len(steps), _TOGETHER):
             some = steps[begin : begin + _TOGETHER]
             values = [
@@ -178,13 +181,12 @@ class ShellStress:
     def over_time(
         self, triangles: Indices, steps: slice = slice(None), means: Array | None = None
     ) -> Iterator[tuple[slice, Stress]]:
-        """Yield stresses (num_of_these_times, num_triangles, 3) of some triangles, piece by piece.
+        """Yield stresses (num_of_these_times, num_triangles, 3) of triangles, in batches of times.
 
         Args:
-            triangles: numbers, all of one segment.
+            triangles: indices of triangles of one segment.
             steps: output times; the yielded slices count from the first of them.
-            means: (num_means, num_triangles) weights of the triangles in means, which take the
-                triangles' place.
+            means: weights (num_means, num_triangles) of means, which replace the triangles.
         """
         (number,) = np.unique(self.segment[triangles])
         first = int(np.searchsorted(self.segment, number))
@@ -193,7 +195,7 @@ class ShellStress:
         if means is not None:
             weights = means.astype(np.float32)
             modes, axial = np.einsum("pt,mtc->mpc", weights, modes), weights @ axial
-        # Each component in one piece of memory, which a sum over thousands of triangles reads fast.
+        # Each component is contiguous in memory for fast sums over thousands of triangles.
         by_component = np.ascontiguousarray(modes.transpose(0, 2, 1))
         flat = by_component.reshape(len(modes), -1)
         piece = max(1, _AT_ONCE // max(1, flat.shape[1]))
@@ -204,19 +206,20 @@ class ShellStress:
             yield part, _stress(values.transpose(0, 2, 1))
 
     def holds(self, segment: int, x: float) -> bool:
-        """Return whether a segment contains x (m)."""
+        """Return whether a segment contains x in m."""
         spans = self.spans[self.segment == segment]
         return bool(spans[:, 0].min() - SAME_LINE <= x <= spans[:, 1].max() + SAME_LINE)
 
     def near(self, segment: int, x: float, reach: float) -> Indices:
-        """Return a segment's triangles whose centroids are no farther from x than this (m)."""
+        """Return the triangles of a segment whose centroids are within ``reach`` in m of x."""
         close = np.abs(self.centroids[:, 0] - x) <= reach
         return np.flatnonzero(close & (self.segment == segment))
 
     def row(self, segment: int, x: float) -> Indices:
-        """Return the triangles around a segment between the lines of its mesh next to x (m).
+        """Return the row of triangles around a segment at x in m.
 
-        These lines go all around. At one of them, of the row towards the tip.
+        The row is between two neighbouring mesh lines all around. If x is on such a line, it is the
+        row towards the tip.
         """
         mine = (self.segment == segment) & (self.wall < len(self.plates[segment]))
         lines = lines_around(self.spans[mine])
@@ -225,13 +228,13 @@ class ShellStress:
         return np.flatnonzero(mine & (along > lines[after - 1]) & (along < lines[after]))
 
     def wall_name(self, triangle: int) -> str:
-        """Return the common name of the wall or diaphragm of a triangle."""
+        """Return the name of the wall or diaphragm of a triangle."""
         names, number = self.plates[self.segment[triangle]], int(self.wall[triangle])
         return names[number] if number < len(names) else f"diaphragm {number - len(names) + 1}"
 
 
 def lines_around(spans: Array) -> Array:
-    """Return x in m, rising, of mesh lines that no triangle's span (num_triangles, 2) crosses."""
+    """Return ascending x in m of mesh lines that no triangle's span (num_triangles, 2) crosses."""
     first, last = np.sort(spans[:, 0]), np.sort(spans[:, 1])
     lines = np.unique(spans.round(6))
     started = np.searchsorted(first, lines - SAME_LINE)
@@ -259,7 +262,7 @@ def triangle_areas(points: Array, triangles: Indices) -> Array:
 
 
 def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[str, WallForces]:
-    """Return the forces of each wall at t in s, means over the row of elements around x in m."""
+    """Return the forces of each wall at t in s, as means over the row of triangles at x in m."""
     stress, row = shell.at(t), shell.row(segment, x)
     length = shell.spans[row, 1].max() - shell.spans[row, 0].min()
     forces = {}
@@ -273,7 +276,7 @@ def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[st
         own = up * (shell.thickness[part] * strength / 6.0) @ bending[:, 0]
         reach, whole = np.array([abs(across) * width.sum()]), np.zeros(part.size, dtype=np.int64)
         moment = (strength * z + within(whole, reach, strength, z)) @ sigma
-        # s runs along -z on the right and along -y on the bottom.
+        # The coordinate s runs along -z on the right and along -y on the bottom.
         sense = np.sign(up if abs(up) > abs(across) else -across)
         forces[name] = WallForces(
             axial=float(strength @ sigma),
@@ -284,13 +287,13 @@ def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[st
 
 
 def within(part: Indices, reach: Array, strength: Array, place: Array) -> Array:
-    """Return the excess (num_triangles,) of a linear stress's moment over the centroids', in m³.
+    """Return the moment correction (num_triangles,) in m³ for linear stresses in triangles.
 
     Args:
-        part: (num_triangles,) wall within a band of each triangle.
-        reach: (num_parts,) extents of walls from end to end in m.
-        strength: (num_triangles,) thickness times width in m².
-        place: (num_triangles,) of the centroids in m.
+        part: wall (num_triangles,) of each triangle within a band.
+        reach: extents (num_parts,) of the walls in m.
+        strength: thickness times width (num_triangles,) in m².
+        place: coordinates (num_triangles,) of the centroids in m.
     """
     whole = np.bincount(part, strength)
     about = place - (np.bincount(part, strength * place) / np.maximum(whole, _NOTHING))[part]

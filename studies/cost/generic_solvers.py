@@ -102,7 +102,7 @@ def match_tolerance(error: Callable[[float], float], target: float) -> tuple[flo
     the tightest ones err more.
 
     Args:
-        error: of a tolerance.
+        error: error of a tolerance.
         target: in the same unit.
     """
     found: dict[int, float] = {}

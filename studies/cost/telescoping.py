@@ -54,8 +54,8 @@ def telescoping(models: Sequence[str] = MODELS, duration: float = DURATION) -> T
     """Return the processor time of telescoping motions, and of those at rest.
 
     Args:
-        models: of the case, and its ``shell``, which is left out where there is no FEniCSx.
-        duration: of each motion in s.
+        models: models of the case, and its ``shell``, which is left out where there is no FEniCSx.
+        duration: duration of each motion in s.
     """
     asked = [name for name in models if name != "shell" or find_spec("dolfinx")]
     rows, worst = [], {True: 0.0, False: 0.0}

@@ -81,7 +81,7 @@ def integrate(motion: Motion, scheme: Scheme, iterated: bool) -> SchemeRun:
     """Integrate a system by a scheme, in one step for each output.
 
     Args:
-        motion: that of a system under constant loads without damping.
+        motion: motion of a system under constant loads without damping.
         scheme: one of the family.
         iterated: whether gaps and friction agree with the end of a step, or lag by one.
     """

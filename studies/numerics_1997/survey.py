@@ -51,7 +51,7 @@ def solve(system: GapSystem, duration: float, method: str, tolerance: float, mos
 
     Args:
         system: one under constant loads, without damping.
-        duration: in s.
+        duration: duration in s.
         method: one of ``METHODS``.
         tolerance: relative, and absolute in the units of a and ȧ.
         most: steps.

@@ -113,7 +113,7 @@ class Patch:
     Args:
         points: (num_points, 3) in m.
         triangles: (num_triangles, 3).
-        shell: of steel, ``PATCH_THICKNESS`` thick.
+        shell: shell of steel, ``PATCH_THICKNESS`` thick.
     """
 
     points: Array
@@ -229,8 +229,8 @@ class PressedPlate:
     """Plate of steel on [0, length] × [0, width] on hard simple supports, pressed across.
 
     Args:
-        length, width: in m.
-        thickness: in m.
+        length, width: length and width in m.
+        thickness: thickness in m.
         start, end: (x, y) in m of the patch's corners.
     """
 

@@ -28,8 +28,8 @@ class Member:
         corners: (y, z) in m of the wall's mid-line, one after another; the axis of twist, y = z =
             0, is the shear centre.
         closed: whether the last corner is joined to the first.
-        thickness: of the walls in m.
-        length: in m.
+        thickness: thickness of the walls in m.
+        length: length in m.
     """
 
     corners: Sequence[tuple[float, float]]
@@ -119,7 +119,7 @@ class PlainBox:
 
     Args:
         section: its plates.
-        length: in m.
+        length: length in m.
     """
 
     section: Section
@@ -161,7 +161,7 @@ class PlainBox:
         Args:
             size: target edge length in m.
             supports: where the outline is held against y and z.
-            x, y: in m.
+            x, y: x and y in m.
             drilling: see ``forms.ShellForms``.
         """
         breaks = {f"place-{place:g}": place for place in (*supports, x)}

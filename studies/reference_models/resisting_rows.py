@@ -36,8 +36,8 @@ class ResistingRows:
     """Contact and friction rows from step to step, from rest.
 
     Args:
-        laws: those of the contact rows, without damping.
-        frictions: those of the rows that follow, with prescribed normal forces.
+        laws: laws of the contact rows, without damping.
+        frictions: frictions of the rows that follow, with prescribed normal forces.
         compliance: (num_rows, num_rows) C in m/N, of the readings at the time of the forces.
         onward: factor of a change of that reading over the whole step.
 

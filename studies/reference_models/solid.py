@@ -43,7 +43,7 @@ class SolidMesh:
         hexahedra: (num_hexahedra, 8) point numbers; those of a cell run along x first, then along
             y, then along z.
         planes: rising coordinates in m of the lattice's planes across x, y and z.
-        layers: of hexahedra through each wall, an even number.
+        layers: layers of hexahedra through each wall, an even number.
     """
 
     points: Array
@@ -71,7 +71,7 @@ def mesh_quarter(
         around: largest edge length in m around the section, about; edges grow to it from the
             corners, where they are as long as the wall is thick.
         splits: number of parts of each edge around the section, to refine the mesh evenly.
-        layers: of hexahedra through a wall, an even number.
+        layers: layers of hexahedra through a wall, an even number.
 
     Raises:
         ValueError: the lengths are not positive and rising, edges are not split into whole ones,
@@ -229,7 +229,7 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: SymmetryClass) -> 
 
     Args:
         segment: with a box section, on rigid supports.
-        mesh: of a quarter, with planes at supports and wherever an outline is read.
+        mesh: mesh of a quarter, with planes at supports and wherever an outline is read.
         family: the symmetry class.
 
     Raises:

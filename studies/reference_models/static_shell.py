@@ -38,7 +38,7 @@ class StaticShell:
     Args:
         points: (num_points, 3) in m.
         triangles: (num_triangles, 3) point numbers.
-        thickness: in m, one for all triangles or (num_triangles,).
+        thickness: thickness in m, one for all triangles or (num_triangles,).
         material: isotropic.
         drilling, shear_correction: see :func:`forms.ShellForms`.
 

@@ -213,7 +213,7 @@ class DirectMotion:
             inner segment along its row.
         slides: (num_times, num_frictions) readings of the friction rows, in m.
         energies: (num_times, 7), the columns of ``ENERGIES`` in J.
-        step: in s.
+        step: step in s.
     """
 
     time: Array
@@ -242,9 +242,9 @@ def integrate_directly(
 
     Args:
         full: a flat boom with constant loads and prescribed normal forces.
-        duration: in s; a whole number of output steps is made, at least one.
-        step: in s, made smaller to fit the output step.
-        output_step: in s.
+        duration: duration in s; a whole number of output steps is made, at least one.
+        step: step in s, made smaller to fit the output step.
+        output_step: output step in s.
         radius: ρ∞, see :class:`GeneralisedAlpha`.
         energy_bound: largest energy residual that passes.
 

@@ -44,9 +44,9 @@ class Ending:
     """End of a command.
 
     Args:
-        status: of its exit; negative for the signal that killed it.
+        status: status of its exit; negative for the signal that killed it.
         err: what it wrote on stderr.
-        seconds: of CPU.
+        seconds: seconds of CPU.
         memory: largest resident set in bytes.
     """
 

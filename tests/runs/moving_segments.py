@@ -92,7 +92,7 @@ def moving_scene(case: Case = CASE, state: float = 1.0, **motion: Array) -> Scen
     """Seen from the side.
 
     Args:
-        case: of the same segments.
+        case: case of the same segments.
         state: what multiplies the motion's coordinates.
         motion: other results (time,).
     """

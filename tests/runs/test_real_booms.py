@@ -60,7 +60,7 @@ def by_hand(boom: Boom, weight: float, tip: float) -> tuple[list[Pushed], list[f
 
     Args:
         boom: level, of segments that are held at two places each, or clamped.
-        weight: in m/s², downwards.
+        weight: weight in m/s², downwards.
         tip: a force at the tip in N, upwards.
     """
     pushed = [Pushed(segment, -weight * segment.mass_per_length) for segment in boom.segments]

@@ -116,7 +116,7 @@ def rows(folder: Path, tries: int = 10**6) -> Iterator[Row]:
 
     Args:
         folder: an empty one to work in.
-        tries: of each, spread over all calls; no more than there are.
+        tries: tries of each, spread over all calls; no more than there are.
     """
     with patch.dict(os.environ, {VARIABLE: str(folder / "cache")}):
         models = "--models", "beam-fe-tied"

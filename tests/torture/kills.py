@@ -66,7 +66,7 @@ def killed(
 
     Args:
         folder: an empty one to work in.
-        tries: of each command.
+        tries: tries of each command.
         commands: by their names.
     """
     random = np.random.default_rng(_SEED)

@@ -30,7 +30,7 @@ def rows(folder: Path, tries: int = 3) -> Iterator[Row]:
 
     Args:
         folder: an empty one to work in.
-        tries: of each.
+        tries: tries of each.
     """
     yield cold_cache(folder / "cold", tries)
     yield one_folder(folder / "one", tries, _SHELL)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The kinds of models: a module for each, and their list."""
+"""Kinds of models, a module for each."""
 
 from collections.abc import Mapping
 
@@ -9,7 +9,7 @@ from runs.case.kinds.model import ModelTable
 from runs.case.kinds.rigid import Rigid
 from runs.case.kinds.shell import Shell
 
-# The name of each kind in a case file.
+# The kinds by their names in a case file.
 KINDS: Mapping[str, type[ModelTable]] = {
     "kantorovich": Kantorovich,
     "finite-element": BeamElements,

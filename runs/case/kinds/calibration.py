@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Beams with calibration by the shell of the same boom."""
+"""Keys of beam models that a shell of the same boom may calibrate."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from shell_model.reduced_shell import ReducedShell
 
 
-# Keys that a calibrating shell does not need, since the beam moves in its place.
+# Keys that a calibrating shell does not need: the beam is integrated instead.
 _OF_MOTION = ("contact", "step")
 
 
@@ -31,7 +31,7 @@ def _named_or_table(given: Any) -> str:
     return "name" if isinstance(given, str) else "shell"
 
 
-# The tag of the table is its kind, which identifies its keys in messages.
+# Messages identify the keys of the table by its tag, which is its kind.
 _Shell = Annotated[
     Annotated[Name, Tag("name")] | Annotated[Shell, Tag("shell")],
     Discriminator(_named_or_table),
@@ -39,11 +39,11 @@ _Shell = Annotated[
 
 
 class CalibratedTable(BeamTable):
-    """A beam as it is, or with its stiffness and the springs of its stations read from a shell."""
+    """Keys of a beam model, whose stiffness and station springs a shell may determine."""
 
     calibrated_by: _Shell | None = None
-    """the name of a shell of the case, or the table of another one, from which the stiffness of the
-    segments and the springs of the stations are read; the beam is as it is unless given"""
+    """the name of a shell of the case, or the table of another one, that determines the stiffness
+    of the segments and the springs of the stations; no calibration unless given"""
 
     @property
     def needs_plates(self) -> bool:
@@ -68,7 +68,7 @@ class CalibratedTable(BeamTable):
         return self.model_copy(update={"calibrated_by": self.calibrated_by.with_shells(update)})
 
     def calibrated_among(self, models: Mapping[str, ModelTable]) -> Self:
-        """Return the model with the shell of its name; unchanged without a name."""
+        """Return the model with the table of its shell in place of the shell's name."""
         shell = models.get(self.calibrated_by) if isinstance(self.calibrated_by, str) else None
         if not isinstance(shell, Shell):
             return self
@@ -128,14 +128,14 @@ class CalibratedTable(BeamTable):
         return replace(moving, seconds=made.seconds | seconds)
 
     def moving(self, built: Built, shell: ReducedShell, boom: Boom) -> Built:
-        """Return the model that moves: by default the beam with springs."""
+        """Return the model that is integrated: by default the beam with springs."""
         from beam_model.calibration import stiffened
         from beam_model.lines import lines
 
         assert built.calibration is not None
         stiff = stiffened(boom, built.calibration.segments)
         along = lines(stiff, self.segments(stiff))
-        # The springs follow the beam's own coordinates, and move nothing along it.
+        # The coordinates of the springs follow those of the beam, and have no axial motion.
         own = along[0].rows["deflection"].shape[1]
         basis = np.eye(own, built.system.num_modes)
         return replace(built, along=[line.on(basis) for line in along])
@@ -144,12 +144,12 @@ class CalibratedTable(BeamTable):
         return list(built.along) or super().lines(boom, built)
 
     def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
-        # Only its own contacts include the compliance of its springs.
+        # Only contacts of this model include the compliance of its springs.
         return super().without_play(boom) if self.calibrated_by is None else None
 
     @abstractmethod
     def beam_stand_in(self, boom: Boom) -> StandIn:
-        """Return the stand-in of the beam, which gives the time of its motion."""
+        """Return the stand-in of the beam, from which the time of its motion is estimated."""
 
     def stand_in(self, boom: Boom) -> StandIn:
         own = self.beam_stand_in(boom)

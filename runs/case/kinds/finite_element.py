@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Beam finite elements as a kind of model."""
+"""Keys of beam finite elements."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from dynamics.line import Line
     from shell_model.reduced_shell import ReducedShell
 
-# A dense eigenproblem of more elements is an input error.
+# Maximum number of elements: a larger dense eigenproblem is an input error.
 MOST_ELEMENTS = 5_000
 
-# Largest number of coordinates of each segment with the fields of its section.
+# Maximum number of coordinates of each segment with section fields.
 FIELDS = 40
 
 # Cost of a dense eigenproblem of n coordinates: s for each n³, numbers for each n² (measured).
 _EIGEN_TIME, _EIGEN_ROOM = 5.0e-9, 6.0
-# A beam of more coordinates is estimated and checked by a coarser one.
+# Estimates and checks replace a beam of more coordinates by a coarser one.
 _BUILT = 400
 
 
@@ -43,14 +43,14 @@ class BeamElements(CalibratedTable):
     kind: Literal["finite-element"]
     """the kind of model"""
     element_length: Length = 0.5
-    """the length of an element in m, at most"""
+    """the greatest length of an element in m"""
     theory: Literal["euler-bernoulli", "timoshenko"] = "euler-bernoulli"
     """the beam theory; a calibrated beam is always shear-flexible, with the rotary inertia of its
     plates"""
     rotary_inertia: Flag = True
     """whether the rotary inertia is kept"""
     tied: Flag = False
-    """whether the segments deflect alike at the stations, without play"""
+    """whether the segments are bonded at the stations, without play"""
 
     section_fields: Flag = Field(
         False,

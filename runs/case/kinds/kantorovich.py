@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Kantorovich series as a kind of model."""
+"""Keys of the Kantorovich series."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from runs.case.kinds.calibration import CalibratedTable
 from runs.case.kinds.model import Joined, StandIn
 from runs.case.limits import Count
 
-# Beyond this, round-off in the polynomials exceeds 1e-6 of the lowest frequencies.
+# Maximum number of terms: round-off in more polynomials exceeds 1e-6 of the lowest frequencies.
 MOST_TERMS = 60
 
 
@@ -31,8 +31,8 @@ class Kantorovich(CalibratedTable):
     terms: Annotated[tuple[Count, ...], Few]
     """the number of functions of each segment, from the base to the tip"""
     base: Literal["as printed", "pinned", "complete"] = "as printed"
-    """the reading of the functions: as printed, with zero slope at the base; pinned, with a free
-    one; complete, where the inner segment bends freely too"""
+    """the interpretation of the functions: as printed, with zero slope at the base; pinned, with a
+    free slope; complete, where the inner segment bends freely too"""
     rotary_inertia: Flag = False
     """whether the rotary inertia is kept"""
 

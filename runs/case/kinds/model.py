@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The interface of a kind of model, and its table in the case file."""
+"""Interface of the kinds of models, and the keys that all of them have in the case file."""
 
 from __future__ import annotations
 
@@ -34,19 +34,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Beams:
-    """The segments of a boom as beams, and their buckling factor, each computed on first use."""
+    """Segments of a boom as beams, and the buckling factor, each computed on first use."""
 
-    boom: Boom  #: of a case
-    model: BeamTable  #: whose segments are beams
+    boom: Boom  #: boom of a case
+    model: BeamTable  #: model whose segments are beams
 
     @cached_property
     def segments(self) -> list[SegmentModel]:
-        """Segments as the model builds them."""
+        """The segments in the coordinates of the model."""
         return self.model.segments(self.boom)
 
     @cached_property
     def critical_factor(self) -> float | None:
-        """Buckling factor of the boom's axial forces, as in :class:`Built`."""
+        """The buckling factor of the boom's axial forces, as in :class:`Built`."""
         from beam_model.boom_modes import critical_factor
 
         if not self.boom.compressed:
@@ -55,19 +55,19 @@ class Beams:
             with np.errstate(all="ignore"):
                 return critical_factor(self.boom, self.segments)
         except (ArithmeticError, np.linalg.LinAlgError, ValueError):
-            # Numbers out of proportion: the run ends with them and reports them.
+            # Extreme numbers make the factor fail. The run meets the same error and reports it.
             return None
 
 
 @dataclass(frozen=True, slots=True)
 class Joined:
-    """The boom of a case for one model, and its beams."""
+    """The boom of a case with the contacts of one model, and its beams."""
 
-    boom: Boom  #: of the case, with the model's contact in its joints
+    boom: Boom  #: boom of the case, with the model's contact laws in its joints
     _beams: list[Beams] = field(default_factory=list, init=False, repr=False, compare=False)
 
     def beams(self, model: BeamTable) -> Beams:
-        """Return the beams of a model; the same object for equal models."""
+        """Return the beams of a model; equal models share one object."""
         for known in self._beams:
             if known.model == model:
                 return known
@@ -81,9 +81,9 @@ class Workshop:
 
     Args:
         comm: the ranks that share the work.
-        tell: called with the stage and the completed part of it.
+        tell: callback that receives the stage and its completed fraction.
         cache: cache of reduced shells; without one, every shell is computed.
-        helper: a process beside the only rank, which takes part in reductions.
+        helper: a second process, which takes part in reductions where there is only one rank.
     """
 
     comm: MPI.Comm
@@ -92,7 +92,7 @@ class Workshop:
     helper: Executor | None = None
 
     def remember(self, content: Sequence[Any], compute: Callable[[], ReducedShell]) -> ReducedShell:
-        """Return the shell of a content from the cache, or compute it. Collective."""
+        """Return the reduced shell for this input from the cache, or compute it. Collective."""
         from runs.folder.cache import remembered
 
         if self.cache is None:
@@ -102,26 +102,26 @@ class Workshop:
 
 @dataclass(frozen=True, slots=True)
 class Built:
-    """A model before its motion."""
+    """A model before time integration."""
 
-    system: GapSystem  #: of all segments
-    num_dofs: int  #: before any reduction
-    seconds: dict[str, float] = field(default_factory=dict)  #: wall time of each stage
-    #: Buckling factor of the axial forces with closed contacts, see
-    #: :func:`dynamics.second_order.buckling_factor`; infinite without any.
+    system: GapSystem  #: gap system of all segments
+    num_dofs: int  #: number of degrees of freedom before any reduction
+    seconds: dict[str, float] = field(default_factory=dict)  #: wall time of each stage in s
+    #: Buckling factor of the axial forces with closed contacts, from
+    #: :func:`dynamics.second_order.buckling_factor`; infinite without axial forces.
     critical_factor: float | None = float("inf")
-    shell: ReducedShell | None = None  #: data of a reduced shell besides its system
-    calibration: Calibration | None = None  #: calibration of a beam from its shell
-    along: Sequence[Line] = ()  #: lines along its segments, on the first rank
+    shell: ReducedShell | None = None  #: other data of a reduced shell
+    calibration: Calibration | None = None  #: calibration of a beam by its shell
+    along: Sequence[Line] = ()  #: lines along the segments, on the first rank
 
 
 @dataclass(frozen=True, slots=True)
 class StandIn:
-    """The beam whose steps estimate those of a model before it is built."""
+    """A beam model that stands for another model in estimates of time steps."""
 
-    beam: ModelTable  #: quickly built
-    coordinates: int  #: of the model itself
-    #: Memory in bytes and time in s before the motion.
+    beam: ModelTable  #: the beam model, which is fast to build
+    coordinates: int  #: number of coordinates of the model itself
+    #: Memory in bytes and time in s before time integration.
     memory: float = 0.0
     seconds: float = 0.0
 
@@ -132,9 +132,9 @@ class ModelTable(CaseTable):
     name: Name
     """the name of the model in the results"""
     contact: ContactTable | None = None
-    """the model's own contact law; the joints' unless given"""
+    """the contact law of this model; the joints' laws unless given"""
     step: Annotated[Positive, In("s")] | None = None
-    """the model's own step of the integrator in s; the case's unless given"""
+    """the time step of this model in s; the case's unless given"""
     kind: str
     """the kind of model"""
     _boom: Boom | None = PrivateAttr(None)
@@ -153,19 +153,19 @@ class ModelTable(CaseTable):
         super().__init__(**{"name": kind, "kind": kind, **keys})
         self._boom = boom
 
-    # Pydantic's mark of an __init__ that validation passes by, which its types do not declare: a
-    # table of a case file must give name and kind.
+    # This private mark of pydantic makes validation bypass __init__: a table of a case file must
+    # give name and kind.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
-    # Whether it has a mesh of the plates: it leaves fields.
+    # Whether the model has a mesh of the plates and writes fields.
     meshed: ClassVar[bool] = False
 
-    # Whether its section forces run smoothly past the forces that act, as those of a series do.
+    # Whether the section forces are smooth where point forces act, as those of a series are.
     smooth: ClassVar[bool] = False
 
     @property
     def longest_edge(self) -> float:
-        """Longest edge of the mesh of plates in m; 0 without a mesh."""
+        """The longest edge of the mesh in m; 0 without a mesh."""
         return 0.0
 
     @property
@@ -186,7 +186,7 @@ class ModelTable(CaseTable):
         """Return the model with the table of its calibrating shell in place of the name.
 
         Args:
-            models: those of its case, by their names.
+            models: models of its case, by their names.
         """
         return self
 
@@ -194,7 +194,7 @@ class ModelTable(CaseTable):
         """Return the model, or a coarser one that suffices for the checks and is fast.
 
         Args:
-            boom: that of its case.
+            boom: boom of its case.
         """
         return self
 
@@ -205,7 +205,7 @@ class ModelTable(CaseTable):
 
     @property
     def cannot_telescope(self) -> str | None:
-        """Why the model cannot telescope, with the remedy; None where it can."""
+        """The reason why the model cannot telescope, with the remedy; None if it can."""
         if self.bonded:
             return f"{self.name!r} is tied, and cannot telescope; leave the model out"
         return None
@@ -214,11 +214,11 @@ class ModelTable(CaseTable):
         """Check that the model is valid for this boom.
 
         Args:
-            where: its key, for example ``model[2]``.
+            where: key of the model, for example ``model[2]``.
             joined: the boom and its contacts.
 
         Raises:
-            BoomError: the model is not valid for it.
+            BoomError: the model is not valid for the boom.
         """
         for number, segment in enumerate(joined.boom.segments, start=1):
             if self.needs_plates and segment.section is None:
@@ -240,7 +240,7 @@ class ModelTable(CaseTable):
 
     @abstractmethod
     def describe(self) -> str:
-        """Return the discretisation in a few words, for a table."""
+        """Return a short description of the discretisation, for a table."""
 
     @abstractmethod
     def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
@@ -255,7 +255,7 @@ class ModelTable(CaseTable):
         """
 
     def joined(self, boom: Boom) -> Joined:
-        """Return a boom as the model sees it: with the model's own contact, if it has one.
+        """Return the boom with the model's contact laws, if the model has any.
 
         Raises:
             BoomError: a joint has no contact, or its law does not admit shims.
@@ -314,7 +314,7 @@ class ModelTable(CaseTable):
         rayleigh: tuple[float, float] = (0.0, 0.0),
         tolerance: float = 1.0e-3,
     ) -> Trajectory:
-        """Return the motion of its boom, as a case file's run moves it.
+        """Return the motion of its boom, as the run of a case file computes it.
 
         >>> motion = pt.BeamElements(boom).simulate(0.5)
         >>> print(f"{motion.first_contact:.3f} s")
@@ -323,8 +323,8 @@ class ModelTable(CaseTable):
         Args:
             duration, output_step, at_rest, damping_ratio, rayleigh: data of the motion, as in
                 :func:`dynamics.motion.begin`.
-            tolerance: permitted change of the deflections by the step, as a part of their range;
-                the model's own ``step`` is fixed.
+            tolerance: permitted error of the deflections by the time step, as a fraction of their
+                range; not used if the model has a ``step``.
 
         Raises:
             BoomError: the model is not valid for the boom.
@@ -340,14 +340,14 @@ class ModelTable(CaseTable):
 
     @abstractmethod
     def critical_factor(self, joined: Joined) -> float | None:
-        """Return the buckling factor as in :class:`Built`; approximate for a meshed model."""
+        """Return the buckling factor, as in :class:`Built`; approximate for a meshed model."""
 
     @abstractmethod
     def lines(self, boom: Boom, built: Built) -> list[Line]:
-        """Return the lines along each segment of the built model, on the first rank."""
+        """Return the lines along the segments of the built model, on the first rank."""
 
     def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
-        """Return system and lines without play; None where contacts are to be bonded instead."""
+        """Return gap system and lines without play; None if contacts are to be bonded instead."""
         return None
 
     @abstractmethod
@@ -356,11 +356,11 @@ class ModelTable(CaseTable):
 
 
 class BeamTable(ModelTable):
-    """A kind whose segments are beams, or as simple as beams."""
+    """Keys of a model whose segments are beams, series or rigid bodies."""
 
     @abstractmethod
     def segments(self, boom: Boom) -> list[SegmentModel]:
-        """Return each segment in coordinates of its own."""
+        """Return each segment in its own coordinates."""
 
     def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
         from beam_model.segment_model import gap_system

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Rigid segments as a kind of model."""
+"""Keys of models with rigid segments."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from runs.case.kinds.model import BeamTable, Joined, StandIn
 
 
 class Rigid(BeamTable):
-    """Rigid bodies, which play, contacts and elastic supports alone let move."""
+    """Rigid bodies, which move only in play, contacts and elastic supports."""
 
     if TYPE_CHECKING:
 

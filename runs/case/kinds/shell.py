@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Shells as a kind of model: on a mesh of the plates. FEniCSx is imported to build one."""
+"""Keys of shell models. FEniCSx is imported only to build one."""
 
 from __future__ import annotations
 
@@ -23,30 +23,30 @@ if TYPE_CHECKING:
     from shell_model.boom_shell import ShellOptions
     from shell_model.reduction.krylov import KrylovOptions
 
-# A factorisation of more triangles is an input error.
+# Maximum number of triangles: the factorisation of more of them is an input error.
 MOST_TRIANGLES = 20_000_000
-# Every point of a surface is an input of the reduction and a row of the time loop.
+# Maximum number of contact points: each is an input of the reduction and a row of the time loop.
 MOST_POINTS = 256
 
-# Default coordinates for each segment, in the plane and in space.
+# Default number of coordinates of each segment, in the plane and in space.
 _FLAT, _SPATIAL = 60, 210
-# Dofs for each square of the mesh size, of a uniform mesh and of a graded one outside refinement
-# zones, and of the smaller sizes inside; bytes for a dof, for a coordinate of it; s. Measured.
+# Measured costs: dofs per mesh size squared of a uniform mesh, of a graded one outside its
+# refinement zones, and inside them; bytes per dof and per coordinate of a dof; s.
 _DOFS, _GRADED_DOFS, _DOFS_AT_ZONES = 21.0, 42.0, 35.0
 _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 2000.0, 5.0, 1.0e-4
-# Dofs of a shell that one process alone reduces in a few seconds.
+# One process reduces a shell of so many dofs in a few seconds.
 _SMALL = 5.0e4
-# Elements of the longest segment of the beam that stands for a shell.
+# Number of elements of the longest segment, for the beam that stands for a shell.
 _ELEMENTS = 20
 
 
 class _BeamOfShell(BeamTable):
-    """Shear-flexible beam elements, which stand for a shell in estimates."""
+    """Shear-flexible beam elements that stand for a shell in estimates."""
 
     kind: Literal["beam of a shell"] = "beam of a shell"
     """the kind of model"""
     element_length: Length
-    """the length of an element in m, at most"""
+    """the greatest length of an element in m"""
 
     def describe(self) -> str:
         return self.kind
@@ -59,7 +59,7 @@ class _BeamOfShell(BeamTable):
 
 
 class Shell(ModelTable):
-    """Flat facet shells on the folded box, reduced to the contact's inputs."""
+    """Flat facet shells on the folded box, reduced for the contact forces."""
 
     meshed: ClassVar[bool] = True
 
@@ -70,23 +70,23 @@ class Shell(ModelTable):
     kind: Literal["shell"]
     """the kind of model"""
     mesh_size: Length = 0.1
-    """the edge length of the triangles in m, far from all that presses"""
+    """the edge length of the triangles in m, outside contacts and loads"""
     contact_tolerance: ContactTolerance = 0.01
-    """the relative error of the local compliance of pressed walls, which makes the mesh finer
-    there, or 'any' for a uniform mesh"""
+    """the permitted relative error of the local compliance of walls, for which the mesh is refined
+    at contacts, or 'any' for a uniform mesh"""
     modes: Modes | None = None
-    """the number of coordinates of each segment, at most, or 'auto' for as many as the tolerance
-    asks; unless given, those of three moments at four frequencies, which answer the contacts within
-    about 1e-8"""
+    """the greatest number of coordinates of each segment, or 'auto' to choose it by the tolerance;
+    unless given, three moments at four frequencies determine it, with a relative error of about
+    1e-8"""
     tolerance: Part = 1.0e-6
-    """with modes = 'auto', the largest relative error with which the reduced shell answers the
-    forces of contacts and loads"""
+    """with modes = 'auto', the largest relative error of the reduced shell's response to contact
+    forces and loads"""
     contact_line: Literal["near webs", "across", "surface"] = "near webs"
-    """where the walls of the segments touch: at the stations near the webs or across the flanges,
+    """where the walls may touch: at the stations near the webs, at the stations across the flanges,
     or over the surface of the whole overlap"""
     surface_stiffness: Annotated[Positive, In("N/m^(n+2)")] | None = None
-    """the contact stiffness of a surface per area in N/m^(n+2), of the stiffer side; that of all
-    the joint's stations over the area unless given"""
+    """the contact stiffness of a surface per area in N/m^(n+2), on the stiffer side; unless given,
+    the sum of the joint's stations over the area"""
     surface_points: tuple[Count, Count] | None = None
     """the number of contact points along the overlap, and across each half of a wall; 8 and 4
     unless given"""
@@ -125,7 +125,7 @@ class Shell(ModelTable):
 
         assert workshop is not None
         boom, options = standard_boom(joined.boom), self.options()
-        # It takes a second or two to import the libraries.
+        # Imported here, since the libraries take a second or two to load.
         helper = workshop.helper if self.estimated_dofs(boom) > _SMALL else None
         made = workshop.remember(
             (boom, options),
@@ -134,7 +134,7 @@ class Shell(ModelTable):
         shell = with_plays_and_loads(made, joined.boom)
         factor = shell.critical_factor
         if boom.driven and factor is not None:
-            # At other extensions only beams give the factor.
+            # At other extensions, only beams give the buckling factor.
             on_the_way = self.critical_factor(replace(joined, boom=boom))
             factor = min(factor, on_the_way or factor)
         return Built(shell.system, shell.num_dofs, shell.seconds, factor, shell)
@@ -181,7 +181,7 @@ class Shell(ModelTable):
         return StandIn(beam, coordinates, memory, _REDUCTION * dofs)
 
     def estimated_dofs(self, boom: Boom) -> float:
-        """Return the approximate number of dofs of all segments' meshes, without meshing."""
+        """Return the approximate total number of dofs, without meshing."""
         squares = _surface(boom) / self.mesh_size**2
         if self.contact_tolerance == "any" or self.contact_line == "surface":
             return _DOFS * squares
@@ -201,7 +201,7 @@ class Shell(ModelTable):
         return KrylovOptions(most=self.modes)
 
     def _check_contact(self, where: str, joined: Joined) -> None:
-        """Refuse a contact line that does not suit the boom, and keys of another contact."""
+        """Check that contact places suit the boom, and that no key belongs to another contact."""
         line = self.contact_line
         if joined.boom.spatial and line == "across":
             raise BoomError(
@@ -228,7 +228,7 @@ class Shell(ModelTable):
                 )
 
     def _check_surface(self, where: str, joined: Joined) -> None:
-        """Refuse too many points, and a stiffness that does not suit the contact laws."""
+        """Check the number of contact points, and that the stiffness suits the contact laws."""
         if self.surface_points is not None:
             along, across = self.surface_points
             if along * across > MOST_POINTS:
@@ -259,13 +259,12 @@ def check_mesh_size(where: str, size: float, boom: Boom) -> None:
     """Check that the mesh is not too fine.
 
     Args:
-        where: the key.
+        where: key of the mesh size.
         size: edge length in m.
         boom: the boom to mesh.
 
     Raises:
-        BoomError: too many triangles.
-    """
+        BoomError: the mesh would have too many triangles."""
     smallest = float(np.sqrt(2.0 * _surface(boom) / MOST_TRIANGLES))
     if size < smallest:
         raise BoomError(
