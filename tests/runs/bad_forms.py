@@ -126,7 +126,8 @@ FORMS = {
     "missing key of a segment": (
         "span = [9.0, 19.0]\n",
         "",
-        "segment[2].span: missing; it is the x of its two ends in m, rising; or give length",
+        "segment[2].span: missing; it is the x of its two ends in m, in ascending order; or give "
+        "length",
     ),
     "missing key of a law": (
         CONTACT,

@@ -140,8 +140,8 @@ def test_a_contact_s_file_may_be_in_millimetres_and_kilonewtons() -> None:
         (
             "t (s);F\n0;1\n1;1\n",
             "",
-            "magnitude: missing; it is the load in N at x, or in N/m along the segment; the moment "
-            "in N m; a factor, 1 unless given, where the heading of its file says such a unit",
+            "magnitude: missing; it is the load in N at x, or in N/m along the segment, or the "
+            "moment in N m; a factor, 1 unless given, if the heading of its file has such a unit",
         ),
         (
             "t (s);F\n0;1,5\n1;1.234,5\n",

@@ -125,8 +125,8 @@ kind = "finite-element"
     ("before", "after", "message"),
     [
         (DRIVE, "drive = { travel = 4.0 }\n",
-         "joint[1].drive.time: missing; it is the time in s that the travel takes, on an S-curve "
-         "without jerks, or give speed, table or file"),
+         "joint[1].drive.time: missing; it is the duration of the travel in s, on a smooth "
+         "S-curve, or give speed, table or file"),
         (DRIVE, "drive = { time = 4.0 }\n",
          "joint[1].drive.travel: missing; it is the length in m by which the segment "
          "extends; negative where it retracts"),

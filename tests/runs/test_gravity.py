@@ -118,8 +118,8 @@ def test_the_case_needs_no_material_where_each_segment_has_its_own(tmp_path: Pat
     [
         ("",
          "# none\n",
-         "material: missing, and 'arm' has none of its own; it is the table of the elastic "
-         "constants and density of all segments that have none of their own"),
+         "material: missing, and 'arm' has none of its own; it is the table of elastic "
+         "constants and density, for all segments without a material of their own"),
         ("[payload]\nmass = 5.0\ngravity = 4.9\n[gravity]\nangle = 60.0",
          "",
          "payload.gravity: the table gravity is given, by which the payload weighs too; leave "

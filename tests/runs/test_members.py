@@ -227,8 +227,8 @@ def test_models_are_compared_in_the_summary(run: Run) -> None:
 @pytest.mark.parametrize(
     ("table", "line"),
     [
-        ("relative = 1e-9", "members: missing; it is the number of runs of each model, the "
-         "unchanged one among them"),
+        ("relative = 1e-9", "members: missing; it is the number of runs of each model, "
+         "including the unchanged one"),
         ("members = 1", "members: must be a number not less than 2, got 1"),
         ("members = 20000", "members: must be a number not greater than 10000, got 20000"),
         ("members = 8\nrelative = 1.0", "relative: must be a number less than 1, got 1.0"),
