@@ -32,6 +32,31 @@ class PlatedMesh(SegmentMesh):
     plain: Array
     even: Array
 
+    @property
+    def halved(self) -> PlatedMesh:
+        """The mesh with edges of half the length, without the lines.
+
+        Its first points are those of this mesh; four triangles one after another take the place of
+        each, in the same plane.
+        """
+        corners = self.triangles
+        edges = np.sort(corners[:, [[1, 2], [2, 0], [0, 1]]], axis=2).reshape(-1, 2)
+        ends, number = np.unique(edges, axis=0, return_inverse=True)
+        (a, b, c), (of_a, of_b, of_c) = (
+            each.T for each in (corners, len(self.points) + number.reshape(-1, 3))
+        )
+        parts = [[a, of_c, of_b], [of_c, b, of_a], [of_b, of_a, c], [of_a, of_b, of_c]]
+        return replace(
+            self,
+            points=np.concatenate([self.points, self.points[ends].mean(axis=1)]),
+            triangles=np.array(parts).transpose(2, 0, 1).reshape(-1, 3),
+            walls=np.repeat(self.walls, 4),
+            lines={},
+            thickness=np.repeat(self.thickness, 4),
+            plain=np.repeat(self.plain, 4),
+            even=np.repeat(self.even, 4),
+        )
+
 
 def plated(segment: Segment, mesh: SegmentMesh) -> PlatedMesh:
     """Return a segment's mesh with the thickness of its plates.

@@ -133,6 +133,7 @@ STUDIES = (
     "numerics_1997",
     "supports",
     "second_order",
+    "wall_buckling",
     "telescoping_column",
     "sections",
     "taper",

@@ -132,7 +132,9 @@ def gather_fields(
         triangle_k, stress) give its stresses in Pa. ``plate_k`` has the names of the plates that
         ``wall`` numbers. Coordinates of other segments cause no stress and are not stored.
     """
-    moved = [_at_vertices(shell, one.shapes) for shell, one in zip(shells, reduced, strict=True)]
+    moved = [
+        vertex_displacements(shell, one.shapes) for shell, one in zip(shells, reduced, strict=True)
+    ]
     stresses = [
         gather_stress_modes(shell, one.shapes) for shell, one in zip(shells, reduced, strict=True)
     ]
@@ -169,7 +171,7 @@ def gather_fields(
     )
 
 
-def _at_vertices(shell: SegmentShell, shapes: Array) -> _Numbers | None:
+def vertex_displacements(shell: SegmentShell, shapes: Array) -> _Numbers | None:
     """Return displacements (3 num_points, num_modes) of a mesh's points on rank 0. Collective."""
     points = shell.comm.bcast(None if shell.mesh is None else shell.mesh.points)
     distance, vertex = cKDTree(points).query(shell.nodes)

@@ -13,7 +13,9 @@ import pytest
 from mpi4py import MPI
 
 from dynamics.failure import NumericsError
+from geometry.boom import Boom
 from shell_model.boom_shell import ShellOptions, assemble_boom
+from shell_model.buckling import StaticState, buckle_segments
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.symmetry import run_collectively
@@ -52,6 +54,7 @@ def everything(comm: MPI.Comm) -> dict[str, Any]:
         "pressed": compliances(comm),
         "stresses": stresses(comm),
         "moved": moved(comm),
+        "buckled": buckled(comm),
         "dofs": [short_box(comm, size).num_dofs for size in SHORT_SIZES],
         "told": failure(comm),
     }
@@ -104,6 +107,17 @@ def moved(comm: MPI.Comm) -> dict[str, Any]:
     full = assemble_boom(touching(flat_boom(friction=0.2), law), ShellOptions(1.0), comm)
     motion = integrate_directly(full, 0.04, 5.0e-4)
     return {"tip": motion.observed["tip"].tolist(), "residual": motion.energy_residual}
+
+
+def buckled(comm: MPI.Comm) -> list[float]:
+    """Return buckling factors of a box whose supports, at 0 and 2 m, bend it."""
+    shell = box_shell(0.25, supports=HELD)
+    along = comm.bcast(None if shell.mesh is None else shell.mesh.along)
+    forces = np.outer(along - 10.0, [1.0e5, 0.0, 2.0e4])
+    boom = Boom((shell.segment,), ())
+    state = StaticState([forces], np.zeros(0), {})
+    (found,) = buckle_segments(boom, [shell.mesh], state, ShellOptions(0.25), 2, comm)
+    return [float(factor) for factor in found.factors]
 
 
 def failure(comm: MPI.Comm) -> list[str] | None:
@@ -189,6 +203,13 @@ def test_two_ranks_recover_the_serial_stresses(two_ranks: dict[str, Any]) -> Non
     expected = np.array(stresses(MPI.COMM_SELF))
     assert np.abs(expected).max() > 1.0e4
     assert np.abs(two_ranks["stresses"] - expected).max() < 1e-4 * np.abs(expected).max()
+
+
+def test_two_ranks_buckle_at_the_serial_factors(two_ranks: dict[str, Any]) -> None:
+    """Reference: the serial run, to 1e-8."""
+    serial = buckled(MPI.COMM_SELF)
+    assert 0.0 < serial[0] < serial[1]
+    assert two_ranks["buckled"] == pytest.approx(serial, rel=1.0e-8)
 
 
 def test_two_ranks_give_the_serial_motion_of_all(

@@ -1,0 +1,321 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Linear buckling of the walls of a shell under the membrane forces of a static state.
+
+A shell that carries the membrane forces N_ab buckles under λ times these forces where
+
+    (K + λ K_G) φ = 0,    uᵀ K_G u = ∫ N_ab u,a · u,b dA,
+
+with all three components of the displacement u, so that plates buckle and columns bend alike
+(Bryan 1891; Zienkiewicz 1971). Forces keep their directions, and displacements before buckling are
+neglected. Since K is positive definite, the lowest λ are the reciprocals of the largest eigenvalues
+of −K_G φ = μ K φ: shift-and-invert at λ = 0, with one Cholesky factorisation of K. Walls have many
+modes with nearly the same λ, which a Krylov space of several vectors for each mode separates.
+
+A segment of a boom is held as its joints hold it in the static state: by its supports and
+cylinders, and by the tangent stiffness of its contacts, behind which the other segment stays at
+rest. The places of these hold it sideways and against twist, too, and one of them along the boom.
+Modes of the boom as a whole, such as that of a column, are those of
+:func:`dynamics.second_order.buckling_factor`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import numpy as np
+import ufl
+import xarray as xr
+from dolfinx import fem
+from mpi4py import MPI
+from petsc4py import PETSc
+from slepc4py import SLEPc
+
+from dynamics.failure import NumericsError
+from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
+from geometry.boom import Boom
+from geometry.cylinder import ground_lines
+from geometry.plating import PlatedMesh
+from shell_model import compat
+from shell_model.boom_shell import ShellOptions
+from shell_model.contact.rows import ShellContacts, ties
+from shell_model.segment.attachments import RIGID_TURN, Attached
+from shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from shell_model.segment.shell import Shell
+from shell_model.stress.fields import vertex_displacements, wall_frame
+from shell_model.stress.stresses import ShellStress
+
+# Relative residual of a mode; the error of its factor is of the order of the square.
+_RESIDUAL = 1.0e-8
+
+# Vectors of the Krylov space for each mode, and besides.
+_VECTORS, _BESIDES = 2, 20
+
+
+# Part of the largest membrane force that is round-off of single precision.
+_ROUND_OFF = 1.0e-6
+
+# Order of the factors in the edge length.
+_ORDER = 2.0
+
+
+class BucklingModes(NamedTuple):
+    """The lowest buckling modes of a shell.
+
+    Args:
+        factors: (num_modes,) λ, rising: the multiples of the membrane forces under which the shell
+            buckles. Forces that press no wall have none.
+        shapes: (num_owned, num_modes) this rank's rows of the displacements and rotations; the
+            largest displacement has the length 1.
+    """
+
+    factors: Array
+    shapes: Array
+
+
+def buckling_modes(shell: Shell, forces: Array, count: int) -> BucklingModes:
+    """Return the lowest buckling modes of a shell. Collective.
+
+    Args:
+        shell: its supports and springs leave no rigid motion.
+        forces: (num_triangles, 3) membrane forces N_x, N_s, N_xs in N/m, positive in tension, in
+            the frame of :func:`shell_model.stress.fields.wall_frame`; the same on every rank.
+        count: number of modes.
+
+    Raises:
+        NumericsError: the shell has a rigid motion, or modes do not converge.
+    """
+    if shell.rigid_motions().shape[1]:
+        raise NumericsError("the shell has a rigid motion, and cannot buckle; add a support")
+    if not _compressed(forces):
+        return BucklingModes(np.zeros(0), np.zeros((shell.free.size, 0)))
+    softening = _softening(shell, forces)
+    solver = SLEPc.EPS().create(shell.comm)
+    solver.setOperators(softening, shell.stiffness)
+    solver.setProblemType(SLEPc.EPS.ProblemType.GHEP)
+    solver.setWhichEigenpairs(SLEPc.EPS.Which.LARGEST_REAL)
+    solver.setDimensions(count, min(_VECTORS * count + _BESIDES, shell.num_dofs))
+    solver.setTolerances(tol=_RESIDUAL)
+    solve = solver.getST().getKSP()
+    solve.setType(PETSc.KSP.Type.PREONLY)
+    solve.getPC().setType(PETSc.PC.Type.CHOLESKY)
+    solve.getPC().setFactorSolverType("mumps")
+    shell.stiffness.setOption(PETSc.Mat.Option.SPD, True)
+    solver.solve()
+    found = solver.getConverged()
+    if found < count:
+        raise NumericsError(f"{found} of {count} buckling modes converged; refine the mesh")
+    inverse = np.array([solver.getEigenvalue(i).real for i in range(count)])
+    vector, _ = shell.stiffness.createVecs()
+    shapes = np.empty((vector.getLocalSize(), count), order="F")
+    for i in range(count):
+        solver.getEigenvector(i, vector)
+        shapes[:, i] = vector.array
+    for thing in (vector, solver, softening):
+        thing.destroy()
+    first, _ = shell.owned
+    lengths = np.linalg.norm(shapes[shell.node_dofs - first], axis=1)
+    largest = np.max(shell.comm.allgather(lengths.max(axis=0, initial=0.0)), axis=0)
+    pressed = inverse > 0.0
+    return BucklingModes(1.0 / inverse[pressed], (shapes / largest)[:, pressed])
+
+
+def _compressed(forces: Array) -> bool:
+    """Return whether the lesser principal membrane force presses anywhere, beyond round-off."""
+    n_x, n_s, n_xs = forces.T
+    least = 0.5 * (n_x + n_s) - np.hypot(0.5 * (n_x - n_s), n_xs)
+    return bool(least.min() < -_ROUND_OFF * np.abs(forces).max())
+
+
+def with_springs(springs: Attached, rows: Array, stiffness: Array) -> Attached:
+    """Return springs with further ones.
+
+    Args:
+        springs: those that are there.
+        rows: (num_owned, num_springs) this rank's rows of what each of the others reads.
+        stiffness: (num_springs,) theirs in N/m or N·m.
+    """
+    return Attached(np.hstack([springs.rows, rows]), np.append(springs.factors, stiffness))
+
+
+def _softening(shell: Shell, forces: Array) -> PETSc.Mat:
+    """Assemble −K_G (num_dofs, num_dofs) of membrane forces (num_triangles, 3). Collective."""
+    domain = shell.space.mesh
+    along, around, _ = wall_frame(domain)
+    n_x, n_s, n_xs = (compat.cellwise_function(domain, one) for one in forces.T)
+    u, _ = ufl.split(ufl.TrialFunction(shell.space))
+    v, _ = ufl.split(ufl.TestFunction(shell.space))
+    (u_x, u_s), (v_x, v_s) = (
+        (ufl.dot(ufl.grad(w), along), ufl.dot(ufl.grad(w), around)) for w in (u, v)
+    )
+    work: Any = (
+        n_x * ufl.dot(u_x, v_x)
+        + n_s * ufl.dot(u_s, v_s)
+        + n_xs * (ufl.dot(u_x, v_s) + ufl.dot(u_s, v_x))
+    )
+    form = fem.form(-work * ufl.dx(degree=2, domain=domain))
+    matrix = compat.assemble_matrix(form, shell.conditions, 0.0)
+    matrix.scale(shell.plates.copies)
+    return matrix
+
+
+@dataclass(frozen=True, slots=True)
+class StaticState:
+    """State of a boom's shells that buckle.
+
+    Args:
+        forces: for each segment its membrane forces (num_triangles, 3) in N/m, see
+            :func:`buckling_modes`; the same on every rank.
+        contact_stiffness: (num_contacts,) tangent stiffness of each contact row in N/m.
+        extensions: of the joints in m, by their positions.
+    """
+
+    forces: Sequence[Array]
+    contact_stiffness: Array
+    extensions: Mapping[int, float]
+
+    @classmethod
+    def of(
+        cls,
+        fields: xr.Dataset,
+        system: GapSystem,
+        position: Array,
+        extensions: Mapping[int, float] = MappingProxyType({}),
+    ) -> StaticState:
+        """Return the state of a reduced shell at an equilibrium, on rank 0.
+
+        Args:
+            fields: those of :func:`shell_model.stress.fields.gather_fields`.
+            system: that of the shell, with its extensions.
+            position: (num_modes,) the equilibrium.
+            extensions: see above.
+        """
+        still = fields.assign(state=(("time", "mode"), position[None]), time=("time", [0.0]))
+        stress = ShellStress.of(still)
+        forces = stress.thickness[:, None] * stress.at(0.0).membrane.astype(np.float64)
+        gaps = system.rows @ position
+        slopes = [float(law.slope(gap)) for law, gap in zip(system.laws, gaps, strict=True)]
+        parts = np.flatnonzero(np.diff(stress.segment)) + 1
+        return cls(np.split(forces, parts), np.array(slopes), extensions)
+
+
+@dataclass(frozen=True, slots=True)
+class SegmentBuckling:
+    """The lowest buckling modes of the walls of a segment.
+
+    Args:
+        factors: (num_modes,) λ, rising, extrapolated to a mesh size of zero.
+        mesh_errors: (num_modes,) the part by which the finer mesh exceeds each.
+        mesh: the finer one, on rank 0.
+        shapes: (num_modes, num_points, 3) displacements of its points, the largest of which has
+            about the length 1, on rank 0.
+    """
+
+    factors: Array
+    mesh_errors: Array
+    mesh: PlatedMesh | None
+    shapes: Array | None
+
+
+def buckle_segments(
+    boom: Boom,
+    meshes: Sequence[PlatedMesh | None],
+    state: StaticState,
+    options: ShellOptions,
+    count: int,
+    comm: MPI.Comm,
+) -> list[SegmentBuckling]:
+    """Return the lowest buckling modes of each segment of a boom at rest. Collective.
+
+    Each is computed on the mesh and on one with edges of half the length, from which its factor is
+    extrapolated (Richardson 1911) in its logarithm, so that it stays positive on any mesh. Factors
+    are compared in their order, since near ones may exchange their shapes.
+
+    Args:
+        boom: that of the shells.
+        meshes: those of the segments, on rank 0; None elsewhere.
+        state: the static state.
+        options: those of the shells.
+        count: number of modes of each segment.
+        comm: the ranks that share the work.
+
+    Raises:
+        NumericsError: see :func:`buckling_modes`.
+    """
+    finer = [None if mesh is None else mesh.halved for mesh in meshes]
+    coarse = _modes_on(boom, meshes, state, options, count, comm)
+    halves = replace(state, forces=[np.repeat(one, 4, axis=0) for one in state.forces])
+    fine = _modes_on(boom, finer, halves, options, count, comm)
+    found = []
+    for mesh, (before, _), (after, shapes) in zip(finer, coarse, fine, strict=True):
+        common = min(before.size, after.size)
+        before, after = before[:common], after[:common]
+        factors = after * (after / before) ** (1.0 / (2.0**_ORDER - 1.0))
+        shapes = None if shapes is None else shapes[:common]
+        found.append(SegmentBuckling(factors, after / factors - 1.0, mesh, shapes))
+    return found
+
+
+def _modes_on(
+    boom: Boom,
+    meshes: Sequence[PlatedMesh | None],
+    state: StaticState,
+    options: ShellOptions,
+    count: int,
+    comm: MPI.Comm,
+) -> Iterator[tuple[Array, Array | None]]:
+    """Yield factors (num_modes,) and shapes (num_modes, num_points, 3) of each segment."""
+    shells = [
+        assemble_segment(comm, segment, mesh)
+        for segment, mesh in zip(boom.segments, meshes, strict=True)
+    ]
+    touching = ShellContacts.of(boom, shells, options.contact_line, options.surface)
+    contacts = [contact.reading for contact in touching.rows(state.extensions).contacts]
+    joined = [
+        *zip(contacts, state.contact_stiffness.tolist(), strict=True),
+        *((tie, None) for tie in ties(boom, shells)),
+    ]
+    lines = list(ground_lines(boom, shells))
+    for number, shell in enumerate(shells):
+        rigid = RIGID_TURN * shell.segment.material.youngs_modulus * shell.segment.area
+        rigid /= shell.segment.length
+        springs = [
+            *(
+                (shell.row(one[number]), k or rigid)
+                for one, k in joined
+                if number in one and k != 0.0
+            ),
+            *((line.push, line.stiffness) for line in lines if line.segment == number),
+            *_sideways(boom, number, shell, rigid),
+        ]
+        rows, stiffness = (np.array(one) for one in zip(*springs, strict=True))
+        held = replace(shell, springs=with_springs(shell.springs, rows.T, stiffness))
+        modes = buckling_modes(held, state.forces[number], count)
+        held.stiffness.destroy()
+        shapes = vertex_displacements(shell, modes.shapes)
+        if shapes is not None:
+            shapes = shapes.T.reshape(modes.factors.size, -1, 3)
+        yield modes.factors, shapes
+
+
+def _sideways(
+    boom: Boom, number: int, shell: SegmentShell, rigid: float
+) -> Iterator[tuple[Array, float]]:
+    """Yield rows (num_owned,) that hold a segment sideways, against twist and along the boom.
+
+    Each has its stiffness in N/m or N·m/rad, the former ``rigid``. Collective.
+    """
+    segment = boom.segments[number]
+    places = {x for one in boom.joints if number in (one.outer, one.inner) for x in one.stations}
+    places |= {stop.x for stop in boom.stops if stop.segment == number}
+    places |= {cylinder.x for cylinder in boom.cylinders if cylinder.segment == number}
+    places |= {support.x for support in segment.supports}
+    for x in sorted(places):
+        outline = shell.outline(x)
+        torsion = segment.material.shear_modulus * outline.section.torsion_constant
+        yield shell.row(outline.wall_deflection("y")), rigid
+        yield shell.row(outline.twist()), RIGID_TURN * torsion / segment.length
+    yield shell.row(outline.mean_displacement(0)), rigid

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Buckling of walls: plates with known factors, and boxes against finite strips."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.boom import Segment, Support
+from geometry.section import BoxSection, Section
+from shell_model.buckling import BucklingModes, buckling_modes, with_springs
+from shell_model.segment.segment_shell import SegmentShell
+from studies.reference_models.benchmarks import X, Y, Z, grid
+from studies.reference_models.finite_strip import StressField, Strips
+from studies.reference_models.plates import STEEL, rectangle
+from studies.reference_models.single_segment import shell_alone
+from studies.reference_models.static_shell import StaticShell, hold
+from studies.refined import Reference, Refined, refined_table
+from studies.study import Piece, Progress, define_study
+
+# Thickness of the plates over their width.
+THIN = 0.005
+
+NOTES = (
+    "Edges across a plate, or across the widest wall of a box. Order, limit and index of the three "
+    "finest values. Plates are k = σ t b²/(π² D); boxes are load factors of a stress of 100 MPa.",
+    "Finite strips are Kirchhoff's; shear lowers the factor of a wall by about 5.6 (t/b)².",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """Meshes as numbers of edges across a plate or a wall, each twice the one before."""
+
+    plate: Sequence[int] = (8, 16, 32)
+    box: Sequence[int] = (8, 16, 32)
+    column: Sequence[int] = (4, 8, 16)
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedPlate:
+    """Simply supported plate, 1 m wide, under membrane forces that are the same along it.
+
+    Args:
+        name: label in tables.
+        aspect: length over width.
+        forces: N_x, N_s, N_xs over π² D/b² at the lower and at the upper edge, linear between.
+        factor: k after the source.
+        source: of the factor.
+    """
+
+    name: str
+    aspect: float
+    forces: tuple[tuple[float, float, float], tuple[float, float, float]]
+    factor: float
+    source: str
+
+    def shell(self, n: int, count: int = 1) -> Array:
+        """Return the lowest factors (count,) by the shell, n edges across the plate."""
+        points, triangles = grid(rectangle(self.aspect, 1.0), round(n * self.aspect), n)
+        shell = StaticShell(points, triangles, THIN, STEEL)
+        held = hold(shell.node_dofs[:, [X, Y]]) | hold(shell.rotation_dofs[:, Z])
+        for axis, size in ((X, self.aspect), (Y, 1.0)):
+            for edge in (0.0, size):
+                held |= shell.hold_at(axis, edge, [Z], [axis])
+        unit = np.pi**2 * STEEL.youngs_modulus / (12.0 * (1.0 - STEEL.poissons_ratio**2)) * THIN**3
+        across = points[triangles, Y].mean(axis=1)[:, None]
+        lower, upper = np.array(self.forces)
+        forces = unit * ((1.0 - across) * lower + across * upper)
+        return buckling_modes(shell.held(held), forces, count).factors
+
+
+_PRESSED, _PULLED, _SHEARED = (-1.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+
+_TIMOSHENKO = "Timoshenko and Gere 1961"
+
+PLATES = (
+    LoadedPlate("square plate in compression", 1.0, (_PRESSED, _PRESSED), 4.0, "Bryan 1891"),
+    LoadedPlate("square plate in shear", 1.0, (_SHEARED, _SHEARED), 9.34, _TIMOSHENKO),
+    LoadedPlate("plate 2 × 1 in bending", 2.0, (_PRESSED, _PULLED), 23.88, _TIMOSHENKO),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedBox:
+    """Box between supports that keep the shape of its ends, under stresses along it.
+
+    Args:
+        name: label in tables.
+        section: its walls.
+        length: in m.
+        bending: stress in Pa at z = 1 m, positive in tension.
+        compression: in Pa.
+    """
+
+    name: str
+    section: Section
+    length: float
+    bending: float = 0.0
+    compression: float = 0.0
+
+    def stress(self, y: Array, z: Array) -> Array:
+        """Return the stress along x (num_places,) in Pa at y and z (num_places,) in m."""
+        return self.bending * z - self.compression
+
+    def shell(self, n: int, count: int = 1) -> tuple[SegmentShell, BucklingModes]:
+        """Return the shell and its modes, with n edges across the widest wall."""
+        supports = Support(0.0), Support(self.length)
+        segment = Segment.of_section(
+            "box", 0.0, self.length, STEEL, self.section, supports=supports
+        )
+        widest = max(plate.length for plate in self.section.plates)
+        shell = shell_alone(segment, widest / n)
+        slide = shell.row(shell.outline(0.0).mean_displacement(X))
+        shell = replace(
+            shell, springs=with_springs(shell.springs, slide[:, None], np.array([1.0e10]))
+        )
+        return shell, buckling_modes(shell, self.membrane_forces(shell), count)
+
+    def membrane_forces(self, shell: SegmentShell) -> Array:
+        """Return N_x, N_s, N_xs (num_triangles, 3) in N/m."""
+        mesh = shell.mesh
+        assert mesh is not None
+        _, y, z = mesh.points[mesh.triangles].mean(axis=1).T
+        return np.outer(mesh.thickness * self.stress(y, z), [1.0, 0.0, 0.0])
+
+    def strips(self, most: int = 12) -> float:
+        """Return the lowest factor by finite strips, in up to this number of half-waves."""
+        stress: StressField = self.stress
+        return Strips.of(self.section, STEEL).lowest(self.length, range(1, most + 1), stress)
+
+
+_STRESS = 1.0e8
+TUBE = BoxSection(height=0.4, width=0.4, flange=0.004, web=0.004)
+UNEQUAL = BoxSection(height=0.6, width=0.45, flange=0.006, web=0.004, bottom_flange=0.005)
+STOUT = BoxSection(height=0.3, width=0.3, flange=0.01, web=0.01)
+
+BOXES = (
+    LoadedBox("square tube in compression", TUBE, 1.2, compression=_STRESS),
+    LoadedBox("square tube in bending", TUBE, 1.2, bending=_STRESS / 0.2),
+    LoadedBox("box of unequal walls in compression", UNEQUAL, 1.2, compression=_STRESS),
+    LoadedBox("box of unequal walls in bending", UNEQUAL, 1.2, bending=_STRESS / 0.3),
+    LoadedBox("the same in both", UNEQUAL, 1.2, 0.5 * _STRESS / 0.3, 0.5 * _STRESS),
+)
+# About as long as its walls and the column itself buckle alike.
+COLUMN = LoadedBox("column of box section", STOUT, 22.0 * 0.3, compression=_STRESS)
+
+
+@define_study("wall-buckling", "Buckling of walls")
+def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
+    """Compare plates with known factors, and boxes with finite strips."""
+    sizes = sizes or Sizes()
+    progress("plates")
+    found = []
+    for plate in PLATES:
+        values = [float(plate.shell(n)[0]) for n in sizes.plate]
+        reference = Reference(plate.factor, "analytic", plate.source, 0.01)
+        found.append(_refined(plate.name, sizes.plate, values, reference))
+    for box, edges in (*((box, sizes.box) for box in BOXES), (COLUMN, sizes.column)):
+        progress(box.name)
+        values = [float(box.shell(n)[1].factors[0]) for n in edges]
+        reference = Reference(box.strips(), "other code", "finite strips, Cheung 1976", 0.01)
+        found.append(_refined(box.name, edges, values, reference))
+    yield from (one.proof for one in found)
+    title = "Walls of shells that buckle, against known factors"
+    yield refined_table("wall-buckling", title, found, "edges × {:g}", NOTES)
+
+
+def _refined(
+    what: str, edges: Sequence[int], values: Sequence[float], reference: Reference
+) -> Refined:
+    sizes = [edges[-1] / n for n in edges]
+    return Refined(f"{what}, {edges[-1]} edges", "", sizes, values, reference)

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Buckling of walls by formulas for long panels."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from geometry.section import BoxSection
+from geometry.segment import Material, Segment
+from runs.pipeline.panels import normal_coefficient, panel_factor, weakest_panels
+from runs.pipeline.static_results import Diagram, StaticResult
+
+STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+SLENDERNESS = 80.0
+UNIT = np.pi**2 * 2.1e11 / (12.0 * 0.91) / SLENDERNESS**2
+
+
+@pytest.mark.parametrize(
+    ("ratio", "exact"), [(1.0, 4.0), (0.0, 7.81), (-1.0, 23.88), (-2.0, 53.8), (-9.0, 95.7)]
+)
+def test_coefficients_of_long_plates(ratio: float, exact: float) -> None:
+    """Reference: external, EN 1993-1-5, table 4.1, and analytic, 23.88 in bending."""
+    assert normal_coefficient(ratio) == pytest.approx(exact, rel=2.0e-3)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 0.5, 0.0, -0.5, -1.0, -2.0])
+def test_a_stress_alone_has_its_own_factor(ratio: float) -> None:
+    """Reference: analytic: without shear the interaction leaves k σ_E/σ."""
+    edges = -0.3 * UNIT, -0.3 * UNIT * ratio
+    expected = normal_coefficient(ratio) / 0.3
+    assert panel_factor(STEEL, SLENDERNESS, edges, 0.0) == pytest.approx(expected, rel=1.0e-12)
+    assert panel_factor(STEEL, SLENDERNESS, edges[::-1], 0.0) == pytest.approx(expected, rel=1e-12)
+
+
+def test_shear_interacts() -> None:
+    """Reference: analytic. In compression 1/α = 1/(2 α_x) + √(1/(4 α_x²) + 1/α_τ²), in bending a
+    circle; shear alone has 5.34.
+    """
+    pressed, sheared = 0.5, 0.4
+    factor = panel_factor(STEEL, SLENDERNESS, (-4.0 * pressed * UNIT,) * 2, 5.34 * sheared * UNIT)
+    expected = 0.5 * pressed + np.hypot(0.5 * pressed, sheared)
+    assert 1.0 / factor == pytest.approx(expected, rel=1.0e-12)
+    bent = 23.92 * pressed * UNIT
+    factor = panel_factor(STEEL, SLENDERNESS, (-bent, bent), 5.34 * sheared * UNIT)
+    assert 1.0 / factor == pytest.approx(np.hypot(pressed, sheared), rel=1.0e-12)
+    tension = (UNIT, UNIT)
+    assert panel_factor(STEEL, SLENDERNESS, tension, -5.34 * UNIT) == pytest.approx(1.0)
+    assert panel_factor(STEEL, SLENDERNESS, tension, 0.0) == np.inf
+
+
+def test_the_weakest_wall_of_a_segment() -> None:
+    """Reference: analytic. A moment presses the bottom flange, a torque shears all walls alike."""
+    box = BoxSection(height=0.5, width=0.4, flange=0.006, web=0.008)
+    segment = Segment.of_section("outer", 0.0, 2.0, STEEL, box)
+
+    def weakest(**curves: list[float]) -> tuple[str, float, float]:
+        nothing = {"deflection": [0.0, 0.0], "moment": [0.0, 0.0]}
+        diagram = Diagram("outer", [0.0, 2.0], [0.0, 0.0], nothing | curves)
+        rest = StaticResult(0.0, 0.0, None, [diagram], [], [], {})
+        (found,) = weakest_panels((segment,), rest)
+        return found.wall, found.x, found.factor
+
+    flange = np.pi**2 * 2.1e11 / (12.0 * 0.91) * (0.006 / 0.4) ** 2
+    stress = 1.0e5 * 0.25 / box.second_moment_of_area
+    assert weakest(moment=[0.0, 1.0e5]) == ("bottom", 2.0, pytest.approx(4.0 * flange / stress))
+    shear = 1.0e5 / (2.0 * 0.2 * 0.006)
+    wall, x, factor = weakest(torque=[1.0e5, 1.0e4])
+    assert (wall, x) == ("bottom", 0.0)
+    assert factor == pytest.approx(5.34 * flange / shear)

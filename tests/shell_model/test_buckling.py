@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Buckling of walls: known factors of plates, finite strips, and segments of a boom at rest."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from dynamics.equilibrium import rest_at
+from dynamics.failure import NumericsError
+from geometry.boom import Boom, Support
+from shell_model.boom_shell import ShellOptions
+from shell_model.buckling import SegmentBuckling, StaticState, buckle_segments, buckling_modes
+from shell_model.reduced_shell import ReducedShell, reduce_boom
+from shell_model.stress.stresses import triangle_areas
+from studies.reference_models.finite_strip import Strips
+from studies.reference_models.plates import STEEL
+from studies.reference_models.single_segment import shell_alone
+from studies.wall_buckling import BOXES, COLUMN, PLATES, TUBE, LoadedBox, LoadedPlate
+from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, box_segment, flat_boom
+from tests.touching import touching
+
+UNIT = np.pi**2 * STEEL.youngs_modulus / (12.0 * (1.0 - STEEL.poissons_ratio**2))
+
+
+def extrapolated(coarse: float, fine: float) -> float:
+    """Return the limit of two meshes, one with edges of half the length, at an order of 2."""
+    return float(fine * np.cbrt(fine / coarse))
+
+
+@pytest.mark.parametrize("plate", PLATES, ids=lambda plate: plate.name)
+def test_plates_buckle_at_known_factors(plate: LoadedPlate) -> None:
+    """Reference: analytic, from above with order 2; the limit of two meshes is within 0.6 %."""
+    first, coarse, fine = (float(plate.shell(n)[0]) for n in (4, 8, 16))
+    assert first > coarse > fine > plate.factor
+    assert fine < 1.035 * plate.factor
+    assert np.log2((first - coarse) / (coarse - fine)) > 1.0
+    assert extrapolated(coarse, fine) == pytest.approx(plate.factor, rel=6.0e-3)
+
+
+def test_modes_rise() -> None:
+    """Reference: analytic, k = (m b/a + a/(m b))² of a plate 2 × 1 in m half-waves."""
+    pressed = replace(PLATES[0], aspect=2.0)
+    exact = np.sort([(m / 2.0 + 2.0 / m) ** 2 for m in (1, 2, 3, 4)])
+    limits = [
+        extrapolated(*both) for both in zip(pressed.shell(8, 4), pressed.shell(16, 4), strict=True)
+    ]
+    assert limits == pytest.approx(exact, rel=0.01)
+
+
+def test_tension_has_no_factor() -> None:
+    pulled = replace(PLATES[0], forces=((1.0, 0.5, 0.0),) * 2)
+    assert pulled.shell(4, 2).size == 0
+
+
+def test_finite_strips_know_walls_and_columns() -> None:
+    """Reference: analytic. Walls of a square tube have k = 4, and 5.33 where it bends; a long tube
+    is Euler's column.
+    """
+    strips, width = Strips.of(TUBE, STEEL), 0.4
+    stress = UNIT * (0.004 / width) ** 2
+    found = strips.lowest(3.0 * width, range(1, 7), lambda y, z: np.full_like(z, -stress))
+    assert found == pytest.approx(4.0, rel=1.0e-3)
+    found = min(
+        strips.factor(part * width, 1, lambda y, z: -stress * z / 0.2)
+        for part in np.linspace(0.7, 1.0, 13)
+    )
+    assert found == pytest.approx(5.33, rel=2.0e-3)
+    length = 200.0 * width
+    found = strips.factor(length, 1, lambda y, z: np.full_like(z, -1.0))
+    radius2 = TUBE.second_moment_of_area / TUBE.area
+    assert found == pytest.approx(np.pi**2 * STEEL.youngs_modulus * radius2 / length**2, rel=1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("box", BOXES, ids=lambda box: box.name)
+def test_boxes_buckle_as_finite_strips(box: LoadedBox) -> None:
+    """Reference: other code, finite strips, within 1 % of the limit of two meshes."""
+    coarse, fine = (float(box.shell(n)[1].factors[0]) for n in (8, 16))
+    assert coarse > fine
+    assert extrapolated(coarse, fine) == pytest.approx(box.strips(), rel=0.01)
+
+
+@pytest.mark.slow
+def test_a_column_buckles_as_a_whole_and_in_its_walls() -> None:
+    """Reference: other code, finite strips, in one half-wave and in many; 1 %.
+
+    The second mode is the column's, sideways.
+    """
+    whole = Strips.of(COLUMN.section, STEEL).factor(COLUMN.length, 1, COLUMN.stress)
+    shell, modes = COLUMN.shell(4, 2)
+    assert modes.factors == pytest.approx([whole, whole], rel=0.01)
+    first, _ = shell.owned
+    moved = modes.shapes[shell.node_dofs - first]
+    assert np.linalg.norm(moved, axis=1).max(axis=0) == pytest.approx([1.0, 1.0])
+
+
+def test_an_unheld_segment_is_refused() -> None:
+    shell = shell_alone(box_segment("box", 0.0, 2.0, TUBE), 0.2)
+    assert shell.mesh is not None
+    forces = np.zeros((len(shell.mesh.triangles), 3)) - [1.0, 0.0, 0.0]
+    message = r"^the shell has a rigid motion, and cannot buckle; add a support$"
+    with pytest.raises(NumericsError, match=message):
+        buckling_modes(shell, forces, 1)
+
+
+def at_rest(boom: Boom, options: ShellOptions) -> tuple[ReducedShell, StaticState]:
+    """Return the reduced shell of a boom and its state at rest."""
+    shell = reduce_boom(boom, options, MPI.COMM_SELF)
+    assert shell.fields is not None
+    return shell, StaticState.of(shell.fields, shell.system, rest_at(shell.system))
+
+
+def buckled(boom: Boom, options: ShellOptions, count: int = 1) -> list[SegmentBuckling]:
+    shell, state = at_rest(boom, options)
+    return buckle_segments(boom, shell.meshes, state, options, count, MPI.COMM_SELF)
+
+
+@pytest.mark.slow
+def test_a_beam_on_two_supports_buckles_where_it_bends_most() -> None:
+    """Reference: other code, finite strips under the largest moment, from below: the moment falls
+    to both sides.
+    """
+    supports = Support(0.0), Support(4.0)
+    segment = box_segment("beam", 0.0, 4.0, TUBE, load=-8.0e3, supports=supports)
+    (found,) = buckled(Boom((segment,), ()), ShellOptions(0.1))
+    moment = 8.0e3 * 4.0**2 / 8.0
+    bent = LoadedBox("beam", TUBE, 4.0, bending=-moment / TUBE.second_moment_of_area)
+    least = bent.strips(16)
+    assert least < found.factors[0] < 1.05 * least
+    assert 0.05 < found.mesh_errors[0] < 0.1
+    assert found.shapes is not None
+    assert found.mesh is not None
+    size = np.linalg.norm(found.shapes[0], axis=1)
+    most = found.mesh.points[size.argmax()]
+    assert most[[0, 2]] == pytest.approx([2.0, 0.2], abs=0.3)
+
+
+BOOMS = touching(flat_boom(), LAW), touching(boom_in_space(sideways=0.3), LAW, LATERAL_LAW)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("boom", BOOMS, ids=["flat", "in space"])
+def test_segments_of_a_boom_buckle_between_their_contacts(boom: Boom) -> None:
+    """Reference: analytic. Forces twice as large have half the factor, whatever the contacts'
+    stiffness at rest; the outer segment, which carries both, buckles before the inner one.
+    """
+    options = ShellOptions(0.25)
+    shell, state = at_rest(boom, options)
+    twice = replace(state, forces=[2.0 * one for one in state.forces])
+    found, halves = (
+        buckle_segments(boom, shell.meshes, one, options, 2, MPI.COMM_SELF)
+        for one in (state, twice)
+    )
+    for one, half in zip(found, halves, strict=True):
+        assert one.factors.shape == (2,)
+        assert half.factors == pytest.approx(0.5 * one.factors, rel=1.0e-6)
+    outer, inner = (one.factors[0] for one in found)
+    assert 1.0 < outer < inner
+
+
+def test_halved_meshes_have_the_same_walls() -> None:
+    """Reference: analytic, areas and places."""
+    shell = shell_alone(box_segment("box", 0.0, 2.0, TUBE), 0.2)
+    mesh = shell.mesh
+    assert mesh is not None
+    finer = mesh.halved
+    assert np.array_equal(finer.points[: len(mesh.points)], mesh.points)
+    areas = triangle_areas(mesh.points, mesh.triangles)
+    own = triangle_areas(finer.points, finer.triangles)
+    assert own == pytest.approx(np.repeat(0.25 * areas, 4))
+    middles = finer.points[finer.triangles].mean(axis=1).reshape(-1, 4, 3).mean(axis=1)
+    assert middles == pytest.approx(mesh.points[mesh.triangles].mean(axis=1))
+    assert len(np.unique(finer.points.round(9), axis=0)) == len(finer.points)
