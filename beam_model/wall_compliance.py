@@ -117,7 +117,7 @@ def contact_compliance(boom: Boom) -> Array:
     stops = sum(len(stop.sides) for _, stop in boom.numbered_stops)
     found = np.zeros((len(rows) + stops,) * 2)
     for station in {pad.station for pad, _ in rows if pad.patch is not None}:
-        at = [i for i, (pad, _) in enumerate(rows) if pad.station == station]
+        at = [i for i, (pad, _) in enumerate(rows) if pad.station == station and pad.patch]
         joint, sides = rows[at[0]][0].joint, np.array([rows[i][1] for i in at])
         inner = boom.segments[joint.inner]
         areas = [_pressed_area(*rows[i], inner) for i in at]

@@ -4,7 +4,7 @@
 In a flat boom a joint touches on the axis of its segments, above and below in one place. In
 space it touches in the corners of its sections, where slide pads sit because plates that meet are
 stiff there: at both ends of each face. Pads of a given size are
-patches beside the corners.
+patches beside the corners, or press these along their length.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ class Pad:
         rubs: direction of sliding.
         normal_force: normal force of its friction in N; None where its own contact presses.
         pressed: its stretches of the corners of the inner and of the outer segment.
-        patch: the wall that it covers; None where it is a point.
+        patch: the wall that it covers; None where it is a point or bears on a corner.
         raised: its protrusion into the joint's clearance in m.
         face: face of the inner segment in space, which touches in a corner of it; None in a flat
             boom.
@@ -159,8 +159,10 @@ class Pad:
 
     @property
     def middle(self) -> float:
-        """x in m of the middle of its area, through which its resultant goes."""
-        return self.x if self.patch is None else 0.5 * (self.patch.start + self.patch.end)
+        """x in m through which its resultant goes: the middle of its area."""
+        if self.patch is None:
+            return self.pressed[0].station
+        return 0.5 * (self.patch.start + self.patch.end)
 
     def travels(self, extension: float) -> tuple[float, float]:
         """Return its travel in m along the outer and the inner segment at an extension in m."""
@@ -216,12 +218,14 @@ def pads(boom: Boom) -> list[Pad]:
                 for side, inner, outer, whole, face in _points(boom, joint, direction, x):
                     for size, share, shim in joint.pads_of(direction, side):
                         weight = whole * share
+                        patch, stretches = None, pressed
                         # Where plates are not known, pads are points.
-                        patch = (
-                            None
-                            if size is None or inner_segment.section is None
-                            else Patch(*size.span(x, overlap), size.offset, size.width)
-                        )
+                        if size is not None and inner_segment.section is not None:
+                            span = size.span(x, overlap)
+                            if size.bears == "wall":
+                                patch = Patch(*span, size.offset, size.width)
+                            else:
+                                stretches = (Stretch(*span, 0.5 * sum(span)),) * 2
                         pad = Pad(
                             station=station,
                             joint=joint,
@@ -237,7 +241,7 @@ def pads(boom: Boom) -> list[Pad]:
                             normal_force=None
                             if normal_force is None
                             else normal_force * weight * (0.5 if side else 1.0),
-                            pressed=pressed,
+                            pressed=stretches,
                             patch=patch,
                             raised=shim,
                             face=face,

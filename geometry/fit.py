@@ -210,6 +210,10 @@ def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
             f"{where}.length",
             f"must be above 0 and not above the overlap of {end - start:g} m, got {pad.length:g} m",
         )
+    if pad.bears == "corner" and pad.offset:
+        raise BoomError(
+            f"{where}.offset", "the pad bears on the corner; leave offset out, or bears = 'corner'"
+        )
     inner = boom.segments[joint.inner]
     if inner.section is None:
         return

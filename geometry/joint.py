@@ -65,6 +65,9 @@ class PadSize:
     """the modulus of compression in Pa; that of moist cast polyamide unless given"""
     allowable_pressure: Annotated[Positive, In("Pa")] | None = field(default=None, kw_only=True)
     """the pressure in Pa that it may bear; not judged unless given"""
+    bears: Literal["wall", "corner"] = field(default="wall", kw_only=True)
+    """what its force presses: the wall under it, which bends, or the corner, by a chamfered pad or
+    one that lies on the web"""
 
     @property
     def area(self) -> float:

@@ -3,18 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import partial
-from typing import TypeVar
+from typing import Any
 
 from beam_model.statics import Elements, static_state
 from geometry.boom import Boom, Collar, Joint, Segment
 from geometry.joint import PadSize
 from geometry.typography import TO_MILLI
 from runs.report.formatting import number
-
-_Size = TypeVar("_Size", bound=PadSize)
 
 # Share of the tip deflection that makes remedies useful, and the fraction of it that remains after
 # an effective remedy.
@@ -52,9 +49,17 @@ def pad_wall_lines(boom: Boom, tip: float) -> Iterator[str]:
 
 def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
     """Yield booms with stiffer walls under pads, each with a description of the change."""
+
+    def longer(pad: PadSize, longest: float) -> dict[str, Any]:
+        return {"length": max(min(2.0 * pad.length, longest), pad.length)}
+
     if any(pad.offset > 0.0 for joint in boom.joints for pad in _sizes(joint)):
-        yield "pads beside the corners", _with_pads(boom, 1.0, 0.0)
-    yield "pads twice as long", _with_pads(boom, 2.0, 1.0)
+        yield "pads beside the corners", _with_pads(boom, lambda *_: {"offset": 0.0})
+    narrower = _with_pads(boom, lambda pad, _: {"width": 0.5 * pad.width})
+    yield "pads half as wide, at twice the pressure", narrower
+    yield "pads twice as long", _with_pads(boom, longer)
+    corner = {"bears": "corner", "offset": 0.0}
+    yield "pads that bear on the corners", _with_pads(boom, lambda *_: corner)
     yield "walls twice as thick by collars at the pads", _with_collars(boom)
 
 
@@ -62,23 +67,22 @@ def _sizes(joint: Joint) -> tuple[PadSize, ...]:
     return (*joint.pads, *([joint.pad] if joint.pad is not None else []))
 
 
-def _with_pads(boom: Boom, length: float, offset: float) -> Boom:
-    """Return the boom with the length and offset of all pads multiplied by factors.
+def _with_pads(boom: Boom, changes: Callable[[PadSize, float], dict[str, Any]]) -> Boom:
+    """Return the boom with changes of all pads.
 
-    No pad becomes longer than half of the overlap.
+    Args:
+        boom: with pads.
+        changes: returns the changed fields of a pad; half of the overlap in m is its second
+            argument.
     """
     joints = []
     for joint in boom.joints:
         start, end = boom.overlap(joint)
-        change = partial(_resized, length=length, offset=offset, longest=0.5 * (end - start))
-        pad = None if joint.pad is None else change(joint.pad)
-        joints.append(replace(joint, pad=pad, pads=tuple(map(change, joint.pads))))
+        half = 0.5 * (end - start)
+        pad = None if joint.pad is None else replace(joint.pad, **changes(joint.pad, half))
+        pads = tuple(replace(one, **changes(one, half)) for one in joint.pads)
+        joints.append(replace(joint, pad=pad, pads=pads))
     return replace(boom, joints=tuple(joints))
-
-
-def _resized(pad: _Size, length: float, offset: float, longest: float) -> _Size:
-    longer = max(min(length * pad.length, longest), pad.length)
-    return replace(pad, length=longer, offset=offset * pad.offset)
 
 
 def _with_collars(boom: Boom) -> Boom:

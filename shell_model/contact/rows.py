@@ -60,18 +60,18 @@ class _PadReadings:
                 approach = self.over_patch(pad.patch, pad.side, pad.half)
             slide = self.at_corners(pad.rubs, pad.inner, pad.outer)
             return [(pad.side, pad.weight, approach)], slide
-        if pad.patch is not None:
-            points = []
-            for side in (pad.side,) if pad.side else _SIDES:
+        points = []
+        for side in (pad.side,) if pad.side else _SIDES:
+            if pad.patch is not None:
                 right, left = (self.over_patch(pad.patch, side, half) for half in (1, -1))
                 points.append((side, pad.weight, 0.5 * right + 0.5 * left))
-            if pad.side:
-                return points, points[0][2]
-        elif line == "across":
-            points = list(self.across())
-        else:
-            offsets = [(side, (0.0, side)) for side in _SIDES]
-            points = [(side, 1.0, self.at_corners("z", at, at)) for side, at in offsets]
+            elif line == "across":
+                points += self.across(side)
+            else:
+                at = 0.0, side
+                points.append((side, pad.weight, self.at_corners("z", at, at)))
+        if pad.side:
+            return points, points[0][2]
         # The sliding of both flanges is their mean.
         first, *others = (0.5 * weight * approach for _, weight, approach in points)
         return points, sum(others, first)
@@ -82,21 +82,20 @@ class _PadReadings:
         rows = (self.corners[n].deflection(at, direction, *offset) for n, at, offset in places)
         return self._approach(*rows)
 
-    def across(self) -> Iterator[_Point]:
-        """Return the approaches over the width of the inner section's faces. Collective."""
-        for side in _SIDES:
-            width = self._touching.face("z", side).width
-            across, shares = gauss(-0.5 * width, 0.5 * width, 8)
-            for y, share in zip(across[across > 0.0], 2.0 * shares[across > 0.0], strict=True):
-                rows = []
-                for number, stretch in zip(self._ends, self.pad.pressed, strict=True):
-                    # Points at ±y along the interval, with weights that sum to one.
-                    x, weights = gauss(stretch.start, stretch.end, _POINTS)
-                    force = 0.5 * weights * (stretch.end - stretch.start) * stretch.density(x)
-                    places = np.column_stack([np.tile(x, 2), np.repeat([y, -y], x.size)])
-                    mean = self.walls[number].mean
-                    rows.append(mean(Wall("z", side), places, np.tile(force, 2), "z"))
-                yield side, share, self._approach(*rows)
+    def across(self, side: Side) -> Iterator[_Point]:
+        """Return the approaches over the width of a face of the inner section. Collective."""
+        width = self._touching.face("z", side).width
+        across, shares = gauss(-0.5 * width, 0.5 * width, 8)
+        for y, share in zip(across[across > 0.0], 2.0 * shares[across > 0.0], strict=True):
+            rows = []
+            for number, stretch in zip(self._ends, self.pad.pressed, strict=True):
+                # Points at ±y along the interval, with weights that sum to one.
+                x, weights = gauss(stretch.start, stretch.end, _POINTS)
+                force = 0.5 * weights * (stretch.end - stretch.start) * stretch.density(x)
+                places = np.column_stack([np.tile(x, 2), np.repeat([y, -y], x.size)])
+                mean = self.walls[number].mean
+                rows.append(mean(Wall("z", side), places, np.tile(force, 2), "z"))
+            yield side, share, self._approach(*rows)
 
     def over_patch(self, patch: Patch, side: Side, half: int) -> Reading:
         """Return the mean approach over a patch. Collective.

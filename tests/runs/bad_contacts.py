@@ -57,6 +57,16 @@ CONTACTS = {
         "exponent = 2.0\npad = { length = 1.5, width = 0.06 }\n",
         "joint[1].pad.length: must be above 0 and not above the overlap of 1 m, got 1.5 m",
     ),
+    "pads on the corner with an offset": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\npad = { length = 0.1, width = 0.06, offset = 0.01, bears = 'corner' }\n",
+        "joint[1].pad.offset: the pad bears on the corner; leave offset out, or bears = 'corner'",
+    ),
+    "pads that bear on the web": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\npad = { length = 0.1, width = 0.06, bears = 'web' }\n",
+        "joint[1].pad.bears: must be 'wall' or 'corner', got 'web'",
+    ),
     "pads wider than half a flange": (
         "exponent = 2.0\n",
         "exponent = 2.0\npad = { length = 0.1, width = 0.2 }\n",

@@ -54,3 +54,22 @@ def test_the_estimate_is_that_of_the_shell(pad: PadSize, change: Callable[[Boom]
     opening = walls[::2, ::2] + walls[1::2, 1::2] - walls[::2, 1::2] - walls[1::2, ::2]
     estimated = 0.5 * np.diag(opening)
     assert estimated == pytest.approx(shell.local_compliance[::2], rel=0.03)
+
+
+@pytest.mark.slow
+def test_a_pad_on_the_corners_bends_no_wall() -> None:
+    """Reference: other code path, stations at the middles of the pads that press the corners along
+    their length; narrow pads beside the webs come near from above.
+    """
+
+    def local(boom: Boom) -> float:
+        return float(reduced(boom, 0.1, contact_tolerance=0.02).local_compliance.max())
+
+    boom = short_boom(PadSize(0.1, 0.06, bears="corner"))
+    stations = replace(boom.joints[0], stations=(9.05, 9.95), pad=None, contact_length=0.1)
+    on_corners = local(boom)
+    assert on_corners == pytest.approx(local(replace(boom, joints=(stations,))), rel=1.0e-6)
+    wide, narrow = (local(short_boom(PadSize(0.1, width))) for width in (0.06, 0.005))
+    assert on_corners < narrow < wide
+    assert on_corners < 0.1 * wide
+    assert not contact_compliance(boom).any()
