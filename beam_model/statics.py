@@ -68,9 +68,12 @@ class Elements:
 
     Args:
         boom: with joints bonded or with play.
+        count: least number of elements of the longest segment. Section forces are linear within
+            half of an element, so stresses need more of them.
     """
 
     boom: Boom
+    count: int = 1
 
     @cached_property
     def segments(self) -> list[SegmentModel]:
@@ -91,13 +94,18 @@ class Elements:
 
     @property
     def _kind(self) -> tuple[float, Theory]:
-        """Length in m, the longest except under axial forces and with tapers, and theory."""
-        segments = self.boom.segments
-        longest = max(segment.length for segment in segments)
+        """Longest length in m, smaller under axial forces and with tapers, and theory."""
+        segments, count = self.boom.segments, self.count
         if self.boom.compressed or any(one.head_section is not None for one in segments):
-            longest /= COMPRESSED_ELEMENTS
-        known = all(segment.section is not None for segment in segments)
-        return longest, "timoshenko" if known else "euler-bernoulli"
+            count = max(count, COMPRESSED_ELEMENTS)
+        longest = max(segment.length for segment in segments) / count
+        return longest, static_theory(self.boom)
+
+
+def static_theory(boom: Boom) -> Theory:
+    """Return the theory of a boom's elements: Timoshenko's if all sections are known."""
+    known = all(segment.section is not None for segment in boom.segments)
+    return "timoshenko" if known else "euler-bernoulli"
 
 
 def static_state(
@@ -105,7 +113,7 @@ def static_state(
     elements: Elements | None = None,
     walls: float = 1.0,
 ) -> StaticState:
-    """Return the static state of a boom of beam elements, Timoshenko's if all sections are known.
+    """Return the static state of a boom of beam elements of :func:`static_theory`.
 
     Walls bend under pads, see :mod:`beam_model.wall_compliance`.
 

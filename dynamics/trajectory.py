@@ -269,7 +269,7 @@ class Trajectory:
 
         >>> fine, coarse = (pt.BeamElements(boom, element_length=l) for l in (0.5, 1.0))
         >>> print(f"{100.0 * fine.simulate(0.1).compare(coarse.simulate(0.1)).largest:.1f} %")
-        0.3 %
+        1.1 %
 
         Args:
             other: at the same times.

@@ -33,6 +33,13 @@ from runs.pipeline.drives import (
     stick_slip_lines,
 )
 from runs.pipeline.estimates import Preview, preview_cost
+from runs.pipeline.largest_loads import (
+    beam_note,
+    overload_cautions,
+    static_extremes,
+    static_table,
+)
+from runs.pipeline.load_table import load_table
 from runs.pipeline.pad_walls import pad_wall_lines
 from runs.pipeline.proportions import (
     buckling_cautions,
@@ -66,6 +73,8 @@ def print_check(declared: CheckedCase, console: Console) -> None:
     """Print the tables of a checked case, and its static state in sentences at the end."""
     case, boom, preview = declared.case, declared.boom, Preview(declared)
     found = statics(case, boom)
+    shown = boom if found is None else found.with_play.boom
+    extremes = [] if found is None else static_extremes(case, shown)
     print_lines = partial(console.print, markup=False, highlight=False)
     tables = [
         _segments(case, boom),
@@ -73,11 +82,13 @@ def print_check(declared: CheckedCase, console: Console) -> None:
         _joints(case, boom),
         _models(case, boom),
         _masses(boom, case.system),
+        load_table(case, boom),
         axial_forces(boom, found),
         *([_buckling(declared)] if boom.compressed else []),
         _damping_ratios(preview),
         *([_reactions(found.with_play, case.system)] if found else []),
         *([_cylinders(found.with_play, case.system)] if found else []),
+        static_table(case, shown, extremes),
     ]
     print_lines(case.title)
     for table in tables:
@@ -92,6 +103,7 @@ def print_check(declared: CheckedCase, console: Console) -> None:
     lines += [
         *actions.series_notes(case),
         *proportion_cautions(case, boom),
+        *overload_cautions(extremes),
         *stick_slip_cautions(drives, case.system),
     ]
     for line in (*lines, f"A run may take {preview_cost(preview)}."):
@@ -337,10 +349,8 @@ def _reactions(state: StaticState, system: System) -> Table:
         Column("moment", moments, ".4g", "kN m"),
         Column("compression", depths, ".3g", "mm"),
     ]
-    known = all(segment.section is not None for segment in state.boom.segments)
-    theory = "Timoshenko" if known else "Euler-Bernoulli"
-    notes = [f"Of the boom as {theory} beam elements, exact in statics; no model of the case."]
-    return Table("Reactions of supports and contacts at rest, t = 0", columns, notes)
+    title = "Reactions of supports and contacts at rest, t = 0"
+    return Table(title, columns, [beam_note(state.boom)])
 
 
 def _cylinders(state: StaticState, system: System) -> Table:

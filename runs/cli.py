@@ -287,7 +287,7 @@ def frequencies(
 
 @app.command()
 def check(case: CaseFile, picture: Picture = None) -> int:
-    """Check a case file, and print its masses, static state and first frequency."""
+    """Check a case file, and print its loads, static state, stresses and first frequency."""
     from runs.case.reading import load_checked
     from runs.check import print_check
 

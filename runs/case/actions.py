@@ -62,7 +62,7 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
     if case.gravity is not None:
         given += _inertia_loads(-gravity_across(case.gravity), "z", Step(), segments)
     for number, base in enumerate(case.base, start=1):
-        history = _history(f"base[{number}]", base)
+        history = history_of(f"base[{number}]", base)
         given += _inertia_loads(-base.acceleration, base.direction, history, segments)
     for name, velocity in case.start.velocity.items():
         given += _initial_momentum(index_of("start.velocity", name, segments), velocity, segments)
@@ -280,7 +280,7 @@ def index_of(where: str, name: str, segments: Sequence[Segment | SegmentTable]) 
 
 
 def _load_history(where: str, table: LoadTable) -> History | ReleasedLoad:
-    history = _history(where, table)
+    history = history_of(where, table)
     if table.released and not isinstance(history, Step):
         raise BoomError(
             f"{where}.released",
@@ -290,7 +290,12 @@ def _load_history(where: str, table: LoadTable) -> History | ReleasedLoad:
     return ReleasedLoad() if table.released else history
 
 
-def _history(where: str, table: HistoryTable) -> History:
+def history_of(where: str, table: HistoryTable) -> History:
+    """Return the history of a load or of an acceleration.
+
+    Raises:
+        BoomError: keys contradict one another, or the table is invalid.
+    """
     given = [key for key in ("ramp", "frequency", "table") if getattr(table, key) is not None]
     if len(given) > 1:
         raise BoomError(f"{where}.{given[1]}", f"{given[0]} is given; leave one of them out")

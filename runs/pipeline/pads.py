@@ -146,23 +146,28 @@ def _of_a_side(both: float, law: ContactLaw) -> float:
     return max(both, at_rest + 0.5 * both)
 
 
-def largest_pad_force(joint: Joint, direction: Direction, sides: Sequence[float]) -> float | None:
-    """Return the largest force in N on a pad, from the forces on both sides; None without pads."""
-    if not joint.padded:
-        return None
-    pairs = (_hardest(joint, direction, *of) for of in zip(SIGNS, sides, strict=True))
-    return max(pairs) / PADS_OF_SIDE
+def pressed_pads(
+    joint: Joint, direction: Direction, sides: Sequence[float]
+) -> list[tuple[PadSize, float]]:
+    """Return each pad of a given size at a station, and the force in N on it.
 
-
-def _hardest(joint: Joint, direction: Direction, side: Side, force: float) -> float:
-    """Return the largest force in N on a pair of pads; pairs with more shim close first."""
-    pairs = sorted(joint.pads_of(direction, side), key=lambda pair: -pair[2])
-    shares, shims = (np.array([pair[k] for pair in pairs]) for k in (1, 2))
-    own = [pad.stiffness for pad in joint.pads if pad.touches(direction, side)]
-    stiffness = PADS_OF_SIDE * sum(own) or 1.0
-    # Each further pair in contact reduces the compression of the pairs before it.
-    ways = (force / stiffness - np.cumsum(shares * shims)) / np.cumsum(shares)
-    return float(stiffness * (shares * (ways.min() + shims)).max())
+    Args:
+        joint: the joint of the station.
+        direction: direction of the forces.
+        sides: forces of both sides in N, not negative.
+    """
+    found = []
+    for side, force in zip(SIGNS, sides, strict=True) if joint.padded else ():
+        # Pairs with more shim close first.
+        pairs = sorted(joint.pads_of(direction, side), key=lambda pair: -pair[2])
+        shares, shims = (np.array([pair[k] for pair in pairs]) for k in (1, 2))
+        own = [pad.stiffness for pad in joint.pads if pad.touches(direction, side)]
+        stiffness = PADS_OF_SIDE * sum(own) or 1.0
+        # Each further pair in contact reduces the compression of the pairs before it.
+        ways = (force / stiffness - np.cumsum(shares * shims)) / np.cumsum(shares)
+        forces = stiffness * (shares * np.maximum(ways.min() + shims, 0.0)) / PADS_OF_SIDE
+        found += [(pair[0], float(one)) for pair, one in zip(pairs, forces, strict=True)]
+    return [(pad, force) for pad, force in found if pad is not None]
 
 
 def side_force(law: ContactLaw, side: int, gap: float) -> float:

@@ -26,7 +26,7 @@ from geometry.contact_places import contact_centres
 from geometry.cylinder import forces
 from geometry.telescoping import places, travel
 from runs.case.drive import resolving_times
-from runs.pipeline.pads import SIGNS, largest_pad_force, side_force
+from runs.pipeline.pads import SIGNS, pressed_pads, side_force
 from runs.pipeline.section_forces import rounded, section_forces
 
 # Distance from the largest extension, as a fraction of it, that counts as zero.
@@ -81,6 +81,8 @@ class StationLoad:
         pad: largest force on a pad of the station in N, not negative; stiffness and shims determine
             the distribution over the pads of a side. None without pads.
         depth: largest compression of a contact of the station in m.
+        pressure: largest pressure on a pad of the station in Pa; None without pads.
+        utilisation: largest utilisation of the allowable pressure; None where none is given.
     """
 
     place: str
@@ -89,6 +91,8 @@ class StationLoad:
     force: float
     pad: float | None
     depth: float
+    pressure: float | None = None
+    utilisation: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -253,13 +257,21 @@ def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[St
         sides = [
             sum(side_force(system.laws[row], side, gaps[row]) for row in here) for side in SIGNS
         ]
+        pads = [] if joint is None else pressed_pads(joint, direction, sides)
+        used = [
+            force / pad.area / pad.allowable_pressure
+            for pad, force in pads
+            if pad.allowable_pressure is not None
+        ]
         yield StationLoad(
             place=name,
             x=x,
             direction=direction,
             force=sides[0] - sides[1],
-            pad=None if joint is None else largest_pad_force(joint, direction, sides),
+            pad=max((force for _, force in pads), default=None),
             depth=max((system.laws[row].depth(float(gaps[row])) for row in here), default=0.0),
+            pressure=max((force / pad.area for pad, force in pads), default=None),
+            utilisation=max(used, default=None),
         )
 
 

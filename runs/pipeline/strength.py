@@ -15,10 +15,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from operator import attrgetter
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from dynamics.line import Line, Quantity
 from geometry.arrays import Array
@@ -26,6 +25,9 @@ from geometry.boom import Boom, Segment
 from geometry.section import Section
 from runs.case.schema import LifeTable
 from runs.pipeline.section_forces import rounded
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # Numbers of cycles: reference of a category, constant-amplitude limit, cut-off limit.
 NAMED, LIMIT, CUT_OFF = 2.0e6, 5.0e6, 1.0e8

@@ -149,7 +149,8 @@ FORMS = {
     "missing section": (
         "height_to_width = 1.5\n",
         "",
-        "segment[1].section: missing, and 'timoshenko' needs it; give section or height_to_width",
+        "segment[1].section: missing, and 'timoshenko' needs it; give section or height_to_width, "
+        "or theory = 'euler-bernoulli' in the model",
     ),
     "text for a number": (
         "duration = 0.6",

@@ -42,6 +42,7 @@ ELEMENTS = """
 [[model]]
 name = "beam-fe"
 kind = "finite-element"
+theory = "euler-bernoulli"
 element_length = 1.0
 """
 

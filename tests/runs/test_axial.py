@@ -35,11 +35,13 @@ magnitude = -200.0
 [[model]]
 name = "beam"
 kind = "finite-element"
+theory = "euler-bernoulli"
 """
 TIED = """
 [[model]]
 name = "tied"
 kind = "finite-element"
+theory = "euler-bernoulli"
 tied = true
 """
 MAST = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
@@ -187,7 +189,14 @@ def test_says_what_cannot_press(tmp_path: Path, text: str, line: str) -> None:
 TAPERED = """section = { height = 0.7, width = 0.3, flange = 0.012, web = 0.012 }
 head_section = { height = 0.5, width = 0.3, flange = 0.006, web = 0.006 }
 """
-PRESSED = '[[axial]]\nforce = 3e5\n\n[[model]]\nname = "beam"\nkind = "finite-element"\n'
+PRESSED = """[[axial]]
+force = 3e5
+
+[[model]]
+name = "beam"
+kind = "finite-element"
+theory = "euler-bernoulli"
+"""
 
 
 def test_a_tapered_boom_is_pressed_most_where_it_is_drawn_to(tmp_path: Path) -> None:

@@ -106,6 +106,7 @@ exponent = 1.0
 [[model]]
 name = "beam"
 kind = "finite-element"
+theory = "euler-bernoulli"
 """,
         encoding="utf-8",
     )

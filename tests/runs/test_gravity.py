@@ -31,6 +31,7 @@ section = {{ height = 0.4, width = 0.3, flange = 0.01, web = 0.008 }}
 [[model]]
 name = "beam"
 kind = "finite-element"
+theory = "euler-bernoulli"
 element_length = 2.5
 rotary_inertia = false
 {rest}

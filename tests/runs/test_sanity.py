@@ -39,6 +39,7 @@ pad = {{ length = 0.12, width = 0.05, thickness = 0.012 }}
 [[model]]
 name = "beam"
 kind = "finite-element"
+theory = "euler-bernoulli"
 """
 PLAY = "play = 0.003\npad = { length = 0.12, width = 0.05, thickness = 0.012 }\n"
 SHIMMED = """play = 0.003

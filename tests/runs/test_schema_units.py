@@ -104,11 +104,13 @@ mass = 0.03
 [[model]]
 name = "beam"
 kind = "finite-element"
+theory = "euler-bernoulli"
 element_length = 0.25
 
 [[model]]
 name = "soft"
 kind = "finite-element"
+theory = "euler-bernoulli"
 contact = {{ force_table = [[1e-4, 900.0], [2e-4, 2500.0]] }}
 """
 

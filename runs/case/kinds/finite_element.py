@@ -44,9 +44,9 @@ class BeamElements(CalibratedTable):
     """the kind of model"""
     element_length: Length = 0.5
     """the greatest length of an element in m"""
-    theory: Literal["euler-bernoulli", "timoshenko"] = "euler-bernoulli"
-    """the beam theory; a calibrated beam is always shear-flexible, with the rotary inertia of its
-    plates"""
+    theory: Literal["euler-bernoulli", "timoshenko"] = "timoshenko"
+    """the beam theory, Timoshenko's unless given; a calibrated beam is always shear-flexible,
+    with the rotary inertia of its plates"""
     rotary_inertia: Flag = True
     """whether the rotary inertia is kept"""
     tied: Flag = False
@@ -61,6 +61,10 @@ class BeamElements(CalibratedTable):
     @property
     def needs_plates(self) -> bool:
         return self.theory == "timoshenko" or super().needs_plates
+
+    @property
+    def instead_of_plates(self) -> str:
+        return "" if super().needs_plates else ", or theory = 'euler-bernoulli' in the model"
 
     @property
     def bonded(self) -> bool:

@@ -178,6 +178,11 @@ class ModelTable(CaseTable):
         """True if the model needs the sections of the segments."""
         return self.meshed
 
+    @property
+    def instead_of_plates(self) -> str:
+        """Another remedy where sections are missing, as the end of a sentence; empty for none."""
+        return ""
+
     def with_shells(self, update: Mapping[str, object]) -> Self:
         """Return the model with an update of its shell, or of the shell that calibrates it."""
         return self.model_copy(update=update) if self.meshed else self
@@ -224,7 +229,8 @@ class ModelTable(CaseTable):
             if self.needs_plates and segment.section is None:
                 raise BoomError(
                     f"segment[{number}].section",
-                    f"missing, and {self.name!r} needs it; give section or height_to_width",
+                    f"missing, and {self.name!r} needs it; give section or height_to_width"
+                    f"{self.instead_of_plates}",
                 )
         driven = [i for i, j in enumerate(joined.boom.joints, start=1) if j.drive is not None]
         if driven and self.cannot_telescope is not None:

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Statics, stresses and utilisations of a boom at t = 0 and under its largest loads.
+
+The boom consists of beam elements whose walls bend under pads; drives stay where they are at t = 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from beam_model.lines import lines
+from beam_model.statics import Elements, static_state, static_theory
+from geometry.boom import Boom
+from runs.case.schema import Case
+from runs.case.units import System
+from runs.pipeline.section_forces import section_forces, with_cylinders
+from runs.pipeline.static_results import StaticResult, instants, positions, static_result
+from runs.pipeline.strength import Fibres, largest_stresses
+from runs.pipeline.utilisation import Utilisation
+from runs.report.formatting import amount, number
+from runs.report.tables import Column, Table
+
+# Elements of the longest segment: stresses under a uniform load are within 0.1 %.
+_ELEMENTS = 20
+
+
+class StaticExtreme(NamedTuple):
+    """A number at rest at t = 0 and where it is largest, under the loads of a time.
+
+    Args:
+        what: its name, with the place.
+        unit: SI unit.
+        initial: value at t = 0.
+        largest: value with the largest absolute value.
+        time: its time in s.
+        utilisation: utilisation of a strength by the largest value; None without a strength.
+    """
+
+    what: str
+    unit: str
+    initial: float
+    largest: float
+    time: float
+    utilisation: Utilisation | None = None
+
+
+def static_extremes(case: Case, boom: Boom) -> list[StaticExtreme]:
+    """Return the extremes of tip, stresses, pads, contacts and cylinders at rest.
+
+    Args:
+        case: a checked case.
+        boom: as its first model with play sees it, or without play if all models are.
+
+    Raises:
+        NumericsError: it has no rest at t = 0.
+    """
+    boom = replace(boom, joints=tuple(replace(joint, drive=None) for joint in boom.joints))
+    elements = Elements(boom, _ELEMENTS)
+    system = static_state(boom, elements).system
+    own = lines(boom, elements.segments)
+    # Springs of walls follow the coordinates of the segments.
+    basis = np.eye(own[0].rows["deflection"].shape[1], system.num_modes)
+    along = with_cylinders(boom, system, [line.on(basis) for line in own])
+    found = positions(system, instants(system, case.time.duration))
+    rests = [static_result(boom, system, along, *rest) for rest in found.items()]
+
+    extremes = [_extreme("tip", "m", rests, [rest.tip for rest in rests])]
+    if boom.spatial:
+        lateral = [rest.tip_lateral or 0.0 for rest in rests]
+        extremes.append(_extreme("tip to the side", "m", rests, lateral))
+    states, time = np.array([*found.values()]), np.array([*found])
+    for number_of, (segment, line) in enumerate(zip(boom.segments, along, strict=True)):
+        if (fibres := Fibres.of(segment, line)) is None:
+            continue
+        curves = section_forces(boom, number_of, line, states, time)
+        still = {name: values[:1] for name, values in curves.items()}
+        fibre, _ = largest_stresses(segment, fibres, curves, still, time)
+        stress = abs(fibre.stress)
+        used = Utilisation("outer fibre", segment.name, fibre.x, stress, fibre.utilisation)
+        what = f"stress, {segment.name} at {case.system.text(fibre.x, 'm', 5)}"
+        initial = fibre.at_rest or 0.0
+        extremes.append(StaticExtreme(what, "Pa", initial, stress, fibre.time, used))
+    extremes += _at_stations(boom, rests, case.system)
+    for name in rests[0].cylinders:
+        forces = [rest.cylinders[name] for rest in rests]
+        extremes.append(_extreme(name.replace("_", " "), "N", rests, forces))
+    return extremes
+
+
+def _extreme(
+    what: str,
+    unit: str,
+    rests: Sequence[StaticResult],
+    values: Sequence[float],
+    used: Sequence[Utilisation] = (),
+) -> StaticExtreme:
+    step = int(np.abs(values).argmax())
+    largest = values[step], rests[step].time
+    return StaticExtreme(what, unit, values[0], *largest, used[step] if used else None)
+
+
+def _at_stations(
+    boom: Boom, rests: Sequence[StaticResult], system: System
+) -> Iterator[StaticExtreme]:
+    inner = {place: one.inner for one in boom.joints for place in one.stations}
+    for number_of, station in enumerate(rests[0].stations):
+        loads = [rest.stations[number_of] for rest in rests]
+        to_side = " to the side" if station.direction == "y" else ""
+        where = f"{system.text(station.x, 'm', 5)}{to_side}"
+        if station.pressure is None:
+            forces = [load.force for load in loads]
+            yield _extreme(f"contact force at {where}", "N", rests, forces)
+            continue
+        name = boom.segments[inner[station.x]].name
+        pressures = [load.pressure or 0.0 for load in loads]
+        used = [
+            Utilisation("pad", name, load.x, load.pressure or 0.0, load.utilisation)
+            for load in loads
+        ]
+        yield _extreme(f"pad pressure at {where}", "Pa", rests, pressures, used)
+
+
+def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> Table:
+    """Return the table of extremes at rest, in the units of the case.
+
+    Args:
+        case, boom: those of :func:`static_extremes`.
+        extremes: its result.
+    """
+    used = [one.utilisation.value if one.utilisation else None for one in extremes]
+    vary = any(one.time > 0.0 for one in extremes)
+    columns = [
+        Column("", [one.what for one in extremes]),
+        Column("t = 0", [_in_units(one.initial, one.unit, case.system) for one in extremes]),
+    ]
+    if vary:
+        largest = [_in_units(one.largest, one.unit, case.system) for one in extremes]
+        columns += [
+            Column("largest", largest),
+            Column("loads of\ns", [f"{one.time:.4g}" for one in extremes]),
+        ]
+    if any(used):
+        columns.append(Column("utilisation", used, ".3g", "%"))
+    more = ["Drives stay where they are at t = 0."] if boom.driven else []
+    title = "Rest under the loads of t = 0" + (" and under the largest loads" if vary else "")
+    return Table(title, columns, [beam_note(boom), *more])
+
+
+def beam_note(boom: Boom) -> str:
+    """Return a sentence that names the model of the statics of a boom."""
+    theory = "Timoshenko" if static_theory(boom) == "timoshenko" else "Euler-Bernoulli"
+    walls = ", on walls that bend under pads" if any(one.padded for one in boom.joints) else ""
+    return f"Of the boom as {theory} beam elements{walls}; no model of the case."
+
+
+def _in_units(value: float, unit: str, system: System) -> str:
+    if system.name == "SI":
+        return amount(value, unit)
+    return f"{number(system.of(value, unit), 3)} {system.label(unit)}"
+
+
+def overload_cautions(extremes: Sequence[StaticExtreme]) -> list[str]:
+    """Return a caution for each strength that the boom exceeds at rest."""
+    return [
+        f"caution: at rest under the loads of t = {one.time:.4g} s the utilisation is {used}"
+        for one in extremes
+        if (used := one.utilisation) is not None and (used.value or 0.0) > 1.0
+    ]

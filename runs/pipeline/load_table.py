@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The table of the loads of a case, with their histories and largest values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.boom import Boom
+from geometry.load import Load, PartialLoad
+from runs.case.actions import gravity_across, gravity_along, history_of, thrusts
+from runs.case.drive import resolving_times
+from runs.case.schema import Case, HistoryTable, LoadTable
+from runs.case.units import System
+from runs.report.formatting import number
+from runs.report.tables import Column, Table
+
+_CONSTANT, _ALL = "constant", "all masses"
+# Direction of axial forces, which are positive where they compress.
+_AXIAL = "to the base"
+
+
+class _Row(NamedTuple):
+    """A load: its key, place, direction and history, largest value in an SI unit, and time in s."""
+
+    key: str
+    place: str
+    direction: str
+    history: str
+    largest: float
+    unit: str
+    time: float | None = None
+
+
+def load_table(case: Case, boom: Boom) -> Table:
+    """Return the table of all loads from t = 0 on, in the units of the case.
+
+    Args:
+        case: a checked case.
+        boom: that of the case.
+    """
+    rows, system = list(_rows(case, boom)), case.system
+    columns = [
+        Column("load", [row.key for row in rows]),
+        Column("on", [row.place for row in rows]),
+        Column("direction", [row.direction for row in rows]),
+        Column("history", [row.history for row in rows]),
+        Column("largest", [_in_units(row.largest, row.unit, system) for row in rows]),
+        Column("at\ns", ["" if row.time is None else f"{row.time:.4g}" for row in rows]),
+    ]
+    return Table("Loads", columns)
+
+
+def _in_units(value: float, unit: str, system: System) -> str:
+    return f"{number(system.of(value, unit), 4)} {system.label(unit)}"
+
+
+def _rows(case: Case, boom: Boom) -> Iterator[_Row]:
+    if case.gravity is not None:
+        mass = sum(segment.mass for segment in boom.segments)
+        for direction, acceleration in (
+            ("z", -gravity_across(case.gravity)),
+            (_AXIAL, gravity_along(case.gravity)),
+        ):
+            if acceleration:
+                yield _Row("gravity", _ALL, direction, _CONSTANT, acceleration * mass, "N")
+    for i, segment in enumerate(case.segments, start=1):
+        for key, direction in (("load", "z"), ("lateral_load", "y")):
+            if load := getattr(segment, key):
+                key = f"segment[{i}].{key}"
+                yield _Row(key, segment.name, direction, _CONSTANT, load, "N/m")
+    for i, (table, load) in enumerate(zip(case.loads, boom.loads, strict=False), start=1):
+        place = _place(boom, load, case.system)
+        direction = f"{table.direction}, moment" if table.moment else table.direction
+        yield _varying(f"load[{i}]", place, direction, table, case.time.duration)
+    if case.payload is not None and case.gravity is None and case.payload.gravity != 0.0:
+        weight = boom.loads[len(case.loads)]
+        place = _place(boom, weight, case.system)
+        yield _Row("payload", place, "z", _CONSTANT, weight.magnitude, "N")
+    for i, base in enumerate(case.base, start=1):
+        yield _varying(f"base[{i}]", _ALL, base.direction, base, case.time.duration)
+    for i, thrust in enumerate(thrusts(case, boom.segments), start=1):
+        name = boom.segments[thrust.segment].name
+        place = f"{name} at {case.system.text(thrust.x, 'm', 5)}"
+        yield _Row(f"axial[{i}]", place, _AXIAL, _CONSTANT, thrust.force, "N")
+
+
+def _place(boom: Boom, load: Load, system: System) -> str:
+    name = boom.segments[load.segment].name
+    if isinstance(load, PartialLoad):
+        start, end = (system.of(x, "m") for x in load.span)
+        return f"{name}, {start:.5g}–{end:.5g} {system.label('m')}"
+    return name if load.x is None else f"{name} at {system.text(load.x, 'm', 5)}"
+
+
+def _varying(key: str, place: str, direction: str, table: HistoryTable, duration: float) -> _Row:
+    """Return a load with a history, at its largest value within the run of a duration in s."""
+    unit, full = table.declared_units(table.amount)[0], getattr(table, table.amount)
+    history = history_of(key, table)
+    times = resolving_times([history], duration)
+    values = history(times)
+    step = int(np.abs(values).argmax())
+    time = float(times[step]) if np.ptp(values) else None
+    said = _CONSTANT
+    if isinstance(table, LoadTable) and table.released:
+        said = "until t = 0"
+    elif table.ramp is not None:
+        said = f"ramp of {table.ramp:g} s"
+    elif table.frequency is not None:
+        said = f"sine of {table.frequency:g} Hz"
+    elif table.table is not None:
+        said = f"{len(table.table)} values"
+    return _Row(key, place, direction, said, full * float(values[step]), unit, time)
