@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Reader of two columns of a CSV file from an instrument, a program or a spreadsheet.
 
-Commas, semicolons or tabs separate cells, a comma within a number is a decimal comma, and text
-after a # is a comment. A heading names the columns, each with its unit after the name, in brackets,
-after a slash or ``in``, or in a line of units below.
+Commas, semicolons, tabs or spaces separate cells, a comma within a number is a decimal comma, and
+text after a # is a comment. A heading names the columns, each with its unit after the name, in
+brackets, after a slash or ``in``, or in a line of units below.
 """
 
 from __future__ import annotations
@@ -24,6 +24,8 @@ from runs.case.user_files import read_any_text
 from runs.process.terminal import shown
 
 _SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
+# Between two cells: spaces that do not stand beside a comma, before a unit or after a slash.
+_SPACES = re.compile(r"(?<![\s,/])\s+(?![\s,\[(/])")
 _HEADED = re.compile(r"(.*?)\s*(?:\[(.+)\]|\((.+)\)|/(.+)|\bin (.+))")
 
 
@@ -158,6 +160,10 @@ def _rows(text: str) -> list[_Row]:
         del lines[0]
     else:
         separator = next((mark for mark in ";\t" if lines and mark in lines[0][1]), ",")
+        # Headings may have spaces between words; the last line is one of numbers.
+        last = _SPACES.split(lines[-1][1]) if lines else []
+        if separator == "," and len(last) > 1 and all(map(_is_number, last)):
+            return [_Row(number, _SPACES.split(line)) for number, line in lines]
     return [
         _Row(number, [cell.strip() for cell in next(csv.reader([cut], delimiter=separator))])
         for number, line in lines

@@ -45,6 +45,13 @@ def case_of(csv: str, keys: str, key: str = "load") -> Case:
         ("t / s;F / kN\n0;0,0005\n0,25;-1,5\n", "x = 19.0"),
         ("time in s;wind load in N/mm\n0;0,0005\n0,25;-1,5\n", ""),
         ("t;M\nms;kNm\n0;0,0005\n250;-1,5\n", "x = 19.0\nmoment = true"),
+        ("0 0.5\n0.25 -1500\n", "x = 19.0\nmagnitude = 1.0"),
+        ("t  [ms]   F [kN] # of a logger\n  0   0,0005\n250  -1,5\n", "x = 19.0"),
+        ("t / s  F / kN\n0 5e-4\n0.25 -1.5\n", "x = 19.0"),
+        (
+            "t F v\ns kN m/s\n0 0.0005 30\n0.25 -1.5 31\n",
+            'x = 19.0\ncolumns = ["t", "F"]',
+        ),
         ("t [s],gust [%]\n0,50\n0.25,-150000\n", "magnitude = 1.0"),
         (
             "no,F (N),speed (km/h),t (s)\n1,0.5,30,0\n2,-1500,31,0.25\n",
