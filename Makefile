@@ -50,7 +50,7 @@ snapshots: $(REPORTS) ## pictures of the verify cases with a shell
 gallery: $(REPORTS) $(SWINGS) ## the pictures of docs/gallery.md, from the verify cases
 	$(BIN)/python -m studies.gallery
 
-bench: $(READY) ## what integrators and reductions cost, into runs/out/bench
+bench: $(READY) ## what integrators, reductions and other programs cost, into runs/out/bench
 	$(BIN)/python -m studies.cost.bench
 
 convergence: $(READY) ## verification: benchmarks, refinements, other codes; into runs/out/convergence
@@ -64,7 +64,7 @@ validity: $(READY) ## where a beam may stand for the shell, over friction, play 
 	    --vary joint.friction=0,0.2 --vary joint.play=0:0.02:5 --vary gravity.acceleration=1,2,5,10 \
 	    --out runs/out/validity
 
-other-codes: build/other-codes/ready ## OpenSees and sectionproperties, beside which tests hold results
+other-codes: build/other-codes/ready ## OpenSees, sectionproperties and Exudyn, beside which tests hold results
 
 test: $(READY) ## all tests
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
@@ -124,7 +124,7 @@ $(SWINGS): runs/cases/drawn-out.toml $(SOURCES) | $(READY)
 
 # In an environment of their own: DOLFINx is built against another numpy than they need.
 build/other-codes/ready: .ci/other-codes.txt | $(READY)
-	@echo "installing OpenSees and sectionproperties into $(@D) ..."
+	@echo "installing OpenSees, sectionproperties and Exudyn into $(@D) ..."
 	@$(BIN)/python -m venv --clear $(@D)
 	@$(@D)/bin/python -m pip install --quiet --requirement $<
 	@touch $@

@@ -13,7 +13,8 @@ import pytest
 
 PYTHON = Path(__file__).parents[1] / "build" / "other-codes" / "bin" / "python"
 INSTALLED = pytest.mark.skipif(
-    not PYTHON.exists(), reason="OpenSees and sectionproperties are missing: make other-codes"
+    not PYTHON.exists(),
+    reason="OpenSees, sectionproperties and Exudyn are missing: make other-codes",
 )
 
 

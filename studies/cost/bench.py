@@ -40,6 +40,7 @@ from studies.cost.generic_solvers import (
     generic,
     match_tolerance,
 )
+from studies.cost.other_programs import PROBLEMS, other_programs
 from studies.cost.telescoping import MODELS, telescoping
 from studies.cost.timing import NOISE, time_in_turns, write_tables
 from studies.motions import OUTPUT_STEP, friction_case, gap_system, model_of
@@ -84,6 +85,7 @@ class Sizes:
     members: int = 256  #: of the ensemble of series
     shell_members: int = 32  #: of the ensemble of shells, 0 for none
     telescoping: Sequence[str] = MODELS  #: models that telescope
+    problems: Sequence[str] = tuple(PROBLEMS)  #: motions in other programs
 
 
 class Method(NamedTuple):
@@ -233,6 +235,7 @@ def bench(sizes: Sizes, folder: Path, console: Console) -> None:
         partial(compare, case, sizes),
         partial(ensembles, case, sizes),
         partial(telescoping, sizes.telescoping, sizes.duration),
+        partial(other_programs, sizes.most, sizes.budget, sizes.problems),
     ]
     machine = {"cores": len(os.sched_getaffinity(0)), "python": platform.python_version()}
     data: dict[str, Any] = {"sizes": asdict(sizes), "machine": machine}

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from rich.console import Console
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from runs.case import reading as case_file
+from studies.cost import other_programs
 from studies.cost.bench import (
     LEVELS,
     PAPER,
@@ -28,6 +30,7 @@ from studies.cost.generic_solvers import (
     generic,
     match_tolerance,
 )
+from tests.other_codes import INSTALLED
 
 SIZES = Sizes(
     duration=0.2,
@@ -41,6 +44,7 @@ SIZES = Sizes(
     members=3,
     shell_members=0,
     telescoping=("kantorovich-5",),
+    problems=(),
 )
 
 
@@ -105,10 +109,26 @@ def test_every_table_is_complete(folder: Path, data: Any) -> None:
         "3 five-term series, to a tolerance",
     }
     text = (folder / "bench.md").read_text(encoding="utf-8")
-    assert text.count("\n## ") == 4
+    assert text.count("\n## ") == 5
     for name in ("time step", *SOLVERS):
         assert f"\n| {name} |" in text
     assert sorted(path.name for path in folder.iterdir()) == ["bench.json", "bench.md"]
+
+
+def test_a_program_that_is_missing_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(other_programs, "OTHER_CODES", Path("missing"))
+    table = other_programs.other_programs(1, 1.0, ["telescoped beams"])
+    assert table.rows == []
+    assert table.notes[1:] == ["Exudyn is left out: not installed; make other-codes installs it."]
+
+
+@pytest.mark.slow
+@INSTALLED
+def test_exudyn_moves_telescoped_beams_alike() -> None:
+    """Reference: other code; its beams and its scheme err by 0.4 % of the range at this step."""
+    problem = replace(other_programs.telescoped_beams(), steps=[5.0e-5])
+    ((_, off, _),) = problem.elsewhere()
+    assert 1.0e-4 < off < 0.01
 
 
 @pytest.mark.slow

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The time step beside other programs for motions with contact, at equal error.
+
+Each program runs a script of this folder in an interpreter of its own. A program that is not
+installed is left out, with the reason.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dynamics.contact import PowerContact
+from dynamics.integrator import FixedStep
+from dynamics.motion import Motion
+from geometry.arrays import Array
+from runs.case.build import build_boom
+from runs.case.kinds.finite_element import BeamElements
+from runs.case.kinds.model import of_kind
+from runs.report.tables import Cell, Table
+from studies.cost.timing import time_in_turns
+from studies.motions import OUTPUT_STEP, friction_case, gap_system, model_of, without_friction
+from studies.reference_models import impacting_beam
+
+FOLDER = Path(__file__).parent
+OTHER_CODES = FOLDER.parents[1] / "build" / "other-codes" / "bin" / "python"
+
+# Largest errors of both, as a part of the range of the tip.
+LEVELS = (0.02, 0.004)
+STEPS = (1.0e-3, 5.0e-4, 2.0e-4, 1.0e-4, 5.0e-5, 2.0e-5, 1.0e-5)
+# A contact of this stiffness in N/m and this damping in s/m stands for the restitution 0.
+SOFT = PowerContact(1.0e7, 1.0, damping=5.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """Another program, and where it is."""
+
+    name: str
+    module: str  #: of Python
+    python: Path  #: interpreter that has it
+    remedy: str  #: how to install it
+
+    @property
+    def installed(self) -> bool:
+        """Whether the interpreter can import it."""
+        try:
+            command = [str(self.python), "-c", f"import {self.module}"]
+            return subprocess.run(command, capture_output=True, check=False).returncode == 0
+        except FileNotFoundError:
+            return False
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One motion in both programs."""
+
+    what: str
+    program: Program
+    script: str  #: of this folder, which reads ``given`` and ``steps`` and prints its runs
+    given: Mapping[str, Any]
+    steps: Sequence[float]  #: of the other program in s, falling
+    move: Callable[[float], Array]  #: our places (num_times, num_observed) with a step in s
+    exact: Array  #: the same, converged
+
+    def off(self, places: Array) -> float:
+        """Return the largest error of places as a part of the range of the tip, the last one."""
+        return float(np.abs(places - self.exact).max() / np.ptp(self.exact[:, -1]))
+
+    def elsewhere(self) -> list[tuple[float, float, list[float]]]:
+        """Return step, error and wall seconds of each run of the other program."""
+        done = subprocess.run(
+            [str(self.program.python), str(FOLDER / self.script)],
+            input=json.dumps({**self.given, "steps": self.steps}),
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        runs = json.loads(done.stdout.splitlines()[-1])
+        return [(one["step"], self.off(np.array(one["places"])), [one["seconds"]]) for one in runs]
+
+    def here(self, most: int, budget: float) -> list[tuple[float, float, list[float]]]:
+        """Return the same of the time step."""
+        errors = [self.off(self.move(step)) for step in STEPS]
+        seconds = time_in_turns([partial(self.move, step) for step in STEPS], most, budget)
+        return list(zip(STEPS, errors, seconds, strict=True))
+
+
+def telescoped_beams() -> Problem:
+    """Return two beams of the paper without friction, until their motion becomes chaotic."""
+    duration, case = 0.3, friction_case()
+    boom, (model,) = build_boom(case), of_kind(BeamElements, [model_of(case, "beam-fe")])
+    system = without_friction(gap_system(case, boom, model))
+    (joint,) = boom.joints
+    assert model.contact is not None
+    station = {"clearance": 0.5 * joint.play, "stiffness": model.contact.stiffness}
+    length = model.element_length
+
+    def move(step: float) -> Array:
+        run = FixedStep(step)(Motion(system, duration, OUTPUT_STEP))
+        return np.asarray(run.data["tip"].values)[:, None]
+
+    beams = [
+        {
+            "nodes": np.arange(segment.start, segment.end + 0.5 * length, length).tolist(),
+            "mass_per_length": segment.mass_per_length,
+            "bending_stiffness": segment.material.youngs_modulus * segment.second_moment_of_area,
+            "axial_stiffness": segment.material.youngs_modulus * segment.area,
+            "load": segment.load,
+            "supports": [support.x for support in segment.supports],
+        }
+        for segment in boom.segments
+    ]
+    stations = [{"x": x, **station} for x in joint.stations]
+    given = {"beams": beams, "stations": stations, "duration": duration}
+    program = Program("Exudyn", "exudyn", OTHER_CODES, "make other-codes installs it")
+    return Problem(
+        f"telescoped beams, {duration:g} s",
+        program,
+        "exudyn_beams.py",
+        {**given, "output_step": OUTPUT_STEP},
+        STEPS[:-1],
+        move,
+        move(2.5e-6),
+    )
+
+
+def ball_on_beam() -> Problem:
+    """Return a ball that falls on a cantilever, until its chatter decides when it leaves."""
+    duration, step = 0.03, 1.0e-6
+    mass, stiffness = impacting_beam.beam(impacting_beam.ELEMENTS)
+    height = impacting_beam.HEIGHT
+    motion = impacting_beam.falling(impacting_beam.ELEMENTS, SOFT.lower().behind(height), duration)
+
+    def move(step: float) -> Array:
+        data = FixedStep(step)(motion).data
+        return np.column_stack([data["ball"].values + height, data["tip"].values])
+
+    given = {
+        "mass": mass.tolist(),
+        "stiffness": stiffness.tolist(),
+        "height": height,
+        "speed": impacting_beam.SPEED,
+        "duration": duration,
+        "output_step": motion.output_step,
+    }
+    program = Program(
+        "Siconos", "siconos", Path("/usr/bin/python3"), "Debian has it as python3-siconos"
+    )
+    exact = impacting_beam.moreau_jean(step, duration)[:: round(motion.output_step / step)]
+    steps = (1.0e-4, 2.0e-5, 5.0e-6)
+    return Problem(
+        f"ball on a beam, {1e3 * duration:g} ms", program, "siconos_ball.py", given, steps, move,
+        exact,
+    )  # fmt: skip
+
+
+PROBLEMS = {"telescoped beams": telescoped_beams, "ball on a beam": ball_on_beam}
+
+
+def other_programs(most: int, budget: float, problems: Sequence[str] = tuple(PROBLEMS)) -> Table:
+    """Return the longest step of each program within each error, and its cost.
+
+    Args:
+        most, budget: repetitions of our runs, as of :func:`studies.cost.timing.time_in_turns`.
+        problems: names of the motions.
+    """
+    rows: list[Sequence[Cell]] = []
+    notes = [
+        "Errors are off our run in steps of 2.5 µs, and of the ball off Moreau and Jean's scheme "
+        "in steps of 1 µs. Exudyn's beams stretch, and its contact is a penalty; Siconos has a law "
+        "of impact with the restitution 0, ours is a damped penalty.",
+    ]
+    for problem in (PROBLEMS[name]() for name in problems):
+        program = problem.program
+        if program.installed:
+            rows += _at_levels(problem, problem.here(most, budget), problem.elsewhere())
+        else:
+            notes.append(f"{program.name} is left out: not installed; {program.remedy}.")
+    columns = {
+        "motion": "", "at most off (%)": ".2g", "program": "", "step (s)": ".1g",
+        "off (%)": ".2g", "wall s": "", "over the time step": ".2g",
+    }  # fmt: skip
+    title = "Other programs at equal error of the tip"
+    return Table.of_rows("others", title, columns, rows, notes)
+
+
+def _at_levels(
+    problem: Problem,
+    ours: Sequence[tuple[float, float, list[float]]],
+    theirs: Sequence[tuple[float, float, list[float]]],
+) -> Iterator[Sequence[Cell]]:
+    """Yield a row of each program for each level that both reach."""
+    for level in LEVELS:
+        found = [next((run for run in runs if run[1] <= level), None) for runs in (ours, theirs)]
+        if found[0] is None or found[1] is None:
+            continue
+        base = float(np.median(found[0][2]))
+        names = ("time step", problem.program.name)
+        for name, run in zip(names, found, strict=True):
+            assert run is not None
+            step, off, seconds = run
+            part = float(np.median(seconds)) / base
+            yield problem.what, 100.0 * level, name, step, 100.0 * off, seconds, part
