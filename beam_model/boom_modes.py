@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Modal coordinates of all segments, and rows that read displacements in them."""
+"""Modal coordinates of a boom of beams, and rows that read displacements in them."""
 
 from __future__ import annotations
 
@@ -23,28 +23,28 @@ from geometry.boom import Boom, Direction
 from geometry.cylinder import ground_lines
 from geometry.telescoping import places, sampled_extensions
 
-# One component of one segment.
+# Type of a component of one segment: index and motion.
 _Part = tuple[int, Motion]
 
-# A tie whose stiffness is below this fraction of the strongest one's has no effect.
+# Fraction of the largest stiffness below which a tie is neglected.
 ROUND_OFF = 1.0e-9
 
 
 class BoomModes:
-    """Modes of the boom without contact, of each component of each segment separately.
+    """Modes of the boom without contact, separate for each motion of each segment.
 
-    Segments connected by a bonded joint have common modes, under the influence of cylinders.
+    Segments connected by bonded joints, or by cylinders, have common modes.
 
     Args:
-        boom: with its joints, bonded or with play, flat or in space.
-        models: one for each segment.
+        boom: boom with joints, bonded or with play, flat or in space.
+        models: model of each segment.
 
     Attributes:
-        omega2: (num_modes,) ω² in rad²/s², rigid modes exactly 0; negative where an axial force
-            tips a segment over.
-        load: (num_modes,) the segments' own uniform loads in N/√kg.
-        damping: (num_modes,) diagonal of the modal damping matrix in 1/s, exact where the
-            damping is proportional to the mass.
+        omega2: ω² (num_modes,) in rad²/s², exactly 0 for rigid modes; negative if an axial force
+            makes a segment unstable.
+        load: uniform loads (num_modes,) of the segments in N/√kg.
+        damping: diagonal (num_modes,) of the modal damping matrix in 1/s, exact for damping
+            proportional to mass.
     """
 
     def __init__(self, boom: Boom, models: Sequence[SegmentModel]) -> None:
@@ -85,7 +85,7 @@ class BoomModes:
         ``offset`` is (y, z) of the point from the axis in m.
         """
         row = self.member(segment).at(direction, x)
-        # A small turn θ about x moves (y, z) by (−θ z, θ y).
+        # A small rotation θ about x moves (y, z) by (−θ z, θ y).
         arm = offset[0] if direction == "z" else -offset[1]
         if arm != 0.0:
             row += arm * self.twist(segment, x)
@@ -104,7 +104,7 @@ class BoomModes:
         return self.member(segment).read(direction, lambda component: component.curvature_at(x))
 
     def member(self, segment: int) -> BeamMember:
-        """Return a segment under loads, over all modal coordinates."""
+        """Return a segment that takes loads, in all modal coordinates."""
 
         def read(motion: Motion, rule: Rule) -> Array:
             columns, shapes = self._shapes[segment, motion]
@@ -118,8 +118,9 @@ class BoomModes:
 def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
     """Return the critical factor of the axial forces, see :mod:`dynamics.second_order`.
 
-    The boom is without play. The factor is infinite without such forces, and None for a mechanism.
-    Of a telescoping boom it is the smallest at several extensions, the stroke's ends among them.
+    It is that of the boom without play, infinite without axial forces, and None for a mechanism.
+    For a telescoping boom it is the smallest one of several extensions, including the ends of the
+    stroke.
     """
     drives = [number for number, joint in enumerate(boom.joints) if joint.drive is not None]
     smallest = np.inf
@@ -147,7 +148,7 @@ def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
 def _groups(boom: Boom, models: Sequence[SegmentModel]) -> list[_Group]:
     """Return the groups with common modes: segments that bonded joints connect, in each motion.
 
-    Two inclined cylinders side by side couple the twist of a segment to its slope along y.
+    Two inclined cylinders side by side couple the twist of a segment with its slope along y.
     """
     motions: tuple[Motion, ...] = ("z", "y", "twist") if boom.spatial else ("z",)
     parts: list[_Part] = [(i, motion) for motion in motions for i in range(len(boom.segments))]
@@ -169,12 +170,12 @@ def _groups(boom: Boom, models: Sequence[SegmentModel]) -> list[_Group]:
 
 
 class _Group:
-    """Components of a boom's segments side by side, which ties and cylinders couple.
+    """Components of segments that ties and cylinders couple.
 
     Attributes:
         parts, components: segment and motion of each component, and the component.
-        members: each segment under loads on these components; a row is 0 where it has none.
-        springs: the cylinders that act on them.
+        members: each segment that takes loads, in these components; rows of other motions are 0.
+        springs: cylinders that act on the components.
         softening: geometric stiffness K_G (num_dofs, num_dofs).
     """
 
@@ -197,9 +198,9 @@ class _Group:
         return BeamMember(read)
 
     def ties(self, moved: Mapping[int, Sequence[tuple[float, float]]]) -> list[Array]:
-        """Return rows (num_dofs,) that bonded joints keep at zero.
+        """Return the rows (num_dofs,) that bonded joints keep at zero.
 
-        Telescoping ones are bonded where they have ``moved`` to, x in m on both segments.
+        Telescoping joints are bonded at the places ``moved``, x in m on both segments.
         """
         return [
             self.members[joint.inner].at(motion, on_inner)
@@ -227,7 +228,7 @@ class _Group:
         rigid = block_diag(
             *(m.shapes[:, : c.rigid_modes] for m, c in zip(apart, self.components, strict=True))
         )
-        # Rigid motions of the segments that satisfy these constraints stay rigid.
+        # Rigid motions of the segments that satisfy the constraints keep the frequency 0.
         rows = [*ties, *(line.push for line in self.springs)]
         held = np.array(rows).reshape(-1, len(rigid)) @ rigid
         bound = np.linalg.svd(held, compute_uv=False) if held.size else np.zeros(0)
@@ -239,5 +240,5 @@ class _Group:
 
 
 def _kernel(ties: Sequence[Array], num_dofs: int) -> Array:
-    """Return (num_dofs, num_free) the motions that keep the ties at zero."""
+    """Return the motions (num_dofs, num_free) that keep the ties at zero."""
     return null_space(np.array(ties)) if ties else np.eye(num_dofs)

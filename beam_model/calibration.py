@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Calibration of beams by the shell of the same boom: effective stiffness, local compliance.
 
-With the effective E J and G A_s of a segment, the shear-flexible beam responds to static probes far
-from their places as the shell does; likewise G J_t. They include shear lag, Poisson's effect and
-folds. The additional local compliance of loaded places is the residual compliance.
+With the effective E J, G A_s and G J_t of a segment, the shear-flexible beam has the shell's
+response to static probes. The effective stiffnesses include shear lag, Poisson's effect and folds.
 
-With B the rows of contacts, friction and dashpots and C = B Ω⁻² Bᵀ over the
-elastic modes, the residual compliance of a coarse model beside a fine one is D = C_fine − C_coarse
-(MacNeal 1971). Both have the same rigid motions, so forces that no support carries are carried by
-inertia alike, and D is the local compliance alone. Its positive part D = Σ g gᵀ is a set
-of massless springs. Each is a coordinate with the rows ω_s g and a frequency ω_s well above the
-motion.
+The residual compliance is the additional local compliance at contacts. With the rows B of contacts,
+friction and dashpots, and C = B Ω⁻² Bᵀ over the elastic modes, it is D = C_fine − C_coarse of shell
+and beam (MacNeal 1971). Both models have the same rigid motions and the same inertia forces, so
+that D is purely local. Its positive part D = Σ g gᵀ becomes a set of massless springs, each of
+which is a coordinate with the rows ω_s g and a frequency ω_s well above the motion.
 """
 
 from __future__ import annotations
@@ -31,14 +29,14 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Segment
 from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
 
-# Weight of the logarithm of a factor beside relative errors of responses. It determines a
-# stiffness without influence, and changes no other.
+# Weight of a factor's logarithm in the least squares. It determines a stiffness without influence
+# on the responses, and does not change the others.
 _PRIOR = 1.0e-4
-# ω_s/2π in Hz: the vibration of a boom is slower by a factor of ten and more.
+# ω_s/2π in Hz, at least ten times the frequencies of a boom's vibration.
 SPRING_FREQUENCY = 400.0
-# A pattern of forces is rigid if its compliance is below this fraction of that of others.
+# Fraction of the largest compliance below which a force pattern meets rigid walls.
 _NOTHING = 1.0e-3
-# Minimum elements of a segment; shear-flexible ones are exact at their nodes in statics.
+# Minimum number of elements of a segment; their static solution is exact at the nodes.
 _ELEMENTS = 20
 
 
@@ -48,7 +46,7 @@ class Stiffness:
 
     Args:
         bending: E J in N·m² along z, and in space along y.
-        shear: G A_s in N, alike.
+        shear: G A_s in N along z, and in space along y.
         torsion: G J_t in N·m² in space.
     """
 
@@ -62,16 +60,16 @@ class Calibration:
     """Calibration of a beam by the shell of its boom.
 
     Args:
-        segments: their stiffness.
-        residual: (num_rows, num_rows) in m/N what contact rows, friction rows and
-            dashpots deflect beyond the beam.
+        segments: stiffness of each segment.
+        residual: residual compliance (num_rows, num_rows) in m/N of the rows of contacts, friction
+            and dashpots.
     """
 
     segments: Sequence[Stiffness]
     residual: Array
 
     def spring(self, row: int) -> float | None:
-        """Return the stiffness in N/m in series with a contact row; None of a rigid one."""
+        """Return the stiffness in N/m in series with a contact row; None if it is rigid."""
         compliance = float(self.residual[row, row])
         return 1.0 / compliance if compliance > 0.0 else None
 
@@ -85,10 +83,10 @@ def calibrate(
     """Return a beam with the contact places and local compliance of a shell, and its calibration.
 
     Args:
-        boom: all its segments with sections.
-        shell: shell of the boom, pressed near its webs or by pads.
+        boom: boom whose segments all have sections.
+        shell: shell of the boom, with contacts near the webs or at pads.
         probe_responses: probe responses of the shell's segments.
-        segments: makes beams of a boom.
+        segments: function that returns the beams of a boom.
     """
     found = [
         effective_stiffness(segment, far)
@@ -101,14 +99,14 @@ def calibrate(
 
 
 def elastic_compliance(system: GapSystem) -> Array:
-    """Return B Ω⁻² Bᵀ (num_rows, num_rows) in m/N of contacts, friction, dashpots."""
+    """Return B Ω⁻² Bᵀ (num_rows, num_rows) in m/N for rows of contacts, friction, dashpots."""
     elastic = system.omega2 > 0.0
     rows = system.all_rows[:, elastic]
     return np.asarray(rows / system.omega2[elastic] @ rows.T)
 
 
 def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
-    """Return D (num_rows, num_rows) in m/N, which may be indefinite.
+    """Return the residual compliance D (num_rows, num_rows) in m/N, which may be indefinite.
 
     Raises:
         ValueError: the numbers of rows differ.
@@ -125,7 +123,7 @@ def with_springs(system: GapSystem, residual: Array) -> GapSystem:
     """
     sizes = np.sqrt(np.abs(np.diag(residual)))
     sizes[sizes == 0.0] = 1.0
-    # Normalised, since friction rows, pads and dashpots differ by orders of magnitude.
+    # Rows are normalised, since those of friction, pads and dashpots differ by orders of magnitude.
     amounts, patterns = np.linalg.eigh(residual / np.outer(sizes, sizes))
     kept = amounts > _NOTHING * max(amounts.max(initial=0.0), 0.0)
     spring = 2.0 * np.pi * SPRING_FREQUENCY
@@ -134,14 +132,14 @@ def with_springs(system: GapSystem, residual: Array) -> GapSystem:
 
 
 def stiffened(boom: Boom, stiffness: Sequence[Stiffness]) -> Boom:
-    """Return the boom with another stiffness of each segment."""
+    """Return the boom with the given stiffness of each segment."""
     return replace(boom, segments=tuple(map(with_stiffness, boom.segments, stiffness)))
 
 
 def effective_stiffness(segment: Segment, far: ProbeResponses) -> Stiffness:
-    """Return the stiffness with which a beam responds to the probes as the shell of the segment.
+    """Return the stiffness with which a beam has the shell segment's response to the probes.
 
-    For a tapered segment it is the beam's own, half-way.
+    For a tapered segment it is the unchanged stiffness of the beam at the middle.
     """
     in_plane = _bending(segment, far, "z")
     if "y" not in far.compliance:
@@ -157,7 +155,7 @@ def effective_stiffness(segment: Segment, far: ProbeResponses) -> Stiffness:
 
 
 def with_stiffness(segment: Segment, stiffness: Stiffness) -> Segment:
-    """Return the segment with another stiffness, and with the rotary inertia of its plates.
+    """Return the segment with a stiffness, and with the rotary inertia of its plates.
 
     A tapered segment stays unchanged.
     """
@@ -166,7 +164,7 @@ def with_stiffness(segment: Segment, stiffness: Stiffness) -> Segment:
     material, section = segment.material, segment.section
     assert section is not None
     e, g = material.youngs_modulus, material.shear_modulus
-    # Properties that are unknown in the other plane remain those of the section.
+    # Properties of the other plane that are not given remain those of the section.
     shear = (*stiffness.shear, g * section.turned().shear_area)[:2]
     changed = replace(
         segment,
@@ -187,7 +185,7 @@ def with_stiffness(segment: Segment, stiffness: Stiffness) -> Segment:
 
 
 def _bending(segment: Segment, far: ProbeResponses, motion: ProbedMotion) -> tuple[float, float]:
-    """Return E J and G A_s of a segment, turned to bend along y."""
+    """Return E J and G A_s of a segment in one plane of bending."""
     assert segment.shear_stiffness is not None
     if segment.head_section is not None:
         return segment.bending_stiffness, segment.local(
@@ -198,12 +196,12 @@ def _bending(segment: Segment, far: ProbeResponses, motion: ProbedMotion) -> tup
 
 
 def _fit(segment: Segment, far: ProbeResponses, motion: ProbedMotion, count: int) -> Array:
-    """Return (count,) factors of the stiffnesses, by least squares of the relative errors."""
+    """Return the factors (count,) of the stiffnesses, by least squares of relative errors."""
     first, turns = _component(segment, far, motion, np.ones(count))
     probes = _probes(first, far, motion)
     moved = probes.any(axis=1)
     modes = natural_modes(first.stiffness, first.mass, turns)
-    # Combinations of probes that leave a free segment at rest.
+    # Self-equilibrated combinations of probes.
     rigid = probes[moved] @ modes.shapes[:, :turns]
     balanced = np.eye(len(probes))[:, moved] @ (
         null_space(rigid.T) if turns else np.eye(moved.sum())
@@ -225,7 +223,7 @@ def _fit(segment: Segment, far: ProbeResponses, motion: ProbedMotion, count: int
 def _component(
     segment: Segment, far: ProbeResponses, motion: ProbedMotion, factors: Array
 ) -> tuple[Component, int]:
-    """Return a motion of the segment with factors of its stiffness, and its rigid motions."""
+    """Return the component of a motion with stiffness factors, and its rigid motions."""
     if motion == "twist":
         assert segment.lateral is not None
         torsion = factors[0] * segment.lateral.torsion_constant

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Components of a segment's motion in finitely many coordinates, and their natural modes.
 
-A segment deflects along z, and in space deflects along y and twists as well. Within a straight
-segment of a symmetric section the three are uncoupled.
+A segment deflects along z, and in space also along y, and twists. The three motions are uncoupled
+in a straight segment with a symmetric section.
 """
 
 from __future__ import annotations
@@ -18,31 +18,31 @@ from scipy.linalg import eigh
 from geometry.arrays import Array
 from geometry.section import Direction
 
-# Deflection along z or along y in m, rotation about x in rad.
+# Motions: deflection along z or y in m, rotation about x in rad.
 Motion = Literal["z", "y", "twist"]
 
 
 @dataclass(frozen=True, slots=True)
 class Component:
-    """Equations M q̈ + C q̇ + K q = f, with rows that read the component anywhere.
+    """Component of a segment's motion: M q̈ + C q̇ + K q = f, and rows that read it at any x.
 
     Args:
-        stiffness, mass, damping: (num_dofs, num_dofs).
-        load: (num_dofs,) the segment's own uniform load.
-        unit_load: (num_dofs,) a uniform load of one N/m (of one N for the twist).
-        inertia_load: (num_dofs,) inertia of the mass per length under an acceleration that makes it
-            1 N/m, on average where it tapers; ``unit_load`` unless given.
-        at: x in m → (num_dofs,) row that reads the deflection or twist there.
-        rotation: x in m → (num_dofs,) row that reads the rotation of the cross-section there, the
-            slope of a beam that is rigid in shear; none of a twist.
-        curvature: x in m → (num_dofs,) row that reads θ′ of that rotation there; none of a twist,
-            and of what does not bend.
-        turning: (num_dofs,) the momentum that turning about x = 0 by 1 rad/s gives the mass per
-            length and the rotary inertia, in N·s; none of a twist.
+        stiffness, mass, damping: matrices (num_dofs, num_dofs).
+        load: uniform load (num_dofs,) of the segment.
+        unit_load: load vector (num_dofs,) of a uniform load of 1 N/m (1 N for the twist).
+        inertia_load: inertia load (num_dofs,) of the mass per length under an acceleration that
+            causes 1 N/m, on average for a tapered segment; ``unit_load`` unless given.
+        at: function of x in m that returns the row (num_dofs,) of the deflection or twist.
+        rotation: function of x in m that returns the row (num_dofs,) of the cross-section's
+            rotation, which is the slope of a beam rigid in shear; None for a twist.
+        curvature: function of x in m that returns the row (num_dofs,) of the derivative θ′ of this
+            rotation; None for a twist or a rigid segment.
+        turning: momentum (num_dofs,) in N·s of mass per length and rotary inertia for a rotation
+            about x = 0 by 1 rad/s; None for a twist.
         breaks: x in m between which rows are polynomials.
-        geometric: (num_dofs, num_dofs) K_G, what the axial force takes from the stiffness; none
-            where there is no such force.
-        rigid_modes: how many motions the supports leave free of strain.
+        geometric: geometric stiffness K_G (num_dofs, num_dofs) of the axial force, to be subtracted
+            from the stiffness; None without axial force.
+        rigid_modes: number of rigid motions that the supports leave free.
     """
 
     stiffness: Array
@@ -61,12 +61,12 @@ class Component:
 
     @property
     def softening(self) -> Array:
-        """Geometric stiffness K_G (num_dofs, num_dofs)."""
+        """The geometric stiffness K_G (num_dofs, num_dofs)."""
         return np.zeros_like(self.stiffness) if self.geometric is None else self.geometric
 
     @property
     def inertia(self) -> Array:
-        """Load vector (num_dofs,) of an acceleration of the mass per length, for any component."""
+        """The inertia load (num_dofs,) of the mass per length, for any component."""
         return self.unit_load if self.inertia_load is None else self.inertia_load
 
     def rotation_at(self, x: float) -> Array:
@@ -81,17 +81,17 @@ class Component:
 
     @property
     def member(self) -> BeamMember:
-        """Segment under loads, which moves along z alone by this component."""
+        """The segment that takes loads, and moves only along z by this component."""
         nothing = np.zeros(len(self.load))
         return BeamMember(lambda motion, rule: rule(self) if motion == "z" else nothing)
 
     def uniform(self, span: tuple[float, float] | None) -> Array:
-        """Return (num_dofs,) a uniform load of 1 N/m between two x in m, or along the segment."""
+        """Return the load vector (num_dofs,) of 1 N/m between two x in m, or along the segment."""
         if span is None:
             return self.unit_load
         start, end = span
         inside = self.breaks[(self.breaks > start) & (self.breaks < end)]
-        # Gauss points are exact for polynomials of each degree that a piece can have.
+        # The Gauss points are exact for all polynomials that a piece can have.
         points, weights = np.polynomial.legendre.leggauss(
             len(self.load) // max(1, self.breaks.size - 1) + 4
         )
@@ -103,16 +103,17 @@ class Component:
         return total
 
 
-# Row or load vector of a component: (num_dofs,) of its own.
+# Function that returns a row or load vector (num_dofs,) of a component.
 Rule = Callable[[Component], Array]
 
 
 @dataclass(frozen=True, slots=True)
 class BeamMember:
-    """A segment under loads, see :class:`geometry.load.Member`, in any coordinates.
+    """Segment that takes loads, a :class:`geometry.load.Member`, in any coordinates.
 
     Args:
-        read: (num_coordinates,) the row of a component of a motion by a rule.
+        read: function that returns the row (num_coordinates,) of a motion, from a function that
+            returns the row of its component.
     """
 
     read: Callable[[Motion, Rule], Array]
@@ -142,32 +143,32 @@ class BeamMember:
 
 @dataclass(frozen=True, slots=True)
 class SegmentModel:
-    """Components of a segment: ``z`` alone, or in space ``z``, ``y`` and ``twist``."""
+    """Components of a segment: ``z``, and in space also ``y`` and ``twist``."""
 
     components: Mapping[Motion, Component]
 
 
 class Modes(NamedTuple):
-    """Mass-normalised modes: ω² in rad²/s², rising, and the shapes (num_dofs, num_modes)."""
+    """Mass-normalised modes: ascending ω² in rad²/s², and shapes (num_dofs, num_modes)."""
 
     omega2: Array
     shapes: Array
 
 
 def natural_modes(stiffness: Array, mass: Array, rigid_modes: int) -> Modes:
-    """Return all natural modes of (K, M), rigid ones with ω² exactly 0; none if nothing moves."""
+    """Return all natural modes of (K, M), with ω² exactly 0 for rigid ones."""
     if not mass.size:
         return Modes(np.zeros(0), np.zeros((0, 0)))
-    # A common scale per coordinate: rotations and deflections differ by orders of magnitude.
+    # Coordinates are scaled, since rotations and deflections differ by orders of magnitude.
     scale = 1.0 / np.sqrt(np.diag(mass))
     scales = np.outer(scale, scale)
-    # The upper triangle: where degrees rise from term to term, the reduction begins with the
-    # largest entries and leaves the lowest modes their digits.
+    # With the upper triangle, the reduction of a series begins with the largest entries, which
+    # preserves the digits of the lowest modes.
     omega2, shapes = eigh(stiffness * scales, mass * scales, lower=False)
     omega2[:rigid_modes] = 0.0
     return Modes(omega2, shapes * scale[:, None])
 
 
 def products(values: Array, weights: Array) -> Array:
-    """Return ∫ f_i f_j dx from values (num_functions, num_points) and weights of the rule in m."""
+    """Return ∫ f_i f_j dx, from values (num_functions, num_points) and weights in m."""
     return np.asarray((values * weights) @ values.T)

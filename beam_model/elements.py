@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Two-node beam elements that are exact at their nodes where nothing acts between them.
+"""Two-node beam elements, which are exact at their nodes if no load acts between them.
 
-Both have the deflection w and the rotation θ as nodal unknowns. With Φ = 12 E J / (G A_s h²)
-the shape functions of a plain element solve the homogeneous Timoshenko equations (Friedman and
-Kosmatka 1993); at Φ = 0 they are the Hermite cubics with θ = w′. Where a segment tapers, the moment
-is straight in the element as well, and the curvature what the local flexibility makes of it
+Both elements have the deflection w and the rotation θ as nodal unknowns. With Φ = 12 E J / (G A_s
+h²) the shape functions of a plain element solve the homogeneous Timoshenko equations (Friedman and
+Kosmatka 1993); at Φ = 0 they are the Hermite cubics with θ = w′. In the element of a tapered
+segment, the moment is also linear, and the curvature follows from the local flexibility
 (Eisenberger and Reich 1989).
 """
 
@@ -24,26 +24,26 @@ Theory = Literal["euler-bernoulli", "timoshenko"]
 
 
 class Element(Protocol):
-    """Shape functions of an element at the places ξ = x/h of its length h."""
+    """Shape functions of an element of length h at ξ = x/h."""
 
     def deflection(self, xi: Array) -> Array:
         """Return the shape functions (4, num_points) of w."""
 
     def slope(self, xi: Array) -> Array:
-        """Return their derivatives w′ (4, num_points)."""
+        """Return the derivatives w′ (4, num_points) of the shape functions."""
 
     def rotation(self, xi: Array) -> Array:
         """Return the shape functions (4, num_points) of θ."""
 
     def curvature(self, xi: Array) -> Array:
-        """Return their derivatives θ′ (4, num_points)."""
+        """Return the derivatives θ′ (4, num_points) of the shape functions."""
 
     def stiffness(self, xi: Array, weights: Array) -> Array:
-        """Return the matrix (4, 4) by a rule of points ξ and weights in m, both (num_points,)."""
+        """Return the stiffness (4, 4) by a rule of points ξ and weights in m, (num_points,)."""
 
 
 def element(segment: Segment, theory: Theory, start: float, h: float) -> Element:
-    """Return the element of a segment, or of its part from x = ``start`` on, over h, both in m."""
+    """Return the element of a segment from x = ``start`` over the length h, both in m."""
     if segment.head_section is None:
         return PlainElement(h, segment.bending_stiffness, _shear_number(segment, theory, h))
     places = [segment.local(start + part * h) for part in (0.0, 0.5, 1.0)]
@@ -54,12 +54,12 @@ def element(segment: Segment, theory: Theory, start: float, h: float) -> Element
 
 @dataclass(frozen=True, slots=True)
 class PlainElement:
-    """Element of one section.
+    """Element with one section.
 
     Args:
-        h: its length in m.
+        h: length in m.
         bending_stiffness: E J in N·m².
-        phi: Φ, zero for a beam that is rigid in shear.
+        phi: Φ, zero for a beam rigid in shear.
     """
 
     h: float
@@ -126,13 +126,15 @@ class PlainElement:
 
 @dataclass(frozen=True, slots=True)
 class TaperedElement:
-    """Element with a varying section. Under the moments 1 and ξ its curvature is f and ξ f, its
-    shear strain 0 and −g/h; integration gives θ and w.
+    """Element with a varying section.
+
+    Under the moments 1 and ξ, the curvature is f and ξ f, the shear strain 0 and −g/h; integration
+    gives θ and w.
 
     Args:
-        h: its length in m.
-        bending: f = 1/(E J) over ξ in 1/(N·m²).
-        shear: g = 1/(G A_s) over ξ in 1/N, zero for a beam that is rigid in shear.
+        h: length in m.
+        bending: f = 1/(E J) as a function of ξ in 1/(N·m²).
+        shear: g = 1/(G A_s) as a function of ξ in 1/N, zero for a beam rigid in shear.
     """
 
     h: float
@@ -159,18 +161,18 @@ class TaperedElement:
         return np.asarray(moved.T @ flexibility @ moved)
 
     def _shapes(self, rigid: tuple[float | Array, ...], bent: _Pair, xi: Array) -> Array:
-        """Return (4, num_points) rigid motion by the first node's w and θ, plus bending."""
+        """Return shape functions (4, num_points): rigid motion of the first node plus bending."""
         moved = np.array([np.broadcast_to(one, xi.shape) for one in (*rigid, 0.0, 0.0)])
         return np.asarray(moved + self._moments().T @ np.array([one(xi) for one in bent]))
 
     def _of_moments(self) -> tuple[_Pair, _Pair, _Pair]:
-        """Return rotations, slopes and deflections under the moments 1 and ξ, clamped at ξ = 0."""
+        """Return rotation, slope and deflection under the moments 1 and ξ, clamped at ξ = 0."""
         first, second = (self.h * (self.bending * m).integ() for m in (_ONE, _XI))
         slopes = first, second - self.shear / self.h
         return (first, second), slopes, (self.h * slopes[0].integ(), self.h * slopes[1].integ())
 
     def _moments(self) -> Array:
-        """Return the moments 1 and ξ (2, 4) due to unit displacements of the nodes."""
+        """Return the factors (2, 4) of the moments 1 and ξ for unit displacements of the nodes."""
         rotations, _, deflections = self._of_moments()
         ends = np.array([[p(1.0) for p in pair] for pair in (rotations, deflections)])
         moved = np.array([[0.0, -1.0, 0.0, 1.0], [-1.0, -self.h, 1.0, 0.0]])
@@ -178,7 +180,7 @@ class TaperedElement:
 
 
 def _powers(xi: Array) -> tuple[Any, Any, Any]:
-    """Return ξ, ξ² and ξ³; those of a single place as plain numbers, which is faster."""
+    """Return ξ, ξ² and ξ³, as plain numbers for a single place, which is faster."""
     powers = xi, xi**2, xi**3
     return powers if xi.ndim else (xi.item(), powers[1].item(), powers[2].item())
 
@@ -194,14 +196,14 @@ def _parabola(values: list[float]) -> Polynomial:
 
 
 def _shear_flexibility(segment: Segment, theory: Theory) -> float:
-    """Return 1/(G A_s) in 1/N, zero for a beam that is rigid in shear."""
+    """Return 1/(G A_s) in 1/N, zero for a beam rigid in shear."""
     if theory == "euler-bernoulli" or segment.section is None:
         return 0.0
     return 1.0 / (segment.material.shear_modulus * segment.section.shear_area)
 
 
 def _shear_number(segment: Segment, theory: Theory, h: float) -> float:
-    """Return Φ = 12 E J / (G A_s h²), zero for a beam that is rigid in shear."""
+    """Return Φ = 12 E J / (G A_s h²), zero for a beam rigid in shear."""
     shear_stiffness = segment.shear_stiffness
     if theory == "euler-bernoulli" or shear_stiffness is None:
         return 0.0

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Beams of two-node elements (:mod:`beam_model.elements`) for each plane of bending.
 
-Beside them a linear one for the twist makes the frame element in space (Przemieniecki 1968), less
-the stretching of the axis.
+With a linear element for the twist, they form the frame element in space (Przemieniecki 1968)
+without axial strain.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from geometry.boom import SAME_PLACE, Boom, BoomError, Segment
 from geometry.contact_places import pressed_places
 from geometry.segment import APART
 
-# Exact for products of the cubics.
+# Gauss rule that is exact for products of cubics.
 _GAUSS = np.polynomial.legendre.leggauss(4)
 
 _MASS, _ROTARY = map(attrgetter, ("mass_per_length", "rotary_inertia"))
@@ -31,10 +31,10 @@ _TORSION, _POLAR = map(attrgetter, ("lateral.torsion_constant", "lateral.polar_i
 def finite_element_segments(
     boom: Boom, element_length: float, theory: Theory, rotary_inertia: bool
 ) -> list[SegmentModel]:
-    """Return all segments of a boom, with nodes where something acts; arguments as below.
+    """Return all segments of a boom, with nodes at all forces; arguments as below.
 
     Raises:
-        BoomError: the boom lacks what the theory needs.
+        BoomError: the boom lacks data that the theory needs.
     """
     return [
         finite_element_segment(
@@ -54,16 +54,16 @@ def finite_element_segment(
     """Assemble one segment.
 
     Args:
-        segment: a beam; its supports and masses get nodes, or share those nearer than ``APART``,
-            and so do the ends of the pieces of its axial force. With lateral numbers it deflects
-            along y and twists as well.
-        element_length: largest length of an element in m.
-        breaks: further x in m that get nodes: stations.
+        segment: a segment. Supports, masses and ends of the pieces of its axial force get nodes, or
+            share nodes nearer than ``APART``. With lateral properties it also deflects along y and
+            twists.
+        element_length: greatest length of an element in m.
+        breaks: further x in m with nodes, at stations.
         theory: ``timoshenko`` takes the shear areas from the segment's box section.
-        rotary_inertia: keep I_p of (3).
+        rotary_inertia: whether I_p of (3) is kept.
 
     Raises:
-        BoomError: a Timoshenko beam without a section.
+        BoomError: a Timoshenko beam has no section.
     """
     if theory == "timoshenko" and segment.section is None:
         raise BoomError(
@@ -80,7 +80,7 @@ def finite_element_segment(
 
 
 def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: bool) -> Component:
-    """Return the component of deflection along z; unknowns w and θ of each node."""
+    """Return the component of deflection along z, with the unknowns w and θ of each node."""
     num_dofs = 2 * nodes.size
     stiffness, mass, damping, geometric = (np.zeros((num_dofs, num_dofs)) for _ in range(4))
     unit_load, turning, inertia_load = np.zeros((3, num_dofs))
@@ -150,7 +150,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
 
 
 def _twist(segment: Segment, nodes: Array) -> Component:
-    """Return the twist, linear from node to node, which is exact at the nodes in statics."""
+    """Return the component of twist, linear between nodes and exact at nodes in statics."""
     lateral = segment.lateral
     assert lateral is not None
     stiffness, mass = (np.zeros((nodes.size, nodes.size)) for _ in range(2))
@@ -188,7 +188,7 @@ def _twist(segment: Segment, nodes: Array) -> Component:
 
 
 def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> Array:
-    """Return nodes of equal elements between the required places; close places share the first."""
+    """Return the nodes of equal elements between the required places; close places share a node."""
     own = [support.x for support in segment.supports] + [mass.x for mass in segment.carried]
     places: list[float] = []
     for x in (segment.start, segment.end, *own, *segment.compression.places, *breaks):

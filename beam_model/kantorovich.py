@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The Kantorovich (semi-discrete Ritz) beam: w(x, t) = Σ a_i(t) φ_i(x), (12) of the paper.
 
-The function spaces are the paper's (29)–(31). Their printed bases are powers of x, singular
-to working precision from about ten terms on; here the same spaces are spanned by Legendre
-polynomials times the lowest function, and the modes come out the same. The complete base takes
-all polynomials that the supports admit, whatever the supports are.
+The function spaces are the paper's (29)–(31). The printed bases are powers of x, which are
+numerically singular from about ten terms on. Here Legendre polynomials times the lowest function
+span the same spaces, with the same modes. The complete base has all polynomials that the supports
+admit, for any supports.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Segment
 from geometry.compression import Compression
 
-# Additional points beyond those for polynomials, for the properties of tapered sections.
+# Number of additional quadrature points, for the properties of tapered sections.
 _TAPERING = 6
 
 Base = Literal["as printed", "pinned", "complete"]
@@ -35,7 +35,7 @@ def kantorovich_segments(
     """Return all segments of a boom, each with its own number of terms; arguments as below.
 
     Raises:
-        BoomError: the boom has what the base cannot take.
+        BoomError: the base does not admit the boom's supports or cylinders.
     """
     check_base(boom, base)
     return [
@@ -48,8 +48,7 @@ def check_base(boom: Boom, base: Base) -> None:
     """Check that the functions have a form for the supports of the boom.
 
     Raises:
-        BoomError: clamped or elastic supports, or a cylinder, with another base than the complete
-            one.
+        BoomError: a boom with clamped or elastic supports or a cylinder needs the complete base.
     """
     for segment in boom.segments:
         _check_supports(segment, base)
@@ -79,16 +78,17 @@ def _no_form(segment: Segment, feature: str, base: Base) -> BoomError:
 def kantorovich_segment(
     segment: Segment, terms: int, base: Base, rotary_inertia: bool
 ) -> SegmentModel:
-    """Return a segment in the paper's function spaces, in space with the same ones along y.
+    """Return a segment in the paper's function spaces, in space with the same spaces along y.
 
     Args:
-        segment: a beam; with lateral numbers it deflects along y and twists as well.
+        segment: a segment; with lateral properties it also deflects along y and twists.
         terms: number of functions of each component.
-        base: which reading of (29) and (31); the twist is not in the paper and always complete.
-        rotary_inertia: keep I_p of (3) and (9), or drop it as (21) does.
+        base: interpretation of (29) and (31); the twist, which is not in the paper, is always
+            complete.
+        rotary_inertia: whether I_p of (3) and (9) is kept; (21) neglects it.
 
     Raises:
-        BoomError: clamped or elastic supports with another base than the complete one.
+        BoomError: clamped or elastic supports need the complete base.
     """
     components: dict[Motion, Component] = {
         "z": kantorovich_bending(segment, terms, base, rotary_inertia)
@@ -104,7 +104,7 @@ def kantorovich_bending(
 ) -> Component:
     """Return the matrices (23)–(26) of a segment's deflection along z; arguments as above."""
     basis = _Basis(segment, bending_basis(segment, terms, base))
-    # The printed base holds the slope at the first support too.
+    # The printed base also fixes the slope at the first support.
     printed = int(bool(segment.supports) and base == "as printed")
     bent, heavy, turned = (
         basis.weights * segment.relative(attrgetter(number), basis.x)
@@ -160,7 +160,7 @@ def _geometric(compression: Compression, functions: Sequence[Legendre]) -> Array
 
 
 def kantorovich_twist(segment: Segment, terms: int) -> Component:
-    """Return the twist of a segment with lateral properties, held at all supports."""
+    """Return the component of twist of a segment with lateral properties, fixed at all supports."""
     lateral = segment.lateral
     assert lateral is not None
     held = [(support.x, 0) for support in segment.supports]
@@ -185,7 +185,7 @@ def bending_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
     """Return the functions of the deflection in one interpretation of (29)–(31).
 
     Raises:
-        BoomError: clamped or elastic supports with another base than the complete one.
+        BoomError: clamped or elastic supports need the complete base.
     """
     if base == "complete":
         held = [
@@ -205,10 +205,10 @@ def outer_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
     """Return functions that vanish at the supports and span (29): φ_i = x^i (x − x0)(x − x1).
 
     Args:
-        segment: its supports are x0, x1, …; x counts from the first of them, as in the paper
+        segment: segment with the supports x0, x1, …; x counts from the first one, as in the paper
             where x0 = 0.
-        terms: how many: i = 1 … terms as printed, i = 0 … terms − 1 otherwise.
-        base: as printed, the slope vanishes at x0 too; the others leave it free.
+        terms: number of functions: i = 1 … terms as printed, i = 0 … terms − 1 otherwise.
+        base: interpretation: as printed, the slope also vanishes at x0; in the others it is free.
     """
     supports = sorted(support.x for support in segment.supports)
     roots = [supports[0], *supports] if base == "as printed" else supports
@@ -218,12 +218,12 @@ def outer_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
 def inner_basis(segment: Segment, terms: int) -> list[Legendre]:
     """Return functions of a free segment, (30), (31): 1, x − x2, then (x − x2)^(i−1) (x − x4).
 
-    They are incomplete: all of them keep x4 on the tangent at x2. The series does not converge to
-    a free beam however many terms it has.
+    The base is incomplete: all functions keep x4 on the tangent at x2, so that the series does not
+        converge to a free beam.
 
     Args:
-        segment: runs from x2 to x4.
-        terms: how many; the first two are the rigid motions.
+        segment: segment from x2 to x4.
+        terms: number of functions; the first two are the rigid motions.
     """
     rigid = _times_legendre(segment, Polynomial([1.0]), min(terms, 2))
     bending = Polynomial.fromroots([segment.start, segment.start, segment.end])
@@ -233,12 +233,12 @@ def inner_basis(segment: Segment, terms: int) -> list[Legendre]:
 def complete_basis(
     segment: Segment, held: Sequence[tuple[float, int]], terms: int
 ) -> list[Legendre]:
-    """Return polynomials of rising degree whose held values and slopes vanish, orthonormal.
+    """Return orthonormal polynomials of increasing degree with zero values or slopes at supports.
 
     Args:
-        segment: where they are orthonormal, over its length.
-        held: (x in m, 0 for the value or 1 for the slope), each once.
-        terms: how many.
+        segment: segment over whose length they are orthonormal.
+        held: zero conditions: x in m, and 0 for the value or 1 for the slope.
+        terms: number of polynomials.
     """
     domain = [segment.start, segment.end]
     count = terms + len(held)
@@ -253,8 +253,8 @@ def complete_basis(
             [[(f.deriv() if order else f)(x) for f in whole] for x, order in held]
         )
         admitted = null_space(conditions / np.linalg.norm(conditions, axis=1)[:, None])
-        # A rotation among themselves makes the degree rise by one from each to the next. Low
-        # modes then keep their digits beside the stiff ones of high degree.
+        # An orthogonal transform makes degrees increase by one from function to function, which
+        # preserves the digits of low modes beside stiff functions of high degree.
         _, turn = rq(admitted[len(held) :])
         admitted = np.triu(admitted @ turn.T, -len(held))
     coefficients = np.array([f.coef[-1] for f in whole])
@@ -265,10 +265,10 @@ class _Basis:
     """Functions on a segment, at the points of a rule that is exact for products of two.
 
     Attributes:
-        x: (num_points,) in m.
-        value, slope, curvature: (num_functions, num_points).
-        weights: (num_points,) in m.
-        integral: (num_functions,) ∫ φ_i dx.
+        x: points (num_points,) in m.
+        value, slope, curvature: values and derivatives (num_functions, num_points).
+        weights: weights (num_points,) in m.
+        integral: ∫ φ_i dx (num_functions,).
     """
 
     def __init__(self, segment: Segment, functions: Sequence[Legendre]) -> None:
@@ -301,7 +301,7 @@ class _Basis:
 
 
 def _times_legendre(segment: Segment, seed: Polynomial, terms: int) -> list[Legendre]:
-    """Return the seed times each of the first Legendre polynomials of the segment, normalised."""
+    """Return products of a seed and the first normalised Legendre polynomials of a segment."""
     domain = [segment.start, segment.end]
     lowest = seed.convert(kind=Legendre, domain=domain)
     functions = [lowest * Legendre.basis(k, domain=domain) for k in range(terms)]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Deflections and section forces along segments of beams.
 
-The moment is that of the curvature, M = −E J θ′. The shear force is normal to the straight axis.
-Under an axial force P it is M′ − P w′, whose mean over a piece is exact for elements. Under a
-uniform load on each, their moment has an error of q h²/12 at the ends and none in the mean slope.
-Between the middles of pieces the shear force is linear, if nothing acts in between.
+The moment follows from the curvature, M = −E J θ′. The shear force is normal to the straight axis.
+With an axial force P it is M′ − P w′, whose mean over a piece is exact for elements. Under a
+uniform load q, the moment of an element has an error of q h²/12 at the ends, and none in the mean
+slope. Between middles of pieces without point forces, the shear force is linear.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.contact_places import pressed_places
 
-# Minimum number of pieces of a segment between places where something acts.
+# Minimum number of pieces of a segment between two forces.
 _PIECES = 40
 
-# Places in a piece at which a curvature is read, linear there and independent of neighbours.
+# Points in a piece at which curvatures are read; a curvature is linear in its piece.
 _EARLY, _LATE = 0.25, 0.75
 
 _NAMES: dict[Direction, tuple[Quantity, Quantity, Quantity]] = {
@@ -37,14 +37,14 @@ _NAMES: dict[Direction, tuple[Quantity, Quantity, Quantity]] = {
 
 
 def lines(boom: Boom, models: Sequence[SegmentModel]) -> list[Line]:
-    """Return one line for each segment; those that do not bend have no section forces."""
+    """Return the line of each segment; rigid segments have no section forces."""
     modes = BoomModes(boom, models)
     return [_line(boom, number, modes, model) for number, model in enumerate(models)]
 
 
 def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Line:
     segment = boom.segments[number]
-    # The ends of the segment, and where something acts on it.
+    # The ends of the segment, and the places of forces on it.
     acting = {*segment.ends, *pressed_places(boom, number), *segment.compression.places}
     acting |= {held.x for held in segment.supports} | {mass.x for mass in segment.carried}
     # The ends of all pieces: those of the elements, or equal pieces between places.
@@ -63,7 +63,7 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
         if model.components[direction].curvature is not None:
             plane = segment if direction == "z" else segment.turned()
             early, late = (
-                # By the local E J of the segment as it bends in its plane.
+                # The moment follows from the local E J of the segment in this plane.
                 np.array(
                     [
                         -plane.local(x).bending_stiffness * modes.curvature(number, x, direction)
@@ -90,17 +90,17 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
 
 
 def _both_ends(breaks: Array, read: Callable[[float], Array]) -> Array:
-    """Return (2 num_pieces, num_modes) a continuous quantity at both ends of each piece."""
+    """Return the rows (2 num_pieces, num_modes) of a continuous quantity at pieces' ends."""
     return np.asarray(np.repeat([read(x) for x in breaks], 2, axis=0)[1:-1])
 
 
 def _slope(breaks: Array, rows: Array) -> Array:
-    """Return (num_pieces, num_modes) the mean slope of each piece."""
+    """Return the mean slopes (num_pieces, num_modes) of the pieces."""
     return np.asarray((rows[1::2] - rows[::2]) / np.diff(breaks)[:, None])
 
 
 def _to_ends(breaks: Array, means: Array, acting: set[float]) -> Array:
-    """Return (2 num_pieces, num_modes) both ends of each piece, linear between places that act."""
+    """Return rows (2 num_pieces, num_modes) at pieces' ends, extrapolated from means."""
     jumps = [int(np.abs(breaks - x).argmin()) for x in acting]
     ends = np.repeat(means, 2, axis=0)
     for first, last in pairwise(np.unique(jumps).tolist()):

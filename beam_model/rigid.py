@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Segments as rigid bodies, with mass and inertia; only their supports and contacts are
-elastic.
-"""
+"""Segments as rigid bodies with mass and inertia; only supports and contacts are elastic."""
 
 from __future__ import annotations
 
@@ -15,10 +13,10 @@ from geometry.boom import Segment
 
 
 def rigid_segment(segment: Segment) -> SegmentModel:
-    """Return a segment that moves, and in space turns about its axis, without deformation.
+    """Return a segment that moves, and in space rotates about its axis, without deformation.
 
-    Its motions are the straight lines among the polynomials that its supports admit. Springs of
-    elastic supports and point masses act on them. It cannot move if rigid supports leave none.
+    Its motions are the linear functions that rigid supports admit, possibly none. Springs of
+    elastic supports and point masses act on them.
     """
     components: dict[Motion, Component] = {"z": _moving(segment)}
     if segment.lateral is not None:
@@ -29,7 +27,7 @@ def rigid_segment(segment: Segment) -> SegmentModel:
 
 
 def freedom(segment: Segment) -> int:
-    """Return the number of motions along z that rigid supports leave to a rigid segment."""
+    """Return the number of motions along z that rigid supports leave free in a rigid segment."""
     held = sum((s.stiffness is None) + (s.kind == "clamped") for s in segment.supports)
     return max(0, 2 - held)
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Shells condensed to as few coordinates as a beam has: section fields.
+"""Section fields: shells condensed to as few coordinates as a beam has.
 
-Some modes stay unchanged: a few as the slowest, the others as those whose inertia
-responds most to loads. Under a load b a mode deflects by b²/ω², its inertia by b²/ω⁴. Of the rest,
-the motions that forces excite are kept. They match ``MOMENTS`` derivatives at rest, so that statics
-is exact and the inertia of local deformation is accurate to the first orders (MacNeal 1971; Rubin
-1975, whose residual modes are the first block).
+The condensed system keeps some modes: a few of the slowest ones, and those with the largest
+inertial response b²/ω⁴ to loads b, whose static response is b²/ω². It represents the other modes by
+the motions that forces excite, which match ``MOMENTS`` derivatives at rest. So statics is exact,
+and the inertia of local deformation is accurate to the first orders (MacNeal 1971; Rubin 1975,
+whose residual modes are the first block).
 """
 
 from __future__ import annotations
@@ -18,24 +18,22 @@ from geometry.arrays import Array, Indices
 
 # Number of blocks Ω⁻²ᵏ Bᵀ of the load vectors.
 MOMENTS = 2
-# Blocks take no more than this part of the coordinates, unless one alone does.
+# Greatest fraction of the coordinates for blocks, unless a single block needs more.
 _OF_ALL = 1.0 / 3.0
-# Fraction of the coordinates for the slowest modes, whether loaded or not.
+# Fraction of the coordinates for the slowest modes, loaded or not.
 _SLOWEST = 1.0 / 8.0
 
 
 def condense(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
-    """Return the system in ``most`` coordinates at most, and their shapes.
+    """Return the system in at most ``most`` coordinates, and their shapes.
 
-    The shapes are (num_modes, num_coordinates). More coordinates remain where loads and rows alone
-    need them.
+    Shapes are (num_modes, num_coordinates). There are more coordinates if loads and rows need them.
 
     Args:
-        system: without modal damping, which a case adds later.
-        most: most of all segments together.
+        system: gap system without modal damping, which a case adds later.
+        most: maximum total number of coordinates of all segments.
 
-    Raises:
-        ValueError: the system has modal damping.
+    Raises: ValueError: the system has modal damping.
     """
     if system.damping.any():
         raise ValueError("a system is condensed before it is damped")
@@ -52,7 +50,7 @@ def condense(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
 
 
 def _order_modes(omega2: Array, pushes: Array, slowest: int) -> Indices:
-    """Return positions (num_modes,): the slowest, then by b²/ω⁴ over a push's whole b²/ω²."""
+    """Return the order (num_modes,) of modes: slowest, then by b²/ω⁴ over the total b²/ω²."""
     elastic = omega2 > 0.0
     gives = np.where(elastic, pushes**2 / np.where(elastic, omega2, 1.0), 0.0)
     whole = gives.sum(axis=1, keepdims=True)
@@ -63,7 +61,7 @@ def _order_modes(omega2: Array, pushes: Array, slowest: int) -> Indices:
 
 
 def _forces(system: GapSystem) -> Array:
-    """Return all forces (num_pushes, num_modes) that can act."""
+    """Return all possible forces (num_pushes, num_modes)."""
     constant = [system.load, system.released_load, system.initial_impulse]
     excited = [excitation.load for excitation in system.excitations]
     return np.vstack([system.all_rows, *constant, *excited])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Gap systems of segments as beams.
+"""Gap systems of beams.
 
-Kantorovich series and beam finite elements share this code. So do the flat boom and the one in
-space, which has more components and more pads.
+Kantorovich series and beam finite elements share this code, as do booms in the plane and in space,
+which have more components and pads.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from geometry.observation import Observation, Quantity
 from geometry.section import Side
 from geometry.telescoping import drives_below
 
-# Sides on which one contact row of a station along z or of a stop presses: both by the whole law,
-# or each by a row of its own, as in a shell, whose walls differ.
+# Sides of the contact rows of stations along z and of stops: one row for both sides, or one row per
+# side, as in a shell, whose walls differ.
 BOTH_SIDES: Sequence[Side] = (0,)
 EACH_SIDE: Sequence[Side] = (1, -1)
 
@@ -36,9 +36,10 @@ def gap_system(
     models: Sequence[SegmentModel],
     sides: Sequence[Side] = BOTH_SIDES,
 ) -> GapSystem:
-    """Return segments in modal coordinates, coupled by contact, friction and ties alone.
+    """Return the gap system of segments that contact, friction and ties couple.
 
-    Pads of a given size press at their middles. ``sides`` are those of a contact row.
+    The forces of pads with a given size act at their middles. ``sides`` are the sides of a contact
+    row.
     """
     modes = BoomModes(boom, models)
     system = undriven_system(boom, modes, sides)
@@ -51,7 +52,7 @@ def undriven_system(boom: Boom, modes: BoomModes, sides: Sequence[Side] = BOTH_S
     """Return the gap system at the start, without drives.
 
     Args:
-        boom, sides: as of :func:`gap_system`.
+        boom, sides: as in :func:`gap_system`.
         modes: modes of the boom's segments.
     """
     members = [modes.member(number) for number in range(len(boom.segments))]
@@ -80,13 +81,13 @@ def _rows(
     sides: Sequence[Side],
     extensions: Mapping[int, float],
 ) -> GapBuilder[Array]:
-    """Return contact, friction and dashpot rows at the extensions of joints in m."""
+    """Return the rows of contacts, friction and dashpots at the extensions of joints in m."""
     rows: GapBuilder[Array] = GapBuilder()
     for pad in pads(boom):
         on_outer, on_inner = pad.travels(extensions.get(pad.number, 0.0))
         law = pad.joint.law(pad.direction)
         joint = pad.joint
-        # u − w of the pad's two points.
+        # The row reads u − w of the pad's two points.
         approach, slide = (
             modes.displacement(joint.inner, x + on_inner, direction, inner)
             - modes.displacement(joint.outer, x + on_outer, direction, outer)
@@ -109,7 +110,7 @@ def _rows(
 
 
 def _row(place: Observation, modes: BoomModes) -> Array:
-    """Return the row (num_modes,) that reads a quantity, or that of which it is the derivative."""
+    """Return the row (num_modes,) that reads a quantity, or the quantity that it differentiates."""
     match place.kind.read:
         case "rotation":
             return modes.rotation(place.segment, place.x, "z")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Static states and support reactions: forces of supports, joints, cylinders and stops on beams.
 
-A segment without supports, deflected as the boom at rest, is in equilibrium with its loads except
-where something supports it. So the residual K w − f at a node is the reaction there, for any number
-of supports.
+A segment without its supports, with the static deflection of the boom, is in equilibrium with its
+loads except at supports. So the residual K w − f at a node is the reaction there, for any number of
+supports.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.contact_places import contact_centres
 
-# Elements of the longest segment, where axial forces soften it.
+# Number of elements of the longest segment under axial forces.
 COMPRESSED_ELEMENTS = 20
 
 
 class Reaction(NamedTuple):
-    """Reaction on a segment at a place: N along z, and N·m towards a larger slope."""
+    """Reaction on a segment: force in N along z, moment in N·m towards a larger slope."""
 
     segment: int
     x: float
@@ -46,9 +46,9 @@ class StaticState(NamedTuple):
 
     Args:
         boom: the boom.
-        system: system of its beams.
-        position: (num_modes,) of the system in √kg·m.
-        reactions: by segment, from its start to its end.
+        system: gap system of its beams.
+        position: modal coordinates (num_modes,) in √kg·m.
+        reactions: reactions on each segment, from its start to its end.
     """
 
     boom: Boom
@@ -58,18 +58,18 @@ class StaticState(NamedTuple):
 
     @property
     def tip(self) -> float:
-        """Deflection of the tip in m."""
+        """The deflection of the tip in m."""
         return float(self.system.observers["tip"].row @ self.position)
 
 
 @dataclass(frozen=True)
 class Elements:
-    """The segments of a boom as elements that are exact in statics, with or without play.
+    """Segments of a boom as elements whose static solution is exact.
 
     Args:
-        boom: with joints bonded or with play.
-        count: least number of elements of the longest segment. Section forces are linear within
-            half of an element, so stresses need more of them.
+        boom: boom with joints bonded or with play.
+        count: minimum number of elements of the longest segment. Section forces are linear within
+            half an element, so that stresses need more elements.
     """
 
     boom: Boom
@@ -77,12 +77,12 @@ class Elements:
 
     @cached_property
     def segments(self) -> list[SegmentModel]:
-        """Segments with their supports."""
+        """The segments with their supports."""
         return finite_element_segments(self.boom, *self._kind, rotary_inertia=False)
 
     @cached_property
     def unsupported(self) -> list[Component]:
-        """Components along z without supports, with nodes where something may support them."""
+        """The components along z without supports, with nodes at all possible supports."""
         size, theory = self._kind
         found = []
         for number, segment in enumerate(self.boom.segments):
@@ -94,7 +94,7 @@ class Elements:
 
     @property
     def _kind(self) -> tuple[float, Theory]:
-        """Longest length in m, smaller under axial forces and with tapers, and theory."""
+        """Return the element length in m, smaller with axial forces or tapers, and the theory."""
         segments, count = self.boom.segments, self.count
         if self.boom.compressed or any(one.head_section is not None for one in segments):
             count = max(count, COMPRESSED_ELEMENTS)
@@ -113,18 +113,17 @@ def static_state(
     elements: Elements | None = None,
     walls: float = 1.0,
 ) -> StaticState:
-    """Return the static state of a boom of beam elements of :func:`static_theory`.
+    """Return the static state of a boom of beam elements, by :func:`static_theory`.
 
     Walls bend under pads, see :mod:`beam_model.wall_compliance`.
 
     Args:
-        boom: with its loads.
-        elements: elements of its segments, if they are known from the same boom with play or
-            without.
+        boom: boom with its loads.
+        elements: elements of the segments, if already available, with or without play.
         walls: factor of the compliance of walls under pads, 0 for rigid walls.
 
     Raises:
-        NumericsError: it has no rest.
+        NumericsError: there is no equilibrium.
     """
     elements = elements or Elements(boom)
     modes = BoomModes(boom, elements.segments)
@@ -139,20 +138,19 @@ def static_state(
 
 
 def telescoping_system(boom: Boom) -> GapSystem:
-    """Return the system of the beams of :func:`static_state`, with its drives."""
+    """Return the gap system of the beams of :func:`static_state`, with drives."""
     return gap_system(boom, Elements(boom).segments).gather_loads()
 
 
 def net_reactions(boom: Boom, reactions: Sequence[Reaction]) -> list[Reaction]:
-    """Return the reactions of a boom, each force once, without those that segments transfer.
+    """Return the reactions of a boom, each force once.
 
-    Where a segment is supported in another one, the reaction is that of the other segment, and
-    elsewhere that of the ground.
+    A reaction at a joint is the force of the other segment, elsewhere that of the ground.
 
     Args:
-        boom: at rest.
-        reactions: reactions of all its segments; those of an outer one lack what the inner
-            transfers.
+        boom: boom at rest.
+        reactions: reactions on all segments; those on an outer segment do not include the forces of
+            the inner one.
     """
     whole = {reaction[:2]: reaction for reaction in reactions}
     for joint in sorted(boom.joints, key=lambda joint: -joint.inner):
@@ -165,7 +163,7 @@ def net_reactions(boom: Boom, reactions: Sequence[Reaction]) -> list[Reaction]:
 
 
 def _reaction_places(boom: Boom, number: int) -> set[float]:
-    """Return the x in m on a segment where something may support it."""
+    """Return the x in m of all possible supports of a segment."""
     places = {support.x for support in boom.segments[number].supports}
     places |= {stop.x for stop in boom.stops if stop.segment == number}
     places |= {jack.x for jack in boom.cylinders if jack.segment == number}
@@ -178,7 +176,7 @@ def _reaction_places(boom: Boom, number: int) -> set[float]:
 def _reactions(
     boom: Boom, number: int, component: Component, modes: BoomModes, position: Array
 ) -> list[Reaction]:
-    """Return the residual of a segment without its supports where something may support it."""
+    """Return the residuals of a segment without its supports, at all possible supports."""
     nodes = component.breaks
     bent = [
         row @ position
@@ -187,7 +185,7 @@ def _reactions(
     ]
     load = component.load.copy()
     for given in boom.loads:
-        # A load that is over by t = 0 has no values.
+        # A load that ends before t = 0 has no value.
         if given.segment == number and given.direction == "z" and callable(given.history):
             load += given.history(np.zeros(1))[0] * given.push(component.member)
     stiffness = component.stiffness - component.softening

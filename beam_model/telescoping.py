@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rows of a telescoping boom of beams at all extensions of its joints.
 
-Between the nodes that pass a station, rows are the shape functions of an element. Those of a plain
-one are cubic, and tables hold them exactly. Those of a tapered one are of the fifth degree, those
-of a series polynomials of any degree, and tables hold them within a tolerance.
+Between two nodes that pass a station, rows are shape functions of an element. Those of a plain
+element are cubic, and tables represent them exactly. Those of a tapered element have degree five,
+those of a series any degree, and tables represent them within a tolerance.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from geometry.axial import joint_thrust, moving_force
 from geometry.boom import SAME_PLACE, Boom
 from geometry.telescoping import MovedStations, drives_below, moved_stations
 
-# Rows of the boom at the extension of each joint in m, by positions of joints.
+# Function that returns the rows of the boom, from the extensions in m by index of the joint.
 RowsAt = Callable[[Mapping[int, float]], GapBuilder[Array]]
 
 
@@ -32,14 +32,14 @@ def travels(
     rows_at: RowsAt,
     members: Sequence[BeamMember],
 ) -> list[Travel]:
-    """Return the motion of rows by drives: that of each joint, for stops of several together."""
+    """Return the motion of rows by the drive of each joint, or of several joints for stops."""
     return [_travel(boom, models, rows_at, members, group) for group in moved_stations(boom)]
 
 
 def moving_axial_forces(
     boom: Boom, models: Sequence[SegmentModel], members: Sequence[BeamMember], joint: int
 ) -> list[MovingAxialForce]:
-    """Return the axial force, if any, that moves along with a telescoping joint.
+    """Return the axial force, if any, that moves with a telescoping joint.
 
     ``members`` are the models of the segments, beams or shells.
     """
@@ -95,7 +95,7 @@ def _breaks(boom: Boom, models: Sequence[SegmentModel], group: MovedStations) ->
 
 
 def _between(boom: Boom, reach: tuple[float, float], passed: Sequence[Array]) -> list[float]:
-    """Return the extensions in m between the ends of a reach, and these ends."""
+    """Return the extensions in m within a range, and both ends of the range."""
     low, high = reach
     extensions = np.unique(np.clip(np.concatenate([reach, *passed]), low, high))
     near = SAME_PLACE * boom.length

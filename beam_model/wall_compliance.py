@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Local compliance of walls under slide pads, without a shell.
 
-A wall that a pad presses bends as a plate. Its folds stay in place, since each lies in the plane of
-a neighbouring wall, which is stiff there. So the unfolded walls of a segment are one plate that
-continues over line supports at the folds and has a free edge where the segment ends. The conforming
-rectangles of Bogner, Fox and Schmit (1965) discretise it: products of cubic Hermite polynomials
-along the boom and around the section, whose matrices are Kronecker products.
-
-Sections with sloping walls also spread as a ring where no collar or diaphragm is near. This part is
-left out, and the estimate is too small there.
+A wall under a pad bends as a plate. Its folds stay in place, since each is in the plane of a
+neighbouring wall, which is stiff in its plane. So the unfolded walls of a segment form one plate,
+continuous over line supports at the folds, with a free edge at the end of the segment. It is
+discretised by the conforming rectangles of Bogner, Fox and Schmit (1965): products of cubic Hermite
+polynomials along the boom and around the section, whose matrices are Kronecker products. A section
+with sloping walls also deforms as a ring, unless a collar or diaphragm is near. This deformation is
+neglected, so that the estimate is then too small.
 """
 
 from __future__ import annotations
@@ -31,17 +30,17 @@ from geometry.contact_places import Pad, pads
 from geometry.section import Direction, Side
 from geometry.segment import Segment
 
-# Length of wall beyond a pad, over the larger side of the section: deformations end before it.
+# Length of wall beyond a pad, over the larger side of the section, within which deformations decay.
 _REACH = 1.5
-# Length of elements over the smaller side of the section, and its growth beyond a pad.
+# Length of elements over the smaller side of the section, and its growth away from a pad.
 _LENGTH, _GROWTH = 0.2, 1.6
 
-# Gauss's rule, exact for products of cubic polynomials.
+# Gauss's rule that is exact for products of cubic polynomials.
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 class PressedArea(NamedTuple):
-    """Area of a wall that a pad, or a pair of pads, presses evenly.
+    """Area of a wall under the uniform pressure of a pad or a pair of pads.
 
     Args:
         start, end: x in m.
@@ -57,7 +56,7 @@ class PressedArea(NamedTuple):
 
 
 class _Axis:
-    """Cubic Hermite elements between nodes in m; the last node of a closed axis is the first."""
+    """Cubic Hermite elements between nodes in m; a closed axis ends at its first node."""
 
     def __init__(self, nodes: Array, closed: bool) -> None:
         self.nodes = nodes
@@ -67,10 +66,10 @@ class _Axis:
         self._sums = self._shapes.antiderivative()
 
     def integrals(self, weights: Array) -> list[csc_matrix]:
-        """Return ∫ φφ, ∫ φ′φ′, ∫ φ″φ″ and ∫ φφ″, each (num_dofs, num_dofs).
+        """Return ∫ φφ, ∫ φ′φ′, ∫ φ″φ″ and ∫ φφ″, (num_dofs, num_dofs) each.
 
         Args:
-            weights: (num_elements,) factor of each element.
+            weights: factors (num_elements,) of the elements.
         """
         lengths = np.diff(self.nodes)[:, None]
         x = (self.nodes[:-1, None] + 0.5 * lengths * (1.0 + _PLACES)).ravel()
@@ -85,10 +84,10 @@ class _Axis:
 
 
 def with_wall_springs(system: GapSystem, boom: Boom, factor: float = 1.0) -> GapSystem:
-    """Return a beam with springs that are as compliant as the walls under its pads.
+    """Return a beam with springs that have the compliance of the walls under its pads.
 
     Args:
-        system: with a contact row for each side, ``beam_model.segment_model.EACH_SIDE``.
+        system: gap system with a contact row for each side, ``beam_model.segment_model.EACH_SIDE``.
         boom: the boom.
         factor: factor of the compliance, 0 for rigid walls.
     """
@@ -102,10 +101,10 @@ def with_wall_springs(system: GapSystem, boom: Boom, factor: float = 1.0) -> Gap
 def contact_compliance(boom: Boom) -> Array:
     """Return the local compliance (num_rows, num_rows) in m/N of walls at a boom's contact rows.
 
-    Pads of a given size bend walls; the compliance of other contacts, at corners, is left out.
+    Pads of a given size bend walls; the compliance of contacts at corners is neglected.
 
     Args:
-        boom: its rows are those of beams with a row for each side,
+        boom: boom of beams with a contact row for each side,
             ``beam_model.segment_model.EACH_SIDE``.
     """
     rows = [
@@ -122,14 +121,14 @@ def contact_compliance(boom: Boom) -> Array:
         inner = boom.segments[joint.inner]
         areas = [_pressed_area(*rows[i], inner) for i in at]
         for segment in (inner, boom.segments[joint.outer]):
-            # A row reads displacements along its direction, areas those along outward normals.
+            # Rows read displacements along their direction, areas those along outward normals.
             outward = wall_compliance(segment, areas)
             found[np.ix_(at, at)] += np.outer(sides, sides) * outward
     return found
 
 
 def _pressed_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
-    """Return the area of a pad in space, or of a mirrored pair of a flat boom."""
+    """Return the area of a pad in space, or of a symmetric pair in a flat boom."""
     assert pad.patch is not None
     near, far = pad.patch.across(inner.section_at(pad.x).face(pad.direction, side))
     halves = (1, -1) if pad.face is None else (pad.half,)
@@ -140,11 +139,11 @@ def _pressed_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
 def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
     """Return the compliance (num_areas, num_areas) in m/N of a segment's walls at pressed areas.
 
-    It is the mean displacement of each area along its outward normal under a unit force on another.
+    It is the mean displacement of an area along its outward normal under a unit force on another.
 
     Args:
-        segment: with a known section, and its collars and diaphragms.
-        areas: near each other along the segment.
+        segment: segment with a section, collars and diaphragms.
+        areas: areas that are near each other along the segment.
     """
     start, end = min(area.start for area in areas), max(area.end for area in areas)
     section = segment.section_at(0.5 * (start + end))
@@ -152,7 +151,7 @@ def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
     low, high = max(segment.start, start - reach), min(segment.end, end + reach)
     length = _LENGTH * min(section.size("y"), section.size("z"))
 
-    # Around the section from the first fold, with nodes at folds and at edges of pads.
+    # The axis around the section starts at the first fold, with nodes at folds and edges of pads.
     folds = np.concatenate([[0.0], np.cumsum([plate.length for plate in section.plates])])
     spans = []
     for area in areas:
@@ -203,7 +202,8 @@ def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
             for area, places in zip(areas, spans, strict=True)
         ]
     )
-    # Symmetric and positive definite: no pivots, and an ordering that keeps the symmetry.
+    # The matrix is symmetric positive definite: no pivoting, and an ordering that preserves
+    # symmetry.
     factor = splu(
         csc_matrix(stiffness)[free.ravel()][:, free.ravel()],
         permc_spec="MMD_AT_PLUS_A",
@@ -214,7 +214,7 @@ def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
 
 
 def _divided(cuts: Array, length: float, fine: tuple[float, float]) -> Array:
-    """Return nodes in m at cuts, with elements of a length that grow outside an interval."""
+    """Return nodes in m at cuts; elements have a length within an interval and grow outside it."""
     count = int(np.ceil((fine[1] - fine[0]) / length))
     beyond = length * np.cumsum(_GROWTH ** np.arange(1, 30))
     nodes = np.concatenate([fine[0] - beyond, np.linspace(*fine, count + 1), fine[1] + beyond])

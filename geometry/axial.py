@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Axial forces: the compression of each segment along the load path to the base.
 
-All forces act towards the base. What is outboard of a place compresses a segment there. A segment
-transfers its sum where it is locked in the next one, or where the ground holds it. What is further
-inboard is suspended there and causes tension.
+All forces act towards the base. At each place, the outboard forces compress the segment. A segment
+transfers the sum of its forces at its lock in the next segment, or at its foot on the ground.
+Forces inboard of that point are suspended from it and cause tension.
 """
 
 from __future__ import annotations
@@ -21,13 +21,14 @@ from geometry.load import Body
 from geometry.segment import SAME_PLACE, Segment
 from geometry.taper import mean_area
 
-# Forces are exact at the ends of steps, and between them within thousandths of a step's weight.
+# Number of steps of a tapered segment's weight. Forces are exact at the ends of steps, and between
+# them within thousandths of a step's weight.
 _STEPS = 8
 
 
 @dataclass(frozen=True, slots=True)
 class Thrust:
-    """A force in N on a segment at x in m towards the base, such as a hoist rope's at the tip.
+    """Axial force in N on a segment at x in m towards the base, for example of a hoist rope.
 
     >>> rope = pt.Thrust(segment=1, x=14.0, force=12e3)
     >>> arm, fly = with_compression(boom.segments, boom.joints, [rope])
@@ -57,11 +58,11 @@ def with_compression(
     0.0
 
     Args:
-        segments: from the base to the tip.
-        joints: give the places where each segment is locked in the next one.
-        thrusts: on the segments.
-        gravity: acceleration towards the base in m/s², by which all masses weigh, collars and
-            diaphragms among them.
+        segments: segments from the base to the tip.
+        joints: joints with the places where segments are locked.
+        thrusts: axial forces on the segments.
+        gravity: acceleration towards the base in m/s², which acts on all masses, including collars
+            and diaphragms.
     """
     passed: list[list[tuple[float, float]]] = [[] for _ in segments]
     carrying = list(segments)
@@ -84,16 +85,16 @@ def with_compression(
 
 @dataclass(frozen=True, slots=True)
 class MovingForce:
-    """A place on a segment at which an axial force moves along as another segment telescopes.
+    """Axial force whose place on a segment moves as another segment telescopes.
 
-    At an extension s, P is larger by the force between x and the present place, x + direction · s;
-    when retracted, smaller.
+    At an extension s, P increases by the force between x and the current place, x + direction · s;
+    it decreases if s is negative.
 
     Args:
-        segment: its position.
-        x: at the start, in m.
+        segment: index of the segment.
+        x: initial place in m.
         direction: 1 towards the head, −1 towards the tail.
-        force: N.
+        force: force in N.
     """
 
     segment: int
@@ -102,7 +103,7 @@ class MovingForce:
     force: float
 
     def more(self, x: Array, extension: Array) -> Array:
-        """Return (..., num_places) added P in N at x in m, at an ``extension`` (...) in m."""
+        """Return the change of P (..., num_places) in N at x in m, for ``extension`` (...) in m."""
         passed = self.direction * (x - self.x)
         far = np.asarray(extension)[..., None]
         out, back = (passed > 0.0) & (passed < far), (far < passed) & (passed < 0.0)
@@ -110,14 +111,14 @@ class MovingForce:
 
 
 def joint_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:
-    """Return the force in N of all that is inside a joint, where the joint carries it; else 0."""
+    """Return the axial force in N that a joint carries, or 0 if a foot carries it."""
     inner = joints[number].inner
     taken = _lock(joints, inner) is joints[number]
     return segments[inner].compression.transferred if taken else 0.0
 
 
 def foot_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:
-    """Return the axial force in N on a segment's foot; 0 without one or where a joint takes it."""
+    """Return the axial force in N on a segment's foot; 0 if a joint carries the force."""
     segment = segments[number]
     if segment.foot is None or _lock(joints, number) is not None:
         return 0.0
@@ -127,14 +128,14 @@ def foot_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: in
 def pin_moments(
     segments: Sequence[Segment], joints: Sequence[Joint], bodies: Sequence[Body]
 ) -> Iterator[tuple[int, Array]]:
-    """Yield moments of axial forces about pins below the axis: segment, (num_dofs,) load vector.
+    """Yield moments of axial forces about pins below the axis: segment, load vector (num_dofs,).
 
-    The pin is fixed. So the segment moves along x by −d w′(x_pin) as it turns, against the axial
-    forces N. These do the work N d w′, as a constant moment N d at the pin does.
+    The pin is fixed, so that a rotation moves the segment along x by −d w′(x_pin) against the axial
+    forces N. Their work is N d w′, equal to that of a constant moment N d at the pin.
 
     Args:
-        segments: with their axial forces.
-        joints: between them.
+        segments: segments with their axial forces.
+        joints: joints between the segments.
         bodies: bodies of the segments.
     """
     for number, segment in enumerate(segments):
@@ -147,10 +148,10 @@ def pin_moments(
 def moving_force(
     segments: Sequence[Segment], joints: Sequence[Joint], number: int
 ) -> MovingForce | None:
-    """Return the force that moves along with a telescoping joint; None where no axial force moves.
+    """Return the axial force that moves with a telescoping joint; None if none does.
 
-    A lock on the inner segment moves the force along the outer one. A lock on the outer segment
-    removes it from the inner one progressively towards its tail, except for a foot below the tail.
+    A lock on the inner segment moves the force along the outer segment. A lock on the outer segment
+    unloads the inner segment progressively towards its tail, except for a foot below the tail.
     """
     joint = joints[number]
     inner, force = segments[joint.inner], joint_thrust(segments, joints, number)
@@ -182,10 +183,10 @@ def carried(
     """Return P of a segment in N, (..., num_places) at x in m and times (...) in s.
 
     Args:
-        segments: with their initial axial forces.
-        joints: some may telescope.
+        segments: segments with their initial axial forces.
+        joints: joints, some of which may telescope.
         number: number of the segment.
-        x, time: place and time; at a jump either value.
+        x, time: places and times; at a jump, P is either value.
     """
     total = np.broadcast_to(segments[number].compression(x), (*time.shape, x.size))
     for position, joint in enumerate(joints):
@@ -196,7 +197,7 @@ def carried(
 
 
 def _weights(segment: Segment, gravity: float) -> list[tuple[float, float]]:
-    """Return the point weights: x in m and weight in N of each."""
+    """Return the point weights: x in m and weight in N of each one."""
     found = [(point.x, point.mass * gravity) for point in segment.masses]
     if segment.section is not None:
         plate = segment.material.density * gravity
@@ -208,7 +209,7 @@ def _weights(segment: Segment, gravity: float) -> list[tuple[float, float]]:
 
 
 def _spread_weights(segment: Segment, gravity: float) -> list[tuple[float, float, float]]:
-    """Return the distributed weights: both x in m and the weight in N/m of each."""
+    """Return the distributed weights: start and end in m, and weight in N/m of each one."""
     found = list(_plain_weights(segment, gravity))
     if segment.section is not None:
         doubler = segment.material.density * gravity
@@ -220,7 +221,7 @@ def _spread_weights(segment: Segment, gravity: float) -> list[tuple[float, float
 
 
 def _plain_weights(segment: Segment, gravity: float) -> Iterator[tuple[float, float, float]]:
-    """Yield the weight of the mass per length, in uniform steps where the segment tapers."""
+    """Yield the weight of the mass per length, in uniform steps for a tapered segment."""
     if segment.head_section is None:
         yield segment.start, segment.end, segment.mass_per_length * gravity
         return
@@ -230,7 +231,7 @@ def _plain_weights(segment: Segment, gravity: float) -> Iterator[tuple[float, fl
 
 
 def _lock(joints: Sequence[Joint], number: int) -> Joint | None:
-    """Return the joint that takes a segment's axial force: with ``locked_at``, or the outermost."""
+    """Return the joint that carries a segment's axial force: with ``locked_at`` or outermost."""
     around = [joint for joint in joints if joint.inner == number]
     return max(around, key=lambda joint: (joint.locked_at is not None, joint.outer), default=None)
 

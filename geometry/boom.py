@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The boom: telescoping segments with their joints, loads and stops.
+"""The boom: telescopic segments with joints, loads and stops.
 
-x runs along the boom, z is the plane of bending, y is lateral. Everything is in SI units.
+x runs along the boom, z is in the plane of bending, y is lateral. All units are SI units.
 """
 
 from __future__ import annotations
@@ -59,9 +59,9 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Boom:
-    """Segments from the base to the tip, the joints between them, their loads and cylinders.
+    """Segments from the base to the tip, with joints, loads and cylinders.
 
-    A clamped arm, and a fly of which 2 m slide in it:
+    Example: a clamped arm, and a fly with an overlap of 2 m in it.
 
     >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
     >>> boxes = (
@@ -79,13 +79,13 @@ class Boom:
     >>> pt.BeamElements(boom).system().num_modes
     66
 
-    Joints, loads, stops, cylinders and observations give their segments by name, or by position.
+    Joints, loads, stops, cylinders and observations refer to their segments by name or index.
 
     Raises:
-        BoomError: a name that is no segment, supports, stations, loads or stops outside the
-            segments, an inner box that does not fit its outer one, a section that does not mirror
-            itself, a segment without restraint, friction without a normal force, a boom in space
-            without lateral properties, an observation that the boom does not have.
+        BoomError: a segment name is unknown; a support, station, load or stop is outside its
+            segment; an inner section does not fit in the outer one; a section is not symmetric; a
+            segment is not restrained; friction lacks a normal force; a boom in space lacks lateral
+            properties; or a boom does not have an observed quantity.
     """
 
     segments: Sequence[Segment]
@@ -109,12 +109,12 @@ class Boom:
 
     @property
     def tip(self) -> float:
-        """x of the free end of the last segment in m."""
+        """The x in m of the free end of the last segment."""
         return self.segments[-1].end
 
     @property
     def length(self) -> float:
-        """Length from the start of the first segment to the tip in m."""
+        """The length in m from the start of the first segment to the tip."""
         return self.tip - self.segments[0].start
 
     @property
@@ -124,7 +124,7 @@ class Boom:
 
     @cached_property
     def bonded(self) -> Boom:
-        """The same boom with all joints bonded."""
+        """The boom with all joints bonded."""
         tied = tuple(joint.without_play for joint in self.joints)
         return replace(self, joints=tied)
 
@@ -140,20 +140,20 @@ class Boom:
 
     @property
     def directions(self) -> tuple[Direction, ...]:
-        """Directions along which the segments touch."""
+        """The directions in which the segments can touch."""
         return ("z", "y") if self.spatial else ("z",)
 
     @property
     def stations(self) -> list[tuple[float, Direction]]:
-        """x in m and direction of all contact stations; bonded joints are left out.
+        """The x in m and the direction of all contact stations, without bonded joints.
 
-        First those of joints along z, in space those of joints along y, then those of stops.
+        Stations of joints along z come first, in space those along y follow, then those of stops.
         """
         return self._stations_of_joints + [(stop.x, "z") for stop in self.stops]
 
     @property
     def numbered_stops(self) -> Iterator[tuple[int, Stop]]:
-        """Position in ``stations`` and stop, of each stop."""
+        """The index in ``stations`` of each stop, and the stop."""
         return enumerate(self.stops, start=len(self._stations_of_joints))
 
     @property
@@ -167,7 +167,7 @@ class Boom:
         ]
 
     def telescoped_over(self, segment: int) -> tuple[float, ...]:
-        """Return x on a segment, rising, between which stations or axial forces move along it."""
+        """Return ascending x of a segment between which stations or axial forces move along it."""
         found = {
             place[joint.inner == segment]
             for joint in self.joints
@@ -181,9 +181,9 @@ class Boom:
         return tuple(sorted(found | moving_force_places(self.segments, self.joints, segment)))
 
     def stations_of(self, segment: int) -> tuple[float, ...]:
-        """Return the x of all places at which something acts on a segment, rising.
+        """Return ascending x in m of all places on a segment with forces or masses.
 
-        Stations of its joints, stops, lugs of cylinders, point loads and point masses.
+        These are stations of joints, stops, lugs of cylinders, point loads and point masses.
         """
         places = {
             x for joint in self.joints if segment in (joint.outer, joint.inner)
@@ -198,21 +198,21 @@ class Boom:
         return tuple(sorted(places))
 
     def overlap(self, joint: Joint) -> tuple[float, float]:
-        """Return the x in m between which both segments of a joint are."""
+        """Return both ends in m of the overlap of a joint's segments."""
         outer, inner = self.segments[joint.outer], self.segments[joint.inner]
         return max(outer.start, inner.start), min(outer.end, inner.end)
 
     def overlap_left(self, joint: Joint) -> float:
-        """Return the overlap in m at the largest extension; without a drive the initial one."""
+        """Return the overlap in m at the largest extension of a drive, or else at the start."""
         start, end = self.overlap(joint)
         return end - start - (0.0 if joint.drive is None else joint.drive.reach[1])
 
     @property
     def observed(self) -> dict[str, tuple[int, float]]:
-        """Places whose deflection every model reports: name → (segment, x).
+        """The places whose deflection every model reports, by name: segment and x.
 
         ``tip`` is the end of the last segment, ``head`` the end of an outer and ``tail`` the start
-        of an inner segment. From the second joint on the joint's number follows the name.
+        of an inner segment. From the second joint on, names end with the number of the joint.
         """
         places = {"tip": (len(self.segments) - 1, self.tip)}
         for number, joint in enumerate(self.joints, start=1):
@@ -222,9 +222,10 @@ class Boom:
         return places
 
     def recorded(self, of_ends: Sequence[Quantity]) -> list[Observation]:
-        """Return what a model records: several quantities of every end, then the observations.
+        """Return the recorded quantities: those of all segment ends, then the observations.
 
-        The quantity follows an end's name, ``tip_rotation``, unless it is the deflection.
+        The name of an end is followed by the quantity, as in ``tip_rotation``, unless this is the
+        deflection.
         """
         return [*self.at_ends(of_ends), *self.observations]
 
@@ -237,15 +238,15 @@ class Boom:
 
 
 def on_segments(part: _Part, where: str, segments: Sequence[Segment]) -> _Part:
-    """Return a part with positions of segments in place of names, and x in place of distances.
+    """Return a part with indices of segments in place of names, and x in place of distances.
 
     Args:
-        part: a joint, or a part on one segment.
-        where: its place in the boom.
+        part: a joint, or a part of one segment.
+        where: place of the part in the boom.
         segments: segments of the boom.
 
     Raises:
-        BoomError: a name that is no segment.
+        BoomError: a segment name is unknown.
     """
     names = [segment.name for segment in segments]
     for key in ("outer", "inner", "segment"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Checks of a boom as a whole: mutual requirements of its parts."""
+"""Checks of a whole boom: requirements between its parts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from geometry.telescoping import check_drives
 if TYPE_CHECKING:
     from geometry.boom import Boom
 
-# Fraction of the inner segment's length below which an overlap counts as none.
+# Fraction of the inner segment's length below which an overlap counts as zero.
 LEAST_OVERLAP = 1.0e-4
 
 
@@ -28,7 +28,7 @@ def check_boom(boom: Boom) -> None:
     """Check that the parts of a boom fit one another.
 
     Raises:
-        BoomError: they do not; see :class:`geometry.boom.Boom`.
+        BoomError: parts do not fit; see :class:`geometry.boom.Boom`.
     """
     for number, segment in enumerate(boom.segments):
         segment.check(f"segments[{number}]")
@@ -68,7 +68,7 @@ def _check_order(boom: Boom) -> None:
 
 
 def _check_mirrors(boom: Boom) -> None:
-    """Check that bending along z is uncoupled; in space that along y and the twist are, too."""
+    """Check that vertical bending is uncoupled, and in space also lateral bending and twist."""
     for number, segment in enumerate(boom.segments):
         if segment.section is None:
             continue
@@ -86,9 +86,9 @@ def _check_mirrors(boom: Boom) -> None:
 
 
 def _check_diaphragms(boom: Boom) -> None:
-    """Check that no diaphragm closes a box where another segment is inside.
+    """Check that no diaphragm closes a box at a place where another segment is inside.
 
-    Segments end one beyond the other, so a segment deeper inside is inside the next one, too.
+    Each segment ends beyond the previous one, so that only the next segment needs a check.
     """
     for joint in boom.joints:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
@@ -257,12 +257,12 @@ def check_order(where: str, outer: str, inner: str, names: Sequence[str]) -> Non
     """Check that the outer segment of a joint is nearer to the base than the inner one.
 
     Args:
-        where: the place of the joint.
-        outer, inner: the names of its segments.
+        where: place of the joint in the boom.
+        outer, inner: names of its segments.
         names: names of all segments, from the base to the tip.
 
     Raises:
-        BoomError: it is not.
+        BoomError: the outer segment is farther from the base.
     """
     if names.index(outer) > names.index(inner):
         raise BoomError(

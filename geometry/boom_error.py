@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Errors in a boom, and their places."""
+"""Error in a boom, with its place."""
 
 from __future__ import annotations
 
 
 class BoomError(ValueError):
-    """An impossible boom: ``where`` is the object and its attribute, ``segments[1].start`` say."""
+    """Error in a boom; ``where`` is an object and its attribute, such as ``segments[1].start``."""
 
     def __init__(self, where: str, what: str) -> None:
         super().__init__(f"{where}: {what}")

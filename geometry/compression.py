@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The axial force that a segment carries, which softens its bending."""
+"""The axial force of a segment, which reduces its bending stiffness."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from geometry.arrays import Array
 
 @dataclass(frozen=True, slots=True)
 class Compression:
-    """P(x) in N along a segment, positive in compression: piecewise linear, with jumps.
+    """Axial force P(x) in N along a segment, positive in compression: piecewise linear, with jumps.
 
     >>> column = Compression(places=(0.0, 4.0, 10.0), ends=((9e3, 7e3), (2e3, 2e3)))
     >>> column(np.array([1.0, 5.0]))
     array([8500., 2000.])
 
     Args:
-        places: (num_pieces + 1) ends of the pieces, rising x in m; none where P is 0 everywhere.
-        ends: (num_pieces) P at both ends of each.
-        transferred: the whole axial force in N, which the segment transfers where it is held.
+        places: ends (num_pieces + 1) of the pieces, ascending x in m; empty if P is 0 everywhere.
+        ends: P (num_pieces) at both ends of each piece in N.
+        transferred: total axial force in N, which the segment transfers at its lock or foot.
     """
 
     places: tuple[float, ...] = ()
@@ -33,7 +33,7 @@ class Compression:
         return bool(self.ends)
 
     def __call__(self, x: Array) -> Array:
-        """Return P (num_places,) at x (num_places,) in m; at a jump either of both values."""
+        """Return P (num_places,) at x (num_places,) in m; at a jump, either value."""
         if not self:
             return np.zeros(x.shape)
         places, ends = np.array(self.places), np.array(self.ends)

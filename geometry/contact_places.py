@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Contact geometry: where the segments of a joint touch and slide.
+"""Contact geometry: the places where the segments of a joint touch and slide.
 
-In a flat boom a joint touches on the axis of its segments, above and below in one place. In
-space it touches in the corners of its sections, where slide pads sit because plates that meet are
-stiff there: at both ends of each face. Pads of a given size are
-patches beside the corners, or press these along their length.
+In a flat boom, contact is on the axis of the segments, above and below at the same x. In space, it
+is at the corners of the sections, where slide pads usually are since folds are stiff: at both ends
+of each face. Pads of a given size are patches beside the corners, or bear on the corners along
+their length.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from geometry.telescoping import drives_of, reach
 
 ContactLine = Literal["near webs", "across", "surface"]
 
-# Length over which a station presses a segment's corners, as a part of the least overlap: about
-# 0.1 m in the paper's boom, as slide pads are long.
+# Length of a station's contact along the corners, as a fraction of the least overlap: about 0.1 m
+# in the paper's boom, a typical length of slide pads.
 _OF_OVERLAP = 0.1
 
 _SIDES: tuple[Side, Side] = (1, -1)
@@ -36,13 +36,13 @@ _BOTH: tuple[Side] = (0,)
 class Patch:
     """Area of a pad of a given size on a wall of the inner segment.
 
-    It is centred at its station, but moved inwards where the overlap ends, and reaches inwards from
-    its offset from the corner of the inner box.
+    It is centred at its station, but shifted into the overlap if necessary. Across the wall, it
+    begins at an offset from the corner of the inner box.
 
     Args:
         start, end: x in m.
-        offset: offset of its edge from that of the wall in m.
-        width: across the wall in m.
+        offset: distance of its edge from the edge of the wall in m.
+        width: width across the wall in m.
     """
 
     start: float
@@ -51,18 +51,18 @@ class Patch:
     width: float
 
     def across(self, face: Face) -> tuple[float, float]:
-        """Return where it begins and ends on a wall of the inner segment, in m from its middle."""
+        """Return both ends of the patch across an inner segment's wall, in m from the middle."""
         far = 0.5 * face.width - self.offset
         return far - self.width, far
 
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Length of a segment's corners that a station presses.
+    """Interval of a segment's corners on which a station's contact force acts.
 
     Args:
         start, end: x in m.
-        station: x in m through which the resultant goes.
+        station: x in m of the resultant.
     """
 
     start: float
@@ -71,22 +71,22 @@ class Stretch:
 
     @classmethod
     def on(cls, segment: Segment, station: float, length: float) -> Stretch:
-        """Return a stretch centred at a station, but moved inwards where the segment ends."""
+        """Return an interval centred at a station, but shifted into the segment if necessary."""
         start = min(max(station - 0.5 * length, segment.start), segment.end - length)
         return cls(start, start + length, station)
 
     def moved(self, segment: Segment, by: float) -> Stretch:
-        """Return the same stretch moved along the segment by ``by`` in m."""
+        """Return the interval shifted along the segment by ``by`` in m."""
         if by == 0.0:
             return self
         return Stretch.on(segment, self.station + by, self.end - self.start)
 
     def density(self, x: Array) -> Array:
-        """Return (num_places,) a unit force per length in 1/m.
+        """Return the density (num_places,) in 1/m of a unit force.
 
-        Uniform where the station is in the middle, else linear with the resultant at the station.
-        As a weight of the deflection, it gives the value at the station of the straight line that
-        fits the deflection of the stretch best.
+        It is uniform if the station is in the middle, or else linear with the resultant at the
+        station. A deflection weighted by it is the value at the station of the deflection's
+        best-fit straight line.
         """
         length, middle = self.end - self.start, 0.5 * (self.start + self.end)
         return 1.0 / length + 12.0 * (self.station - middle) * (x - middle) / length**3
@@ -94,27 +94,28 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class Pad:
-    """A pair of points, one of each segment of a joint, that touch across its clearance.
+    """Contact pair: a point of each segment of a joint, which touch across the clearance.
 
     Args:
-        station: position in ``Boom.stations``.
+        station: index in ``Boom.stations``.
         joint: the joint.
-        number: position of the joint in ``Boom.joints``.
-        x: m.
-        direction: direction of its normal.
-        side: 1 touches where the inner segment presses up (along y: towards larger y), −1 where
-            it presses down, 0 both ways.
-        inner, outer: (y, z) in m of the points from the axes of their segments.
-        weight: the part of the joint's law on this side that the pad carries.
+        number: index of the joint in ``Boom.joints``.
+        x: position in m.
+        direction: direction of the contact normal.
+        side: 1 for contact if the inner segment presses upwards (along y: towards larger y), −1 if
+        it presses downwards, 0 for both. inner, outer: (y, z) in m of the points, from the axes of
+        their segments.
+        weight: share of the joint's law on this side.
         rubs: direction of sliding.
-        normal_force: normal force of its friction in N; None where its own contact presses.
-        pressed: its stretches of the corners of the inner and of the outer segment.
-        patch: the wall that it covers; None where it is a point or bears on a corner.
-        raised: its protrusion into the joint's clearance in m.
-        face: face of the inner segment in space, which touches in a corner of it; None in a flat
-            boom.
-        carrier: the segment to which it is fixed as the joint telescopes; None without a drive.
-        moved: m by which it has moved along the inner and the outer segment.
+        normal_force: given normal force of friction in N; None if the contact force is the normal
+            force.
+        pressed: intervals of the corners of the inner and the outer segment on which the force
+            acts.
+        patch: area on the wall; None for a point, or a pad that bears on a corner.
+        raised: protrusion into the joint's clearance in m.
+        face: face of the inner segment in space, which touches at a corner; None in a flat boom.
+        carrier: segment to which the pad is fixed while the joint telescopes; None without a drive.
+        moved: travel in m along the inner and the outer segment.
     """
 
     station: int
@@ -137,40 +138,40 @@ class Pad:
 
     @property
     def half(self) -> int:
-        """Half of its wall in space: 1 where the coordinate across the wall is positive."""
+        """The half of the wall in space: 1 at positive coordinates across the wall, else −1."""
         return int(np.sign(self._corner))
 
     @property
     def _corner(self) -> float:
-        """Position of its point across its wall in m."""
+        """The position of the point across the wall in m."""
         return self.inner[0] if self.direction == "z" else self.inner[1]
 
     @property
     def across(self) -> float:
-        """Distance of the middle of its area from its points, across its wall, in m."""
+        """The distance in m, across the wall, of the area's middle from the point."""
         if self.patch is None or self.face is None:
             return 0.0
         return self.half * 0.5 * sum(self.patch.across(self.face)) - self._corner
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Range of its joint's extension in m."""
+        """The range of the joint's extension in m."""
         return (0.0, 0.0) if self.joint.drive is None else self.joint.drive.reach
 
     @property
     def middle(self) -> float:
-        """x in m through which its resultant goes: the middle of its area."""
+        """The x in m of the area's middle, where the resultant acts."""
         if self.patch is None:
             return self.pressed[0].station
         return 0.5 * (self.patch.start + self.patch.end)
 
     def travels(self, extension: float) -> tuple[float, float]:
-        """Return its travel in m along the outer and the inner segment at an extension in m."""
+        """Return the travel in m along the outer and the inner segment at an extension in m."""
         on_outer = extension if self.carrier == "inner" else 0.0
         return on_outer, -extension if self.carrier == "outer" else 0.0
 
     def extended(self, boom: Boom, extension: float) -> Pad:
-        """Return the pad where its joint is extended by ``extension`` in m."""
+        """Return the pad at an ``extension`` of the joint in m."""
         on_outer, on_inner = self.travels(extension)
         inner, outer = (
             stretch.moved(boom.segments[number], by)
@@ -185,22 +186,22 @@ class Pad:
 
     @property
     def slide_x(self) -> float:
-        """x in m where its slide is read: of a flat boom in its middle, in space at its corner."""
+        """The x in m at which sliding is read: in a flat boom the middle, in space the corner."""
         return self.middle if self.joint.lateral_play is None else self.x
 
     @property
     def covered(self) -> tuple[Offset, Offset]:
-        """Middles (y, z) in m of its areas on both segments, from their axes."""
+        """The middles (y, z) in m of the areas on both segments, from their axes."""
         step = (self.across, 0.0) if self.direction == "z" else (0.0, self.across)
         (a, b), (c, d) = self.inner, self.outer
         return (a + step[0], b + step[1]), (c + step[0], d + step[1])
 
 
 def pads(boom: Boom) -> list[Pad]:
-    """Return every pad of every joint that is not bonded, by rising station.
+    """Return the pads of all joints that are not bonded, in the order of stations.
 
-    The weights of one side of a station sum to one. When the segments approach each other
-    without roll, the pads together have the force of one contact on the axis.
+    The weights of one side of a station sum to one, so that without roll the pads together have the
+    force of one contact on the axis.
     """
     found: list[Pad] = []
     station = 0
@@ -237,7 +238,7 @@ def pads(boom: Boom) -> list[Pad]:
                             outer=outer,
                             weight=weight,
                             rubs="y" if boom.spatial and direction == "z" else "z",
-                            # Both sides together have the friction of the one on the axis.
+                            # Both sides together have the friction of one pad on the axis.
                             normal_force=None
                             if normal_force is None
                             else normal_force * weight * (0.5 if side else 1.0),
@@ -253,9 +254,9 @@ def pads(boom: Boom) -> list[Pad]:
 
 
 def contact_centres(boom: Boom, joint: Joint) -> dict[float, tuple[float, ...]]:
-    """Return the x in m of the middles of the pads along z at each station; without, the station.
+    """Return the x in m of the pads' middles along z, by station; without pads that of the station.
 
-    The keys are the stations' x in m.
+    The keys are the x of the stations in m.
     """
     overlap = boom.overlap(joint)
     sizes = [size for side in _SIDES for size, _, _ in joint.pads_of("z", side)]
@@ -269,7 +270,7 @@ def contact_centres(boom: Boom, joint: Joint) -> dict[float, tuple[float, ...]]:
 
 
 def pressed_places(boom: Boom, number: int) -> tuple[float, ...]:
-    """Return the x in m at which something acts on a segment, middles of pads among them."""
+    """Return the x in m of all forces and masses on a segment, including middles of pads."""
     joints = (joint for joint in boom.joints if number in (joint.outer, joint.inner))
     middles = (x for joint in joints for at in contact_centres(boom, joint).values() for x in at)
     return tuple(sorted({*boom.stations_of(number), *middles}))
@@ -278,7 +279,7 @@ def pressed_places(boom: Boom, number: int) -> tuple[float, ...]:
 def _points(
     boom: Boom, joint: Joint, direction: Direction, x: float
 ) -> Iterator[tuple[Side, Offset, Offset, float, Face | None]]:
-    """Yield side, inner and outer point, weight, and inner face in space, of a station's pads."""
+    """Yield a station's pads: side, inner and outer point, weight, and in space the inner face."""
     if joint.lateral_play is None:
         for side in _SIDES if joint.pads else _BOTH:
             yield side, (0.0, 0.0), (0.0, 0.0), 1.0, None
@@ -294,20 +295,20 @@ def _points(
             yield side, within, around, 0.5, touching
 
 
-# Length of a segment's corners that stops press, over the height of the box: about 0.1 m in the
-# paper's boom.
+# Length of a stop's contact along the corners, as a fraction of the box's height: about 0.1 m in
+# the paper's boom.
 _OF_HEIGHT = 0.2
 
 
 @dataclass(frozen=True, slots=True)
 class StopPatch:
-    """Place where a stop presses a segment's corners.
+    """Place at which a stop acts on a segment's corners.
 
     Args:
-        station: position in ``Boom.stations``.
+        station: index in ``Boom.stations``.
         stop: the stop.
-        pressed: pressed of the corners.
-        reach: range of its segment's extension in m.
+        pressed: interval of the corners.
+        reach: range of the segment's extension in m.
     """
 
     station: int
@@ -316,13 +317,13 @@ class StopPatch:
     reach: tuple[float, float]
 
     def extended(self, boom: Boom, extension: float) -> StopPatch:
-        """Return the rest where its segment is extended by ``extension`` in m."""
+        """Return the place at an ``extension`` of the segment in m."""
         pressed = self.pressed.moved(boom.segments[self.stop.segment], -extension)
         return replace(self, pressed=pressed)
 
 
 def stop_patches(boom: Boom) -> list[StopPatch]:
-    """Return every stop of a boom whose sections are known."""
+    """Return the places of all stops of a boom with sections."""
     found = []
     for station, stop in boom.numbered_stops:
         segment = boom.segments[stop.segment]

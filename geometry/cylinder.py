@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Luffing cylinders, which support a boom on a hinge."""
+"""Luffing cylinders, which support a hinged boom."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 class Cylinder:
     """A luffing cylinder: a spring between a lug of a segment and a point of the ground.
 
-    The lug moves with its cross-section. The segment does not stretch; along x its foot holds it,
-    the support nearest to the base.
+    The lug moves with its cross-section. The segment does not stretch; its foot, the support
+    nearest to the base, holds it along x.
 
     >>> jack = pt.Cylinder(segment=0, x=4.0, depth=0.3, ground=(1.0, -4.3), stiffness=5e7)
     >>> jack.length, jack.direction
@@ -43,39 +43,40 @@ class Cylinder:
     x: Place
     """the x of the lug in m"""
     depth: Annotated[Number, In("m")] = 0.0
-    """how far in m the lug is below the segment's axis"""
+    """the depth in m of the lug below the segment's axis"""
     ground: tuple[Annotated[Number, In("m")], Annotated[Number, In("m")]] = field(kw_only=True)
-    """the other end in m: its x, and how far it is above the boom's axis"""
+    """the other end in m: its x, and its height above the boom's axis"""
     stiffness: Annotated[Positive, In("N/m")] = field(kw_only=True)
-    """the stiffness in N/m along its line, of two side by side together"""
+    """the axial stiffness in N/m; of two cylinders side by side their sum"""
     dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
-    """the linear dashpot in N s/m along its line, of two together"""
+    """the linear axial dashpot in N s/m; of two cylinders their sum"""
     spread: Annotated[NotNegative, In("m")] = 0.0
-    """the distance in m across the boom of two side by side, of a boom in space; one in the middle
-    unless given"""
+    """the lateral distance in m of two cylinders side by side, for a boom in space; unless given,
+    one cylinder is in the middle"""
 
     @property
     def length(self) -> float:
-        """Length from the ground to the lug in m."""
+        """The length from the ground to the lug in m."""
         return hypot(self.x - self.ground[0], -self.depth - self.ground[1])
 
     @property
     def direction(self) -> tuple[float, float]:
-        """x and z of the unit vector from the ground to the lug."""
+        """The x and z components of the unit vector from the ground to the lug."""
         return (
             (self.x - self.ground[0]) / self.length,
             (-self.depth - self.ground[1]) / self.length,
         )
 
     def arm(self, foot: Support) -> float:
-        """Return the lever arm of its line about the pin of a foot in m."""
+        """Return the lever arm of the cylinder about the pin of a foot in m."""
         along, up = self.direction
         return (self.x - foot.x) * up + (self.depth - foot.depth) * along
 
     def pull(self, x: Array, foot: Support | None) -> Array:
-        """Return the normal force (num_places,) in N at x (num_places,) in m of 1 N of compression.
+        """Return the normal force (num_places,) in N at x in m for 1 N of compression.
 
-        Between its lug and the foot, which holds the segment along x; none without a foot.
+        It acts between the lug and the foot, which holds the segment along x; it is 0 without a
+        foot.
         """
         if foot is None:
             return np.zeros(x.shape)
@@ -86,11 +87,11 @@ class Cylinder:
         """Check that the cylinder is possible.
 
         Args:
-            where: its place in the boom, ``cylinders[0]`` say.
-            spatial: spatial of the boom.
+            where: place in the boom, for example ``cylinders[0]``.
+            spatial: whether the boom moves in space.
 
         Raises:
-            BoomError: it has no length, or two are side by side in a flat boom.
+            BoomError: the cylinder has no length, or a flat boom has two side by side.
         """
         if not 0.0 < self.length < float("inf"):
             raise BoomError(
@@ -104,15 +105,15 @@ class Cylinder:
             )
 
     def pushes(self, body: Body, foot: Support | None) -> Iterator[Array]:
-        """Yield (num_dofs,) load vectors of 1 N of all cylinders: rows that read their length.
+        """Yield load vectors (num_dofs,) of 1 N, which are also rows that read the length.
 
-        With two, also that of ½ N in one and −½ N in the other. A point at (y, z) of a section
-        moves along x by −w′ z − v′ y and along z by w + φ y, beside the segment's motion along x,
-        which is zero at the foot's depth.
+        Of two cylinders, the second vector has ½ N in one and −½ N in the other. A point at (y, z)
+        of a section moves along x by −w′ z − v′ y, and along z by w + φ y, in addition to the
+        segment's motion along x, which is zero at the depth of the foot.
 
         Args:
             body: the segment.
-            foot: that holds it along x.
+            foot: support that holds the segment along x.
         """
         along, up = self.direction
         in_plane = up * body.force(self.x, "z") + along * self.depth * body.moment(self.x, "z")
@@ -125,14 +126,15 @@ class Cylinder:
 
 
 class GroundLine(NamedTuple):
-    """A spring and dashpot from a segment to the ground, beside the segment's own supports.
+    """Spring and dashpot between a segment and the ground, in addition to its supports.
 
     Args:
-        segment: position in ``Boom.segments``.
-        push: (num_dofs,) load vector of 1 N along it, which is the row that reads its length.
-        stiffness: N/m.
-        dashpot: N·s/m.
-        force: the results' name of the spring force, positive in compression; none without.
+        segment: index in ``Boom.segments``.
+        push: load vector (num_dofs,) of 1 N along the line, also the row that reads its length.
+        stiffness: stiffness in N/m.
+        dashpot: dashpot in N·s/m.
+        force: name of the spring force in results, positive in compression; None if it is no
+            result.
     """
 
     segment: int
@@ -143,12 +145,12 @@ class GroundLine(NamedTuple):
 
 
 def force_name(number: int) -> str:
-    """Return the results' name of a cylinder's spring force; ``number`` counts from 1."""
+    """Return the name of a cylinder's spring force in results; ``number`` counts from 1."""
     return "cylinder_force" if number == 1 else f"cylinder_force-{number}"
 
 
 def forces(boom: Boom) -> dict[str, str]:
-    """Return the results' names of the cylinders' spring forces, and their descriptions."""
+    """Return the names of the cylinders' spring forces in results, with descriptions."""
     found = {}
     for number, one in enumerate(boom.cylinders, start=1):
         name = force_name(number)
@@ -165,8 +167,8 @@ def ground_lines(boom: Boom, bodies: Sequence[Body]) -> Iterator[GroundLine]:
     """Yield springs and dashpots of cylinders, then dashpots of supports.
 
     Args:
-        boom: its supports and cylinders.
-        bodies: its segments.
+        boom: boom with supports and cylinders.
+        bodies: segments of the boom.
     """
     names = iter(forces(boom))
     for one in boom.cylinders:

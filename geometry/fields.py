@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Fields of the parts of a boom: numbers with limits and units, names, and places along x.
 
-Parts are pydantic dataclasses, in Python as in a case file, whose key is the name of the field.
-The JSON Schema and messages show the string below a field.
+Parts are pydantic dataclasses for Python and for case files, where field names are keys. The JSON
+Schema and messages show the string below a field.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError
 
 
 class In:
-    """The unit of the numbers of a field, by the names of :mod:`runs.case.units`.
+    """Unit of the numbers of a field, with a name of :mod:`runs.case.units`.
 
     Args:
-        units: one for all of them, or one for each column of a table; ``1`` for none, ``^n`` a
-            power that is the exponent of a contact law.
+        units: one unit for all numbers, or one for each column of a table; ``1`` means
+            dimensionless, ``^n`` the power by the exponent of a contact law.
     """
 
     def __init__(self, *units: str) -> None:
@@ -46,7 +46,7 @@ class In:
 def fields_of(table: type) -> dict[str, FieldInfo]:
     """Return the fields of a part, or of a table of a case, by their names in the class.
 
-    Those that a part inherits are described in its base.
+    Descriptions of inherited fields are in the base class.
     """
     bases = [getattr(base, "__pydantic_fields__", {}) for base in table.__mro__]
     described = {
@@ -57,12 +57,12 @@ def fields_of(table: type) -> dict[str, FieldInfo]:
 
 
 def names_of(table: type) -> dict[str, str]:
-    """Return the names of a table's fields in the class by their keys in the case file."""
+    """Return the names of a table's fields in the class, by their keys in the case file."""
     return {field.alias or name: name for name, field in fields_of(table).items()}
 
 
 def declared_units(field: FieldInfo) -> tuple[str, ...]:
-    """Return the units in a field's :class:`In`; none for other values."""
+    """Return the units in a field's :class:`In`; empty for fields without units."""
     return next((unit.units for unit in _units((*field.metadata, field.annotation))), ())
 
 
@@ -80,44 +80,44 @@ def described(field: FieldInfo) -> str:
 
 
 def _shorten(schema: JsonSchemaValue, table: type) -> None:
-    """Put the descriptions of a JSON Schema on one line each, without examples."""
+    """Shorten the descriptions in a JSON Schema to one line each, without examples."""
     schema["description"] = " ".join(str(table.__doc__).split("\n\n")[0].split())
     for key, rule in schema.get("properties", {}).items():
         rule["description"] = described(fields_of(table)[names_of(table)[key]])
 
 
-# A part has nothing but its own fields.
+# Pydantic configuration of parts: unknown fields are errors.
 PART = ConfigDict(extra="forbid", use_attribute_docstrings=True, json_schema_extra=_shorten)
 
 Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Length = Annotated[Positive, In("m")]
-# A name becomes a part of file names, and an element of a comma-separated list.
+# Names become parts of file names and elements of comma-separated lists.
 NAME = r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$"
 Name = Annotated[str, Field(pattern=NAME, max_length=60)]
 Flag = Annotated[bool, Field(strict=True)]
-# A boom has a few of each; many more are an input error, and would take too long to draw.
+# Maximum number of parts of a kind: more are an input error, and would take too long to draw.
 Few = Field(max_length=100)
 MOST_STATIONS = 50
 
 
 @dataclass(frozen=True, slots=True, config=PART)
 class Distance:
-    """A distance from an end: of a segment, or of the overlap of a joint's."""
+    """Distance from an end of a segment or of an overlap."""
 
     tail: Annotated[NotNegative, In("m")] | None = None
-    """the distance in m from the segment's start, in a joint the inner one's"""
+    """the distance in m from the start of the segment, or of a joint's inner segment"""
     head: Annotated[NotNegative, In("m")] | None = None
-    """the distance in m from the segment's end, in a joint the outer one's"""
+    """the distance in m from the end of the segment, or of a joint's outer segment"""
 
 
-# Names of places: the ends.
+# Names of the ends as places.
 End = Literal["tail", "head"]
 
 
 def _place(given: Any) -> Any:
-    """Check a number or a distance; a union's own messages would name its branches."""
+    """Check a number or a distance; the messages of a union type would name its branches."""
     if isinstance(given, Distance):
         return given
     if is_number(given):
@@ -133,12 +133,12 @@ def _place(given: Any) -> Any:
 
 
 def is_number(given: Any) -> bool:
-    """Return whether a value is a number, which true and false are not."""
+    """Return whether a value is a number; booleans are not."""
     return isinstance(given, int | float) and not isinstance(given, bool)
 
 
 class _AnyPlace:
-    """Validation of a place: its x, which a distance from an end stands for in a loose part."""
+    """Validation of a place: its x, or a distance from an end until the part is on a segment."""
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -147,10 +147,10 @@ class _AnyPlace:
         return handler.generate_schema(Annotated[float | Distance, check])
 
 
-# The x in m; 'tail', 'head' or a distance from one of them until the part is on a segment.
+# Type of a place: x in m, or 'tail', 'head' or a distance from them until the part is on a segment.
 Place = Annotated[float, _AnyPlace(), In("m")]
 
-# Segment of a part: its name as the user gives it, its position once the part is in a boom.
+# Type of the segment of a part: its name as given, its index once the part is in a boom.
 SegmentRef = Annotated[Any, WithJsonSchema({"type": "string"})]
 
 _Part = TypeVar("_Part")
@@ -167,7 +167,7 @@ def at(place: float | Distance, tail: float, head: float) -> float:
 
 
 def placed(part: _Part, tail: float, head: float) -> _Part:
-    """Return a part, a dataclass, with the x in m in place of all distances from two ends."""
+    """Return a part (a dataclass) with x in m in place of distances from two ends."""
     found: dict[str, Any] = {}
     for field in fields(part):  # type: ignore[arg-type]
         given = getattr(part, field.name)

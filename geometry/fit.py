@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Checks that sections and slide pads have room, and that flat plates touch."""
+"""Checks of clearances of sections and slide pads, and of the plates that touch."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ _WHERE: Mapping[tuple[Direction, Side], str] = {
 
 
 def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
-    """Check that the inner segment of a joint has its play within the outer one, if both are known.
+    """Check that the inner segment of a joint fits with its play, if both sections are given.
 
     Raises:
-        BoomError: it has not; at an attribute of the joint ``where``.
+        BoomError: the segment does not fit; the place is an attribute of the joint ``where``.
     """
     if outer.section is None or inner.section is None:
         return
@@ -53,10 +53,10 @@ def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
 def check_room_on_the_way(
     where: str, joint: Joint, outer: Segment, inner: Segment, extension: float
 ) -> None:
-    """Check that the inner segment of a flat joint still has its play at an extension.
+    """Check that the inner segment of a flat joint fits with its play at an extension.
 
     Raises:
-        BoomError: it has not; at the drive ``where``.
+        BoomError: the segment does not fit; the place is the drive ``where``.
     """
     if outer.section is None or inner.section is None:
         return
@@ -74,10 +74,10 @@ def check_room_on_the_way(
 def room(
     joint: Joint, outer: Segment, inner: Segment, extension: float = 0.0
 ) -> tuple[float, float]:
-    """Return the least room of the inner segment for motion along z, and along y, in m.
+    """Return the least space in m for motion of the inner segment, along z and along y.
 
-    At the ends of the overlap after an extension in m, of segments with known sections;
-    a taper is linear between them.
+    Both segments have sections. It suffices to check both ends of the overlap at the extension in
+    m, since tapers are linear.
     """
     first, last = max(outer.start, inner.start + extension), min(outer.end, inner.end + extension)
     found = [
@@ -95,17 +95,17 @@ def check_flats(
     places: Sequence[float],
     around: Segment | None = None,
 ) -> None:
-    """Check that a segment has plates that can touch, as far as its section is known.
+    """Check that a segment has plates that can touch, if it has a section.
 
     Args:
-        where: its place in the boom.
-        segment: which touches, on both sides.
-        directions: along which.
-        places: x in m at which it touches.
-        around: the segment whose plates it touches, if any.
+        where: place of the segment in the boom.
+        segment: segment that touches, on both sides.
+        directions: directions of contact.
+        places: x in m of the contacts.
+        around: outer segment, if any.
 
     Raises:
-        BoomError: it has none, or wider ones than the segment around it.
+        BoomError: the segment has no such plates, or wider ones than the outer segment.
     """
     if segment.section is None:
         return
@@ -137,8 +137,8 @@ def check_pads(where: str, joint: Joint, boom: Boom) -> None:
     """Check that all pads of a joint are possible.
 
     Raises:
-        BoomError: one has no room, two lie on one another, a side has none; at an attribute of
-            ``where``.
+        BoomError: a pad does not fit, two pads overlap, or a side has no pads; the place is an
+            attribute of ``where``.
     """
     if joint.pad is not None:
         _check_pad(f"{where}.pad", joint, joint.pad, boom)
@@ -162,7 +162,8 @@ def check_pads_on_the_way(where: str, joint: Joint, boom: Boom) -> None:
     """Check that all pads of a joint with a drive stay on both of its segments.
 
     Raises:
-        BoomError: one is longer than the least overlap, or leaves it; at an attribute of ``where``.
+        BoomError: a pad is longer than the least overlap, or leaves it; the place is an attribute
+            of ``where``.
     """
     sizes = {f"{where}.contact_length": joint.contact_length}
     pads = {} if joint.pad is None else {f"{where}.pad": joint.pad}

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Graded meshes: fine where something presses, and coarser away from it.
+"""Graded meshes: fine at contacts and loads, and coarser elsewhere.
 
-The first step makes rectangles: near a zone they are nearly square, far from all zones almost seven
-times as long along the boom as across. Large edges make the bending of walls across too stiff. This
-error is proportional to the square of the edges across and depends little on those along: halving
-both lowers the frequencies of walls by 0.2 to 0.4 %. The second step is newest-vertex bisection
-(Mitchell 1989). It cuts each triangle from its newest corner to the middle of the edge opposite,
-the first time across the diagonal of its rectangle. Its grandchildren have its shape. Neighbours
-are cut with it, so that no node hangs. Places are compared on the positive side of the section's
-mirrors, rounded, so that a mirror image is cut where its original is.
+The first step makes rectangles, which are nearly square near a refinement zone, and far from all
+zones almost seven times as long along the boom as across. Coarse meshes are too stiff in the
+bending of walls across the boom. This error is proportional to the square of the edge length
+across, and depends little on the length along: halving both lowers the frequencies of walls by 0.2
+to 0.4 %.
+
+The second step is newest-vertex bisection (Mitchell 1989). It divides each triangle from its newest
+corner to the middle of the opposite edge, at first the diagonal of its rectangle. After two
+bisections, triangles have the original shape. Neighbours are divided, too, so that there are no
+hanging nodes. Places are compared on the positive side of the section's mirrors, after rounding, so
+that the mesh stays symmetric.
 """
 
 from __future__ import annotations
@@ -24,14 +27,16 @@ from geometry.mesh import SegmentMesh, mesh_segment
 from geometry.refinement import RefinementZone
 from geometry.section import COMPONENT, Direction, Section
 
-# Lengths are compared in this fraction of a mesh's extent: below any edge, above round-off.
+# Unit for comparisons of lengths, as a fraction of a mesh's extent: below any edge, above
+# round-off.
 _ROUNDED = 1.0e-9
 
-# Distinguishes edges of the same length: the fraction by which one at the outline counts as
+# Rules for edges of the same length: the fraction by which an edge at the outline counts as
 # shorter, and the weights of x, y and z.
 _NEARER, _BESIDE = 1.0e-6, np.array([0.0, 1.0, 1.6])
 
-# Rectangles as fractions of the mesh size: across everywhere, along the boom from zones outwards.
+# Sides of rectangles as fractions of the mesh size: across the boom, and along it from zones
+# outwards.
 _ACROSS = 0.3
 _ALONG = (0.5, 1.0, 2.0)
 
@@ -46,12 +51,12 @@ def graded_mesh(
     """Mesh the walls of a segment as :func:`mesh_segment` does, fine in the refinement zones.
 
     Args:
-        section, breaks, closed: see :func:`mesh_segment`.
-        size: edge length in m of squares that are as large as the rectangles far from all zones.
-        zones: where it is to be fine.
+        section, breaks, closed: as in :func:`mesh_segment`.
+        size: edge length in m of squares with the area of the rectangles far from all zones.
+        zones: refinement zones.
 
     Raises:
-        ValueError: as :func:`mesh_segment`.
+        ValueError: as in :func:`mesh_segment`.
     """
     along = _along(breaks, size, zones)
     mesh = _diagonals_first(mesh_segment(section, breaks, _ACROSS * size, closed, along))
@@ -63,11 +68,11 @@ def graded_mesh(
 def _along(
     breaks: Mapping[str, float], size: float, zones: Sequence[RefinementZone]
 ) -> dict[float, float]:
-    """Return x in m of outlines → length in m of rectangles from there on."""
+    """Return the lengths in m of rectangles, by the x in m of the outline at their start."""
     start, end = min(breaks.values()), max(breaks.values())
     fine, middle, coarse = (part * size for part in _ALONG)
     ends = {x for zone in zones for length in (middle, coarse) for x in zone.reach(length)}
-    # No outline beside a break: it would only add slender triangles.
+    # Outlines near a break are left out: they would only add slender triangles.
     apart = [x for x in ends if min(abs(x - place) for place in breaks.values()) > fine]
     found: dict[float, float] = {}
     for x in sorted([start, *(x for x in apart if start < x < end)]):
@@ -86,7 +91,8 @@ def _along(
 def _diagonals_first(mesh: SegmentMesh) -> SegmentMesh:
     """Return the mesh with the longest edge of each triangle first, which two triangles share.
 
-    Of equal edges in a diaphragm's fan, the one nearer to the axis, as in all mirror images.
+    Of equal edges in a diaphragm's fan, the edge nearer to the axis comes first, so that the order
+    is symmetric.
     """
     corners = mesh.points[mesh.triangles]
     beside = np.abs(corners + np.roll(corners, -1, axis=1)) @ _BESIDE
@@ -96,14 +102,14 @@ def _diagonals_first(mesh: SegmentMesh) -> SegmentMesh:
 
 
 def _edges(corners: Array) -> Array:
-    """Return (num_triangles, 3) lengths of edges in m, from corners (num_triangles, 3, 3)."""
+    """Return the lengths (num_triangles, 3) of edges in m, from corners (num_triangles, 3, 3)."""
     return np.asarray(np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2))
 
 
 def _too_large(
     mesh: SegmentMesh, mirrors: Sequence[Direction], zones: Sequence[RefinementZone]
 ) -> Mask:
-    """Return (num_triangles,) which are larger than a zone allows at their nearest corner."""
+    """Return the mask (num_triangles,) of triangles that are too large for a zone."""
     near = _ROUNDED * float(np.ptp(mesh.points[:, 0]))
     places = mesh.points.copy()
     mirrored = [COMPONENT[axis] for axis in mirrors]
@@ -116,9 +122,9 @@ def _too_large(
 
 
 def _bisected(mesh: SegmentMesh, cut: Mask) -> SegmentMesh:
-    """Return the mesh with the marked triangles cut, and others so that no node hangs."""
+    """Return the mesh with the marked triangles bisected, and others to avoid hanging nodes."""
     edges = np.sort(np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=2), axis=2)
-    # A number for each pair of points sorts ten times as fast as the pairs.
+    # One number per pair of points is sorted ten times as fast as pairs.
     count = np.int64(len(mesh.points))
     numbers, edge_of = np.unique(edges[..., 0] * count + edges[..., 1], return_inverse=True)
     ends, edge_of = np.stack(np.divmod(numbers, count), axis=1), edge_of.reshape(-1, 3)
@@ -133,7 +139,7 @@ def _bisected(mesh: SegmentMesh, cut: Mask) -> SegmentMesh:
     while (split := middles[:, 0] >= 0).any():
         a, b, c = triangles[split].T
         new, after, before = middles[split].T
-        # The edge opposite to the new corner is first, and is cut next.
+        # The edge opposite to the new corner is first: it is bisected next.
         halves = np.column_stack([b, c, new]), np.column_stack([c, a, new])
         whole = np.full(len(new), -1)
         left = np.column_stack([after, whole, whole]), np.column_stack([before, whole, whole])
@@ -147,7 +153,7 @@ def _bisected(mesh: SegmentMesh, cut: Mask) -> SegmentMesh:
 
 
 def _with_middles(line: Indices, new_of: Mapping[tuple[int, int], int]) -> Indices:
-    """Return the edges of a line; those with a new middle are replaced by their halves."""
+    """Return the edges of a line; halves replace edges with a new middle."""
     found: list[tuple[int, int]] = []
     for a, b in line.tolist():
         new = new_of.get((min(a, b), max(a, b)))

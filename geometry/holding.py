@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Check of restraint: the rigid motions that supports, joints and stops leave to the segments.
+"""Check of restraint: supports, joints and stops must prevent all rigid motions.
 
-Each segment moves along z and turns there, in space also along y, and about its axis. Each
-restraint is a row over these motions of all segments; the boom is held where the rows leave none.
-A stop may hold in one direction only. The loads of t = 0 then have to press the segment against
-it, in balance with the reactions of the other rows.
+Rigid motions of a segment are translation along z and rotation in that plane, in space also along
+y, and rotation about the axis. Each restraint is a row over the rigid motions of all segments; the
+boom is restrained if no motion satisfies all rows. A stop may act in one direction only. The loads
+at t = 0 must then press the segment against it, in equilibrium with the reactions of the other
+rows.
 """
 
 from __future__ import annotations
@@ -26,10 +27,10 @@ from geometry.segment import Segment
 if TYPE_CHECKING:
     from geometry.boom import Boom
 
-# Fraction of the largest row, or of the largest force, below which a remainder is round-off.
+# Fraction of the largest row or force below which a remainder is round-off.
 _ROUND_OFF = 1.0e-9
 
-# Motions of a segment in the plane, and in space.
+# Number of rigid motions of a segment in the plane, and in space.
 _FLAT, _SPATIAL = 2, 5
 
 
@@ -37,10 +38,10 @@ def check_held(boom: Boom) -> None:
     """Check that supports, cylinders, joints and stops leave no rigid motion.
 
     Args:
-        boom: with places that are on its segments.
+        boom: boom with all places on its segments.
 
     Raises:
-        BoomError: nothing holds a segment.
+        BoomError: a segment is not restrained.
     """
     _check_depths(boom)
     bodies = _bodies(boom)
@@ -61,13 +62,13 @@ def check_held(boom: Boom) -> None:
 
 
 def check_pressed(boom: Boom) -> None:
-    """Check that the loads of t = 0 press the one-way stops where nothing else holds the boom.
+    """Check that the loads at t = 0 press the one-way stops that the boom needs.
 
     Args:
-        boom: that is held, under its own loads.
+        boom: restrained boom with loads.
 
     Raises:
-        BoomError: they lift a segment off its stops.
+        BoomError: the loads lift a segment off its stops.
     """
     bodies = _bodies(boom)
     left = _left(_always(boom, bodies), bodies)
@@ -90,9 +91,7 @@ def check_pressed(boom: Boom) -> None:
 
 @dataclass(frozen=True, slots=True)
 class _RigidBody(Member):
-    """A segment among rigid ones, over the motions of all: slopes and turns are scaled by the
-    boom's length.
-    """
+    """Rigid segment over the motions of all segments; the boom's length scales rotations."""
 
     boom: Boom
     number: int
@@ -103,23 +102,23 @@ class _RigidBody(Member):
 
     @property
     def key(self) -> str:
-        """Its place in the boom."""
+        """The place of the segment in the boom."""
         return f"segments[{self.number}]"
 
     @property
     def motions(self) -> slice:
-        """Its own motions: along z, then along y and about the axis."""
+        """The motions of the segment: along z, then along y and about the axis."""
         count = _SPATIAL if self.boom.spatial else _FLAT
         return slice(count * self.number, count * (self.number + 1))
 
     @property
     def load(self) -> Array:
-        """Its load vector at t = 0."""
+        """The load vector of the segment at t = 0."""
         whole = self.segment.load * self.uniform("z", None)
         if self.boom.spatial and self.segment.lateral is not None:
             whole += self.segment.lateral.load * self.uniform("y", None)
         for load in self.boom.loads:
-            # A load that is over by then has no values.
+            # A load that ends before t = 0 has no value.
             if load.segment == self.number and callable(load.history):
                 whole += float(load.history(np.zeros(()))) * load.push(self)
         return whole
@@ -184,7 +183,7 @@ def _bodies(boom: Boom) -> list[_RigidBody]:
 
 
 def _one_way(boom: Boom, bodies: list[_RigidBody]) -> list[Array]:
-    """Return the load vectors of the stops that a segment meets from one side."""
+    """Return the load vectors of one-sided stops."""
     return [
         -stop.sides[0] * bodies[stop.segment].force(stop.x, "z")
         for stop in boom.stops
@@ -193,7 +192,7 @@ def _one_way(boom: Boom, bodies: list[_RigidBody]) -> list[Array]:
 
 
 def _always(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
-    """Yield the rows of restraints that hold both ways."""
+    """Yield the rows of restraints that act in both directions."""
     for body in bodies:
         for support in body.segment.supports:
             for direction in boom.directions:
@@ -216,7 +215,7 @@ def _always(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
 
 
 def _left(rows: Iterable[Array], bodies: list[_RigidBody]) -> Array:
-    """Return (num_motions, num_left) the motions that the rows leave free."""
+    """Return the motions (num_motions, num_left) that the rows leave free."""
     sizes = [(row, float(np.linalg.norm(row))) for row in rows]
     scaled = np.array([row / size for row, size in sizes if size > 0.0])
     motions = np.eye(bodies[-1].motions.stop)

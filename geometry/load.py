@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Loads on the segments of a boom: each kind gives its place and its load vector."""
+"""Loads on the segments of a boom; each kind has places and a load vector."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from geometry.section import Direction
 
 
 class Body(Protocol):
-    """A segment of a model under single forces; each method gives (num_dofs,) on its coordinates.
+    """Segment of a model under point forces; methods return vectors (num_dofs,).
 
     The load vector of a unit force is also the row that reads the displacement of its point.
     """
@@ -22,44 +22,44 @@ class Body(Protocol):
         """Return the load vector of 1 N at x in m."""
 
     def moment(self, x: float, direction: Direction) -> Array:
-        """Return that of 1 N·m at x in m, in the plane of the direction, towards a larger slope."""
+        """Return the load vector of 1 N·m at x in m, positive towards a larger slope."""
 
     def torque(self, x: float) -> Array:
-        """Return the load vector of 1 N·m at x in m about the axis, of a segment in space."""
+        """Return the load vector of 1 N·m at x in m about the axis, in space."""
 
 
 class Member(Body, Protocol):
-    """A segment of a model under all kinds of loads."""
+    """Segment of a model under all kinds of loads."""
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
-        """Return that of 1 N/m between two x in m; along the whole segment where none are given."""
+        """Return the load vector of 1 N/m between two x in m, by default along the segment."""
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        """Return that of an acceleration of all masses: ``force`` N/m on the plain segment."""
+        """Return the load vector of an acceleration: ``force`` in N/m on the plain segment."""
 
     def turning(self, direction: Direction) -> Array:
-        """Return that of 1 rad/s² about x = 0 on all but point masses, towards a larger slope
-        in the direction's plane.
-        """
+        """Return the inertia load of 1 rad/s² about x = 0, towards a larger slope.
+
+        Point masses do not contribute."""
 
 
 @dataclass(frozen=True, slots=True)
 class Load:
-    """A force on a segment's axis that follows a history.
+    """Force on a segment's axis with a history.
 
     >>> gust = pt.Load(segment=1, direction="z", magnitude=-1e3, x=14.0, history=pt.Sine(0.5))
     >>> len(pt.BeamElements(replace(boom, loads=(gust,))).system().excitations)
     1
 
     Args:
-        segment: its name; in a boom its position.
-        direction: along which it acts.
+        segment: name of the segment, or its index in a boom.
+        direction: direction of the force.
         magnitude: magnitude in N/m along the whole segment, or in N at one place.
-        x: the place in m; None for the whole segment.
-        history: factor of the magnitude over time, a history of the dynamics, or its substitute
-            for loads that are over at t = 0.
-        inertial: whether it is an acceleration of the mass per length along the whole segment,
-            which collars and diaphragms feel beyond that.
+        x: place in m; None for the whole segment.
+        history: factor of the magnitude over time, a history of the dynamics, or its substitute for
+            loads that end before t = 0.
+        inertial: whether the load is the inertia of an acceleration along the whole segment; it
+            then also acts on collars and diaphragms.
     """
 
     segment: SegmentRef
@@ -71,15 +71,15 @@ class Load:
 
     @property
     def places(self) -> Mapping[str, float]:
-        """x in m of the mesh lines that it needs, by the keys that give them."""
+        """The x in m at which the load needs mesh lines, by their keys."""
         return {} if self.x is None else {"x": self.x}
 
     def resultant(self, length: float) -> float:
-        """Return its resultant in N at the value 1 of its history, for a segment's length in m."""
+        """Return the resultant in N for the value 1 of the history and a segment's length in m."""
         return self.magnitude * (length if self.x is None else 1.0)
 
     def push(self, member: Member) -> Array:
-        """Return its load vector (num_dofs,) at the value 1 of its history."""
+        """Return the load vector (num_dofs,) for the value 1 of the history."""
         if self.x is not None:
             return self.magnitude * member.force(self.x, self.direction)
         if self.inertial:
@@ -89,7 +89,7 @@ class Load:
 
 @dataclass(frozen=True, slots=True)
 class PartialLoad(Load):
-    """A uniform load in N/m between two x in m."""
+    """Uniform load in N/m between two x in m."""
 
     span: tuple[float, float] = (0.0, 0.0)
 
@@ -107,7 +107,7 @@ class PartialLoad(Load):
 
 @dataclass(frozen=True, slots=True)
 class Moment(Load):
-    """A moment in N·m at one place, which bends the segment towards a larger slope."""
+    """Moment in N·m at one place, positive towards a larger slope of the segment."""
 
     def resultant(self, length: float) -> float:
         return 0.0
@@ -119,9 +119,9 @@ class Moment(Load):
 
 @dataclass(frozen=True, slots=True)
 class Turn(Load):
-    """Inertia load of mass per length and rotary inertia turning about x = 0; magnitude in rad/s².
+    """Inertia load of mass per length and rotary inertia under rotation about x = 0, in rad/s².
 
-    With a history that gives its impulse, it makes them turn at so many rad/s.
+    With an impulse as history, it causes an angular velocity of its magnitude in rad/s.
     """
 
     def push(self, member: Member) -> Array:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Structured triangle meshes of a segment, made by gmsh.
+"""Structured triangle meshes of segments by gmsh.
 
-Every plate of the section is a wall, cut in its middle and into transfinite patches. So mesh lines
-lie exactly at supports, stations and contact points, for all lengths and mesh sizes, and the mesh
-does not depend on gmsh's version. The triangles mirror each other where the section does. A load in
-the plane of bending then moves the section in that plane, to round-off.
-The mesh of a box on its side lies on its side. A diaphragm has a patch in each corner of the
-section, which share the nodes of its outline with the walls: there an edge has three triangles.
+Every plate of the section is a wall, which is divided at its middle and into transfinite patches.
+So mesh lines are exactly at supports, stations and contact points, for all lengths and mesh sizes,
+and the mesh does not depend on gmsh's version. The mesh has the symmetries of the section, so that
+a load in the plane of bending moves the section only in that plane, up to round-off. A rotated box
+has the rotated mesh. A diaphragm has a patch in each corner of the section. It shares the nodes of
+its outline with the walls, so that edges there have three triangles.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ class SegmentMesh:
     """Mid-surface mesh of one segment.
 
     Args:
-        points: (num_points, 3) in m, x along the boom, the axis at y = z = 0.
-        triangles: (num_triangles, 3) point numbers.
+        points: positions (num_points, 3) in m, with x along the boom and the axis at y = z = 0.
+        triangles: point numbers (num_triangles, 3).
         plates: names of the section's plates.
-        walls: (num_triangles,) position of each triangle's wall in ``plates``; ``len(plates)`` + k
-            on the diaphragm k.
-        lines: name of a cross-section line → (num_edges, 2) point numbers.
+        walls: index (num_triangles,) of each triangle's wall in ``plates``; ``len(plates)`` + k on
+            the diaphragm k.
+        lines: point numbers (num_edges, 2) of the edges of cross-section lines, by name.
     """
 
     points: Array
@@ -54,25 +54,25 @@ class SegmentMesh:
 
     @property
     def on_walls(self) -> Mask:
-        """Mask (num_triangles,): True on walls, False on diaphragms."""
+        """The mask (num_triangles,) of triangles on walls, not on diaphragms."""
         return np.asarray(self.walls < len(self.plates))
 
     @property
     def along(self) -> Array:
-        """Middles (num_triangles,) of the triangles, x in m."""
+        """The x (num_triangles,) in m of the centroids of triangles."""
         return np.asarray(self.points[self.triangles, 0].mean(axis=1))
 
     def write(self, path: Path) -> None:
-        """Write for ParaView (``.vtu``) with the wall of each triangle as a field."""
+        """Write the mesh for ParaView (``.vtu``), with the wall of each triangle as a field."""
         meshio.Mesh(
             self.points, [("triangle", self.triangles)], cell_data={"wall": [self.walls]}
         ).write(path)
 
     def write_gmsh(self, path: Path) -> None:
-        """Write gmsh's own file with a physical group for each plate, diaphragm and line.
+        """Write the mesh in gmsh's format, with physical groups of plates, diaphragms and lines.
 
         Raises:
-            OSError: it cannot be written whole; names the file.
+            OSError: the file cannot be written completely; the error names it.
         """
         count = int(self.walls.max()) + 1 - len(self.plates)
         names = [*self.plates, *(f"diaphragm-{k}" for k in range(1, count + 1))]
@@ -102,16 +102,16 @@ def mesh_segment(
     closed: Sequence[str] = (),
     along: Mapping[float, float] | None = None,
 ) -> SegmentMesh:
-    """Mesh the plates of a section, and those that close it.
+    """Mesh the plates of a section, and diaphragms.
 
     Args:
-        section: its mid-lines are meshed.
-        breaks: name → x in m of each outline that must be a mesh line; the smallest and the
+        section: section with the mid-lines to mesh.
+        breaks: x in m of each outline that must be a mesh line, by name; the smallest and the
             largest x are the ends of the segment. Two names may share a place.
         size: target edge length in m; every patch gets the nearest whole number of edges.
-        closed: names of the breaks with a diaphragm, in their order.
-        along: x in m of further outlines → target edge length in m along the boom from there on;
-            ``size`` before the first of them.
+        closed: names of the breaks with a diaphragm, in order.
+        along: target edge lengths in m along the boom, by the x in m of further outlines from which
+            they hold; ``size`` before the first one.
 
     Raises:
         ValueError: the size is not a positive number, or there are no two distinct breaks.
@@ -139,7 +139,7 @@ def mesh_segment(
 
 
 def collar_breaks(segment: Segment) -> dict[str, float]:
-    """Return name → x in m of the ends of a segment's collars."""
+    """Return the x in m of the ends of a segment's collars, by name."""
     breaks: dict[str, float] = {}
     for k, collar in enumerate(segment.collars, start=1):
         breaks |= dict(zip((f"collar-{k}-start", f"collar-{k}-end"), collar.span, strict=True))
@@ -147,7 +147,7 @@ def collar_breaks(segment: Segment) -> dict[str, float]:
 
 
 def diaphragm_breaks(segment: Segment) -> dict[str, float]:
-    """Return name → x in m of a segment's diaphragms, in their order."""
+    """Return the x in m of a segment's diaphragms, by name, in order."""
     return {f"diaphragm-{k}": plate.x for k, plate in enumerate(segment.diaphragms, start=1)}
 
 
@@ -174,12 +174,12 @@ def _gmsh_model() -> Iterator[None]:
 
 
 def _restore_signal_handlers() -> None:
-    """Install Python's signal handlers again: gmsh starts PETSc, which resets them.
+    """Restore Python's signal handlers, which PETSc resets when gmsh starts it.
 
-    Without them SIGTERM and a reader of the output that leaves early would kill the process.
+    Without them SIGTERM, or a closed pipe, would kill the process without a message.
     """
     if threading.current_thread() is not threading.main_thread():
-        # Python sets handlers in its main thread alone.
+        # Python sets handlers in its main thread only.
         return
     for number in signal.valid_signals():
         handler = signal.getsignal(number)
@@ -188,9 +188,9 @@ def _restore_signal_handlers() -> None:
 
 
 class _Ring(NamedTuple):
-    """gmsh's points and curves once around; a curve begins at the point of its number.
+    """Points and curves of gmsh once around a section; a curve begins at the point with its index.
 
-    Plates begin at even numbers, and have their middles at odd ones.
+    Plates begin at even indices, and have their middles at odd ones.
     """
 
     points: Sequence[int]
@@ -205,7 +205,8 @@ def _build_patches(
 ) -> tuple[list[list[int]], list[_Ring]]:
     """Build transfinite patches; return the surfaces of each wall, and the ring of each outline.
 
-    Edges are ``across`` long around the section, ``along`` the boom as long as each stretch says.
+    ``across`` is the edge length around the section, ``along`` that of each interval along the
+    boom.
     """
     geo = gmsh.model.geo
     corners: list[Offset] = [place for plate in plates for place in (plate.start, plate.middle)]
@@ -221,8 +222,8 @@ def _build_patches(
             loop = geo.addCurveLoop([rails[i][j], rings[i + 1][j], -rails[i][k], -rings[i][j]])
             surface = geo.addPlaneSurface([loop])
             surfaces[j // 2].append(surface)
-            # Along x every diagonal runs from a wall's middle towards a corner, which makes the
-            # mesh a mirror image of itself, and that of the box on its side lie on its side.
+            # Diagonals run from a wall's middle towards a corner along x, so that the mesh has the
+            # symmetries of the section, and a rotated box has the rotated mesh.
             geo.mesh.setTransfiniteSurface(
                 surface,
                 "Left" if j % 2 == 0 else "Right",
@@ -238,9 +239,9 @@ def _build_patches(
 def _close(x: float, ring: _Ring, section: Section, size: float) -> list[int]:
     """Build the transfinite patches of a diaphragm; return their surfaces.
 
-    There is one in each corner if the outline allows it, as for a box. Then a patch's spokes have
-    as many edges as the opposite halves of plates. Otherwise there is one on each half of a plate,
-    as a fan from the middle.
+    If the outline allows it, as for a box, there is a patch in each corner, whose spokes have as
+    many edges as the opposite halves of plates. Otherwise each half of a plate has a patch, as a
+    fan from the middle.
     """
     low, high = section.bounds
     middle = gmsh.model.geo.addPoint(x, *(0.5 * (a + b) for a, b in zip(low, high, strict=True)))
@@ -254,12 +255,12 @@ def _close(x: float, ring: _Ring, section: Section, size: float) -> list[int]:
 
 
 def _spanned(ring: _Ring, middle: int, spokes: Mapping[int, int]) -> list[int]:
-    """Build the patches from spoke to spoke.
+    """Build the patches between spokes.
 
     Args:
         ring: the ring around the patches.
-        middle: gmsh's point.
-        spokes: number of a ring's point → edges from there to the middle.
+        middle: gmsh's point in the middle.
+        spokes: number of edges from a point of the ring to the middle, by the point's index.
     """
     geo, count, places = gmsh.model.geo, len(ring.points), list(spokes)
     curves = {j: geo.addLine(ring.points[j], middle) for j in places}
@@ -271,7 +272,7 @@ def _spanned(ring: _Ring, middle: int, spokes: Mapping[int, int]) -> list[int]:
         loop = geo.addCurveLoop([*sides, curves[after], -curves[before % count]])
         surfaces.append(geo.addPlaneSurface([loop]))
         ends = [ring.points[j % count] for j in range(before, after + 1)]
-        # Every diagonal runs from the middle towards a corner, for the mirrors' sake.
+        # Diagonals run from the middle towards a corner, so that the mesh is symmetric.
         if len(ends) == 2:
             corner_last = ends if after % 2 == 0 else ends[::-1]
             geo.mesh.setTransfiniteSurface(surfaces[-1], "Left", [middle, *corner_last])
@@ -291,7 +292,7 @@ def _edges(length: float, size: float) -> int:
 def _extract(surfaces: Sequence[Sequence[int]], plates: tuple[str, ...]) -> SegmentMesh:
     mesh = gmsh.model.mesh
     tags, coordinates, _ = mesh.getNodes()
-    # Points in a mirror's plane must lie in it to the last bit.
+    # Points in a mirror plane must be in it to the last bit.
     coordinates[np.abs(coordinates) < _ROUND_OFF * np.ptp(coordinates)] = 0.0
     number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     number[tags] = np.arange(tags.size)

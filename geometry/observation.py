@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Observations: recorded quantities of a boom's motion, and their places."""
+"""Observations: additional outputs of a boom's motion."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ Quantity = Literal[Recorded, "distortion"]
 # Quantities that a row can read of a cross-section.
 Read = Literal["deflection", "rotation", "distortion", "lateral", "twist"]
 
-# Quantities of booms in space alone.
+# Quantities that only booms in space have.
 IN_SPACE: tuple[Read, ...] = ("lateral", "twist")
 
 
 class Kind(NamedTuple):
-    """Unit of a quantity, the quantity read, the number of its time derivatives, its words."""
+    """Kind of a quantity: unit, quantity that is read, number of time derivatives, description."""
 
     unit: str
     read: Read
@@ -47,7 +47,7 @@ KINDS: Mapping[Quantity, Kind] = {
 
 @dataclass(frozen=True, slots=True, config=PART)
 class Observation:
-    """An output that every model records.
+    """Output that every model records.
 
     >>> seat = pt.Observation("seat", segment=1, x=10.0, quantity="velocity")
     >>> system = pt.BeamElements(replace(boom, observations=(seat,))).system()
@@ -62,10 +62,10 @@ class Observation:
     x: Place
     """the x in m"""
     quantity: Quantity = "deflection"
-    """the deflection along z, its velocity, its acceleration as the mean of each output interval,
-    the rotation of the cross-section; in space the lateral deflection and the twist"""
+    """the quantity: deflection along z, its velocity, its acceleration as the mean over each output
+    interval, rotation of the cross-section; in space also lateral deflection and twist"""
 
     @property
     def kind(self) -> Kind:
-        """Kind of its quantity."""
+        """The kind of the quantity."""
         return KINDS[self.quantity]

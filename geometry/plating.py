@@ -13,19 +13,19 @@ from geometry.section import Section
 from geometry.segment import Segment
 from geometry.taper import areas
 
-# Fraction of a segment's length: below any triangle, above round-off.
+# Tolerance for x as a fraction of a segment's length: below any triangle, above round-off.
 _DIGITS = 9
 
 
 @dataclass(frozen=True, slots=True)
 class PlatedMesh(SegmentMesh):
-    """A mesh whose triangles have thicknesses.
+    """Mesh with the thickness of each triangle.
 
     Args:
-        thickness: (num_triangles,) of all plates in m.
-        plain: (num_triangles,) of the walls without collars in m, 0 on diaphragms.
-        even: (num_triangles,) in m by which a force per length that is the same at each x is spread
-            over the walls: ``plain``, over the section's part of the mean area where it tapers.
+        thickness: thickness (num_triangles,) of all plates in m.
+        plain: thickness (num_triangles,) of walls without collars in m, 0 on diaphragms.
+        even: weight (num_triangles,) in m that distributes a uniform force per length over the
+            walls: ``plain``, divided by the relative area of the section if the segment tapers.
     """
 
     thickness: Array
@@ -62,14 +62,14 @@ def plated(segment: Segment, mesh: SegmentMesh) -> PlatedMesh:
     """Return a segment's mesh with the thickness of its plates.
 
     Args:
-        segment: its section is known; its diaphragms are those of the mesh, in the same order.
-        mesh: with lines at the ends of the collars.
+        segment: segment with a section, and with the diaphragms of the mesh in the same order.
+        mesh: mesh with lines at the ends of collars.
     """
     assert segment.section is not None
     x = mesh.along
     plain = even = plain_thickness(segment.section, mesh)
     if segment.head_section is not None:
-        # Mirror images have the same to the last bit.
+        # Mirror images have the same thickness to the last bit.
         part = np.round((x - segment.start) / segment.length, _DIGITS)
         plain = plain + part * (plain_thickness(segment.head_section, mesh) - plain)
         parabola = np.polyfit([0.0, 0.5, 1.0], areas(segment.section, segment.head_section), 2)
@@ -86,23 +86,23 @@ def plated(segment: Segment, mesh: SegmentMesh) -> PlatedMesh:
 
 
 def plain_thickness(section: Section, mesh: SegmentMesh) -> Array:
-    """Return (num_triangles,) thickness in m of the walls without collars, 0 on diaphragms."""
+    """Return the thickness (num_triangles,) in m of walls without collars, 0 on diaphragms."""
     of_wall = [plate.thickness for plate in section.plates]
     return np.asarray(np.array([*of_wall, 0.0])[np.minimum(mesh.walls, len(of_wall))])
 
 
-# Fraction of a mesh's extent below which a coordinate is 0, and two are one.
+# Fraction of a mesh's extent below which coordinates, and their differences, are 0.
 _ROUND_OFF = 1.0e-12
 
 
 def tapered_mesh(segment: Segment, mesh: PlatedMesh) -> PlatedMesh:
-    """Move each point into the section of its x; walls are flat from mesh line to mesh line.
+    """Move each point into the section at its x; walls are flat between mesh lines.
 
-    A section is a fan of triangles, from its middle to each plate: a point keeps its place in its
-    triangle.
+    A section is a fan of triangles from its middle to each plate: a point keeps its position
+    relative to its triangle.
 
     Args:
-        segment: tapers.
+        segment: tapered segment.
         mesh: mesh of the plain segment that has its widest section everywhere.
     """
     number, first, last = _in_fan(segment.widest, mesh.points[:, 1:])
@@ -115,18 +115,18 @@ def tapered_mesh(segment: Segment, mesh: PlatedMesh) -> PlatedMesh:
         ends = np.roll(starts, -1, axis=0)
         arms = (starts - middle)[number[here]], (ends - middle)[number[here]]
         points[here, 1:] = middle + first[here, None] * arms[0] + last[here, None] * arms[1]
-    # Points in a mirror's plane must lie in it to the last bit.
+    # Points in a mirror plane must be in it to the last bit.
     points[np.abs(points) < near] = 0.0
     return replace(mesh, points=points)
 
 
 def _fan(section: Section) -> tuple[Array, Array]:
-    """Return (num_plates, 2) the starts of plates, and (2,) the middle, in m."""
+    """Return the starts (num_plates, 2) of plates, and the middle (2,), in m."""
     return np.array([plate.start for plate in section.plates]), np.mean(section.bounds, axis=0)
 
 
 def _in_fan(section: Section, places: Array) -> tuple[Indices, Array, Array]:
-    """Return (num_places,) each one's triangle, and its fractions of the arms to the plate ends."""
+    """Return the triangle (num_places,) of each place, and its coordinates along two sides."""
     starts, middle = _fan(section)
     arms = np.stack([starts, np.roll(starts, -1, axis=0)], axis=2) - middle[:, None]
     parts = np.einsum("kij,nj->nki", np.linalg.inv(arms), places - middle)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A convex closed polygon of flat plates, each with a thickness of its own."""
+"""Convex closed polygons of flat plates, each with its own thickness."""
 
 from __future__ import annotations
 
@@ -24,23 +24,24 @@ from geometry.section import (
 from geometry.shear_flow import ShearFlow, shear_plates
 from geometry.walls import trapezoids
 
-# Places closer than this fraction of a section's size are one.
+# Fraction of a section's size below which two places are the same.
 _SAME = 1.0e-9
 
-# In m, so that no product overflows.
+# Largest coordinate in m, so that no product overflows.
 _LARGEST = 1.0e6
 
-# Turns of a corner in rad: below the first it is inwards, beyond the second a plate folds back.
+# Limits of the angle at a corner in rad: below the first, the corner is concave; above the second,
+# a plate folds back.
 _LEAST_TURN, _MOST_TURN = -1.0e-9, np.radians(170.0)
 
 
 @dataclass(frozen=True)
 class PolygonSection(Section):
-    """Plates once around a cell, described by the corners of their mid-lines.
+    """Closed section of flat plates, described by the corners of their mid-lines.
 
-    Area, centroid and second moments are those of the plates with their thickness. The surfaces
-    meet in the corners, as those of :class:`geometry.section.BoxSection` do. Shear areas follow
-    from the shear flow along the mid-lines (:mod:`geometry.shear_flow`).
+    Area, centroid and second moments are those of thick plates, which are mitred at corners, as in
+    :class:`geometry.section.BoxSection`. Shear areas follow from the shear flow along the mid-lines
+    (:mod:`geometry.shear_flow`).
 
     >>> corners = ((-0.15, -0.3), (0.15, -0.3), (0.2, 0.3), (-0.2, 0.3))
     >>> trapezoid = pt.PolygonSection(corners, thicknesses=(0.01, 0.006, 0.008, 0.006))
@@ -48,13 +49,13 @@ class PolygonSection(Section):
     134.2 cm²
 
     Args:
-        corners: (y, z) in m of the corners in turn, either way around, from wherever.
-        thicknesses: thicknesses in m of the plates, each from a corner to the next; the last one
+        corners: (y, z) in m of the corners in order, clockwise or anticlockwise, from any origin.
+        thicknesses: thicknesses in m of the plates, each from a corner to the next; the last plate
             closes the cell.
 
     Raises:
-        SectionError: fewer than three corners, sizes that are no section's, a plate without length,
-            corners that turn inwards or run around more than once, walls that fill the cell.
+        SectionError: there are fewer than three corners, a size is invalid, a plate has no length,
+            the polygon is not convex, or walls fill the cell.
     """
 
     corners: tuple[Offset, ...]
@@ -65,54 +66,54 @@ class PolygonSection(Section):
 
     @cached_property
     def plates(self) -> tuple[Plate, ...]:
-        """Plates, anticlockwise from the lowest corner; of several, from the left one."""
+        """The plates, anticlockwise from the lowest corner, of several from the left one."""
         corners = self._upwards[0] - np.array(self.centroid)
         for axis in self.mirrors:
-            # Values that differ by round-off alone become equal to the last bit, as meshes require.
+            # Values that differ by round-off become equal to the last bit, as meshes require.
             image = _mirrored(corners, axis)
             corners = 0.5 * (corners + image[_partners(corners, image)])
         return _plates(corners, self._upwards[1])
 
     @cached_property
     def area(self) -> float:
-        """Cross-sectional area in m²."""
+        """The cross-sectional area in m²."""
         return float(sum(plate.length * plate.thickness for plate in self.plates))
 
     @cached_property
     def second_moment_of_area(self) -> float:
-        """Second moment about y (bending in the plane x-z) in m⁴."""
+        """The second moment about y (bending in the plane x-z) in m⁴."""
         return float(_moments(trapezoids(self.plates))[3])
 
     @cached_property
     def lateral_second_moment_of_area(self) -> float:
-        """Second moment about z (bending in the plane x-y) in m⁴."""
+        """The second moment about z (bending in the plane x-y) in m⁴."""
         return float(_moments(trapezoids(self.plates))[2])
 
     @cached_property
     def torsion_constant(self) -> float:
-        """Bredt's second formula, 4 A² / ∮ ds/t, in m⁴ (Bredt 1896)."""
+        """The torsion constant in m⁴ by Bredt's second formula, 4 A² / ∮ ds/t (Bredt 1896)."""
         around = sum(plate.length / plate.thickness for plate in self.plates)
         return 4.0 * self.enclosed_area**2 / around
 
     @cached_property
     def shear_area(self) -> float:
-        """Area that carries a shear force along z in m², by the work of its flow."""
+        """The shear area in m² for a force along z, by the work of the shear flow."""
         return ShearFlow.of(self.plates, "z").shear_area
 
     @cached_property
     def lateral_shear_area(self) -> float:
-        """Area that carries a shear force along y in m², by the work of its flow."""
+        """The shear area in m² for a force along y, by the work of the shear flow."""
         return ShearFlow.of(self.plates, "y").shear_area
 
     @cached_property
     def centroid(self) -> Offset:
-        """Centroid (y, z) in m in the axes of the corners."""
+        """The centroid (y, z) in m in the axes of the corners."""
         parts = _moments(trapezoids(_plates(*self._upwards)))
         return float(parts[0]), float(parts[1])
 
     @cached_property
     def faces(self) -> tuple[Face, ...]:
-        """For each direction and side the outermost plate, if exactly one lies at right angles."""
+        """The faces: the outermost plate of a direction and side, if only one is normal to it."""
         ends = np.array([(plate.start, plate.end) for plate in self.plates])
         found = []
         for direction, side in _OUTWARDS:
@@ -124,7 +125,7 @@ class PolygonSection(Section):
 
     @cached_property
     def mirrors(self) -> tuple[Direction, ...]:
-        """Directions in which corners and thicknesses mirror themselves."""
+        """The directions in which corners and thicknesses are symmetric."""
         corners, thicknesses = self._upwards
         corners = corners - np.array(self.centroid)
         middles = 0.5 * (corners + np.roll(corners, -1, axis=0))
@@ -148,12 +149,12 @@ class PolygonSection(Section):
         return f"{sizes} x {walls}, {len(self.plates)} plates"
 
     def turned(self) -> PolygonSection:
-        """Return the section lying on its side, y and z exchanged."""
+        """Return the section rotated by 90°, with y and z exchanged."""
         return PolygonSection(tuple((z, y) for y, z in self.corners), self.thicknesses)
 
     @property
     def in_order(self) -> PolygonSection:
-        """The same section with its corners in the order of its plates, for tapers."""
+        """The section with its corners in the order of its plates, for tapers."""
         corners, thicknesses = self._upwards
         return PolygonSection(
             tuple((float(y), float(z)) for y, z in corners), tuple(map(float, thicknesses))
@@ -161,7 +162,7 @@ class PolygonSection(Section):
 
     @cached_property
     def _upwards(self) -> tuple[Array, Array]:
-        """Corners (num_plates, 2) and thicknesses (num_plates,) in the order of the plates."""
+        """The corners (num_plates, 2) and thicknesses (num_plates,) in the order of the plates."""
         corners, thicknesses = np.array(self.corners), np.array(self.thicknesses)
         if _twice_enclosed(corners) < 0.0:
             corners, thicknesses = corners[::-1], np.roll(thicknesses[::-1], -1)
@@ -175,20 +176,20 @@ _OUTWARDS: Sequence[tuple[Direction, Side]] = (("z", -1), ("y", 1), ("z", 1), ("
 
 
 def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> Section:
-    """Return the section of plates once around; upright rectangles are boxes.
+    """Return the section of a polygon; an upright rectangle becomes a box.
 
-    A box carries shear in its webs alone, a polygon by the shear flow. So a box has the same
-    properties however it is specified.
+    A box carries shear only in its webs, a polygon by the shear flow. So a box has the same
+    properties in both specifications.
 
     >>> corners = ((-0.15, -0.2), (0.15, -0.2), (0.15, 0.2), (-0.15, 0.2))
     >>> print(pt.closed_polygon(corners, thicknesses=(0.01, 0.006, 0.008, 0.006)))
     400 x 300 x 8 / 10 / 6 / 6
 
     Args:
-        corners, thicknesses: as of :class:`PolygonSection`.
+        corners, thicknesses: as in :class:`PolygonSection`.
 
     Raises:
-        SectionError: as of :class:`PolygonSection`.
+        SectionError: as in :class:`PolygonSection`.
     """
     section = PolygonSection(tuple(corners), tuple(thicknesses))
     if len(section.plates) != 4 or len(section.faces) != 4:
@@ -245,7 +246,7 @@ def _check(corners: Sequence[Offset], thicknesses: Sequence[float]) -> None:
 
 
 def _plates(corners: Array, thicknesses: Array) -> tuple[Plate, ...]:
-    """Return the plates, named after their side, from the bottom upwards."""
+    """Return the plates with names by their side, from the bottom upwards."""
     names = _names(corners)
     ends: list[Offset] = [(y, z) for y, z in corners.tolist()]
     return tuple(
@@ -257,7 +258,7 @@ def _plates(corners: Array, thicknesses: Array) -> tuple[Plate, ...]:
 
 
 def _names(corners: Array) -> list[str]:
-    """Return the names: bottom and top where such plates exist, right or left for the others."""
+    """Return the names of plates: bottom and top if they exist, right or left for the others."""
     ends, low, high = np.roll(corners, -1, axis=0), corners[:, 1].min(), corners[:, 1].max()
     near = _SAME * (high - low)
     sides = []
@@ -277,7 +278,7 @@ def _names(corners: Array) -> list[str]:
 
 
 def _twice_enclosed(corners: Array) -> float:
-    """Return twice the area within corners (num_corners, 2), positive if these go anticlockwise."""
+    """Return twice the area within corners (num_corners, 2), positive if anticlockwise."""
     after = np.roll(corners, -1, axis=0)
     return float(corners[:, 0] @ after[:, 1] - corners[:, 1] @ after[:, 0])
 
@@ -287,13 +288,13 @@ def _mirrored(places: Array, axis: Direction) -> Array:
 
 
 def _partners(places: Array, images: Array) -> Indices:
-    """Return (num_places,) the number of the image nearest to each place."""
+    """Return the index (num_places,) of the image nearest to each place."""
     apart = np.linalg.norm(places[:, None] - images, axis=2)
     return np.asarray(apart.argmin(axis=1))
 
 
 def _moments(polygons: Array) -> Array:
-    """Return y and z of the joint centroid in m, ∫ y² dA and ∫ z² dA in m⁴ of all polygons (Green).
+    """Return the common centroid in m, and ∫ y² dA and ∫ z² dA in m⁴, of polygons (Green).
 
     Args:
         polygons: (num_polygons, num_corners, 2) in m, anticlockwise.

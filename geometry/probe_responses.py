@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Far field: compliance of a segment far from its loads, which a beam has to match.
+"""Probe responses: compliance of a segment to beam-like loads, which a calibrated beam matches.
 
-Forces at the segment's ends and stations, moments at its ends, and torques where forces are. Each
-is distributed over the section as the stress of a beam, so that only the segment bends.
+The probes are forces and torques at the segment's ends and stations, and moments at its ends. Each
+is distributed over the section like the stress of a beam, so that it causes no local deformation.
 """
 
 from __future__ import annotations
@@ -16,18 +16,19 @@ from geometry.boom import Boom
 
 ProbedMotion = Literal["z", "y", "twist"]
 
-# Hz: slow beside all elastic motion; forces that leave a free segment at rest do not excite it.
+# Frequency of probes in Hz, low compared with all elastic motion. Self-equilibrated forces do not
+# excite rigid motion.
 PROBE_FREQUENCY = 2.0
 
 
 @dataclass(frozen=True, slots=True)
 class ProbeResponses:
-    """Compliance of a segment between the places where it is probed.
+    """Compliance of a segment to probes.
 
     Args:
-        places: x in m of forces and torques, rising; the first and the last also of moments.
-        compliance: motion → (num_probes, num_probes) at σ = (2π · ``PROBE_FREQUENCY``)² in m/N,
-            rad/N and rad/(N·m); of bending the forces come first.
+        places: ascending x in m of forces and torques; the first and the last one also of moments.
+        compliance: compliance (num_probes, num_probes) at σ = (2π · ``PROBE_FREQUENCY``)² in m/N,
+            rad/N and rad/(N·m), by motion; for bending, forces come before moments.
     """
 
     places: tuple[float, ...]
@@ -35,6 +36,6 @@ class ProbeResponses:
 
 
 def probe_places(boom: Boom, number: int) -> tuple[float, ...]:
-    """Return the x in m where a segment is probed."""
+    """Return the x in m of a segment's probes."""
     segment = boom.segments[number]
     return tuple(sorted({segment.start, *boom.stations_of(number), segment.end}))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Common polygons: hexagons, octagons, and U-sections folded of plates under a flat top.
+"""Common polygons: hexagons, octagons, and U-sections of folded plates with a flat top.
 
-Sizes are those of the mid-lines in m; y = z = 0 is in the middle of them.
+Sizes are those of the mid-lines in m; y = z = 0 is the middle of their extent.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ def hexagon(
     500 x 400 x 8 / 5 / 6, 6 plates
 
     Args:
-        height: height of the bottom from the top.
-        width: width of the folds from each other.
-        flat: width of the top, and of the bottom.
-        top, bottom, web: thicknesses of the top, the bottom, and the inclined plates.
+        height: distance between bottom and top.
+        width: distance between the folds of both sides.
+        flat: width of the top, and of the bottom. top, bottom, web: thicknesses of the top, the
+        bottom, and the inclined plates.
 
     Raises:
-        SectionError: the top is not narrower than the section, or as :class:`PolygonSection`.
+        SectionError: the top is not narrower than the section, or as in :class:`PolygonSection`.
     """
     if not flat < width:
         raise SectionError(f"flat must be below the width of {width:g} m, got {flat:g}")
@@ -47,11 +47,11 @@ def octagon(
 
     Args:
         height, width: height and width of the rectangle.
-        chamfer: length cut from each of its sides at either end.
+        chamfer: length by which each cut shortens the sides.
         top, bottom, web: thicknesses of the top, the bottom, and all other plates.
 
     Raises:
-        SectionError: the cuts leave nothing of a side, or as :class:`PolygonSection`.
+        SectionError: the cuts remove a whole side, or as in :class:`PolygonSection`.
     """
     if not 2.0 * chamfer < min(height, width):
         raise SectionError(
@@ -72,14 +72,14 @@ def u_section(
     500 x 400 x 6 / 8, 10 plates
 
     Args:
-        height: height of the bottom from the top.
-        width: width of the webs from each other.
-        radius: radius of the bends; half the width makes one round of both.
+        height: distance between bottom and top.
+        width: distance between the webs.
+        radius: radius of the bends; with half the width, both form one semicircle.
         facets: flat plates in each bend, between the level bottom and the web; one at least.
         top, bottom, web: thicknesses of the top, of the bottom with its bends, and of the webs.
 
     Raises:
-        SectionError: the bends are larger than the section or have no facet, or as
+        SectionError: the bends are larger than the section or have no facet, or as in
             :class:`PolygonSection`.
     """
     if facets < 1:
@@ -102,10 +102,10 @@ def u_section(
 def _mirrored(
     twice: Sequence[tuple[float, float]] | Array, thicknesses: Sequence[float]
 ) -> PolygonSection:
-    """Return the section of a right half and its image.
+    """Return the section of a right half and its mirror image.
 
     Args:
-        twice: (num_corners, 2) (y, z) of its corners times two in m, upwards.
+        twice: doubled (y, z) of the half's corners in m, (num_corners, 2), upwards.
         thicknesses: thicknesses in m, of the bottom, the plates between the corners, and the top.
     """
     right = 0.5 * np.array(twice)

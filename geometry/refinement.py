@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Refinement zones of meshes, for an accurate local compliance at loads and contacts.
 
-Sizes are fractions of the loaded size: of the length of a corner, of the smaller side of a pad, of
-the box where a force is distributed over its walls. The fractions are measured: with them the local
-compliance, less that of the same force distributed over the webs, is within the tolerance of that
-of infinitely fine meshes. Its error is proportional to the square of the size.
+Edge lengths are fractions of the loaded size: the length of a corner contact, the smaller side of a
+pad, or the size of the box if its walls share the force. The fractions are measured: with them, the
+local compliance (less that of the same force distributed over the webs) differs from that of
+infinitely fine meshes by less than the tolerance. The error is proportional to the square of the
+edge length.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ from geometry.section import Direction, Face, Section
 # The tolerance at which the fractions below were measured.
 MEASURED_AT = 0.01
 
-# Edge length over the length of a loaded corner, the smaller side of a pad, the smaller side of
-# the box; and the growth of the edge length per unit of distance.
+# Edge length as a fraction of the length of a corner contact, the smaller side of a pad, and the
+# smaller side of the box; growth of the edge length per unit of distance.
 _CORNER, _CORNER_GROWTH = 0.2, 0.5
 _PAD, _PAD_GROWTH = 0.18, 0.3
 _WALLS, _WALLS_GROWTH = 0.1, 0.5
@@ -31,12 +32,12 @@ _WALLS, _WALLS_GROWTH = 0.1, 0.5
 
 @dataclass(frozen=True, slots=True)
 class RefinementZone:
-    """A refinement zone of a segment's mesh, with all its mirror images.
+    """Refinement zone of a segment's mesh, with all its mirror images.
 
     Args:
-        low, high: (x, y, z) in m between which it lies, on the positive side of the mirrors.
-        size: edge length there in m.
-        growth: how much longer edges may be for each unit of distance from it.
+        low, high: (x, y, z) in m of opposite corners, on the positive side of the mirrors.
+        size: edge length in the zone in m.
+        growth: growth of the permitted edge length per unit of distance from the zone.
     """
 
     low: tuple[float, float, float]
@@ -45,19 +46,19 @@ class RefinementZone:
     growth: float
 
     def allowed(self, places: Array) -> Array:
-        """Return (num_places,) edge length in m at places (num_places, 3) on that side."""
+        """Return the permitted edge length (num_places,) in m at places (num_places, 3)."""
         outside = np.maximum(np.maximum(self.low - places, places - self.high), 0.0)
         return np.asarray(self.size + self.growth * np.sqrt((outside**2).sum(axis=1)))
 
     def reach(self, size: float) -> tuple[float, float]:
-        """Return the x in m between which edges of a size are too long for it."""
+        """Return the limits of x in m between which edges of a size are too long for the zone."""
         distance = max((size - self.size) / self.growth, 0.0)
         return self.low[0] - distance, self.high[0] + distance
 
     def squares(self, size: float) -> float:
-        """Return the number of squares of the allowed edge length around it, if below ``size``.
+        """Return the number of squares with permitted edge lengths below ``size``.
 
-        On an infinite flat wall: the zone itself, the stretches along its sides, its corners.
+        It is counted on an infinite flat wall: in the zone, along its sides, and at its corners.
         """
         if self.size >= size:
             return 0.0
@@ -76,17 +77,16 @@ def refinement_zones(
     stop_patches: Sequence[StopPatch],
     pads: Sequence[Pad],
 ) -> list[RefinementZone]:
-    """Return the refinement zones of a segment with known plates.
+    """Return the refinement zones of a segment with a section.
 
     Args:
         boom: boom of the segment.
-        number: its position in ``Boom.segments``.
+        number: index in ``Boom.segments``.
         tolerance: relative error of the local compliance.
-        line: where walls touch.
-        stop_patches, pads: stop patches and pads of the boom.
+        line: contact line on the walls. stop_patches, pads: stop patches and pads of the boom.
     """
     finer = float(np.sqrt(tolerance / MEASURED_AT))
-    # Zones on several sides, or in mirror images, are one.
+    # Zones on several sides, or mirror images, are merged.
     measured = dict.fromkeys(_measured(boom, number, line, stop_patches, pads))
     return [
         RefinementZone(low, high, finer * size, finer * growth)
@@ -105,7 +105,7 @@ def _measured(
     stop_patches: Sequence[StopPatch],
     pads: Sequence[Pad],
 ) -> Iterator[_Measured]:
-    """Yield ends, size and growth of each zone at the tolerance ``MEASURED_AT``."""
+    """Yield corners, size and growth of each zone for the tolerance ``MEASURED_AT``."""
     segment = boom.segments[number]
     section = segment.widest
     lowest, high = section.bounds
@@ -130,7 +130,7 @@ def _measured(
 
 
 def _walls(boom: Boom, number: int) -> Iterator[float]:
-    """Yield x of supports, ties, loads, masses and stiffeners, which act in the plane of walls."""
+    """Yield x of supports, ties, loads, masses and stiffeners, which act in the walls' plane."""
     segment = boom.segments[number]
     yield from (support.x for support in segment.supports)
     yield from (mass.x for mass in segment.masses)
@@ -145,7 +145,7 @@ def _walls(boom: Boom, number: int) -> Iterator[float]:
 
 
 def _faces(section: Section, direction: Direction) -> list[Face]:
-    """Return the faces along a direction, without the mirror images."""
+    """Return the faces normal to a direction, without mirror images."""
     mirrored = direction in section.mirrors
     return [
         face
@@ -165,13 +165,13 @@ def _corner(stretch: Stretch, face: Face) -> _Measured:
 
 
 def _swept(places: Iterable[_Measured]) -> _Measured:
-    """Return the range from the first to the last of places that differ in x alone."""
+    """Return the range from the first to the last of places that differ only in x."""
     lows, highs, sizes, growths = zip(*places, strict=True)
     return min(lows), max(highs), sizes[0], growths[0]
 
 
 def _pressed(boom: Boom, pad: Pad, end: int, face: Face, line: ContactLine) -> _Measured:
-    """Return the area of the inner (``end`` 0) or outer segment's face that a pad presses."""
+    """Return the pad's area on the face of the inner (``end`` 0) or outer segment."""
     covered = pad.patch
     if covered is None:
         low, high, size, growth = _corner(pad.pressed[end], face)

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Thin-walled sections: their protocol, the box, and inference of a box from beam properties.
 
-A section is flat plates around a cell. Its places (y, z) count from its centroid, y lateral, z in
-the plane of bending. Other modules do not depend on the number of plates: meshes and shells read
-the plates, contacts the faces, beams the properties.
+A section consists of flat plates around a cell. Places (y, z) count from its centroid, y is
+lateral, z in the plane of bending. Other modules do not depend on the number of plates: meshes and
+shells use plates, contacts use faces, beams use properties.
 
-A beam model gives a section's area and second moment of area; a shell model needs its
-plates. A box with a uniform wall has three parameters (height, width, wall), so one more
-condition is necessary. It is the height-to-width ratio for the outermost segment, and the
-room inside the next larger section for every other one.
+Data of beams have area and second moment; shells need plates. A box with uniform walls has three
+parameters (height, width, thickness), so that one more condition is necessary: the height-to-width
+ratio for the outermost segment, and the space inside the next larger section for the others.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ Direction = Literal["z", "y"]
 Side = Literal[-1, 0, 1]
 Offset = tuple[float, float]
 
-# Position of a direction in (x, y, z).
+# Index of each direction in (x, y, z).
 COMPONENT: Mapping[Direction, int] = {"y": 1, "z": 2}
 
 # Minimum height of an inner box as a fraction of the outer one.
@@ -37,15 +36,14 @@ _REAL = 1.0e-8
 
 
 class SectionError(ValueError):
-    """Error: no section satisfies the requirements."""
+    """Error for requirements that no section satisfies."""
 
 
 class Plate(NamedTuple):
-    """A flat wall.
+    """Flat wall of a section.
 
     Args:
-        name: how results call it.
-        start, end: (y, z) in m of the ends of its mid-line.
+        name: name in results. start, end: (y, z) in m of the ends of its mid-line.
         thickness: thickness in m.
     """
 
@@ -56,17 +54,17 @@ class Plate(NamedTuple):
 
     @property
     def length(self) -> float:
-        """Length of the mid-line in m."""
+        """The length of the mid-line in m."""
         return float(np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]))
 
     @property
     def middle(self) -> Offset:
-        """Middle (y, z) of the mid-line in m."""
+        """The middle (y, z) of the mid-line in m."""
         return 0.5 * (self.start[0] + self.end[0]), 0.5 * (self.start[1] + self.end[1])
 
     @property
     def tangent(self) -> Array:
-        """Unit vector (2,) from the start to the end."""
+        """The unit vector (2,) from the start to the end."""
         return np.asarray(np.subtract(self.end, self.start) / self.length)
 
     def distance(self, places: Array) -> Array:
@@ -79,14 +77,14 @@ class Plate(NamedTuple):
 
 
 class Face(NamedTuple):
-    """A plate that may touch another section, from within or from around it.
+    """Plate that may touch an inner or an outer section.
 
     Args:
-        plate: its number in the section's plates.
-        direction: direction of its outward normal.
-        side: 1 where the normal points along the direction, −1 where against it.
+        plate: index in the section's plates.
+        direction: direction of the outward normal.
+        side: 1 if the normal has the sense of the direction, −1 for the opposite sense.
         offset: offset of the mid-line along the direction, in m.
-        low, high: coordinates across the plate in m, of its ends.
+        low, high: coordinates of its ends across the plate in m.
         thickness: thickness of the plate in m.
     """
 
@@ -100,91 +98,91 @@ class Face(NamedTuple):
 
     @classmethod
     def of(cls, plates: Sequence[Plate], number: int, direction: Direction, side: Side) -> Face:
-        """Return the face of a plate at right angles to a direction."""
+        """Return the face of a plate that is normal to a direction."""
         plate, normal = plates[number], COMPONENT[direction] - 1
         low, high = sorted((plate.start[1 - normal], plate.end[1 - normal]))
         return cls(number, direction, side, plate.start[normal], low, high, plate.thickness)
 
     @property
     def width(self) -> float:
-        """Width along the mid-line in m."""
+        """The width along the mid-line in m."""
         return self.high - self.low
 
     @property
     def outside(self) -> float:
-        """Coordinate of the surface that faces a section around it, in m."""
+        """The coordinate in m of the outer surface, which may touch an outer section."""
         return self.offset + 0.5 * self.side * self.thickness
 
     @property
     def inside(self) -> float:
-        """Coordinate of the surface that faces a section within, in m."""
+        """The coordinate in m of the inner surface, which may touch an inner section."""
         return self.offset - 0.5 * self.side * self.thickness
 
 
 class Section(Protocol):
-    """A thin-walled section of one cell."""
+    """Thin-walled section with one cell."""
 
     @property
     def area(self) -> float:
-        """Cross-sectional area in m²."""
+        """The cross-sectional area in m²."""
 
     @property
     def second_moment_of_area(self) -> float:
-        """Second moment about y (bending in the plane x-z) in m⁴."""
+        """The second moment about y (bending in the plane x-z) in m⁴."""
 
     @property
     def lateral_second_moment_of_area(self) -> float:
-        """Second moment about z (bending in the plane x-y) in m⁴."""
+        """The second moment about z (bending in the plane x-y) in m⁴."""
 
     @property
     def torsion_constant(self) -> float:
-        """Bredt's second formula, 4 A² / ∮ ds/t, in m⁴ (Bredt 1896)."""
+        """The torsion constant in m⁴ by Bredt's second formula, 4 A² / ∮ ds/t (Bredt 1896)."""
 
     @property
     def shear_area(self) -> float:
-        """Area that carries a shear force along z in m²."""
+        """The shear area in m² for a force along z."""
 
     @property
     def lateral_shear_area(self) -> float:
-        """Area that carries a shear force along y in m²."""
+        """The shear area in m² for a force along y."""
 
     @property
     def plates(self) -> tuple[Plate, ...]:
-        """All plates, once around: each begins where the previous one ends."""
+        """All plates in order: each begins at the end of the previous one."""
 
     @property
     def faces(self) -> tuple[Face, ...]:
-        """Faces, one for each direction and side that has a plate at right angles to it."""
+        """The faces, one for each direction and side with a plate normal to it."""
 
     @property
     def mirrors(self) -> tuple[Direction, ...]:
-        """Directions, ``y`` before ``z``, in whose mirror the section is its own image."""
+        """The directions of mirror symmetry, ``y`` before ``z``."""
 
     def shear_plates(self, direction: Direction) -> tuple[tuple[int, float], ...]:
-        """Return the numbers of the plates that carry a shear force in their own plane.
+        """Return the plates that carry a shear force in their own plane.
 
-        Each with its force along its tangent under a unit force through the centroid.
+        Each is an index and the force along its tangent under a unit force through the centroid.
         """
 
     def __str__(self) -> str:
-        """Return its sizes in mm, in the form of tables."""
+        """Return the dimensions in mm, as in tables."""
 
     def turned(self) -> Section:
-        """Return the section lying on its side, y and z exchanged."""
+        """Return the section rotated by 90°, with y and z exchanged."""
 
     @property
     def polar_second_moment_of_area(self) -> float:
-        """Second moment about the axis in m⁴; the polar inertia is density times it."""
+        """The polar second moment in m⁴; the polar inertia is density times it."""
         return self.second_moment_of_area + self.lateral_second_moment_of_area
 
     @property
     def perimeter(self) -> float:
-        """Length of all mid-lines in m."""
+        """The length of all mid-lines in m."""
         return sum(plate.length for plate in self.plates)
 
     @property
     def enclosed_area(self) -> float:
-        """Area within the mid-lines in m²."""
+        """The area within the mid-lines in m²."""
         start, end = (np.array([getattr(p, at) for p in self.plates]) for at in ("start", "end"))
         return float(0.5 * abs(start[:, 0] @ end[:, 1] - start[:, 1] @ end[:, 0]))
 
@@ -193,48 +191,47 @@ class Section(Protocol):
         return density * self.area
 
     def reach(self, direction: Direction) -> tuple[float, float]:
-        """Return the lowest and the highest coordinate of the mid-lines along a direction, in m."""
+        """Return the smallest and the largest coordinate of the mid-lines in a direction in m."""
         reached = [plate.start[COMPONENT[direction] - 1] for plate in self.plates]
         return min(reached), max(reached)
 
     @property
     def bounds(self) -> tuple[Offset, Offset]:
-        """Lowest and highest (y, z) of the mid-lines in m."""
+        """The smallest and largest (y, z) of the mid-lines in m."""
         (y_low, y_high), (z_low, z_high) = self.reach("y"), self.reach("z")
         return (y_low, z_low), (y_high, z_high)
 
     def size(self, direction: Direction) -> float:
-        """Return the extent of the mid-lines along a direction, from end to end, in m."""
+        """Return the extent of the mid-lines in a direction in m."""
         low, high = self.reach(direction)
         return high - low
 
     def face(self, direction: Direction, side: float) -> Face:
-        """Return the face with this outward normal, which must exist; only its sign matters."""
+        """Return the face with this outward normal, which must exist; ``side`` is a sign."""
         return next(f for f in self.faces if f.direction == direction and f.side * side > 0.0)
 
     def on_plates(self, places: Array) -> Mask:
-        """Return (num_places,) whether places (num_places, 2) lie on a mid-line."""
+        """Return the mask (num_places,) of places (num_places, 2) on a mid-line."""
         distance = np.min([plate.distance(places) for plate in self.plates], axis=0)
         return np.asarray(distance < self.near)
 
     @property
     def near(self) -> float:
-        """Distance in m below which places are one; meshes are exact to round-off."""
+        """The distance in m below which places are the same; meshes are exact to round-off."""
         return _ON_PLATE * self.size("z")
 
 
-# Fraction of a section's height.
+# Distance below which places are the same, as a fraction of a section's height.
 _ON_PLATE = 1.0e-7
 
 
 def rectangle(
     low: Offset, high: Offset, bottom: float, right: float, top: float, left: float
 ) -> tuple[Plate, ...]:
-    """Return four plates once around.
+    """Return the four plates of a rectangle.
 
-    Args:
-        low, high: (y, z) in m of opposite corners of the mid-lines.
-        bottom, right, top, left: thicknesses in m.
+    Args: low, high: (y, z) in m of opposite corners of the mid-lines. bottom, right, top, left:
+        thicknesses in m.
     """
     (y0, z0), (y1, z1) = low, high
     return (
@@ -246,7 +243,7 @@ def rectangle(
 
 
 def rectangle_faces(plates: Sequence[Plate]) -> tuple[Face, ...]:
-    """Return the faces of all four plates."""
+    """Return the faces of the four plates of a rectangle."""
     return (
         Face.of(plates, 0, "z", -1),
         Face.of(plates, 1, "y", 1),
@@ -259,8 +256,8 @@ def rectangle_faces(plates: Sequence[Plate]) -> tuple[Face, ...]:
 class BoxSection(Section):
     """Rectangular box, described by the mid-lines and thicknesses of its four walls.
 
-    Its corners are filled: all properties but those of shear and torsion are those of the outer
-    rectangle less the inner one.
+    Its corners are filled: properties except shear and torsion are those of the outer rectangle
+    less the inner one.
 
     >>> box = pt.BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006)
     >>> print(f"{1e4 * box.area:.0f} cm²")
@@ -271,8 +268,8 @@ class BoxSection(Section):
         width: distance of the web mid-lines (along y) in m.
         flange: thickness of the upper flange in m, and of the lower one unless that is given.
         web: thickness of the right web (y > 0) in m, and of the left one unless that is given.
-        bottom_flange: thickness of the lower flange in m; None where it is ``flange``.
-        left_web: thickness of the left web in m; None where it is ``web``.
+        bottom_flange: thickness of the lower flange in m; None if equal to ``flange``.
+        left_web: thickness of the left web in m; None if equal to ``web``.
 
     Raises:
         SectionError: a dimension is not positive and finite, or the walls fill the box.
@@ -306,28 +303,28 @@ class BoxSection(Section):
 
     @property
     def _walls(self) -> tuple[Offset, Offset]:
-        """Thicknesses in m of the upper and the lower flange, and of the right and the left web."""
+        """The thicknesses in m of upper and lower flange, and of right and left web."""
         flanges = self.flange, self.bottom_flange or self.flange
         return flanges, (self.web, self.left_web or self.web)
 
     @property
     def area(self) -> float:
-        """Cross-sectional area in m²."""
+        """The cross-sectional area in m²."""
         return self.shear_area + self.lateral_shear_area
 
     @property
     def second_moment_of_area(self) -> float:
-        """Second moment about y (bending in the plane x-z) in m⁴."""
+        """The second moment about y (bending in the plane x-z) in m⁴."""
         return _hollow_rectangle(self.width, self.height, *reversed(self._walls))[1]
 
     @property
     def lateral_second_moment_of_area(self) -> float:
-        """Second moment about z (bending in the plane x-y) in m⁴."""
+        """The second moment about z (bending in the plane x-y) in m⁴."""
         return _hollow_rectangle(self.height, self.width, *self._walls)[1]
 
     @property
     def torsion_constant(self) -> float:
-        """Bredt's second formula, 4 A² / ∮ ds/t, in m⁴ (Bredt 1896)."""
+        """The torsion constant in m⁴ by Bredt's second formula, 4 A² / ∮ ds/t (Bredt 1896)."""
         (top, bottom), (right, left) = self._walls
         around = self.height / right + self.height / left
         around += self.width / top + self.width / bottom
@@ -335,17 +332,17 @@ class BoxSection(Section):
 
     @property
     def shear_area(self) -> float:
-        """Area that carries a shear force along z: the two webs, in m²."""
+        """The shear area in m² for a force along z: that of both webs."""
         return self.height * sum(self._walls[1])
 
     @property
     def lateral_shear_area(self) -> float:
-        """Area that carries a shear force along y: the two flanges, in m²."""
+        """The shear area in m² for a force along y: that of both flanges."""
         return self.width * sum(self._walls[0])
 
     @property
     def centroid(self) -> Offset:
-        """Centroid (y, z) in m from the middle of the mid-lines."""
+        """The centroid (y, z) in m from the middle of the mid-lines."""
         y, _ = _hollow_rectangle(self.height, self.width, *self._walls)
         z, _ = _hollow_rectangle(self.width, self.height, *reversed(self._walls))
         return y, z
@@ -358,25 +355,25 @@ class BoxSection(Section):
         return f"{1e3 * self.height:.4g} x {1e3 * self.width:.4g} x {' / '.join(walls)}"
 
     def turned(self) -> BoxSection:
-        """Return the box lying on its side, y and z exchanged."""
+        """Return the box rotated by 90°, with y and z exchanged."""
         (top, bottom), (right, left) = self._walls
         return BoxSection(self.width, self.height, right, top, left, bottom)
 
     @property
     def plates(self) -> tuple[Plate, ...]:
-        """Bottom, right, top and left plates."""
+        """The bottom, right, top and left plates."""
         (y, z), b, h = self.centroid, 0.5 * self.width, 0.5 * self.height
         (top, bottom), (right, left) = self._walls
         return rectangle((-b - y, -h - z), (b - y, h - z), bottom, right, top, left)
 
     @property
     def faces(self) -> tuple[Face, ...]:
-        """Faces of all plates."""
+        """The faces of all plates."""
         return rectangle_faces(self.plates)
 
     @property
     def mirrors(self) -> tuple[Direction, ...]:
-        """``y`` where the webs are alike, ``z`` where the flanges are."""
+        """The directions of symmetry: ``y`` if the webs are equal, ``z`` if the flanges are."""
         alike: dict[Direction, bool] = {"y": not self.left_web, "z": not self.bottom_flange}
         return tuple(axis for axis, same in alike.items() if same)
 
@@ -402,7 +399,8 @@ def _hollow_rectangle(
         to the width in m⁴, by the parallel axes' theorem (Steiner).
     """
     web, flange = 0.5 * sum(webs), 0.5 * sum(flanges)
-    # The outer rectangle's middle is as far above that of the mid-lines as the hole's is below it.
+    # The middles of the outer rectangle and of the hole have opposite distances from that of the
+    # mid-lines.
     middle = 0.25 * (flanges[0] - flanges[1])
     whole, hole = (width + web) * (height + flange), (width - web) * (height - flange)
     centre = middle * (whole + hole) / (whole - hole)
@@ -417,12 +415,12 @@ def infer_outer_section(
     """Return the uniform-wall box with a given area, second moment and height-to-width ratio.
 
     Args:
-        area: m².
-        second_moment_of_area: m⁴, about y.
-        height_to_width: mid-line height over mid-line width.
+        area: area in m².
+        second_moment_of_area: second moment about y in m⁴.
+        height_to_width: ratio of height to width of the mid-lines.
 
     Raises:
-        SectionError: no wall thickness gives these numbers.
+        SectionError: no wall thickness gives these values.
     """
 
     # With width = h/r and wall = c/h, 6 J = c ((1 + 3/r) h² + (3 + 1/r) c²/h²); of its two roots h²
@@ -449,14 +447,13 @@ def infer_inner_section(
     """Return the uniform-wall box that fills ``outer`` up to the clearance above and below.
 
     Args:
-        area: m².
-        second_moment_of_area: m⁴, about y.
-        outer: the section around it.
+        area: area in m².
+        second_moment_of_area: second moment about y in m⁴.
+        outer: outer section.
         clearance: Δ in m, at the top and at the bottom.
 
     Raises:
-        SectionError: no such box exists, or it is too wide; the way out is an explicit
-            section with pads that leave the stated clearance.
+        SectionError: no such box exists, or it is too wide; the remedy is an explicit section.
     """
     if len(outer.plates) != len(outer.faces):
         raise SectionError(
@@ -466,8 +463,8 @@ def infer_inner_section(
     high, wide = (outer.face(axis, 1).inside - outer.face(axis, -1).inside for axis in ("z", "y"))
     outside_height, widest = high - 2.0 * clearance, wide
 
-    # With height = H − t and width = A/2t − height, the wall is thickest where the width is
-    # down to the wall itself, and thinnest where width + t fills the outer section.
+    # With height = H − t and width = A/2t − height, the thickest wall has a width equal to its
+    # thickness, and the thinnest wall has a width + t that fills the outer section.
     thickest = area / (2.0 * max(outside_height, SMALLEST * high))
     total = outside_height + widest
     thinnest = 0.25 * (total - np.sqrt(max(total**2 - 4.0 * area, 0.0)))

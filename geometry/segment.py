@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Segments: their properties as beams, their supports, and their attached masses.
+"""Segments: beam properties, supports, masses and stiffeners.
 
-x runs along the boom, z is the plane of bending, y is lateral. Everything is in SI units.
+x runs along the boom, z is in the plane of bending, y is lateral. All units are SI units.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ from geometry.section import COMPONENT, Section, SectionError
 from geometry.support import Support, check_support
 from geometry.taper import areas, between, check_alike, half_way, mean_area
 
-# Two places closer than this fraction of a segment's length are one: far below any plate, far above
-# round-off, in any unit.
+# Fraction of a segment's length below which two places are the same: far below any plate, far above
+# round-off.
 SAME_PLACE = 1.0e-10
 
-# Elements shorter than this fraction of a segment's length lose all digits of its stiffness: their
-# own stiffness is larger by the inverse cube.
+# Shortest element as a fraction of a segment's length: the stiffness of an element grows with the
+# inverse cube of its length, so that a shorter one causes a complete loss of digits.
 APART = 1.0e-4
 
 
 @part(frozen=True, slots=True, config=PART)
 class Material:
-    """Isotropic linear elasticity.
+    """Isotropic linear-elastic material.
 
     >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
     >>> print(f"{1e-9 * steel.shear_modulus:.1f} GPa")
@@ -48,17 +48,17 @@ class Material:
     density: Annotated[Positive, In("kg/m^3")]
     """the density in kg/m^3"""
     yield_strength: Annotated[Positive, In("Pa")] | None = None
-    """the yield strength in Pa, beside which a run shows stresses"""
+    """the yield strength in Pa, for utilisations"""
 
     @property
     def shear_modulus(self) -> float:
-        """G = E / 2(1 + ν) in Pa."""
+        """The shear modulus G = E / 2(1 + ν) in Pa."""
         return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
 
 
 @part(frozen=True, slots=True, config=PART)
 class PointMass:
-    """A mass on a segment's axis, without inertia against turning.
+    """Point mass on a segment's axis, without rotary inertia.
 
     >>> arm = replace(boom.segments[0], masses=(pt.PointMass(x=8.0, mass=200.0),))
     >>> heavier = replace(boom, segments=(arm, boom.segments[1]))
@@ -75,7 +75,7 @@ class PointMass:
 
 @part(frozen=True, slots=True, config=PART)
 class Collar:
-    """A doubler around a segment; the walls' mid-surfaces stay where they are.
+    """Doubler around a segment; it does not shift the walls' mid-surfaces.
 
     >>> head = pt.Collar(span=(7.5, 8.0), thickness=0.01)
     >>> replace(boom.segments[0], collars=(head,)).collars[0].length
@@ -83,24 +83,24 @@ class Collar:
     """
 
     span: tuple[Place, Place]
-    """the x of its two ends in m, rising"""
+    """the x of its two ends in m, in ascending order"""
     thickness: Length
-    """the thickness in m that it adds to all walls"""
+    """the additional thickness in m of all walls"""
 
     @property
     def length(self) -> float:
-        """Length along the boom in m."""
+        """The length along the boom in m."""
         return self.span[1] - self.span[0]
 
     @property
     def middle(self) -> float:
-        """x of its middle in m."""
+        """The x of the middle in m."""
         return 0.5 * sum(self.span)
 
 
 @part(frozen=True, slots=True, config=PART)
 class Diaphragm:
-    """A plate that closes a segment's box, welded to its walls.
+    """Plate across a segment's box, welded to its walls.
 
     >>> plate = pt.Diaphragm(x=0.5, thickness=0.01)
     >>> len(replace(boom.segments[0], diaphragms=(plate,)).diaphragms)
@@ -115,16 +115,16 @@ class Diaphragm:
 
 @dataclass(frozen=True, slots=True)
 class Lateral:
-    """Additional properties of a beam in space, beyond those of one in the plane x-z.
+    """Additional properties of a beam in space.
 
     >>> print(f"{boom.segments[0].lateral.torsion_constant:.1e} m⁴")
     2.8e-04 m⁴
 
     Args:
-        second_moment_of_area: for bending in the plane x-y in m⁴.
-        rotary_inertia: for bending in the plane x-y in kg·m.
-        torsion_constant: J_t of the twisting stiffness G J_t in m⁴.
-        polar_inertia: mass moment of a unit of length about x in kg·m.
+        second_moment_of_area: second moment for bending in the plane x-y in m⁴.
+        rotary_inertia: rotary inertia for bending in the plane x-y in kg·m.
+        torsion_constant: J_t of the torsional stiffness G J_t in m⁴.
+        polar_inertia: mass moment of inertia per length about x in kg·m.
         load: uniform load along y in N/m, applied at t = 0 and kept.
     """
 
@@ -137,32 +137,32 @@ class Lateral:
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A segment of the boom, with its properties as a beam and, if known, its plates.
+    """Segment of the boom, with beam properties and, if given, its section.
 
     >>> fly = boom.segments[1]
     >>> fly.length, fly.rigid_modes
     (8.0, 2)
 
     Args:
-        name: how messages and results call it.
+        name: name in messages and results.
         start, end: x of its ends in m.
         material: elastic constants and density.
         mass_per_length: m̄ in kg/m, positive.
         second_moment_of_area: J in m⁴.
         rotary_inertia: I_p in kg·m.
-        section: its plates; only shear-flexible beams, shells and booms in space need it.
-        head_section: at its end, where it tapers: ``section`` is then that at its start, the
-            centroids of all are on the axis, m̄ is the mean, and the other numbers above and of
-            ``lateral`` are those half-way.
+        section: section; only shear-flexible beams, shells and booms in space need it.
+        head_section: section at the end of a tapered segment. ``section`` is then that at the
+            start, all centroids are on the axis, m̄ is the mean, and the other values above and in
+            ``lateral`` hold at the middle.
         load: uniform load along z in N/m, applied at t = 0 and kept.
-        supports: its supports on the ground.
-        viscous_damping: μ̄ of (25) in N·s/m², of the deflections along y as along z.
-        masses: its point masses.
+        supports: supports on the ground.
+        viscous_damping: μ̄ of (25) in N·s/m², for deflections along z and y.
+        masses: point masses.
         lateral: additional properties for a boom in space.
-        collars, diaphragms: stiffeners of the plates; beams include their mass alone, and the
+        collars, diaphragms: stiffeners of the plates; beams include only their mass, and the
             properties above are those of the plain box.
-        compression: the axial force that it carries, see :func:`geometry.axial.with_compression`.
-        shear_stiffnesses: G A_s in N along z and along y, where they are not the section's.
+        compression: axial force, see :func:`geometry.axial.with_compression`.
+        shear_stiffnesses: G A_s in N along z and along y, if they differ from those of the section.
     """
 
     name: str
@@ -199,7 +199,7 @@ class Segment:
         section: Section,
         **others: Any,
     ) -> Segment:
-        """Return a segment with beam properties from its plates, in space as in the plane.
+        """Return a segment whose beam properties follow from its section, also in space.
 
         >>> import protractile as pt
         >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
@@ -209,7 +209,7 @@ class Segment:
         109.9
 
         Args:
-            name, start, end, material, section, others: as of :class:`Segment`.
+            name, start, end, material, section, others: as in :class:`Segment`.
         """
         head = others.get("head_section")
         numbers = half_way(section, head)
@@ -235,25 +235,25 @@ class Segment:
 
     @property
     def length(self) -> float:
-        """Length in m."""
+        """The length in m."""
         return self.end - self.start
 
     @property
     def area(self) -> float:
-        """Mean area of the sections in m²."""
+        """The mean area of the sections in m²."""
         assert self.section is not None
         return mean_area(self.section, self.head_section)
 
     @property
     def mass_middle(self) -> float:
-        """x of the centre of its mass per length in m."""
+        """The x in m of the centre of the mass per length."""
         if self.section is None or self.head_section is None:
             return 0.5 * (self.start + self.end)
         _, middle, head = areas(self.section, self.head_section)
         return self.start + self.length * (2.0 * middle + head) / (6.0 * self.area)
 
     def section_at(self, x: float) -> Section:
-        """Return the section at x in m, of a segment whose plates are known."""
+        """Return the section at x in m; the segment must have one."""
         assert self.section is not None
         if self.head_section is None:
             return self.section
@@ -261,24 +261,24 @@ class Segment:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """x of both ends in m."""
+        """The x of both ends in m."""
         return self.start, self.end
 
     @property
     def widest(self) -> Section:
-        """Section with the longer mid-lines of both ends, with which meshes start."""
+        """The end section with the longer mid-lines, from which meshes start."""
         assert self.section is not None
         ends = self.section, self.head_section or self.section
         return max(ends, key=lambda section: section.perimeter)
 
     @property
     def carried(self) -> tuple[PointMass, ...]:
-        """Its point masses and those of its stiffeners."""
+        """The point masses, including those of stiffeners."""
         return (*self.masses, *self.stiffener_masses)
 
     @property
     def stiffener_masses(self) -> tuple[PointMass, ...]:
-        """Masses of diaphragms, and of collars in their middles; none if the plates are unknown."""
+        """The masses of diaphragms, and of collars at their middles; empty without a section."""
         if self.section is None:
             return ()
         density = self.material.density
@@ -294,34 +294,34 @@ class Segment:
 
     @property
     def mass(self) -> float:
-        """Mass in kg, with all attached masses."""
+        """The mass in kg, including all attached masses."""
         return self.mass_per_length * self.length + sum(point.mass for point in self.carried)
 
     def mean_perimeter(self, collar: Collar) -> float:
-        """Return the length of the mid-lines in m, half-way along a collar."""
+        """Return the length of the mid-lines in m at the middle of a collar."""
         return self.section_at(collar.middle).perimeter
 
     def local(self, x: float) -> Segment:
-        """Return the plain segment that has this one's section at x in m everywhere."""
+        """Return the prismatic segment with the section of this one at x in m."""
         if self.head_section is None:
             return self
         section = self.section_at(x)
         return Segment.of_section(self.name, self.start, self.end, self.material, section)
 
     def relative(self, number: Callable[[Segment], float], x: Array) -> Array:
-        """Return (num_places,) a section's property at x (num_places,) in m over the segment's."""
+        """Return a section's property (num_places,) at x in m, relative to the segment's."""
         if self.head_section is None:
             return np.ones(x.shape)
         return np.array([number(self.local(place)) for place in x.tolist()]) / number(self)
 
     @property
     def bending_stiffness(self) -> float:
-        """E J in N·m²."""
+        """The bending stiffness E J in N·m²."""
         return self.material.youngs_modulus * self.second_moment_of_area
 
     @property
     def shear_stiffness(self) -> float | None:
-        """G A_s in N; None where neither it nor the section is known."""
+        """The shear stiffness G A_s in N; None if neither it nor the section is given."""
         if self.shear_stiffnesses is not None:
             return self.shear_stiffnesses[0]
         if self.section is None:
@@ -330,7 +330,7 @@ class Segment:
 
     @property
     def rigid_modes(self) -> int:
-        """Number of motions along z that the supports leave free of strain."""
+        """The number of rigid motions along z that the supports leave free."""
         held = sum(
             2 if support.holds_slope("z") or support.rotation_stiffness is not None else 1
             for support in self.supports
@@ -339,24 +339,24 @@ class Segment:
 
     @property
     def rigid_twists(self) -> int:
-        """Number of rotations about the axis that the supports leave free of strain."""
+        """The number of rigid rotations about the axis that the supports leave free."""
         return 0 if self.supports else 1
 
     @property
     def foot(self) -> Support | None:
-        """Support nearest to the base, which holds the segment along x."""
+        """The support nearest to the base, which holds the segment along x."""
         return min(self.supports, key=lambda support: support.x, default=None)
 
     def holds(self, x: float) -> bool:
-        """Return whether x lies on the segment, its ends included."""
+        """Return whether x is on the segment, including its ends."""
         near = SAME_PLACE * self.length
         return self.start - near <= x <= self.end + near
 
     def turned(self) -> Segment:
-        """Return the segment with its planes exchanged: its motion along y becomes that along z.
+        """Return the segment with its planes exchanged: motion along y becomes motion along z.
 
         Raises:
-            ValueError: the segment has no lateral numbers.
+            ValueError: the segment has no lateral properties.
         """
         if self.lateral is None:
             raise ValueError(f"{self.name!r} has no lateral numbers to exchange")
@@ -381,11 +381,11 @@ class Segment:
         """Check that the segment is possible.
 
         Args:
-            where: its place in the boom, ``segments[1]`` say.
+            where: place in the boom, for example ``segments[1]``.
 
         Raises:
-            BoomError: an empty span; a support, a mass, a collar or a diaphragm off the segment
-                or impossible.
+            BoomError: the span is empty, or a support, mass, collar or diaphragm is invalid or not
+                on the segment.
         """
         if not self.start < self.end:
             raise BoomError(
@@ -461,11 +461,11 @@ class Segment:
         """Check that a place is on the segment.
 
         Args:
-            where: what is to be there.
-            x: m.
+            where: part of the boom at this place.
+            x: place in m.
 
         Raises:
-            BoomError: it is not.
+            BoomError: the place is not on the segment.
         """
         if not self.holds(x):
             raise BoomError(

@@ -2,9 +2,9 @@
 """Shear flow q along the mid-line of a closed thin wall.
 
 The flow follows dq/ds = −t a·r (Jourawski 1856), with r from the centroid of the mid-lines. The
-vector a makes the flow's resultant, ∮ r rᵀ t ds a, equal to the force. The remaining constant of a
-closed cell follows from the condition of no twist, ∮ q/t ds = 0 (Bredt 1896). The solution is exact
-for flat plates: q is quadratic along each.
+vector a follows from the resultant of the flow, ∮ r rᵀ t ds a, which equals the force. The constant
+of a closed cell follows from zero twist, ∮ q/t ds = 0 (Bredt 1896). The solution is exact for flat
+plates, along which q is quadratic.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.section import COMPONENT, Direction, Offset, Plate
 
-# Gauss's rule on a plate, exact for q².
+# Gauss's rule on a plate, which is exact for q².
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 _ALONG, _PARTS = 0.5 * (1.0 + _POINTS), 0.5 * _WEIGHTS
 
-# A plate with a smaller fraction of the force counts as carrying none.
+# Fraction of the force below which a plate carries no shear.
 _NO_PART = 1.0e-12
 
 
@@ -30,9 +30,9 @@ class ShearFlow:
     """Shear flow of a force of 1 N that does not twist the section.
 
     Args:
-        flow: (num_plates, num_points) q in 1/m along the tangent of each plate, at Gauss's points.
-        lengths, thicknesses: (num_plates,) of the plates in m.
-        arms: (num_plates,) of their tangents about the axis, in m.
+        flow: q (num_plates, num_points) in 1/m along the tangents of plates, at Gauss points.
+        lengths, thicknesses: lengths and thicknesses (num_plates,) of the plates in m.
+        arms: lever arms (num_plates,) of the tangents about the axis in m.
     """
 
     flow: Array
@@ -45,7 +45,7 @@ class ShearFlow:
         """Return the flow of a force along a direction.
 
         Args:
-            plates: once around, each beginning where the one before ends.
+            plates: plates in order, each of which begins at the end of the previous one.
             direction: direction of the force.
         """
         start = np.array([plate.start for plate in plates])
@@ -69,22 +69,22 @@ class ShearFlow:
 
     @property
     def shear_area(self) -> float:
-        """Area 1/∮ q²/t ds in m²: with it G γ does the same work as the flow (Pilkey 2002)."""
+        """The shear area 1/∮ q²/t ds in m², by the equal work of the flow (Pilkey 2002)."""
         return float(1.0 / (self.lengths / self.thicknesses @ self.flow**2 @ _PARTS))
 
     @property
     def forces(self) -> Array:
-        """Force (num_plates,) of each plate along its tangent."""
+        """The force (num_plates,) of each plate along its tangent."""
         return np.asarray(self.lengths * (self.flow @ _PARTS))
 
     @property
     def moment(self) -> float:
-        """Moment about the axis in m: the lever arm of the force."""
+        """The moment about the axis in m, which is the lever arm of the force."""
         return float(self.arms @ self.forces)
 
 
 def shear_centre(plates: Sequence[Plate]) -> Offset:
-    """Return the shear centre (y, z) in m from the axis: forces through it do not twist.
+    """Return the shear centre (y, z) in m from the axis; forces through it cause no twist.
 
     >>> box = pt.BoxSection(0.6, 0.4, flange=0.02, web=0.02, left_web=0.01)
     >>> print(f"{1e3 * shear_centre(box.plates)[0]:.1f} mm to the thicker web's side")
@@ -94,10 +94,10 @@ def shear_centre(plates: Sequence[Plate]) -> Offset:
 
 
 def shear_plates(plates: Sequence[Plate], direction: Direction) -> tuple[tuple[int, float], ...]:
-    """Return the plates that carry a unit force through the axis: number, force along the tangent.
+    """Return the plates that carry a unit force through the axis: index, force along the tangent.
 
-    This is the flow of the force, and that of the moment which moves it from the shear centre to
-    the axis.
+    The forces are those of the shear flow, and of the moment that shifts the force from the shear
+    centre to the axis.
     """
     carried = ShearFlow.of(plates, direction)
     around = carried.moment / (carried.arms @ carried.lengths)

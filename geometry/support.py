@@ -15,7 +15,7 @@ from geometry.section import Direction
 
 @dataclass(frozen=True, slots=True, config=PART)
 class Support:
-    """A place where the ground holds a segment; in space it holds sideways and in twist too.
+    """Support of a segment on the ground, in space also against lateral motion and twist.
 
     >>> pt.Support(2.0).stiffness is None, pt.Support(0.0, "clamped").kind
     (True, 'clamped')
@@ -27,29 +27,30 @@ class Support:
     x: Place
     """the x in m"""
     kind: Literal["pinned", "hinged", "clamped"] = "pinned"
-    """whether the slope is free or held; of a hinge, a pin across the boom, it is free in the plane
-    of bending and held sideways"""
+    """the kind: whether the slope is free or fixed; a hinge, with a pin across the boom, leaves it
+    free in the plane of bending and fixes it laterally"""
     stiffness: Annotated[Positive, In("N/m")] | None = None
     """the stiffness of an elastic support in N/m; rigid unless given"""
     rotation_stiffness: Annotated[Positive, In("N m/rad")] | None = None
-    """the stiffness in N m/rad against the slopes that the kind leaves free; none unless given"""
+    """the rotational stiffness in N m/rad for the slopes that the kind leaves free; 0 unless
+    given"""
     dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
-    """the linear dashpot of an elastic support in N s/m, beside its stiffness"""
+    """the linear dashpot of an elastic support in N s/m, parallel to its stiffness"""
     depth: Annotated[Number, In("m")] = 0.0
-    """how far in m its pin is below the segment's axis, of the first support of a segment with a
+    """the depth in m of its pin below the segment's axis, for the first support of a segment with a
     cylinder or axial forces"""
 
     def holds_slope(self, direction: Direction) -> bool:
-        """Return whether the slope along y or z is held rigidly."""
+        """Return whether the slope of the motion along y or z is fixed."""
         return self.kind == "clamped" or (self.kind == "hinged" and direction == "y")
 
     @property
     def clamped(self) -> bool:
-        """True if it holds both slopes rigidly."""
+        """True if both slopes are fixed."""
         return self.kind == "clamped"
 
     def turned(self) -> Support:
-        """Return the support of a segment whose planes are exchanged, for the motion along z."""
+        """Return the support of a segment with its planes exchanged."""
         return replace(self, kind="clamped") if self.kind == "hinged" else self
 
 
@@ -57,7 +58,7 @@ def check_support(where: str, support: Support) -> None:
     """Check that a support is not both rigid and elastic; ``where`` is its place in the boom.
 
     Raises:
-        BoomError: it is.
+        BoomError: the support is both rigid and elastic.
     """
     at = f"at {support.x:g} m"
     if support.stiffness is not None and support.kind != "pinned":

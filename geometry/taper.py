@@ -18,8 +18,8 @@ def between(tail: Section, head: Section, part: float) -> Section:
     0.35
 
     Args:
-        tail, head: alike, see :func:`check_alike`.
-        part: from 0 at the tail to 1 at the head.
+        tail, head: sections of the same kind, see :func:`check_alike`.
+        part: fraction from 0 at the tail to 1 at the head.
     """
     shape: Any = tail
     mixed = {
@@ -42,7 +42,7 @@ def check_alike(tail: Section, head: Section) -> None:
     """Check that a segment can taper from one section to another.
 
     Raises:
-        SectionError: they differ in kind: in shape, plates, faces or mirrors.
+        SectionError: the sections differ in shape, plates, faces or mirrors.
     """
     for what, one, other in (
         ("shapes", type(tail), type(head)),
@@ -60,17 +60,17 @@ def check_alike(tail: Section, head: Section) -> None:
 
 
 def half_way(section: Section, head: Section | None) -> Section:
-    """Return the section half-way along a segment that tapers, or that of one that does not."""
+    """Return the section at the middle of a segment, tapered or not."""
     return section if head is None else between(section, head, 0.5)
 
 
 def areas(tail: Section, head: Section) -> tuple[float, float, float]:
-    """Return areas at the tail, half-way and at the head in m²; for a box a parabola is exact."""
+    """Return the areas in m² at tail, middle and head; they define a parabola, exact for boxes."""
     return tail.area, half_way(tail, head).area, head.area
 
 
 def mean_area(section: Section, head: Section | None) -> float:
-    """Return the mean area in m² along a segment, whether it tapers or not."""
+    """Return the mean area in m² along a segment, tapered or not."""
     if head is None:
         return section.area
     tail, middle, last = areas(section, head)

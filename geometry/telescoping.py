@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Telescoping: checks of the drives of joints, and the stations and segments that they move."""
+"""Telescoping: the stations and segments that drives of joints move, and checks of drives."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from geometry.segment import SAME_PLACE, Segment
 if TYPE_CHECKING:
     from geometry.boom import Boom
 
-# Number of times at which a telescoping boom is checked.
+# Number of times at which a boom with drives is checked.
 _SAMPLES = 9
 
 
@@ -27,9 +27,9 @@ class MovedStations:
     """Stations that the drives of some joints move together.
 
     Args:
-        joints: their positions in ``Boom.joints``, from the base.
-        drives: theirs.
-        stations: positions in ``Boom.stations`` of the stations that move.
+        joints: indices of the joints in ``Boom.joints``, from the base.
+        drives: drives of these joints.
+        stations: indices in ``Boom.stations`` of the stations that move.
     """
 
     joints: tuple[int, ...]
@@ -38,23 +38,23 @@ class MovedStations:
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Range of the extensions of all of them together, in m."""
+        """The range of the sum of all extensions in m."""
         return reach(self.drives)
 
     @property
     def suffix(self) -> str | None:
-        """Suffix for the names of results; None where several move together."""
+        """The suffix for the names of results; None for several joints."""
         if len(self.joints) > 1:
             return None
         return "" if self.joints[0] == 0 else f"-{self.joints[0] + 1}"
 
     def extensions(self, extension: float) -> dict[int, float]:
-        """Return position of a joint → extension in m; stops need the sum of several alone."""
+        """Return extensions in m by index of the joint; for stops only their sum matters."""
         return {self.joints[0]: extension}
 
 
 def moved_stations(boom: Boom) -> list[MovedStations]:
-    """Return the courses: the stations of each joint with a drive, for stops of several joints."""
+    """Return the moved stations of each joint with a drive, and stops of several joints."""
     moved: dict[tuple[int, ...], list[int]] = {}
     for station, joints in _driven_stations(boom):
         if joints:
@@ -70,7 +70,7 @@ def moved_stations(boom: Boom) -> list[MovedStations]:
 
 
 def _driven_stations(boom: Boom) -> Iterator[tuple[int, tuple[int, ...]]]:
-    """Yield each station, and positions of the joints whose drives move what is read there."""
+    """Yield each station, with the indices of the joints whose drives move its place."""
     station = 0
     for _ in boom.directions:
         for number, joint in enumerate(boom.joints):
@@ -82,7 +82,7 @@ def _driven_stations(boom: Boom) -> Iterator[tuple[int, tuple[int, ...]]]:
 
 
 def drives_below(joints: Sequence[Joint], segment: int) -> tuple[int, ...]:
-    """Return positions of the joints with a drive between a segment and ground, from the base."""
+    """Return the indices of joints with a drive between a segment and the ground, from the base."""
     for number, joint in enumerate(joints):
         if joint.inner == segment:
             own = () if joint.drive is None else (number,)
@@ -102,19 +102,19 @@ def drives_of(joints: Sequence[Joint], segment: int) -> list[Drive]:
 
 
 def reach(drives: Sequence[Drive]) -> tuple[float, float]:
-    """Return the range of their extensions together, in m."""
+    """Return the range of the sum of the drives' extensions in m."""
     return sum(drive.reach[0] for drive in drives), sum(drive.reach[1] for drive in drives)
 
 
 def farthest_travel(boom: Boom, segment: int) -> float:
-    """Return the farthest travel of a segment in m: out, or in if its drives never move it out."""
+    """Return the largest travel of a segment in m: outwards, or inwards if it only retracts."""
     drives = [boom.joints[number].drive for number in drives_below(boom.joints, segment)]
     reaches = [drive.reach for drive in drives if drive is not None]
     return sum(high or low for low, high in reaches)
 
 
 def sampled_extensions(boom: Boom) -> list[dict[int, float]]:
-    """Return extensions in m by positions of joints: at the start, farthest and between."""
+    """Return extensions in m by the index of the joint: initial, extreme and between."""
     drives = {n: joint.drive for n, joint in enumerate(boom.joints) if joint.drive is not None}
     times = np.unique(np.concatenate([np.zeros(1), *(drive.times for drive in drives.values())]))
     extensions = np.array([drive.history(times) for drive in drives.values()]).reshape(
@@ -135,10 +135,10 @@ def places(joint: Joint, extension: float) -> list[tuple[float, float]]:
 
 
 def check_drives(boom: Boom) -> None:
-    """Check that each drive has its whole stroke, and moves only what may move.
+    """Check that each drive has space for its stroke, and moves only parts that may move.
 
     Raises:
-        BoomError: it is not.
+        BoomError: a drive is not possible.
     """
     driven = [(n, joint) for n, joint in enumerate(boom.joints) if joint.drive is not None]
     if not driven:
@@ -205,7 +205,7 @@ def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
 
 
 def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
-    """Check that axial force passes on both segments throughout, or from a foot below the inner."""
+    """Check that the lock stays on both segments, or is a foot below the inner one."""
     drive, x = joint.drive, joint.locked_at
     assert drive is not None
     if x is None:
@@ -240,7 +240,7 @@ def _check_taper(where: str, boom: Boom, outer: Segment, inner: Segment) -> None
 
 
 def _check_order(boom: Boom) -> None:
-    """Check that all the joints in which a segment slides move it alike."""
+    """Check that all joints in which a segment slides move it by the same extension."""
     for number, joint in enumerate(boom.joints):
         own = () if joint.drive is None else (number,)
         if drives_below(boom.joints, joint.inner) != drives_below(boom.joints, joint.outer) + own:

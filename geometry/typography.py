@@ -10,12 +10,12 @@ TO_MICRO, TO_MILLI, TO_KILO, TO_MEGA, TO_PERCENT = 1.0e6, 1.0e3, 1.0e-3, 1.0e-6,
 
 
 def signed(text: str) -> str:
-    """Return a number with a minus sign in place of a hyphen."""
+    """Return the text of a number with a minus sign in place of a hyphen."""
     return text.replace("-", "−")
 
 
 def digits(value: float, count: int = 3) -> str:
-    """Return a number with so many significant digits, 1020 and never 1.02e+03.
+    """Return a number with a number of significant digits, without exponent: 1020, not 1.02e+03.
 
     >>> digits(1023.4), digits(22.68), digits(0.0)
     ('1020', '22.7', '0')
@@ -24,7 +24,7 @@ def digits(value: float, count: int = 3) -> str:
 
 
 def listed(parts: Iterable[str]) -> str:
-    """Return the items of a list, at least one, as a phrase.
+    """Return the items of a list, which is not empty, as a phrase.
 
     >>> listed(["play", "load", "friction"])
     'play, load and friction'
@@ -33,12 +33,12 @@ def listed(parts: Iterable[str]) -> str:
     return f"{', '.join(most)} and {last}" if most else last
 
 
-# Number of valid names that a message lists.
+# Maximum number of valid names in a message.
 MOST_CHOICES = 12
 
 
 def choices(known: Sequence[str]) -> str:
-    """Return "'a', 'b' or 'c'"; the first few of many."""
+    """Return names as "'a', 'b' or 'c'"; of many names the first few."""
     if len(known) > MOST_CHOICES:
         return f"{', '.join(repr(name) for name in known[:MOST_CHOICES])} or another of its kind"
     quoted = [repr(name) for name in known]

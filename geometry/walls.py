@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Walls of flat plates once around a cell: material, room inside, places along x."""
+"""Walls of flat plates around a cell: their area, the space inside, positions along x."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from geometry.arrays import Array
 from geometry.section import Plate, Section
 from geometry.segment import Segment
 
-# Sine of the angle below which plates meet butt to butt. A mitre would be long where their
-# thicknesses differ.
+# Sine of the angle below which plates have a butt joint: mitres of different thicknesses would be
+# long.
 _STRAIGHT = 0.1
 
-# Fraction of a normal's length below which a plate does not limit the travel.
+# Component of a normal below which a plate does not limit the travel.
 _ASIDE = 1.0e-9
 
 
 def normals(plates: Sequence[Plate]) -> Array:
-    """Return (num_plates, 2) outward unit vectors of plates that go around anticlockwise."""
+    """Return the outward unit normals (num_plates, 2) of plates in anticlockwise order."""
     tangents = np.array([plate.tangent for plate in plates])
     return np.column_stack([tangents[:, 1], -tangents[:, 0]])
 
 
 def trapezoids(plates: Sequence[Plate]) -> Array:
-    """Return (num_plates, 4, 2) corners in m of each plate with its thickness, anticlockwise.
+    """Return the corners (num_plates, 4, 2) in m of thick plates, anticlockwise, outer edge first.
 
-    The outer edge first. Neighbours meet where their surfaces do, so that corners are filled and
-    the outermost edges are the section's outside, the innermost ones its hole.
+    Neighbours are mitred, so that corners are filled. The outer edges are the outside of the
+    section, the inner edges its hole.
     """
     start, end = (np.array([getattr(plate, at) for plate in plates]) for at in ("start", "end"))
     normal, half = normals(plates), 0.5 * np.array([plate.thickness for plate in plates])
@@ -50,14 +50,14 @@ def trapezoids(plates: Sequence[Plate]) -> Array:
 
 
 def free_room(outer: Section, inner: Section, play: float = 0.0) -> tuple[float, float]:
-    """Return the distances in m that a section can move within another one along z, then along y.
+    """Return the distances in m by which a section can move within another one, along z and y.
 
-    Both must be convex. Less than 0 where it does not fit.
+    Both sections must be convex. A negative distance means that the inner section does not fit.
 
     Args:
-        outer: the section around.
-        inner: the section within, wherever it is along z.
-        play: play in m, along z; wherever in it the inner section is, it can move so far along y.
+        outer: outer section.
+        inner: inner section, at any z.
+        play: play along z in m; the distance along y is available at any position within it.
     """
     reach = trapezoids(inner.plates)[:, :2].reshape(-1, 2)
     normal = normals(outer.plates)
@@ -71,30 +71,30 @@ def free_room(outer: Section, inner: Section, play: float = 0.0) -> tuple[float,
 
 
 def _travel(slope: Array, clear: Array) -> tuple[float, float]:
-    """Return the lowest and the highest shift in m that leave room to every plate.
+    """Return the lowest and the highest shift in m without interference.
 
     Args:
-        slope: (num_plates,) reduction of the room per unit of shift.
-        clear: (num_plates,) room in m at a shift of 0.
+        slope: reduction (num_plates,) of the clearance per unit of shift.
+        clear: clearance (num_plates,) in m at a shift of 0.
     """
     ahead, behind = slope > _ASIDE, slope < -_ASIDE
     return float((clear[behind] / slope[behind]).max()), float((clear[ahead] / slope[ahead]).min())
 
 
-# Fraction of the height: above the distance of walls, flat between mesh lines, from the section;
-# below any edge.
+# Tolerance as a fraction of the height: above the distance between a tapered section and walls that
+# are flat between mesh lines, below any edge.
 _OFF_TAPER = 1.0e-4
 
 
 class WallsAlong:
-    """Mid-lines at each of many places.
+    """Mid-lines of a segment's section at many x.
 
     Args:
-        segment: whose plates are known.
+        segment: segment with a section.
         x: (num_places,) in m.
 
     Attributes:
-        near: places closer than this (m) to a mid-line are on it.
+        near: distance in m below which a place is on a mid-line.
     """
 
     def __init__(self, segment: Segment, x: Array) -> None:
@@ -107,11 +107,11 @@ class WallsAlong:
         self._starts = np.array([[plate.start for plate in one.plates] for one in sections])
 
     def starts(self, plate: int) -> Array:
-        """Return (num_places, 2) the starts of a plate in m."""
+        """Return the starts (num_places, 2) of a plate in m."""
         return np.asarray(self._starts[self._at, plate])
 
     def distance(self, plate: int, places: Array) -> Array:
-        """Return (num_places,) distances of places (num_places, 2), one at each x, from a plate."""
+        """Return distances (num_places,) of places (num_places, 2), one at each x, from a plate."""
         start, end = self.starts(plate), self.starts((plate + 1) % self._starts.shape[1])
         length = np.linalg.norm(end - start, axis=1)
         tangent = (end - start) / length[:, None]

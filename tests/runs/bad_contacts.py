@@ -118,8 +118,8 @@ CONTACTS = {
     "several pads without a side": (
         LAW,
         "pads = [{ length = 0.1, width = 0.06, thickness = 0.02 }]\n",
-        "joint[1].pads[1].side: missing; it is the wall of the inner segment that it is on; right "
-        "is where y is positive",
+        "joint[1].pads[1].side: missing; it is the wall of the "
+        "inner segment with the pad; right is at positive y",
     ),
     "pads on one side alone": (
         LAW,

@@ -53,8 +53,8 @@ STIFFENERS = {
     "a collar without its thickness": (
         "height_to_width = 1.5",
         "height_to_width = 1.5\ncollars = [{ span = [1.0, 2.0] }]",
-        "segment[1].collars[1].thickness: missing; it is the thickness in m that it adds to all "
-        "walls",
+        "segment[1].collars[1].thickness: missing; it is the additional "
+        "thickness in m of all walls",
     ),
     "an unknown key of a collar": (
         "height_to_width = 1.5",

@@ -29,8 +29,8 @@ SUPPORTS = {
     "cylinder without stiffness": (
         "[[joint]]",
         _CYLINDER.replace("stiffness = 1e7\n", ""),
-        "cylinder[1].stiffness: missing; it is the stiffness in N/m along its line, of two side by "
-        "side together",
+        "cylinder[1].stiffness: missing; it is the axial "
+        "stiffness in N/m; of two cylinders side by side their sum",
     ),
     "cylinder that stands nowhere": (
         "[[joint]]",

@@ -178,7 +178,8 @@ def test_one_key_draws_all_segments_out(extension: float, tip: float) -> None:
         ("length = 9.5", "length = 9.5\nspan = [8.5, 18.0]",
          "segment[2].length: span is given; leave one of them out"),
         ("length = 9.5", "",
-         "segment[2].span: missing; it is the x of its two ends in m, in ascending order; or give length"),
+         "segment[2].span: missing; it is the x of its two ends in m, in ascending order; or give "
+         "length"),
         ("length = 9.5", "span = [8.5, 18.0]",
          "joint[1].extension: 'middle' has a span, which says how far it is out; give it by its "
          "length, or leave extension out"),
