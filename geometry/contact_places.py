@@ -103,8 +103,8 @@ class Pad:
         x: position in m.
         direction: direction of the contact normal.
         side: 1 for contact if the inner segment presses upwards (along y: towards larger y), −1 if
-        it presses downwards, 0 for both. inner, outer: (y, z) in m of the points, from the axes of
-        their segments.
+            it presses downwards, 0 for both.
+        inner, outer: (y, z) in m of the points, from the axes of their segments.
         weight: share of the joint's law on this side.
         rubs: direction of sliding.
         normal_force: given normal force of friction in N; None if the contact force is the normal

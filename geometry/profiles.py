@@ -26,8 +26,8 @@ def hexagon(
     Args:
         height: distance between bottom and top.
         width: distance between the folds of both sides.
-        flat: width of the top, and of the bottom. top, bottom, web: thicknesses of the top, the
-        bottom, and the inclined plates.
+        flat: width of the top, and of the bottom.
+        top, bottom, web: thicknesses of the top, the bottom, and the inclined plates.
 
     Raises:
         SectionError: the top is not narrower than the section, or as in :class:`PolygonSection`.

@@ -83,7 +83,8 @@ def refinement_zones(
         boom: boom of the segment.
         number: index in ``Boom.segments``.
         tolerance: relative error of the local compliance.
-        line: contact line on the walls. stop_patches, pads: stop patches and pads of the boom.
+        line: contact line on the walls.
+        stop_patches, pads: stop patches and pads of the boom.
     """
     finer = float(np.sqrt(tolerance / MEASURED_AT))
     # Zones on several sides, or mirror images, are merged.

@@ -43,7 +43,8 @@ class Plate(NamedTuple):
     """Flat wall of a section.
 
     Args:
-        name: name in results. start, end: (y, z) in m of the ends of its mid-line.
+        name: name in results.
+        start, end: (y, z) in m of the ends of its mid-line.
         thickness: thickness in m.
     """
 

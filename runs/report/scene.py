@@ -276,7 +276,8 @@ class Scene:
 
         Args:
             places: (num_points, 3) displayed points in m.
-            segment: number of the segment. x, z: x and z of the point in m.
+            segment: number of the segment.
+            x, z: x and z of the point in m.
         """
         mine = np.flatnonzero(self.owner == segment)
         off = np.abs(self.points[mine, 0] - x)

@@ -43,8 +43,9 @@ class SurfaceOptions:
     Args:
         points: numbers of points along the overlap, and across each half of a wall.
         stiffness: k_A in N/mⁿ⁺² of the stiffer side of every joint. By default it is the sum of the
-        stations' laws over the area, so that a uniform approach causes the same force as at the
-        stations. shifts, moments: shifts and moments of the reduction, see
+            stations' laws over the area, so that a uniform approach causes the same force as at the
+            stations.
+        shifts, moments: shifts and moments of the reduction, see
             :class:`shell_model.reduction.krylov.KrylovOptions`. Every point is an input, so that
             few shifts and moments suffice: more of them change the tip of the paper's boom with
             friction by 0.05 % of its range.
