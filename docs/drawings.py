@@ -20,8 +20,8 @@ class Drawing:
     """A figure of parts and dimensions.
 
     Args:
-        width: its width in inches.
-        height: its height in inches.
+        width: width in inches.
+        height: height in inches.
     """
 
     def __init__(self, width: float, height: float) -> None:
@@ -58,8 +58,8 @@ class Drawing:
             start: one end (x, y).
             end: the other end (x, y).
             key: the key of the case file that holds this length.
-            shift: where its label stands, from the middle of the line.
-            more: what the label says besides.
+            shift: position of the label relative to the middle of the line.
+            more: further text of the label.
         """
         self.keys |= {name.strip() for name in key.split(",")}
         arrow = {"arrowstyle": "<->", "color": KEY, "lw": 0.9, "shrinkA": 0, "shrinkB": 0}
@@ -68,7 +68,7 @@ class Drawing:
         self.text(middle[0], middle[1], key + more, KEY)
 
     def point(self, at: tuple[float, float], key: str, label: tuple[float, float]) -> None:
-        """Label a place by a key, with a thin line from the label to the place."""
+        """Label a place with a key, with a thin line from the label to the place."""
         self.keys |= {name.strip() for name in key.split(",")}
         arrow = {"arrowstyle": "-", "color": KEY, "lw": 0.6}
         self.axes.annotate(
@@ -76,7 +76,7 @@ class Drawing:
         )
 
     def support(self, x: float, y: float) -> None:
-        """Draw a pin on the ground, its top at (x, y)."""
+        """Draw a pinned support whose top is at (x, y)."""
         triangle = [(x, y), (x - 0.14, y - 0.26), (x + 0.14, y - 0.26)]
         self.axes.add_patch(Polygon(triangle, fill=False))
         self.line((x - 0.22, y - 0.26), (x + 0.22, y - 0.26), width=1.5)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Tables of the reference, from the schema of case files and from the command line's help."""
+"""Tables of the reference, from the schema of case files and the help of the command line."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from runs.case.schema import case_schema
 
 SCHEMA = case_schema()
 FOLDER = Path(__file__).parent / "generated"
-#: Drawings beside the tables that they explain.
+#: Drawings for the tables that they explain.
 DRAWINGS = {
     "SegmentTable": ("boom", "Lengths and places along a boom"),
     "SectionTable": ("sections", "Sections by the mid-lines of their plates"),

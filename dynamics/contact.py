@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Forces between two segments that touch: contact laws as sums of one-sided powers, friction."""
+"""Forces between two touching segments: contact laws as sums of one-sided powers, dry friction."""
 
 from __future__ import annotations
 
@@ -22,20 +22,18 @@ from dynamics.contact_term import (
     slope_of,
 )
 
-# In N: smaller than any force that matters; and logarithms of all penetrations that can be.
+# A negligible force in N, and the range of logarithms of penetrations.
 _LEAST, _LOG_DEPTHS = 1.0e-300, np.linspace(-300.0, 300.0, 6001)
 
 
 class ContactLaw(ABC):
     """Contact force between two bodies by their relative displacement y = u − w.
 
-    A user's law derives from this class, is a frozen dataclass, and gives
-
-    1. ``terms``, whose sum is the elastic force: never attractive, and zero at y = 0, where the
-       bodies begin to touch unless the law is :meth:`behind` a clearance;
-    2. ``damping`` d in s/m of Hunt and Crossley (1975), F (1 + d ṗ) at the rate ṗ of the
-       penetration, never adhesive;
-    3. ``str(law)``, the few words by which a table tells it from others.
+    A user-defined law derives from this class, is a frozen dataclass, and defines 1. ``terms``,
+    whose sum is the elastic force: never attractive, and zero at y = 0, where contact begins unless
+    the law is :meth:`behind` a clearance; 2. ``damping``, d in s/m of Hunt and Crossley (1975): the
+    force is F (1 + d ṗ) at the rate ṗ of the penetration, and never adhesive; 3. ``str(law)``, a
+    short description for tables.
 
     Force, energy, parts of the law and the compiled loops follow from these.
     """
@@ -47,29 +45,29 @@ class ContactLaw(ABC):
     @property
     @abstractmethod
     def terms(self) -> tuple[Term, ...]:
-        """One-sided powers whose sum is the force, those of one side by rising onset."""
+        """The one-sided powers whose sum is the force, on each side in ascending order of onset."""
 
     def one_sided(self, side: int) -> Gap | None:
-        """Return the law on the side of this sign alone; None where it never touches."""
+        """Return the law on the side of this sign only; None if it has no contact there."""
         part = self.behind(0.0)
         part = replace(part, sides=tuple(one for one in part.sides if one == side))
         return part if part.terms else None
 
     def shared(self, weight: float) -> Gap:
-        """Return a part of the law by ``weight``, for one of several points that share it."""
+        """Return the law multiplied by ``weight``, for one of several points that share it."""
         part = self.behind(0.0)
         return replace(part, weight=weight * part.weight)
 
     def behind(self, above: float, below: float | None = None) -> Gap:
-        """Return the law behind a clearance in m, and behind another one below if it is given."""
+        """Return the law behind a clearance in m, with another clearance below if given."""
         return Gap(self, above, above if below is None else below)
 
     def scaled(self, factor: float) -> ContactLaw:
-        """Return the law with its clearances times a factor."""
+        """Return the law with its clearances multiplied by a factor."""
         return self
 
     def onset(self, side: float) -> float:
-        """Return the gap in m at which a side begins to touch; infinite where it never does."""
+        """Return the gap in m at which contact begins on a side; infinite without contact."""
         return min((term.onset for term in self.terms if term.side == side), default=np.inf)
 
     def force(self, y: Array) -> Array:
@@ -89,14 +87,14 @@ class ContactLaw(ABC):
         return self._sum(slope_of, y)
 
     def depth(self, y: float) -> float:
-        """Return the penetration in m at a gap in m, 0 where it is open."""
+        """Return the penetration in m at a gap in m; 0 if it is open."""
         return max(0.0, *(term.side * y - term.onset for term in self.terms))
 
     def slope_at(self, force: float) -> float:
         """Return dF/dy in N/m at a contact force in N, on the law's stiffer side."""
         # A power law is linear in logarithms.
         depths, slopes = np.exp(_LOG_DEPTHS), []
-        # Overflow occurs only far beyond the force, where values do not matter.
+        # Overflow occurs only far beyond the force, where values have no effect.
         with np.errstate(over="ignore"):
             for side in {term.side for term in self.terms}:
                 forces = np.log(np.maximum(np.abs(self.force(side * depths)), _LEAST))
@@ -111,7 +109,7 @@ class ContactLaw(ABC):
 
 @dataclass(frozen=True, slots=True)
 class Gap(ContactLaw):
-    """A contact law across a gap, or a part of it: the law of a row.
+    """Contact law across a gap, or a part of it: the law of a row.
 
     >>> law = pt.PowerContact(1e6, exponent=1.0).behind(0.004, 0.010)
     >>> law.force(np.array([0.005, -0.005]))
@@ -119,13 +117,13 @@ class Gap(ContactLaw):
 
     Args:
         law: contact law beyond the clearances.
-        above, below: the clearances Δ in m where y is positive and where it is negative; negative
-            where what touches is pressed in by so much, and then the law is linear.
-        sides: the signs of y where it touches.
-        weight: the part of the law's force.
+        above, below: clearances Δ in m for positive and negative y; a negative clearance is an
+            interference, and requires a linear law.
+        sides: signs of y with contact.
+        weight: factor of the law's force.
 
     Raises:
-        ValueError: a clearance is not finite, or negative before a law that is not linear.
+        ValueError: a clearance is not finite, or is negative although the law is not linear.
     """
 
     law: ContactLaw
@@ -155,7 +153,7 @@ class Gap(ContactLaw):
         )
 
     def behind(self, above: float, below: float | None = None) -> Gap:
-        """Return the law behind clearances that are larger by these lengths in m."""
+        """Return the law with clearances that are larger by these lengths in m."""
         more = above if below is None else below
         return replace(self, above=self.above + above, below=self.below + more)
 
@@ -163,7 +161,7 @@ class Gap(ContactLaw):
         return replace(self, above=factor * self.above, below=factor * self.below)
 
     def slope_at(self, force: float) -> float:
-        # A small penetration would be lost to round-off beside a clearance.
+        # Otherwise a small penetration would be lost to round-off, compared with a clearance.
         return ContactLaw.slope_at(replace(self, above=0.0, below=0.0), force)
 
     def __str__(self) -> str:
@@ -174,8 +172,8 @@ class Gap(ContactLaw):
 class PowerContact(ContactLaw):
     """F(y) = k₂ yⁿ above 0, −k₁ (−y)ⁿ below.
 
-    Equation (4) of Rusiński and Wyciślok (1997), in the one sign convention that restores;
-    n = 3/2 is Hertz, n = 1 a linear stop. A side with stiffness zero never touches.
+    Equation (4) of Rusiński and Wyciślok (1997), in the only sign convention that gives a restoring
+    force; n = 3/2 is Hertz contact, n = 1 a linear stop. A side with stiffness zero has no contact.
 
     >>> law = pt.PowerContact(stiffness=1e6, exponent=1.5).behind(0.01)
     >>> law.force(np.array([0.0, 0.01, 0.02]))
@@ -183,7 +181,7 @@ class PowerContact(ContactLaw):
 
     Args:
         stiffness: k₂ in N/mⁿ.
-        exponent: n, at least 1. Below 1 the force has an infinite slope at touch.
+        exponent: n, at least 1; below 1 the slope would be infinite at the beginning of contact.
         stiffness_below: k₁ in N/mⁿ; the same as ``stiffness`` unless given.
         damping: d in s/m of Hunt and Crossley (1975), F = k pⁿ (1 + d ṗ) at the penetration p, but
             never adhesive; not negative.
@@ -211,7 +209,7 @@ class PowerContact(ContactLaw):
 
     @property
     def below(self) -> float:
-        """k₁ in N/mⁿ."""
+        """The stiffness k₁ in N/mⁿ."""
         return self.stiffness if self.stiffness_below is None else self.stiffness_below
 
     @property
@@ -220,11 +218,11 @@ class PowerContact(ContactLaw):
         return tuple(Term(side, k, 0.0, self.exponent) for side, k in sides if k > 0.0)
 
     def upper(self) -> PowerContact:
-        """Return the same law on the side y > 0 alone."""
+        """Return the law on the side y > 0 only."""
         return replace(self, stiffness_below=0.0)
 
     def lower(self) -> PowerContact:
-        """Return the same law on the side y < 0 alone."""
+        """Return the law on the side y < 0 only."""
         return replace(self, stiffness=0.0, stiffness_below=self.below)
 
     def __str__(self) -> str:
@@ -236,8 +234,8 @@ class PowerContact(ContactLaw):
 class DryFriction:
     """Coulomb's law on one sliding row: |R| ≤ μ N, and R = −μ N sign(ṡ) while it slides.
 
-    (28) of Rusiński and Wyciślok (1997) with a prescribed normal force; (11), where contact forces
-    of the other plane press.
+    Equation (28) of Rusiński and Wyciślok (1997) with a prescribed normal force, and (11) with
+    contact forces as normal force.
 
     >>> rubbed = replace(
     ...     ball, load=np.zeros(1), friction_rows=np.ones((1, 1)),
@@ -249,9 +247,9 @@ class DryFriction:
 
     Args:
         coefficient: μ, not negative.
-        station: position in the system's stations.
-        normal_force: the prescribed part of N in N, not negative.
-        pressed_by: contact rows whose |F| add to N.
+        station: index in the system's stations.
+        normal_force: prescribed part of N in N, not negative.
+        pressed_by: contact rows whose |F| contribute to N.
 
     Raises:
         ValueError: an argument is negative or not finite.
@@ -272,26 +270,26 @@ class DryFriction:
 
 
 def contact_terms(laws: Sequence[ContactLaw]) -> Terms:
-    """Return the terms of the laws of rows, by row, for the compiled loops."""
+    """Return the terms of the laws of rows, by row, for compiled loops."""
     return np.array([(row, *term) for row, law in enumerate(laws) for term in law.terms], TERM)
 
 
 def contact_limits(laws: Sequence[ContactLaw]) -> Limits:
-    """Return the gaps where rows touch, for compiled loops; infinite on a side that does not."""
+    """Return the gaps at which contact begins, for compiled loops; infinite without contact."""
     return np.array([(-law.onset(-1.0), law.onset(1.0), law.damping) for law in laws], LIMITS)
 
 
 def restitution_damping(restitution: float, speed: float) -> float:
-    """Return the damping d in s/m with which a mass rebounds from a contact with restitution e.
+    """Return the damping d in s/m for which a mass rebounds with the restitution e.
 
-    With F = k pⁿ (1 + d ṗ), ṗ dṗ/(1 + d ṗ) = −(k/m) pⁿ dp. Over the whole impact the right side
-    adds up to nothing, whatever k, n and m, hence (e + 1) v = ln[(1 + d v)/(1 − d e v)]/d.
+    With F = k pⁿ (1 + d ṗ), ṗ dṗ/(1 + d ṗ) = −(k/m) pⁿ dp. Over the whole impact the integral of
+    the right side is zero for all k, n and m, hence (e + 1) v = ln[(1 + d v)/(1 − d e v)]/d.
 
     >>> print(f"{pt.restitution_damping(restitution=0.5, speed=2.0):.4f} s/m")
     0.7164 s/m
 
     Args:
-        restitution: e, speed after over speed before the impact, above 0 and at most 1.
+        restitution: e, ratio of the speeds after and before the impact, above 0 and at most 1.
         speed: v before the impact in m/s, positive.
 
     Raises:
@@ -304,11 +302,11 @@ def restitution_damping(restitution: float, speed: float) -> float:
         raise ValueError(f"restitution must be above 0 and at most 1, got {e}")
     if not 0.0 < speed < np.inf:
         raise ValueError(f"speed must be finite and positive, got {speed} m/s")
-    # The root of the series in d v up to third order: right up to a part of its square.
+    # The root of the third-order series in d v, with a relative error of the order of its square.
     first = 1.5 * (1.0 - e**2) / (1.0 + e**3)
     if first < 1.0e-4:
         return first / speed
-    # In u = −ln(1 − d e v), which stays a number however near d e v is to 1.
+    # The unknown is u = −ln(1 − d e v), which is finite for all d e v below 1.
     u = brentq(
         lambda u: np.log1p(-np.expm1(-u) / e) + u + (1.0 + e) * np.expm1(-u) / e,
         -np.log1p(-0.5 * e * first),

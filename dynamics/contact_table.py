@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Contact with a measured force: linear interpolation between points of a table."""
+"""Contact law from a table of measured forces, with linear interpolation."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from dynamics.contact_term import Term
 
 @dataclass(frozen=True, slots=True)
 class TableContact(ContactLaw):
-    """A contact whose force follows a table of the penetration, extrapolated by its last line.
+    """Contact law with a force that is interpolated in a table, and extrapolated beyond it.
 
-    A change of slope is a linear spring that begins there, so that the law is a sum of springs.
+    Each change of slope is a linear spring that begins there, so that the law is a sum of springs.
 
     >>> pad = pt.TableContact(depths=(0.001, 0.002), forces=(1e3, 4e3))
     >>> round(float(pad.force(np.array(0.0015))), 6)
     2500.0
 
     Args:
-        depths: penetrations in m, rising from above 0; the force is zero at zero.
-        forces: forces in N, positive, one for each depth.
+        depths: penetrations in m, positive and ascending; the force is 0 at 0.
+        forces: forces in N, positive, one for each penetration.
         damping: as in :class:`ContactLaw`, in s/m.
 
     Raises:
-        ValueError: no force, or a force that is not positive, or would not be beyond the table.
+        ValueError: there are no forces, or a force is not positive in the table or beyond it.
     """
 
     depths: tuple[float, ...]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""One-sided powers of a penetration, of which contact laws are sums.
+"""Terms of contact laws: one-sided powers of a penetration.
 
-The formulas are here for both Python and the compiled loops. The potential is beside the force,
-because the energy balance of every trajectory is the first check of a contact simulation.
+Python and the compiled loops share these formulas. They include the potential, since the energy
+balance of every trajectory is the first check of a contact simulation.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-# (num_terms,) of TERM; (num_rows,) of LIMITS.
+# Types of arrays: (num_terms,) of TERM, (num_rows,) of LIMITS.
 Terms = npt.NDArray[np.void]
 Limits = npt.NDArray[np.void]
 
-# A gap in a compiled loop, or an array of gaps; and a measure of a term there.
+# Types: a gap in a compiled loop, or an array of gaps; a function of a term and a gap.
 Gap = Any
 OfTerm = Callable[[np.void, Gap], Gap]
 
-# A term of the law of a row.
+# Record of a term in the law of a row.
 TERM = np.dtype(
     [
         ("row", np.int64),
@@ -31,7 +31,7 @@ TERM = np.dtype(
         ("exponent", np.float64),
     ]
 )
-# The gaps in m between which a row is open, and its damping in s/m.
+# Record of the gaps in m between which a row is open, and of its damping in s/m.
 LIMITS = np.dtype([("low", np.float64), ("high", np.float64), ("damping", np.float64)])
 
 
@@ -42,8 +42,8 @@ class Term(NamedTuple):
     (Term(side=-1.0, stiffness=1000000.0, onset=0.01, exponent=1.0),)
 
     Args:
-        side: 1 where a positive y presses, −1 where a negative one does.
-        stiffness: k in N/mⁿ; negative where a law becomes softer.
+        side: 1 for contact at positive y, −1 at negative y.
+        stiffness: k in N/mⁿ; negative if a law becomes softer.
         onset: onset in m from y = 0 on its side.
         exponent: n, at least 1.
     """

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Modal damping of a boom with its joints in contact.
 
-The modes of its separate segments describe a boom with play. Much of its vibration is in their
-rigid motions, which modal damping of the segments does not affect. Its own modes are those with the
-joints pressed: Φ (num_modes, r), Φᵀ Φ = 1, of frequencies ω. With ρ and ε the rigid and elastic
-coordinates of Φ, Ω the frequencies of the segments, and ε⁺ the pseudo-inverse,
+The modes of separate segments describe a boom with play. Modal damping of the segments does not
+affect their rigid motions, which contribute much to the vibration. So damping is specified for the
+modes with closed contacts: Φ (num_modes, r), Φᵀ Φ = 1, of frequencies ω. With ρ and ε the rigid and
+elastic coordinates of Φ, Ω the frequencies of the segments, and ε⁺ the pseudo-inverse,
 
     C = 2ζ [½ ω₁ on rigid coordinates + s Ω on elastic ones + ε⁺ᵀ (ω − ½ ω₁ ρᵀρ − s εᵀ Ω ε) ε⁺]
 
 gives Φᵀ C Φ = 2ζ ω, and reduces the speed of a segment without contact at the rate ζ ω₁. C is
-positive semidefinite for s ≤ ½ at least, since εᵀ Ω ε ≤ (εᵀ Ω² ε)^½ ≤ ω (Hansen 1980); s is the
-largest up to 1.
+positive semidefinite at least for s ≤ ½, since εᵀ Ω ε ≤ (εᵀ Ω² ε)^½ ≤ ω (Hansen 1980); s is the
+largest permitted value up to 1.
 """
 
 from __future__ import annotations
@@ -25,26 +25,28 @@ from dynamics.equilibrium import equilibrium
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 
-# Number of modes with the given ratio: in space, three of each direction and two of twisting.
+# Number of modes with the given damping ratio: in space, three of each direction and two of twist.
 DAMPED_MODES = 8
 
-# Motions of the pressed boom that bend its segments less than this part of what others do are left
-# to what damps the rigid segments.
+# Relative bending of segments below which a mode counts as rigid motion, whose damping is that of
+# the rigid segments.
 _BENT = 5.0e-3
 
-# Fraction of the largest dashpot rate that is round-off.
+# Fraction of the largest dashpot rate below which a rate is round-off.
 _ROUND_OFF = 1.0e-9
 
 
 def pressed_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
-    """Return ω (num_shapes,) in rad/s, rising, and shapes (num_modes, num_shapes), joints pressed.
+    """Return ω (num_shapes,) in rad/s, ascending, and shapes, with closed contacts.
 
-    Rows that press at rest have their stiffness F'(y) there. Where none presses at a station
-    between segments, all its rows are bonded.
+    Shapes are (num_modes, num_shapes).
+
+    Rows that press at rest have the stiffness F'(y) there. If no row presses at a station between
+    segments, all its rows are bonded.
 
     Args:
-        system: system of a boom.
-        rest: (num_modes,) its rest in √kg·m; that under the constant loads unless given.
+        system: gap system of a boom.
+        rest: equilibrium (num_modes,) in √kg·m; that under the constant loads unless given.
     """
     try:
         rest = equilibrium(system, system.load) if rest is None else rest
@@ -60,7 +62,7 @@ def pressed_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, 
     omega2, combination = eigh(
         free.T @ (system.omega2[:, None] * free) + (rows.T * stiffness) @ rows
     )
-    # Rigid segments have no frequency of their own to distinguish motions from round-off.
+    # Rigid segments have no frequencies that distinguish motions from round-off.
     least = min(system.omega2[system.omega2 > 0.0], default=_ROUND_OFF * omega2.max(initial=0.0))
     moving = omega2 > 1.0e-6 * least
     return np.sqrt(omega2[moving]), free @ combination[:, moving]
@@ -69,13 +71,13 @@ def pressed_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, 
 def add_damping(
     system: GapSystem, ratio: float, rayleigh: tuple[float, float], rest: Array | None = None
 ) -> GapSystem:
-    """Return the system with damping besides its segments' own.
+    """Return the system with damping in addition to that of its segments.
 
     Args:
-        system: system of a boom.
-        ratio: as of :func:`with_ratio`.
+        system: gap system of a boom.
+        ratio: damping ratio as in :func:`with_ratio`.
         rayleigh: α in 1/s and β in s of α + β ω² in the modes of the segments.
-        rest: as of :func:`pressed_modes`.
+        rest: equilibrium as in :func:`pressed_modes`.
     """
     mass, stiffness = rayleigh
     rates = system.damping + mass + stiffness * np.maximum(system.omega2, 0.0)
@@ -84,10 +86,10 @@ def add_damping(
 
 
 def with_ratio(system: GapSystem, ratio: float, rest: Array | None = None) -> GapSystem:
-    """Return the system with ζ = ``ratio`` added in the first modes of the pressed boom.
+    """Return the system with ζ = ``ratio`` added in the first modes with closed contacts.
 
-    These are ``DAMPED_MODES``, or as many as its segments can bend; pressed as at ``rest``, see
-    :func:`pressed_modes`. Nothing damps rigid segments that no contact presses.
+    Their number is ``DAMPED_MODES``, or that of the bending motions if it is smaller; contacts are
+    closed as at ``rest``, see :func:`pressed_modes`. Rigid segments without contact are not damped.
     """
     rigid = system.omega2 <= 0.0
     count = min(DAMPED_MODES, np.count_nonzero(~rigid))
@@ -112,9 +114,9 @@ def with_ratio(system: GapSystem, ratio: float, rest: Array | None = None) -> Ga
 
 
 def pressed_ratios(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
-    """Return frequencies in Hz and damping ratios Φ·CΦ/2ω (num_shapes,) of the pressed boom.
+    """Return frequencies in Hz and damping ratios Φ·CΦ/2ω (num_shapes,) with closed contacts.
 
-    It is pressed as at ``rest``, see :func:`pressed_modes`.
+    Contacts are closed as at ``rest``, see :func:`pressed_modes`.
     """
     omega, shapes = pressed_modes(system, rest)
     rates = system.damping @ shapes**2 + np.square(system.dashpots @ shapes).sum(axis=0)

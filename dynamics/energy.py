@@ -8,8 +8,8 @@ import numpy as np
 from dynamics.arrays import Array
 from dynamics.failure import NumericsError
 
-# Largest energy residual of a valid run, as a part of the energy put in. The time step leaves
-# round-off, below 1e-9 of the work.
+# Largest energy residual of a valid run, as a fraction of the input energy. The time step leaves
+# only round-off, below 1e-9 of the work.
 ENERGY_BOUND = 1.0e-6
 
 # Stored energies, work of the loads, losses.
@@ -23,25 +23,26 @@ ENERGIES = (
     "contact_loss",
 )
 
-# With a drive, its work as well.
+# With drives, their work is included.
 DRIVEN_ENERGIES = (*ENERGIES, "drive_work")
 
 
 def energy_residual(energies: Array, least: float = 0.0) -> Array:
-    """Return the unaccounted energy (num_times,) as a part of the energy put in.
+    """Return the error (num_times,) of the energy balance as a fraction of the input energy.
 
     Args:
-        energies: (num_times, 7) or (num_times, 8), the columns of ``ENERGIES`` or
-            ``DRIVEN_ENERGIES`` in J.
-        least: an energy in J below which that put in is round-off, as where friction holds all.
+        energies: columns of ``ENERGIES`` or ``DRIVEN_ENERGIES`` in J, (num_times, 7) or (num_times,
+            8).
+        least: input energy in J below which it is round-off, for example if friction prevents
+            motion.
     """
     work = energies[:, 3]
     signs = np.ones(energies.shape[1])
     signs[3] = signs[len(ENERGIES) :] = -1.0
     initial = float(energies[0, :3].sum())
-    # No product of BLAS, whose last bits depend on where in memory the energies lie.
+    # BLAS is not used, since its last bits depend on addresses in memory.
     missing = (energies * signs).sum(axis=1) - initial
-    # Axial forces do work as a segment tips over: its strain energy falls below zero.
+    # The strain energy may be negative, since axial forces do work as a segment tips over.
     put_in = max(float(np.abs(work).max()), abs(initial), -float(energies[:, 1].min()), least)
     return np.asarray(missing / put_in if put_in > 0.0 else missing)
 
@@ -51,11 +52,11 @@ def check_energy(energies: Array, bound: float = ENERGY_BOUND, least: float = 0.
 
     Args:
         energies: as in :func:`energy_residual`.
-        bound: largest energy residual that passes.
+        bound: largest permitted energy residual.
         least: as in :func:`energy_residual`.
 
     Raises:
-        NumericsError: an energy is not finite, or the residual passes the bound.
+        NumericsError: an energy is not finite, or the residual exceeds the bound.
     """
     if not np.isfinite(energies).all():
         raise NumericsError("the motion is not finite; check the loads and the stiffnesses")

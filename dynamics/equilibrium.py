@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Static equilibrium of a gap system under a constant load.
 
-Strain and contact energies are convex, so that the rest position is the minimum of the potential
+Strain and contact energies are convex, so that the equilibrium is the minimum of the potential
 energy. Under axial forces, which tip a segment within its play, it is a near minimum. Dry friction
-would allow a range of rest positions; this is the one without it.
+would allow a range of equilibria; this one is without friction.
 """
 
 from __future__ import annotations
@@ -17,33 +17,33 @@ from dynamics.contact_term import OfTerm, energy_of, force_of, slope_of
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 
-# Unbalanced force, as a part of the load or of what shims press, at which a system counts as at
-# rest; the minimiser aims at a hundredth of it.
+# Permitted unbalanced force, as a fraction of the load or the force of shims; the minimiser aims at
+# a hundredth of it.
 BALANCE = 1.0e-6
 
 
 def equilibrium(system: GapSystem, load: Array) -> Array:
-    """Return the rest position a (num_modes,) in √kg·m.
+    """Return the equilibrium a (num_modes,) in √kg·m.
 
     >>> depth = equilibrium(ball, ball.load)[0]
     >>> print(f"{1e6 * depth:.2f} µm")
     -9.81 µm
 
     Args:
-        system: held by its contacts where its supports leave it free.
-        load: (num_modes,) constant modal load in N/√kg.
+        system: gap system, whose contacts may replace missing supports.
+        load: constant modal load (num_modes,) in N/√kg.
 
     Raises:
-        NumericsError: nothing holds the system against the load.
+        NumericsError: neither supports nor contacts resist the load.
     """
     pressed = [float(law.force(np.zeros(()))) for law in system.laws]
-    # Force of shims at zero displacement.
+    # Scale of the force of shims at zero displacement.
     pushed = load - np.array(pressed) @ system.rows
     if not pushed.any():
         return np.zeros(system.num_modes)
     terms = contact_terms(system.laws)
-    # With each contact's spring at the force of the whole load in place, no direction is softer
-    # or stiffer than another: L Lᵀ scales the unknowns.
+    # L Lᵀ, the stiffness with each contact's tangent at the force of the whole load, scales the
+    # unknowns, so that all directions have a similar stiffness.
     whole = max(float(np.linalg.norm(load)), float(np.linalg.norm(pushed)))
     force = whole * np.sqrt(system.row_masses)
     spring = np.array([law.slope_at(f) for law, f in zip(system.laws, force.tolist(), strict=True)])
@@ -59,8 +59,8 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     scaled_push = solve_triangular(factor, pushed, lower=True)
     unit = max(float(np.linalg.norm(scaled_load)), float(np.linalg.norm(scaled_push)))
     scaled_load /= unit
-    # Scaled, strain and springs add up to the unit matrix: all that the minimiser comes to lies in
-    # the span of load and rows, far fewer unknowns than a shell has.
+    # In scaled unknowns, strain and springs sum to the unit matrix. So all iterates are in the span
+    # of load and rows, which has far fewer unknowns than a shell.
     pushes = np.column_stack([scaled_load, solve_triangular(factor, system.rows.T, lower=True)])
     span, _ = np.linalg.qr(pushes)
     scaled_load = span.T @ scaled_load
@@ -71,7 +71,7 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
         stiffness -= unscaled.T @ system.softening @ unscaled
 
     def sum_terms(of_term: OfTerm, x: Array) -> Array:
-        """Return the sums (num_rows,); numba takes longer to load a loop over many."""
+        """Return the sums (num_rows,) of terms; a compiled loop would take longer to load."""
         total, y = np.zeros(len(rows)), unit * rows @ x
         for term in terms:
             total[term["row"]] += of_term(term, y[term["row"]])
@@ -105,11 +105,9 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
 
 
 def rest_at(system: GapSystem, time: float = 0.0) -> Array:
-    """Return the rest position (num_modes,) in √kg·m of a system at a time in s.
-
-    Its extension and loads are those of this time.
+    """Return the equilibrium (num_modes,) in √kg·m under the extension and loads at a time in s.
 
     Raises:
-        NumericsError: nothing holds it against them.
+        NumericsError: neither supports nor contacts resist the loads.
     """
     return equilibrium(system.at_time(time), system.load_at(time))

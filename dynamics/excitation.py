@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Loads that change with time: a modal load times a history.
 
-A history states its kinks, peak and fastest frequency, so that no time step misses them.
+A history has kinks, a peak and a highest frequency, which time steps must resolve.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ from dynamics.arrays import Array
 
 @runtime_checkable
 class History(Protocol):
-    """A dimensionless factor over time, continuous from t = 0 on."""
+    """Dimensionless factor over time, continuous from t = 0 on."""
 
     @property
     def kinks(self) -> Sequence[float]:
-        """Times in s, rising, at which the slope changes."""
+        """The ascending times in s at which the slope changes."""
 
     @property
     def peak(self) -> float:
-        """Largest |value|."""
+        """The largest |value|."""
 
     @property
     def fastest(self) -> float:
-        """Highest frequency between the kinks in rad/s; 0 if it is linear there."""
+        """The highest frequency between kinks in rad/s; 0 for a piecewise linear history."""
 
     def __call__(self, time: Array) -> Array:
         """Return the value at each time in s, any shape."""
@@ -69,7 +69,7 @@ class Ramp:
 
     @property
     def kinks(self) -> tuple[float, float]:
-        """Start and end of the rise in s."""
+        """The start and end of the rise in s."""
         return 0.0, self.duration
 
     def __call__(self, time: Array) -> Array:
@@ -101,7 +101,7 @@ class Sine:
 
     @property
     def fastest(self) -> float:
-        """Circular frequency 2π f in rad/s."""
+        """The circular frequency 2π f in rad/s."""
         return 2.0 * np.pi * self.frequency
 
     def __call__(self, time: Array) -> Array:
@@ -117,8 +117,8 @@ class PiecewiseLinear:
     (array([1., 1., 0.]), 2.0)
 
     Args:
-        times: times in s, rising.
-        values: one for each time.
+        times: times in s, ascending.
+        values: value at each time.
     """
 
     times: Sequence[float]
@@ -139,12 +139,12 @@ class PiecewiseLinear:
 
     @property
     def peak(self) -> float:
-        """Largest |value|."""
+        """The largest |value|."""
         return float(np.abs(self.values).max())
 
     @property
     def kinks(self) -> Sequence[float]:
-        """Its times in s."""
+        """The times of the points in s."""
         return self.times
 
     def __call__(self, time: Array) -> Array:
@@ -161,7 +161,7 @@ class SCurve:
     array([0., 2., 4.])
 
     Args:
-        travel: travel in m; negative where the segment retracts.
+        travel: travel in m; negative for a retraction.
         duration: duration in s.
         start: start in s.
     """
@@ -175,17 +175,17 @@ class SCurve:
 
     @property
     def kinks(self) -> tuple[float, float]:
-        """Start and end in s."""
+        """The start and end in s."""
         return self.start, self.start + self.duration
 
     @property
     def peak(self) -> float:
-        """Largest extension in m."""
+        """The largest extension in m."""
         return abs(self.travel)
 
     @property
     def fastest(self) -> float:
-        """2π over the duration, in rad/s."""
+        """The circular frequency 2π over the duration, in rad/s."""
         return 2.0 * np.pi / self.duration
 
     def __call__(self, time: Array) -> Array:
@@ -201,7 +201,7 @@ class Stroke:
     array([0.5, 1.5, 4. ])
 
     Args:
-        travel: travel in m; negative where the segment retracts.
+        travel: travel in m; negative for a retraction.
         speed: speed in m/s, positive.
         ramp: duration in s of the acceleration, and of the deceleration.
         start: start in s.
@@ -228,24 +228,24 @@ class Stroke:
 
     @property
     def duration(self) -> float:
-        """In s."""
+        """The duration of the travel in s."""
         return abs(self.travel) / self.speed + self.ramp
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Times in s at which speed or acceleration jump."""
+        """The times in s at which speed or acceleration jumps."""
         end = self.start + self.duration
         times = (self.start, self.start + self.ramp, end - self.ramp, end)
         return tuple(sorted(set(times)))
 
     @property
     def peak(self) -> float:
-        """Largest extension in m."""
+        """The largest extension in m."""
         return abs(self.travel)
 
     @property
     def fastest(self) -> float:
-        """Acceleration of the ramps over the speed, in rad/s."""
+        """The acceleration of the ramps over the speed, in rad/s."""
         return 1.0 / self.ramp if self.ramp else 0.0
 
     def __call__(self, time: Array) -> Array:
@@ -254,7 +254,7 @@ class Stroke:
         return np.asarray(np.sign(self.travel) * self.speed * (ramps[0] - ramps[1]))
 
     def _integrate_ramp(self, after: Array) -> Array:
-        """Return ∫ v dt in s, v being a ramp from 0 to 1 that then stays."""
+        """Return ∫ v dt in s of a ramp v from 0 to 1, which then stays constant."""
         if self.ramp == 0.0:
             return np.maximum(after, 0.0)
         part = np.clip(after / self.ramp, 0.0, 1.0)
@@ -263,7 +263,7 @@ class Stroke:
 
 @dataclass(frozen=True, slots=True)
 class HistorySum:
-    """The sum of several histories: of all joints between a segment and the ground."""
+    """Sum of several histories, for example of all joints between a segment and the ground."""
 
     parts: tuple[History, ...]
 
@@ -285,19 +285,19 @@ class HistorySum:
 
 @dataclass(frozen=True, slots=True)
 class ReleasedLoad:
-    """In place of a history: the load acts before t = 0 and is removed at t = 0."""
+    """Marker in place of a history: the load acts before t = 0 and is removed at t = 0."""
 
 
 @dataclass(frozen=True, slots=True)
 class InitialImpulse:
-    """In place of a history: an impulse at t = 0, that of the load within 1 s."""
+    """Marker in place of a history: an impulse at t = 0, equal to that of the load in 1 s."""
 
 
 @dataclass(frozen=True, slots=True)
 class Excitation:
-    """A modal load that follows a history.
+    """Modal load with a history.
 
-    Within a time step the straight line with its mean and first moment stands for the history.
+    Within a time step, a straight line with the same mean and first moment replaces the history.
 
     >>> lifted = replace(ball, excitations=[Excitation(np.array([12.0]), pt.Ramp(0.1))])
     >>> height = simulate(lifted, 1.0).data["height"]
@@ -305,11 +305,11 @@ class Excitation:
     0.9 m
 
     Args:
-        load: (num_modes,) in N/√kg.
-        history: its factor over time.
+        load: modal load (num_modes,) in N/√kg.
+        history: factor of the load over time.
 
     Raises:
-        ValueError: the history lacks something, or its data have no meaning.
+        ValueError: the history lacks a method, or its data are invalid.
     """
 
     load: Array

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Construction of gap systems from contacts, friction and observations, for beams and shells.
 
-A beam reads a place by its modes at once. A shell collects readings, reduces itself on them, and
-reads them by its remaining modes. Contact and friction follow the same rules in both.
+A beam evaluates readings by its modes immediately. A shell collects readings, is reduced for them,
+and evaluates them by its remaining modes. The rules of contact and friction are the same for both.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ L = TypeVar("L")
 
 
 class LawRow(NamedTuple, Generic[R, L]):
-    """Row with a law, of contact or friction: the displacement that it reads, and its station."""
+    """Contact or friction row: reading of a displacement, law and station."""
 
     reading: R
     law: L
@@ -36,7 +36,7 @@ class LawRow(NamedTuple, Generic[R, L]):
 
 
 class Dashpot(NamedTuple, Generic[R]):
-    """Dashpot across a station: its coefficient in N·s/m, and weights and readings."""
+    """Dashpot across a station: coefficient in N·s/m, weights and readings."""
 
     coefficient: float
     station: int
@@ -61,9 +61,9 @@ class GapBuilder(Generic[R]):
     """Contact rows, friction rows and dashpots, in the order in which they are added.
 
     Args:
-        contacts, frictions: the rows, as something of type R that can be read.
-        dashpots: by their stations.
-        grounded: stations of those that the ground stops.
+        contacts, frictions: rows with readings of type R.
+        dashpots: dashpots by station.
+        grounded: stations with stops on the ground.
     """
 
     contacts: list[LawRow[R, ContactLaw]] = field(default_factory=list)
@@ -78,14 +78,14 @@ class GapBuilder(Generic[R]):
         points: Iterable[tuple[int, float, R]],
         raised: float = 0.0,
     ) -> tuple[int, ...]:
-        """Add contact through points: on each the side, its part of the law, and the approach.
+        """Add contact rows of points, each with side, weight of the law, and approach.
 
-        Side 1 touches where the approach is positive, −1 where it is negative, 0 both ways by the
-        whole law. On a side where the law never touches there is no row. Points that are
-        ``raised`` by a length in m touch earlier by this length.
+        Side 1 is contact at positive approach, −1 at negative approach, 0 both by the whole law. A
+        side without contact in the law has no row. Points that are ``raised`` by a length in m
+        touch earlier by this length.
 
         Returns:
-            The positions of the rows.
+            The indices of the rows.
         """
         first = len(self.contacts)
         for side, weight, reading in points:
@@ -99,7 +99,7 @@ class GapBuilder(Generic[R]):
     def add_stop(
         self, station: int, law: ContactLaw, points: Iterable[tuple[int, float, R]]
     ) -> None:
-        """Add contact with the ground, as :meth:`add_contact` does between segments."""
+        """Add contact with the ground, like :meth:`add_contact` between segments."""
         self.grounded.append(station)
         self.add_contact(station, law, points)
 
@@ -131,12 +131,12 @@ class GapBuilder(Generic[R]):
 
     @property
     def rows(self) -> dict[Kind, Sequence[LawRow[R, Any] | Dashpot[R]]]:
-        """All rows by their kinds, in the order of a gap system."""
+        """All rows by kind, in the order of a gap system."""
         dashpots = list(self.dashpots.values())
         return {"rows": self.contacts, "friction_rows": self.frictions, "dashpots": dashpots}
 
     def moving(self, stations: Sequence[int]) -> list[tuple[Kind, int]]:
-        """Return kinds and positions of the rows at some stations, in the order of a gap system."""
+        """Return kinds and indices of the rows at some stations, in the order of a gap system."""
         return [
             (kind, position)
             for kind, of_kind in self.rows.items()
@@ -163,15 +163,15 @@ class GapBuilder(Generic[R]):
         """Return the gap system in modal coordinates.
 
         Args:
-            read: gives the row (num_modes,) of a reading.
-            omega2, load: (num_modes,) of the modes.
+            read: function that returns the row (num_modes,) of a reading.
+            omega2, load: ω² and load (num_modes,) of the modes.
             places: x in m and direction of each station.
             observed: outputs of a trajectory, by name.
-            loads: (num_modes,) load vectors beside ``load``, and their histories.
-            lines: to the ground: name of the spring force in a trajectory, positive in compression,
-                or nothing; row (num_modes,) that reads the length; the stiffness in N/m,
-                which the modes include already; the dashpot in N·s/m.
-            damping: (num_modes,) in 1/s; none unless given.
+            loads: further load vectors (num_modes,) with their histories.
+            lines: lines to the ground: name of the spring force in a trajectory (positive in
+                compression) or None; row (num_modes,) that reads the length; stiffness in N/m,
+                which the modes already include; dashpot in N·s/m.
+            damping: damping (num_modes,) in 1/s; zero unless given.
         """
 
         def stacked(rows: Iterable[Array]) -> Array:

@@ -7,8 +7,8 @@
 in mass-normalised modal coordinates a. The coordinates of segments that only contact couples are
 stacked in a. A contact row B_j reads the relative displacement u − w of one place, a friction row
 D_l a relative displacement along which two places slide, a dashpot G_d a speed that it resists.
-If a boom telescopes, its travels give the change of rows from those at t = 0. At a fixed extension
-it may have K = diag(ω²) − S in place of ω², until it is transformed by ``in_own_modes``.
+If a boom telescopes, its travels change the rows from those at t = 0. At a fixed extension, the
+stiffness may be K = diag(ω²) − S until ``in_own_modes`` transforms the system.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ from dynamics.second_order import soften_modes
 
 
 class Observer(NamedTuple):
-    """A named output: its row (num_modes,) over the modal coordinates, and its unit.
+    """Output of a trajectory: a row over the modal coordinates, and a unit.
 
     >>> Observer(np.ones(1)).unit
     'm'
 
     Args:
-        row: over the modal coordinates,
-        unit: unit of the quantity that it reads, or
-        derivative: derivative of their velocities where it is 1, and of their mean accelerations
-            over the output interval that ends then where it is 2.
+        row: row (num_modes,) over the modal coordinates.
+        unit: unit of the quantity.
+        derivative: 0 for coordinates, 1 for velocities, 2 for mean accelerations over the output
+            interval that ends at the time.
     """
 
     row: Array
@@ -63,14 +63,14 @@ class GapSystem:
     (1, array([1.]))
 
     Args:
-        omega2: (num_modes,) ω² in rad²/s²; rigid modes exactly 0, negative where a segment tips
-            over under an axial force.
-        load: (num_modes,) modal load in N/√kg, applied at t = 0 and kept.
+        omega2: (num_modes,) ω² in rad²/s²; rigid modes exactly 0, negative if a segment tips over
+            under an axial force.
+        load: modal load (num_modes,) in N/√kg, constant from t = 0 on.
         rows: (num_rows, num_modes) contact rows B in 1/√kg.
         laws: (num_rows) the contact law of each row.
-        station_of_row: (num_rows,) position in ``stations`` of each row.
+        station_of_row: (num_rows,) index in ``stations`` of each row.
         stations: x of the stations in m.
-        observers: name → output of a trajectory.
+        observers: outputs of a trajectory, by name.
         damping: (num_modes,) c = 2ζω in 1/s; zero unless given.
         dashpots: (num_dashpots, num_modes) rows G in 1/√s; none unless given.
         friction_rows: (num_frictions, num_modes) sliding rows D in 1/√kg; none unless given.
@@ -78,16 +78,15 @@ class GapSystem:
         excitations: loads that change with time.
         station_directions: the direction of each station's relative displacement; "z" for all
             unless given.
-        released_load: (num_modes,) modal load in N/√kg that acts before t = 0, and is removed then;
+        released_load: modal load (num_modes,) in N/√kg that acts before t = 0 and is then removed;
             zero unless given.
-        initial_impulse: (num_modes,) modal impulse in N·s/√kg at t = 0, for whoever starts a
-            motion; zero unless given.
-        grounded: positions in ``stations`` of those where the ground is touched, and no segment.
-        travels: the extensions of segments over time, and the rows that they change; none unless
-            given.
-        softening: (num_modes, num_modes) further reduction of the stiffness by axial forces, of a
-            boom at a given extension; none unless given. Such a system needs
-            :meth:`in_own_modes` before it moves.
+        initial_impulse: modal impulse (num_modes,) in N·s/√kg at t = 0, for the initial velocity of
+            a motion; zero unless given.
+        grounded: indices in ``stations`` of stops on the ground.
+        travels: extensions of segments over time, and the rows that they change.
+        softening: further reduction (num_modes, num_modes) of the stiffness by axial forces, for a
+            boom at a given extension. A system with it needs :meth:`in_own_modes` before it can
+            move.
 
     Raises:
         ValueError: shapes do not agree, or a number is not finite or out of range.
@@ -162,7 +161,7 @@ class GapSystem:
 
     @property
     def num_modes(self) -> int:
-        """Number of modal coordinates."""
+        """The number of modal coordinates."""
         return self.omega2.size
 
     @property
@@ -172,33 +171,33 @@ class GapSystem:
 
     @property
     def stiffness(self) -> Array:
-        """Stiffness (num_modes, num_modes) in 1/s²."""
+        """The stiffness (num_modes, num_modes) in 1/s²."""
         own = np.diag(self.omega2)
         return own - self.softening if self.softening.size else own
 
     @property
     def damping_matrix(self) -> Array:
-        """Damping matrix C (num_modes, num_modes) in 1/s."""
+        """The damping matrix C (num_modes, num_modes) in 1/s."""
         return np.diag(self.damping) + self.dashpots.T @ self.dashpots
 
     @property
     def omega(self) -> Array:
-        """Circular frequency ω (num_modes,) in rad/s; 0 of modes that do not oscillate."""
+        """The circular frequencies ω (num_modes,) in rad/s; 0 for modes that do not oscillate."""
         return np.asarray(np.sqrt(np.maximum(self.omega2, 0.0)))
 
     @property
     def frequencies(self) -> Array:
-        """Natural frequencies (num_modes,) without contact in Hz, rising."""
+        """The ascending natural frequencies (num_modes,) without contact in Hz."""
         return np.sort(self.omega) / (2.0 * np.pi)
 
     @property
     def row_masses(self) -> Array:
-        """Effective mass 1 / B_j B_jᵀ (num_rows,) in kg of an impact on one row."""
+        """The effective masses 1 / B_j B_jᵀ (num_rows,) in kg of impacts on single rows."""
         return np.asarray(1.0 / np.einsum("ij,ij->i", self.rows, self.rows))
 
     @property
     def largest_load(self) -> Array:
-        """Largest modal load (num_modes,) |Q|, with that of every excitation, in N/√kg."""
+        """The largest modal load |Q| (num_modes,) in N/√kg, including excitations."""
         excited = [np.abs(x.load) * x.history.peak for x in self.excitations]
         return np.asarray(np.sum([np.abs(self.load), *excited], axis=0))
 
@@ -208,7 +207,7 @@ class GapSystem:
         return sum(changing, self.load.copy())
 
     def gather_loads(self) -> GapSystem:
-        """Return the same system with all constant loads in ``load``."""
+        """Return the system with all constant loads in ``load``."""
         changing = [x for x in self.excitations if not is_constant(x.history)]
         held = [
             x.load * x.history(np.zeros(())) for x in self.excitations if is_constant(x.history)
@@ -218,7 +217,7 @@ class GapSystem:
         return replace(self, load=load, excitations=changing, travels=moving)
 
     def at_time(self, time: float) -> GapSystem:
-        """Return the system at rest with the extension of a time in s."""
+        """Return the system at the constant extension of a time in s."""
         rows_at = {kind: getattr(self, kind).copy() for kind in KINDS}
         softening = self.softening if self.softening.size else np.zeros((self.num_modes,) * 2)
         for travel in self.travels:
@@ -232,7 +231,7 @@ class GapSystem:
         return replace(self, **rows_at, travels=(), softening=softening)
 
     def in_own_modes(self) -> GapSystem:
-        """Return the same motion in the modes that the softening leaves, which may move."""
+        """Return the system in the modes of the softened stiffness."""
         if not self.softening.size:
             return self
         return self.transform(*soften_modes(self.omega2, self.softening))
@@ -241,8 +240,8 @@ class GapSystem:
         """Return the system in other coordinates b of a = Φ b, without travels and softening.
 
         Args:
-            omega2: (num_shapes,) ω² of the coordinates.
-            shapes: (num_modes, num_shapes) Φ, mass-normalised.
+            omega2: ω² (num_shapes,) of the new coordinates in rad²/s².
+            shapes: mass-normalised Φ (num_modes, num_shapes).
         """
         return replace(
             self,
@@ -263,10 +262,10 @@ class GapSystem:
         )
 
     def static_response(self, force: Array) -> Array:
-        """Return the rest position (num_modes,) under a modal force, without rigid modes.
+        """Return the static position (num_modes,) under a modal force, without contact.
 
         Args:
-            force: (num_modes,) in N/√kg.
+            force: modal force (num_modes,) in N/√kg.
 
         Raises:
             ValueError: the system has rigid modes.

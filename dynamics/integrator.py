@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The choice of the time step: by a tolerance, fixed, or as in another run of the same motion."""
+"""Integrators with a time step by a tolerance, a fixed step, or the steps of another run."""
 
 from __future__ import annotations
 
@@ -17,42 +17,43 @@ from dynamics.motion import MOST_STEPS, Motion
 from dynamics.time_step import Integration
 from dynamics.trajectory import Output, Trajectory
 
-# Part of the range of the observed deflections by which the step may change them.
+# Default permitted error by the time step, as a fraction of the range of observed deflections.
 TOLERANCE = 1.0e-3
 
-# Steps of an output interval at first, and at least: mean forces of two steps do not alternate.
+# Initial and minimum number of steps per output interval: with two, mean forces do not alternate.
 _FIRST, _FEWEST = 8, 2
 
-# Output intervals and steps of a call of the time loop, between which a run can be interrupted.
+# Number of output intervals and steps per call of the time loop, between which a run can be
+# interrupted.
 _CALL, _STEPS_OF_CALL = 1000, 2**16
 
-# Output intervals of a window at most, and ω in rad/s where no mode has one.
+# Maximum number of output intervals of a window, and ω in rad/s if no mode has a frequency.
 _LONGEST, _WITHOUT_FREQUENCY = 128, 100.0
 
-# Times, in periods, at which a difference of two steps is followed.
+# Times, in periods, at which the difference of two step sizes is evaluated in free motion.
 _FOLLOWED = np.linspace(0.0, 0.25, 9)
 
-# h times the fastest circular frequency of a history at most.
+# Largest product of the step and the highest circular frequency of a history.
 _HISTORY_PHASE = 0.5
 
-# Part of the largest deflection that counts as its range at least.
+# Minimum range as a fraction of the largest deflection.
 _LEAST_RANGE = 1.0e-3
 
-# The next window is made in half as many steps where this part of the tolerance was enough.
+# Fraction of the tolerance below which the next window has half as many steps.
 _EASY = 0.125
 
 Progress = Callable[[float], None]
 
 
 class Integrator(Protocol):
-    """Method of computing a motion. A user's own needs these three methods."""
+    """Interface of integrators; a user-defined integrator needs these three methods."""
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
-        """Return the trajectory; ``progress`` is called with the part done, 0 to 1."""
+        """Return the trajectory; ``progress`` receives the completed fraction, 0 to 1."""
         ...
 
     def like(self, trajectory: Trajectory) -> Integrator:
-        """Return an integrator that makes the steps of one of its trajectories."""
+        """Return an integrator with the steps of one of its trajectories."""
         ...
 
     def finer(self) -> Integrator:
@@ -62,11 +63,12 @@ class Integrator(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class StepSchedule:
-    """Prescribed step lengths, one for each window of the motion.
+    """Integrator with prescribed numbers of steps, one for each window of the motion.
 
     Args:
-        substeps: steps of an output interval in each window; the last number holds to the end.
-        window: output intervals of a window.
+        substeps: number of steps per output interval in each window; the last number holds to the
+            end.
+        window: number of output intervals of a window.
     """
 
     substeps: tuple[int, ...]
@@ -74,7 +76,7 @@ class StepSchedule:
 
     @classmethod
     def of(cls, trajectory: Trajectory) -> StepSchedule:
-        """Return the steps of a trajectory."""
+        """Return the integrator with the steps of a trajectory."""
         attributes = trajectory.data.attrs
         return cls(tuple(np.atleast_1d(attributes["substeps"]).tolist()), attributes["window"])
 
@@ -88,24 +90,24 @@ class StepSchedule:
         return run.trajectory(self.substeps, self.window)
 
     def like(self, trajectory: Trajectory) -> StepSchedule:
-        """Return itself."""
+        """Return this integrator."""
         return self
 
     def finer(self) -> StepSchedule:
-        """Return steps half as long, a quarter of the error."""
+        """Return the integrator with half the steps, and a quarter of the error."""
         return replace(self, substeps=tuple(2 * count for count in self.substeps))
 
 
 @dataclass(frozen=True, slots=True)
 class FixedStep:
-    """Steps of one length.
+    """Integrator with a constant step.
 
     >>> motion = FixedStep(1e-5)(Motion(ball, duration=1.0, position=[0.5]))
     >>> motion.energy_residual < 1e-11
     True
 
     Args:
-        step: step in s, made smaller to fit the output step.
+        step: step in s, reduced to fit the output step.
     """
 
     step: float
@@ -116,33 +118,32 @@ class FixedStep:
         return StepSchedule((substeps,), window)(motion, progress)
 
     def like(self, trajectory: Trajectory) -> FixedStep:
-        """Return itself."""
+        """Return this integrator."""
         return self
 
     def finer(self) -> FixedStep:
-        """Return half the step, a quarter of the error."""
+        """Return the integrator with half the step, and a quarter of the error."""
         return FixedStep(0.5 * self.step)
 
 
 @dataclass(frozen=True, slots=True)
 class AdaptiveStep:
-    """Steps as long as a tolerance allows, by step doubling (Hairer, Nørsett and Wanner 1993).
+    """Integrator with error control by step doubling (Hairer, Nørsett and Wanner 1993).
 
-    Each window of the motion is made with a step and with twice that step from the same state. The
-    difference of the observed deflections within the window, and in free motion over the quarter
-    period of the slowest mode that follows, is the error of the window; the errors may add up to
-    the tolerance. A window is about a period of that mode, long enough for the mean of impacts.
-
-    The trajectory has the sum of the errors as the attribute ``step_error``. Chaotic motion has no
-    step that keeps a tolerance: its steps end at a length.
+    Each window of the motion is computed with a step and with twice that step from the same state.
+    The error of the window is the difference of observed deflections within the window, and in free
+    motion over the following quarter period of the slowest mode. The sum of these errors may reach
+    the tolerance. A window is about a period of that mode, long enough to average over impacts. The
+    trajectory has the sum of the errors as the attribute ``step_error``. No step keeps a tolerance
+    in chaotic motion, so that there is a minimum step.
 
     >>> motion = AdaptiveStep()(Motion(ball, duration=1.0, position=[0.5]))
     >>> motion.data.attrs["step_error"] < 1e-3
     True
 
     Args:
-        tolerance: part of the largest range of the observed deflections by which the step may
-            change them.
+        tolerance: permitted error by the time step, as a fraction of the largest range of observed
+            deflections.
 
     Raises:
         ValueError: the tolerance is not between 0 and 1.
@@ -164,7 +165,7 @@ class AdaptiveStep:
         fewest = _whole_power(2.0 * output_step * fastest / _HISTORY_PHASE, _FEWEST, MOST_STEPS)
         affordable = MOST_STEPS * np.sqrt(TOLERANCE / self.tolerance) / outputs
         most = _whole_power(affordable, fewest, MOST_STEPS)
-        # A few long steps give the range.
+        # A few long steps determine the range.
         pilot = Integration.begin(motion)
         pilot.advance(0, outputs, fewest, pilot.state, pilot.part(0, outputs))
         scale = error.scale(pilot.output.states)
@@ -192,23 +193,23 @@ class AdaptiveStep:
         return run.trajectory(tuple(made), window, total / scale if scale > 0.0 else 0.0)
 
     def like(self, trajectory: Trajectory) -> StepSchedule:
-        """Return the steps that the trajectory has found, so that changes of data alone count."""
+        """Return the steps of the trajectory, so that runs differ only by their data."""
         return StepSchedule.of(trajectory)
 
     def finer(self) -> AdaptiveStep:
-        """Return a quarter of the tolerance, half the step."""
+        """Return the integrator with a quarter of the tolerance, and about half the step."""
         return AdaptiveStep(0.25 * self.tolerance)
 
 
 @dataclass(frozen=True, slots=True)
 class _WindowError:
-    """The difference that twice the step makes to observed deflections.
+    """Difference of observed deflections between a step and twice the step.
 
     Args:
-        rows: (num_observed, num_modes) of the deflections.
+        rows: rows (num_observed, num_modes) of the deflections.
         period: period of the slowest elastic mode in s.
-        places, speeds: (num_followed, num_observed, num_modes) response of the deflections to a
-            change of coordinates and velocities, at times of the quarter period that follows.
+        places, speeds: responses (num_followed, num_observed, num_modes) of the deflections to
+            changes of coordinates and of velocities, at times of the following quarter period.
     """
 
     rows: Array
@@ -240,18 +241,18 @@ class _WindowError:
         return float(max(ranges, _LEAST_RANGE * np.abs(read).max(initial=0.0)))
 
     def _read(self, states: Array) -> Array:
-        # No product of BLAS, whose last bits depend on addresses in memory.
+        # BLAS is not used, since its last bits depend on addresses in memory.
         return np.asarray(np.einsum("ti,ri->tr", states, self.rows))
 
 
 def _windows(motion: Motion, length: int) -> Iterator[tuple[int, int]]:
-    """Yield the first and the last output of each window."""
+    """Yield the first and the last output index of each window."""
     for first in range(0, motion.outputs, length):
         yield first, min(first + length, motion.outputs)
 
 
 def _whole_power(number: float, least: int, most: int) -> int:
-    """Return the power of two that is nearest to a number, between two others."""
+    """Return the power of two nearest to a number, within limits."""
     power: int = 2 ** round(float(np.log2(max(number, 1.0))))
     return min(max(power, least), most)
 
@@ -271,13 +272,12 @@ def simulate(
     0.319 s
 
     Args:
-        system, duration, output_step, position, velocity: system, duration, output step, position
-            and velocity of the :class:`Motion`.
-        integrator: :class:`AdaptiveStep` unless given.
+        system, duration, output_step, position, velocity: arguments of the :class:`Motion`.
+        integrator: integrator, :class:`AdaptiveStep` unless given.
 
     Raises:
-        ValueError: the motion lacks something.
-        NumericsError: it cannot be computed.
+        ValueError: an argument is invalid.
+        NumericsError: the motion cannot be computed.
     """
     a, v = (np.asarray(state, dtype=np.float64) for state in (position, velocity))
     return (integrator or AdaptiveStep())(Motion(system, duration, output_step, a, v))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Lines: deflections and section forces along a segment of a gap system."""
+"""Lines: rows of deflections and section forces along a segment."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ import numpy as np
 
 from dynamics.arrays import Array
 
-# In m, rad, N and N·m. Forces are those of the part beyond the section on the part before it, along
-# and across the straight axis. Normal forces pull; moments pull at larger z, lateral ones at larger
-# y. So the slope of a moment is the shear force less the normal force times that of the deflection.
+# Quantities along a segment in m, rad, N and N·m. Section forces act from the part beyond the
+# section on the part before it, along and across the straight axis. A positive normal force is
+# tension; a positive moment causes tension at larger z, a lateral one at larger y. So the slope of
+# a moment is the shear force less the normal force times the slope of the deflection.
 Quantity = Literal[
     "deflection",
     "normal",
@@ -32,8 +33,8 @@ class Line:
     """Rows that read quantities along one segment.
 
     Args:
-        x: (num_places,) in m, rising; a place where something may jump stands twice.
-        rows: (num_places, num_modes) of each quantity that the model knows.
+        x: (num_places,) in m, ascending; a place with a possible jump occurs twice.
+        rows: rows (num_places, num_modes) of each available quantity.
         paired: whether places are the two ends of each piece, and not the middles of pieces.
     """
 
@@ -42,7 +43,7 @@ class Line:
     paired: bool
 
     def read(self, states: Array) -> dict[Quantity, Array]:
-        """Return each quantity (..., num_places) at modal coordinates (..., num_modes)."""
+        """Return each quantity (..., num_places) for modal coordinates (..., num_modes)."""
         return {name: states @ row.T for name, row in self.rows.items()}
 
     def on(self, basis: Array) -> Line:
@@ -54,7 +55,7 @@ class Line:
 
         Args:
             name: name of the quantity.
-            x: a place where something jumps.
+            x: place with a jump.
             side: −1 before it, 1 behind it.
         """
         places, rows = self.x, self.rows[name]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Motions: a system, its initial state and the duration."""
+"""Motions: a gap system with initial state, duration and output step."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from dynamics.damping import add_damping
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
 
-# Steps of a motion at the default tolerance at most: chaotic motion has no step that keeps it.
+# Maximum number of steps at the default tolerance, which no step keeps in chaotic motion.
 MOST_STEPS = 250_000
 
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """Motion of a gap system from its initial state, as input of every integrator.
+    """Motion of a gap system from its initial state, the input of every integrator.
 
     >>> motion = Motion(ball, duration=1.0, position=[0.5])
     >>> motion.outputs, motion.from_rest
@@ -26,10 +26,10 @@ class Motion:
 
     Args:
         system: the system that moves.
-        duration: duration in s; a whole number of output steps is made, at least one.
+        duration: duration in s; it is rounded to a whole number of output steps, at least one.
         output_step: output step in s.
-        position: (num_modes,) initial a in √kg·m, zero unless given.
-        velocity: (num_modes,) initial ȧ in √kg·m/s, zero unless given.
+        position: initial a (num_modes,) in √kg·m, zero unless given.
+        velocity: initial ȧ (num_modes,) in √kg·m/s, zero unless given.
 
     Raises:
         ValueError: a time is not positive, a shape does not agree, a number is not finite, or the
@@ -60,7 +60,7 @@ class Motion:
 
     @property
     def outputs(self) -> int:
-        """Number of output steps."""
+        """The number of output steps."""
         return max(1, round(self.duration / self.output_step))
 
     @property
@@ -80,11 +80,12 @@ def build_motion(
     """Return the motion of a boom's system under its loads from t = 0 on.
 
     Args:
-        system: system of the boom with all its loads, those that are over at t = 0 among them.
+        system: system of the boom with all loads, including those that end at t = 0.
         duration, output_step: duration and output step of the motion in s.
-        at_rest: whether it starts from rest under the loads of t = 0; straight and unloaded else.
-        damping_ratio: damping ratio of the boom's modes with its joints pressed.
-        rayleigh: factors of the mass in 1/s and of the stiffness in s.
+        at_rest: whether the boom starts at rest under the loads at t = 0, or else straight and
+            unloaded.
+        damping_ratio: damping ratio of the boom's modes with closed contacts.
+        rayleigh: mass-proportional factor in 1/s, and stiffness-proportional factor in s.
 
     Raises:
         NumericsError: there is no static equilibrium to start from.
@@ -98,18 +99,18 @@ def build_motion(
 def initial_state(system: GapSystem, at_rest: bool) -> tuple[GapSystem, Array, Array]:
     """Return the system from t = 0 on, and its initial a and ȧ, (num_modes,) each.
 
-    Arguments and errors as of :func:`build_motion`.
+    Arguments and errors are those of :func:`build_motion`.
     """
     system = system.gather_loads()
     held = _held(system, at_rest)
-    # Straight, though shims may press.
+    # The boom is straight, although shims may press.
     straight = not at_rest and not held.any()
     position = np.zeros(system.num_modes) if straight else equilibrium(system, held)
     return system, position, system.initial_impulse
 
 
 def rest_of(system: GapSystem, at_rest: bool, position: Array) -> Array | None:
-    """Return the initial a, (num_modes,), if the system rests there under constant loads alone."""
+    """Return the initial a (num_modes,) if it is the equilibrium under constant loads."""
     return position if at_rest and (_held(system, at_rest) == system.load).all() else None
 
 

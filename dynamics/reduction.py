@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Gap systems derived from others: in fewer coordinates, and in more."""
+"""Gap systems with fewer or with additional coordinates."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scipy.linalg import eigh
 from dynamics.arrays import Array, Indices
 from dynamics.gap_system import GapSystem
 
-# A load vector with a remainder below this fraction of its size is in the space already.
+# Fraction of a load vector's size below which its remainder is round-off.
 _DEPENDENT = 1.0e-6
 
 
@@ -21,10 +21,10 @@ def reduce_modes(
     """Return ω² (num_shapes,) and shapes (num_modes, num_shapes) of a reduced system.
 
     Args:
-        omega2: (num_modes,) in rad²/s², positive of the rest.
-        pushes: (num_pushes, num_modes) forces to whose motions the rest is reduced.
-        kept, rest: positions of modes.
-        moments: derivatives at rest that are matched.
+        omega2: ω² (num_modes,) in rad²/s², positive for the modes ``rest``.
+        pushes: forces (num_pushes, num_modes) that excite the motions of the reduced modes.
+        kept, rest: indices of kept modes and of modes to be reduced.
+        moments: number of matched derivatives at rest.
     """
     elastic = omega2[rest, None]
     blocks = [independent_columns(pushes[:, rest].T)]
@@ -39,7 +39,7 @@ def reduce_modes(
 
 
 def independent_columns(block: Array) -> Array:
-    """Return an orthonormal basis (num_modes, rank) of the columns, scaled to the same size."""
+    """Return an orthonormal basis (num_modes, rank) of the columns, after scaling to equal size."""
     sizes = np.linalg.norm(block, axis=0)
     kept = sizes > _DEPENDENT**2 * sizes.max(initial=0.0)
     basis, values, _ = np.linalg.svd(block[:, kept] / sizes[kept], full_matrices=False)
@@ -47,12 +47,12 @@ def independent_columns(block: Array) -> Array:
 
 
 def with_coordinates(system: GapSystem, omega2: Array, rows: Array) -> GapSystem:
-    """Return the system with coordinates added that only contacts, friction and dashpots move.
+    """Return the system with further coordinates that only contacts, friction and dashpots excite.
 
     Args:
-        system: none of its rows moves.
-        omega2: (num_added,) in rad²/s².
-        rows: (num_rows, num_added) in 1/√kg, of dashpots in 1/√s.
+        system: gap system without travels.
+        omega2: ω² (num_added,) in rad²/s².
+        rows: rows (num_rows, num_added) in 1/√kg, of dashpots in 1/√s.
     """
     touching, rubbing, dragged = np.split(
         rows, np.cumsum([len(system.laws), len(system.frictions)])

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Second-order theory: modes softened by constant axial forces, and buckling loads.
+"""Second-order theory: modes under constant axial forces, and buckling loads.
 
 In the modes of the unloaded boom the stiffness is diag(ω²) − G, with G = Φᵀ K_G Φ of the geometric
-stiffness (second-order theory, Timoshenko and Gere 1961). A segment that contacts alone
-hold tips over: its rotation has a negative ω².
+stiffness (Timoshenko and Gere 1961). A segment that only contacts support may tip over: its
+rotation has a negative ω².
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ from scipy.linalg import eigh
 
 from dynamics.arrays import Array
 
-# Part of what rigid motions lose most below which one loses nothing.
+# Fraction of the largest change of rigid motions' stiffness below which a change is round-off.
 _ROUND_OFF = 1.0e-9
 
 
 def soften_modes(omega2: Array, geometric: Array) -> tuple[Array, Array]:
-    """Return ω² (num_modes,), rising, and the new modes (num_modes, num_modes) in the old ones.
+    """Return ascending ω² (num_modes,) and the new modes (num_modes, num_modes) in the old ones.
 
-    ``omega2`` is without axial forces, rigid motions exactly 0; ``geometric`` is G.
+    ``omega2`` is ω² without axial forces, exactly 0 for rigid motions; ``geometric`` is G.
     """
-    # The upper triangle leaves the low modes their digits, see ``natural_modes`` of the beams.
+    # The upper triangle preserves the digits of low modes, see ``natural_modes`` of beams.
     found, combination = eigh(np.diag(omega2) - geometric, lower=False)
-    # Translations keep ω of exactly 0.
+    # Translations keep ω = 0 exactly.
     rigid = omega2 == 0.0
     lost = np.abs(np.linalg.eigvalsh(geometric[np.ix_(rigid, rigid)]))
     kept = np.count_nonzero(lost <= _ROUND_OFF * lost.max(initial=0.0))
@@ -35,13 +35,13 @@ def soften_modes(omega2: Array, geometric: Array) -> tuple[Array, Array]:
 def buckling_factor(stiffness: Array, geometric: Array) -> float:
     """Return the factor λ of the axial forces at which a boom first buckles, det(K − λ K_G) = 0.
 
-    It is infinite where the boom does not buckle. The boom is supported; coordinates (num_dofs,)
-    are any.
+    It is infinite if the boom does not buckle. The boom must be supported; coordinates are
+    arbitrary.
     """
     last = len(stiffness) - 1
     if last < 0:
         return float("inf")
-    # Coordinates may be of different sizes: deflections and rotations.
+    # Coordinates are scaled, since deflections and rotations may differ in size.
     scale = 1.0 / np.sqrt(np.diag(stiffness))
     scales = np.outer(scale, scale)
     (largest,) = eigh(

@@ -2,10 +2,10 @@
 """Motion of a gap system by one time step for all models, contact laws and losses.
 
 Within a step of length h all row forces are constant and every mode moves exactly. Contact forces
-are discrete gradients of their energy (Gonzalez 1996), friction obeys its set-valued law on the
-displacement of the step (Moreau 1988), dashpots resist its mean rate. The energy balances to
-round-off at every h. The step is second order, through stick-slip first order, and reversible where
-nothing is lost. The time loop is :func:`dynamics.kernels.march.march`.
+are discrete gradients of their energy (Gonzalez 1996), friction obeys its set-valued law for the
+displacement in the step (Moreau 1988), and dashpots resist the mean rate. The energy balance holds
+to round-off for every h. The step has second order, with stick-slip first order, and is reversible
+without losses. The time loop is :func:`dynamics.kernels.march.march`.
 """
 
 from __future__ import annotations
@@ -39,22 +39,22 @@ from dynamics.kernels.telescoping import add_axial_forces, moving_axial_forces, 
 from dynamics.motion import Motion
 from dynamics.trajectory import OF_DRIVES, Output, Trajectory
 
-# Number of halvings of a step whose forces do not converge.
+# Maximum number of halvings of a step whose forces do not converge.
 _HALVINGS = 10
 
-# Gauss's points and weights on [0, 1], exact for polynomials of the fifth degree.
+# Gauss points and weights on [0, 1], exact for polynomials of degree five.
 _POINTS = 0.5 + np.sqrt(0.15) * np.array([-1.0, 0.0, 1.0])
 _WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
 
 
 @dataclass(frozen=True, eq=False)
 class Integration:
-    """A motion that is being computed.
+    """Time integration of a motion in progress.
 
     Args:
-        motion: with all constant loads in the ``load`` of its system.
-        output: output of all times; the first is that of the initial state.
-        state: after the last output that is done.
+        motion: motion with all constant loads in the ``load`` of its system.
+        output: output of all times; the first one is the initial state.
+        state: state after the last computed output.
     """
 
     motion: Motion
@@ -64,7 +64,7 @@ class Integration:
 
     @classmethod
     def begin(cls, motion: Motion) -> Integration:
-        """Return the run at t = 0, with the constant loads gathered."""
+        """Return the integration at t = 0, with all constant loads in ``load``."""
         motion = replace(motion, system=motion.system.gather_loads())
         system, laws = motion.system, motion.system.laws
         n, m, f = system.num_modes, len(laws), len(system.frictions)
@@ -103,7 +103,7 @@ class Integration:
 
     @property
     def _flies(self) -> bool:
-        """True if constant loads alone act while all contacts are open."""
+        """Return whether the system has only constant loads while all contacts are open."""
         system = self.motion.system
         others = len(system.excitations), len(system.travels), len(system.dashpots)
         rubbed = any(friction.normal_force for friction in system.frictions)
@@ -115,10 +115,10 @@ class Integration:
         """Advance a state through output intervals, and return its records at their ends.
 
         Args:
-            first, last: outputs at the start and at the end.
-            substeps: substeps of each interval.
-            state: at the start, which is changed.
-            output: is filled in; a new one unless given.
+            first, last: indices of the outputs at start and end.
+            substeps: number of steps of each interval.
+            state: state at the start, which is changed.
+            output: output to fill in; a new one unless given.
 
         Raises:
             NumericsError: the state is not finite, or row forces do not converge.
@@ -148,7 +148,7 @@ class Integration:
         return output
 
     def part(self, first: int, last: int) -> Output:
-        """Return the outputs from after ``first`` to ``last``, to be filled in."""
+        """Return the part of the output after ``first`` up to ``last``, to be filled in."""
         return Output(*(array[1 + first : 1 + last] for array in self.output))
 
     def trajectory(
@@ -156,22 +156,22 @@ class Integration:
     ) -> Trajectory:
         """Return the motion.
 
-        With a drive, also the extension in m, the force of the drive against friction in N and its
-        power in W of each travel that has a suffix; of an elastic drive what ``OF_ELASTIC_DRIVES``
-        lists, and its ``StickSlip`` by name in the attribute ``stick_slip``.
+        For each travel with a suffix it includes the extension in m, the force of the drive against
+        friction in N, and its power in W; for an elastic drive also the variables of
+        ``OF_ELASTIC_DRIVES``, and its ``StickSlip`` in the attribute ``stick_slip``.
 
         Args:
             substeps, window: substeps and window of the :class:`dynamics.integrator.StepSchedule`
-                that was made.
-            step_error: part of the range by which the step changes observed deflections; NaN
-                where it is not known.
+                that was used.
+            step_error: error of observed deflections by the time step, as a fraction of their
+                range; NaN if it is not measured.
 
         Raises:
-            NumericsError: the energy residual passes its bound.
+            NumericsError: the energy residual exceeds its bound.
         """
         motion, output, tally = self.motion, self.output, self.state.tally
         step = motion.output_step / max(substeps)
-        # The work of the loads within an output interval is round-off beside any motion.
+        # The work of the loads within one output interval is the scale of round-off.
         load = motion.system.largest_load
         least = 0.5 * step**2 * float((load * load).sum())
         check_energy(output.energies, least=least)
@@ -219,7 +219,7 @@ class Integration:
 
 
 def step_schedule(system: GapSystem, times: Array) -> Schedule:
-    """Return loads and extensions in steps that end at times (num_steps + 1,) in s."""
+    """Return loads and extensions in the steps between times (num_steps + 1,) in s."""
     lines = [line_within(x.history, times) for x in system.excitations]
     mean, change = np.array(lines).reshape(-1, 2, times.size - 1).transpose(1, 2, 0)
     extensions = np.array([travel.history(times) for travel in system.travels])
@@ -227,14 +227,14 @@ def step_schedule(system: GapSystem, times: Array) -> Schedule:
 
 
 def line_within(history: History, times: Array) -> tuple[Array, Array]:
-    """Return mean and change (num_steps,) of the straight line that stands for a history in a step.
+    """Return mean and change (num_steps,) of the straight line that replaces a history in a step.
 
-    The line has the integral and the first moment of the history, so that kinks within a step need
-    no step of their own: a mode's response is off by (ωh)⁴/720 of the kink's at most.
+    The line has the integral and the first moment of the history, so that steps need not end at
+    kinks: the error of a mode's response is at most (ωh)⁴/720 of the kink's effect.
 
     Args:
         history: history of a load.
-        times: (num_steps + 1,) ends of the steps in s, evenly spaced.
+        times: ends (num_steps + 1,) of the steps in s, evenly spaced.
     """
     kinks = np.asarray(history.kinks, dtype=np.float64)
     ends = np.union1d(times, kinks[(kinks > times[0]) & (kinks < times[-1])])
@@ -255,9 +255,9 @@ def axial_friction(system: GapSystem, travel: Travel, forces: Array) -> Array:
     """Return μ Σ|N| (num_times,) in N of the pads that a travel moves.
 
     Args:
-        system: with the travel.
-        travel: one of its own.
-        forces: (num_times, num_rows) of the contacts in N.
+        system: gap system with the travel.
+        travel: travel of the system.
+        forces: contact forces (num_times, num_rows) in N.
     """
     coefficients = {friction.station: friction.coefficient for friction in system.frictions}
     total = np.zeros(len(forces))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Trajectories: deflections, contact forces and energies over time.
 
-A trajectory is labelled (xarray) and has its energy residual. Kinetic, strain and contact energy,
-less the work of the loads, plus the losses of damping, friction and contact, should equal the
-initial energy.
+A trajectory is labelled (xarray) and includes its energy residual: kinetic, strain and contact
+energy, less the work of the loads, plus the losses of damping, friction and contact, should equal
+the initial energy.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from dynamics.arrays import Array
 from dynamics.energy import DRIVEN_ENERGIES, ENERGIES, energy_residual
 from dynamics.gap_system import GapSystem, Observer
 
-# Imported where data are made or read: planning a motion alone then takes a second less.
+# xarray is imported only where data are made or read, which saves a second in other uses.
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -41,7 +41,7 @@ OF_DRIVES: Mapping[str, Mapping[str, str]] = {
     "drive_power": {"units": "W", "long_name": "power of the drive, axial loads included"},
 }
 
-# A peak below this part of the deflection is the round-off of something at rest.
+# Fraction of the deflection below which a peak is round-off.
 STILL = 1.0e-6
 
 
@@ -49,12 +49,12 @@ class Output(NamedTuple):
     """Records (num_outputs, …) at the end of each output interval.
 
     Args:
-        states, velocities: modal; velocities may have no columns.
+        states, velocities: modal coordinates and velocities; velocities may have no columns.
         energies: energies in J, as in ``dynamics.energy.ENERGIES``.
         gaps: gaps of the contacts in m.
         means, peaks: means and peaks of contact forces within the interval in N.
         frictions: mean friction forces in N.
-        drives: work of the drive of each travel so far in J.
+        drives: cumulative work of the drive of each travel in J.
     """
 
     states: Array
@@ -69,12 +69,13 @@ class Output(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Pointwise:
-    """Differences of two models' motions before either is unpredictable.
+    """Pointwise differences of two motions while both are predictable.
 
     Args:
-        until: the time in s up to which they are compared; of ensembles the earlier of both
-            horizons at the first of ``SHARES``.
-        largest, rms: parts of the larger range of both within that time.
+        until: end of the comparison in s; for ensembles the earlier horizon of both at the first of
+            ``SHARES``.
+        largest, rms: largest and root mean square difference, as fractions of the larger range
+            within this time.
     """
 
     decides: ClassVar[str] = (
@@ -105,16 +106,16 @@ class Trajectory:
     3142 N
 
     Args:
-        data: dims ``time`` and ``station``; the output of each observer;
-            ``contact_force`` in N, positive where the inner segment presses up, as the mean
-            over the output interval that ends at the time (so that its sum is the impulse), at the
-            start as it is; ``contact_force_peak``, the largest in that interval;
-            ``friction_force`` in N, the mean likewise, positive where it pushes the inner segment
-            along its row; ``gap`` in m, the mean of u − w over a station's rows; the energies in J.
-            Coordinate ``direction`` (station). Attributes: ``step`` in s, ``steps`` (joined ones
-            count as one), ``first_contact`` in s (NaN if none), ``contact_changes``: how often a
-            row opened or closed, ``energy_residual``.
-        states: (num_times, num_modes) modal coordinates.
+        data: dims ``time`` and ``station``; the output of each observer; ``contact_force`` in N,
+            positive if the inner segment presses upwards, the mean over the output interval that
+            ends at the time (so that sums are impulses), and the initial value at t = 0;
+            ``contact_force_peak``, the maximum in the interval; ``friction_force`` in N, also a
+            mean, positive if it pushes the inner segment along its row; ``gap`` in m, the mean of u
+            − w over a station's rows; the energies in J. Coordinate ``direction`` (station).
+            Attributes: ``step`` in s, ``steps`` (joined ones count as one), ``first_contact`` in s
+            (NaN if none), ``contact_changes``, the number of times that rows opened or closed,
+            ``energy_residual``.
+        states: modal coordinates (num_times, num_modes).
     """
 
     data: xr.Dataset
@@ -132,18 +133,18 @@ class Trajectory:
         """Label the output of an integrator; rows are gathered by station.
 
         Args:
-            system: that has moved.
+            system: system of the motion.
             time: (num_times,) in s.
-            output: at these times.
+            output: output at these times.
             attributes: attributes of the data, ``step``, ``steps``, ``first_contact`` and
                 ``contact_changes`` among them.
-            least_energy: below which the energy put in is round-off, in J.
+            least_energy: input energy in J below which it is round-off.
         """
         stations = np.arange(len(system.stations))
         belongs = np.equal.outer(system.station_of_row, stations)
         rubs = np.equal.outer([friction.station for friction in system.frictions], stations)
         rows_at = np.maximum(belongs.sum(axis=0), 1)
-        # Rows of one side press together, those of the other at another moment.
+        # Rows of one side press at the same time, those of the other side at other times.
         up, down = np.maximum(output.peaks, 0.0) @ belongs, np.minimum(output.peaks, 0.0) @ belongs
 
         def read(seen: Observer) -> Array:
@@ -193,12 +194,12 @@ class Trajectory:
     def of_states(
         cls, system: GapSystem, time: Array, states: Array, velocities: Array
     ) -> Trajectory:
-        """Return the trajectory of a user's own integrator, of a system without losses.
+        """Return the trajectory of a user-defined integrator, for a system without losses.
 
-        Forces are those at the output times; first contact is exact to an output step.
+        Forces are instantaneous at output times; the first contact is accurate to an output step.
 
         Args:
-            system: under constant loads, all of them in ``load``.
+            system: gap system with constant loads only, all in ``load``.
             time: (num_times,) in s, evenly spaced.
             states, velocities: (num_times, num_modes) a and ȧ.
         """
@@ -228,30 +229,30 @@ class Trajectory:
 
     @property
     def time(self) -> Array:
-        """Times (num_times,) in s."""
+        """The times (num_times,) in s."""
         return np.asarray(self.data["time"].values)
 
     @property
     def tip(self) -> xr.DataArray:
-        """Deflection (time,) of the tip in m; its ``plot()`` draws it."""
+        """The deflection (time,) of the tip in m, with the method ``plot()``."""
         return self.data["tip"]
 
     @property
     def energy_residual(self) -> float:
-        """Largest unaccounted energy as a part of the energy put in."""
+        """The largest error of the energy balance as a fraction of the input energy."""
         return float(self.data.attrs["energy_residual"])
 
     @property
     def first_contact(self) -> float:
-        """Time in s at which a row first closes; NaN if it never does."""
+        """The time in s at which a row first closes; NaN without contact."""
         return float(self.data.attrs["first_contact"])
 
     def first_peak(self, observer: str = "tip") -> tuple[float, float]:
         """Return time in s and height in m of the first peak of the slow motion.
 
-        Peaks lie on the side to which the motion sets out, and their height has its sign. One
-        counts when it stands out by a fifth of the whole range, so that the ripple of
-        micro-impacts does not; NaN where there is none.
+        Peaks are on the side of the initial motion, and heights have its sign. The prominence of a
+        peak must be a fifth of the whole range, which excludes the ripple of micro-impacts. Both
+        values are NaN without a peak.
         """
         deflection = np.asarray(self.data[observer].values)
         outstanding = 0.2 * np.ptp(deflection)
@@ -265,16 +266,16 @@ class Trajectory:
         return float(self.time[peak]), float(deflection[peak])
 
     def compare(self, other: Trajectory, name: str = "tip", until: float = np.inf) -> Pointwise:
-        """Return the differences of another motion.
+        """Return the differences from another motion.
 
         >>> fine, coarse = (pt.BeamElements(boom, element_length=l) for l in (0.5, 1.0))
         >>> print(f"{100.0 * fine.simulate(0.1).compare(coarse.simulate(0.1)).largest:.1f} %")
         1.1 %
 
         Args:
-            other: at the same times.
+            other: trajectory at the same times.
             name: name of the compared output.
-            until: until in s; the horizon up to which both are predictable, say.
+            until: end of the comparison in s, for example the horizon of both.
 
         Raises:
             ValueError: the times differ.
@@ -286,7 +287,7 @@ class Trajectory:
 
 
 def _first_prominent(values: Array, prominence: float) -> int | None:
-    """Return the index of the first peak with a prominence; None where there is none.
+    """Return the index of the first peak with a prominence, or None.
 
     It is the first peak of ``scipy.signal.find_peaks``, whose import takes half a second.
     """

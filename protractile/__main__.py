@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Command ``protractile``: handles signals before the slow imports."""
+"""The command ``protractile``, which installs signal handlers before slow imports."""
 
 from __future__ import annotations
 

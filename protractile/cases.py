@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Cases in Python: load one, change it, run it."""
+"""Functions to load, change and run cases in Python."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def load_case(path: str | Path) -> Case:
         path: path of the file; those in ``CASES`` come with the program.
 
     Raises:
-        BadInput: the file cannot be read, or what it says cannot be.
+        BadInput: the file cannot be read, or its content is invalid.
     """
     return reading.load(str(path))
 
@@ -49,12 +49,12 @@ def change(case: Case, **values: Any) -> Case:
     (0.02, 1.0)
 
     Args:
-        case: which stays as it is.
-        values: by key, as ``protractile sweep --vary`` has them: ``joint[1].play``, or
-            ``joint.play`` of all joints.
+        case: the original case, which is not changed.
+        values: new values by key, as in ``protractile sweep --vary``: ``joint[1].play``, or
+            ``joint.play`` for all joints.
 
     Raises:
-        BadInput: a key that the case cannot have, or a value that cannot be.
+        BadInput: a key is unknown or a value is invalid.
     """
     tables = case.model_dump(mode="json", by_alias=True, exclude_none=True)
     for key, value in values.items():
@@ -72,7 +72,7 @@ def change(case: Case, **values: Any) -> Case:
 
 
 def run_case(case: Case, models: Sequence[str] | None = None) -> Results:
-    """Run the models of a case in this process; write nothing but the user's cache of shells.
+    """Run the models of a case in this process; write only to the user's cache of shells.
 
     >>> import protractile as pt
     >>> case = pt.load_case(pt.CASES / "coarse.toml")
@@ -81,15 +81,15 @@ def run_case(case: Case, models: Sequence[str] | None = None) -> Results:
     ('model', 'time')
 
     Args:
-        case: case of :func:`load_case` or :func:`change`.
-        models: their names; all unless given.
+        case: case from :func:`load_case` or :func:`change`.
+        models: names of the models; all unless given.
 
     Returns:
         The results. ``results.trajectories["tip"].plot.line(x="time")`` draws the tips; a model
         that cannot be computed is in ``summary.failures``, with the reason.
 
     Raises:
-        BadInput: a model that the case does not know.
+        BadInput: the case has no model with a given name.
         NumericsError: no model can be computed.
     """
     chosen = reading.select(case, _CASE, models)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Drives that telescope a boom: extension over time, rows that move with it, stick-slip."""
+"""Drives that telescope a boom: extension over time, moving rows, stick-slip."""

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Rows and axial forces that change with the extension of a segment, as cubics between places.
+"""Rows and axial forces that change with an extension, as piecewise cubics.
 
-If elements have cubic shape functions, and knots lie where nodes pass, the cubics are exact.
-Otherwise pieces are halved until the cubics are within a tolerance of the rows.
+For elements with cubic shape functions and knots at the passages of nodes, the cubics are exact.
+Otherwise pieces are halved until the error of the cubics is within a tolerance.
 
-An axial force that moves along a segment compresses it between its initial and present place. It
-reduces the stiffness by K_G(s) = N ∫₀ˢ w′ᵀ w′ dσ of the slopes w′ at the place (second-order
+An axial force that moves along a segment compresses it between the initial and the current place.
+It reduces the stiffness by K_G(s) = N ∫₀ˢ w′ᵀ w′ dσ of the slopes w′ at the place (second-order
 theory, Timoshenko and Gere 1961). For rows that are cubic in s this is exact.
 """
 
@@ -20,14 +20,14 @@ import numpy as np
 
 from dynamics.arrays import Array
 
-# Largest error of a cubic, as a part of the largest entry; the motion takes the cubic for the row.
+# Permitted error of a cubic, as a fraction of the largest entry.
 TOLERANCE = 1.0e-9
 
-# Halvings of a piece before it is taken as it is.
+# Maximum number of halvings of a piece.
 _MOST_HALVINGS = 16
 
-# Places in a piece where a cubic meets the rows, its coefficients by the values there (Lagrange),
-# and places where it is tested.
+# Interpolation points of a cubic in a piece, the matrix of its coefficients (Lagrange), and test
+# points.
 _MET = np.array([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0])
 _COEFFICIENTS = 0.5 * np.array(
     [[2.0, 0.0, 0.0, 0.0], [-11.0, 18.0, -9.0, 2.0], [18.0, -45.0, 36.0, -9.0],
@@ -35,7 +35,7 @@ _COEFFICIENTS = 0.5 * np.array(
 )  # fmt: skip
 _TESTED = np.array([0.15, 0.5, 0.85])
 
-# i + j + 1 of the powers in slopes: ∫₀¹ uⁱ uʲ du is one over it.
+# i + j + 1 for the powers in slopes: ∫₀¹ uⁱ uʲ du is its reciprocal.
 _POWERS = 1.0 + np.add.outer(np.arange(3), np.arange(3))
 
 
@@ -48,12 +48,12 @@ class RowTable:
     array([[1.   , 3.375]])
 
     Args:
-        knots: (num_pieces + 1,) in m, rising.
-        coefficients: (num_pieces, 4, num_rows, num_modes) of the powers of the part of the piece
-            that s has passed.
+        knots: (num_pieces + 1,) in m, ascending.
+        coefficients: (num_pieces, 4, num_rows, num_modes) coefficients of powers of the relative
+            position in a piece.
 
     Raises:
-        ValueError: knots do not rise, or shapes do not agree.
+        ValueError: knots are not ascending, or shapes do not agree.
     """
 
     knots: Array
@@ -73,8 +73,8 @@ class RowTable:
 
     @classmethod
     def of(cls, rows: Callable[[float], Array], breaks: Sequence[float]) -> RowTable:
-        """Return the table of rows (num_rows, num_modes), smooth between rising breaks in m."""
-        # Pieces end where others begin, and halves meet rows where the whole did.
+        """Return the table of rows (num_rows, num_modes) that are smooth between breaks in m."""
+        # Rows are cached, since pieces share ends, and halves share points with the whole piece.
         rows = cache(rows)
         scale = max(float(np.abs(rows(s)).max(initial=0.0)) for s in breaks)
         pieces = [
@@ -89,7 +89,7 @@ class RowTable:
     def through(cls, knots: Array, rows: Array) -> RowTable:
         """Return the cubic spline through rows (num_knots, num_rows, num_modes).
 
-        Its third derivative does not jump at the first inner knot nor at the last one.
+        Its third derivative is continuous at the first and the last inner knot.
         """
         from scipy.interpolate import CubicSpline
 
@@ -104,7 +104,7 @@ class RowTable:
         return _combined(part ** np.arange(4), self.coefficients[piece])
 
     def place(self, s: float) -> tuple[int, float, float]:
-        """Return the piece at s in m, the part of it that s has passed, and its length in m."""
+        """Return the piece at s in m, the relative position in it, and its length in m."""
         last = len(self.knots) - 2
         piece = min(max(int(np.searchsorted(self.knots, s, side="right")) - 1, 0), last)
         length = float(self.knots[piece + 1] - self.knots[piece])
@@ -113,15 +113,16 @@ class RowTable:
 
 @dataclass(frozen=True)
 class MovingAxialForce:
-    """An axial force that moves with a travel and softens the segment behind it.
+    """Axial force that moves with a travel and reduces the stiffness of the segment behind it.
 
     >>> force = MovingAxialForce(2.0, RowTable.of(lambda s: np.array([[3.0 * s]]), [0.0, 1.0]))
     >>> force.softening(0.5)
     array([[9.]])
 
     Args:
-        force: N in N, positive where it compresses the passed length as s rises.
-        table: (num_planes, num_modes) rows of the deflections where it acts, at each s in m.
+        force: N in N, positive if it compresses the passed length with increasing s.
+        table: rows (num_planes, num_modes) of the deflections at the place of the force, over s in
+            m.
     """
 
     force: float
@@ -129,12 +130,12 @@ class MovingAxialForce:
 
     @property
     def planes(self) -> int:
-        """Number of planes of bending."""
+        """The number of planes of bending."""
         return self.table.coefficients.shape[2]
 
     @cached_property
     def slopes(self) -> Array:
-        """Slopes w′ (num_pieces, 3, num_planes, num_modes) per m, by powers of a part passed."""
+        """The slopes w′ (num_pieces, 3, num_planes, num_modes), as coefficients of powers."""
         factors = np.arange(1.0, 4.0)[:, None, None]
         lengths = np.diff(self.table.knots)[:, None, None, None]
         return np.asarray(factors * self.table.coefficients[:, 1:] / lengths)
@@ -162,7 +163,7 @@ class MovingAxialForce:
 
 
 def _combined(weights: Array, arrays: Array) -> Array:
-    """Return a weighted sum; no BLAS product, whose last bits depend on addresses in memory."""
+    """Return a weighted sum without BLAS, whose last bits depend on addresses in memory."""
     return np.asarray((weights[:, None, None] * arrays).sum(axis=0))
 
 

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Stick-slip of a segment that an elastic drive extends.
+"""Stick-slip of a segment that an elastic drive telescopes.
 
 The extension s(t) lags behind the command s_c(t) of the drive:
 
     m s̈ + c (ṡ − ṡ_c) + k (s − s_c) = p − R sign(ṡ),   |k (s_c − s) + c ṡ_c + p| ≤ R_s where ṡ = 0
 
-with R = μ Σ|N| of the pads of the boom that follows the command, R_s that of static friction, and
-p the force of other drives that accelerate. The boom does not feel the lag. R is that of the mean N
-of each output interval: where pads chatter faster, fewer sticks are counted.
+R = μ Σ|N| is the friction of the pads, R_s the static friction, and p the force of other drives
+that accelerate. The boom follows the command s_c: the lag has no effect on it. R follows from the
+mean N of each output interval, so that faster chatter of pads reduces the number of sticks.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ import numpy as np
 from dynamics.arrays import Array
 from dynamics.excitation import History
 
-# Largest step as an angle in rad of the mass on its spring, or as a part of its decay time.
+# Largest step as a phase angle in rad of the mass on its spring, or as a fraction of its decay
+# time.
 _PART = 0.1
 
 # Variables of a trajectory; the suffix of the travel follows each name.
@@ -34,7 +35,7 @@ OF_ELASTIC_DRIVES = {
 
 @dataclass(frozen=True, slots=True)
 class ElasticDrive:
-    """An elastic drive, and the mass that it moves.
+    """Elastic drive and the mass that it moves.
 
     >>> rope = ElasticDrive(mass=500.0, stiffness=1e5, dashpot=1e3, sticking=1.5)
     >>> print(f"{rope.frequency:.2f} Hz, damped by {100.0 * rope.damping_ratio:.1f} %")
@@ -45,8 +46,8 @@ class ElasticDrive:
         stiffness: k of rope, chain or cylinder in N/m.
         dashpot: c in parallel in N·s/m.
         sticking: static over sliding friction, at least 1.
-        thrust: axial load towards the base in N, as by the weight.
-        beside: the mass in kg that each other drive moves, too, and the history of that drive.
+        thrust: axial load towards the base in N, such as weight.
+        beside: for each other drive, the common mass in kg that both move, and its history.
 
     Raises:
         ValueError: a number is out of range.
@@ -69,12 +70,12 @@ class ElasticDrive:
 
     @property
     def frequency(self) -> float:
-        """Undamped natural frequency in Hz."""
+        """The undamped natural frequency in Hz."""
         return float(np.sqrt(self.stiffness / self.mass) / (2.0 * np.pi))
 
     @property
     def damping_ratio(self) -> float:
-        """ζ = c / 2√(k m)."""
+        """The damping ratio ζ = c / 2√(k m)."""
         return 0.5 * self.dashpot / float(np.sqrt(self.stiffness * self.mass))
 
 
@@ -86,10 +87,10 @@ class StickSlip:
         mean: mean of |drive force| in N while the drive moves.
         peak: largest |drive force| in N.
         sticks: number of times that the segment sticks while the drive moves.
-        slip: longest distance in m caught up in one slip.
-        speed, acceleration: largest of the segment in m/s and m/s².
+        slip: longest slip in m.
+        speed, acceleration: largest speed in m/s and acceleration in m/s² of the segment.
         behind: lag at the end of the run in m, negative where the segment is ahead.
-        energy_residual: unaccounted energy as a part of the energy put in.
+        energy_residual: error of the energy balance as a fraction of the input energy.
     """
 
     mean: float
@@ -112,17 +113,17 @@ class DriveMotion(NamedTuple):
 def move_segment(
     drive: ElasticDrive, command: History, time: Array, friction: Array
 ) -> DriveMotion:
-    """Return the motion of the segment, from rest with the axial load held.
+    """Return the motion of the segment from rest under the axial load.
 
-    s_c and p are linear within steps, of which a period takes 63 at least; all else is exact. The
-    accelerations in p are second differences. Other drives are mirrored at t = 0, so that one that
-    begins with a jump of its speed gives its whole impulse within the first step.
+    s_c and p are linear within steps, at least 63 per period; otherwise the solution is exact. The
+    accelerations in p are second differences. Histories of other drives are mirrored at t = 0, so
+    that a jump of the speed at the start gives its whole impulse within the first step.
 
     Args:
-        drive: moves the segment.
-        command: s_c in m.
+        drive: elastic drive of the segment.
+        command: history of s_c in m.
         time: (num_times,) in s, evenly spaced from 0 on.
-        friction: (num_times,) R in N, the mean of the interval that ends then.
+        friction: R (num_times,) in N, the mean over the interval that ends at each time.
     """
     from dynamics.kernels import stick_slip as kernel
 

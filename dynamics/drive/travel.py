@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The extension of a segment over time, and the rows that it changes.
+"""Travels: the extension of a segment over time, and the rows that it changes.
 
-In material coordinates nothing else changes: a segment that moves along its own axis has the
-inertia m̄ ü at each of its points if slopes are small. Modes, loads and observers of one segment
-stay the same. A row that reads two segments at one place reads one of them at another place as the
-segment extends.
+Nothing else changes in material coordinates: a segment that moves along its own axis has the
+inertia m̄ ü at each of its points if slopes are small. Modes, loads and observers of a segment stay
+the same. A row that reads two segments at a contact reads one of them at a place that moves with
+the extension.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from dynamics.drive.row_table import MovingAxialForce, RowTable
 from dynamics.drive.stick_slip import ElasticDrive
 from dynamics.excitation import History
 
-# The rows of a gap system that may change with time, in the order in which loops stack them.
+# Kinds of rows of a gap system that may change with time, in the order of the compiled loops.
 Kind = Literal["rows", "friction_rows", "dashpots"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
@@ -28,7 +28,7 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 class Travel:
     """Rows that follow the history of an extension, from 0 at t = 0.
 
-    A row that reads less of the ball as a segment extends:
+    Example: a row that reads less of the ball's displacement as a segment extends.
 
     >>> table = RowTable.of(lambda s: np.array([[1.0 - s]]), [0.0, 0.5])
     >>> lift = Travel(pt.SCurve(travel=0.5, duration=1.0), table, (("rows", 0),))
@@ -37,15 +37,15 @@ class Travel:
 
     Args:
         history: history in m.
-        table: (num_moving, num_modes) rows over the extension.
-        moving: kind and position of each row in the gap system.
-        suffix: suffix of the names of its results; there are none where it is None.
-        axial_forces: those that move with the extension.
+        table: rows (num_moving, num_modes) over the extension.
+        moving: kind and index of each row in the gap system.
+        suffix: suffix of the names of its results; None for no results.
+        axial_forces: axial forces that move with the extension.
         axial_load: axial load of all moved segments in N, against which the drive works.
-        elastic: the elastic drive; a rigid one where it is None.
+        elastic: data of an elastic drive; None for a rigid drive.
 
     Raises:
-        ValueError: the number of rows of the table differs, or the history does not begin with 0.
+        ValueError: the table has another number of rows, or the history does not begin with 0.
     """
 
     history: History

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Predictability of chaotic motion: ensembles, horizons, slow motion, comparison."""
+"""Predictability of chaotic motion: ensembles and horizons."""

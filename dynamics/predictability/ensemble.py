@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Ensembles: runs of one system with slightly changed data.
 
-Where impacts make a motion chaotic, one run is a sample. Only what all members of an ensemble share
-is a property of the system.
+If impacts make a motion chaotic, a single run is a sample. Only features that all members of an
+ensemble share are properties of the system.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from dynamics.trajectory import Trajectory
 
 Vary = Literal["load", "clearance", "velocity"]
 
-# Variables that are kept of each member; whole trajectories would fill the memory.
+# Variables that are kept for each member, since whole trajectories would need too much memory.
 KEPT = ("tip", "head", "contact_force")
 
 
 @dataclass(frozen=True, slots=True)
 class EnsembleMember:
-    """One run of an ensemble, as sent to a worker.
+    """Run of an ensemble, as sent to a worker.
 
     Args:
-        motion: without changes.
-        vary: the data that change.
+        motion: motion without changes.
+        vary: name of the changed data.
         change: relative change.
         integrator: integrator of the motion.
-        kept: variables that come back.
+        kept: returned variables.
     """
 
     motion: Motion
@@ -47,7 +47,7 @@ class EnsembleMember:
     kept: Sequence[str] = KEPT
 
     def within(self, part: float) -> EnsembleMember:
-        """Return the first part of the run, in whole output steps."""
+        """Return the run shortened to a fraction of its duration, in whole output steps."""
         outputs = max(1, round(part * self.motion.outputs))
         return replace(
             self, motion=replace(self.motion, duration=outputs * self.motion.output_step)
@@ -55,14 +55,14 @@ class EnsembleMember:
 
 
 def perturbations(members: int, relative: float, seed: int) -> Array:
-    """Return relative changes (members,): 0 of member 0, the others uniform within ±relative."""
+    """Return relative changes (members,): 0 for member 0, others uniform within ±relative."""
     changes = np.random.default_rng(seed).uniform(-relative, relative, members)
     changes[0] = 0.0
     return changes
 
 
 def vary_motion(motion: Motion, vary: Vary, factor: float) -> Motion:
-    """Return the motion with the varied data times ``factor``."""
+    """Return the motion with the varied data multiplied by ``factor``."""
     system = motion.system
     if vary == "load":
         excitations = [replace(x, load=factor * x.load) for x in system.excitations]
@@ -78,7 +78,7 @@ def check_varied(motion: Motion, vary: Vary) -> None:
     """Check that the varied data are not all zero.
 
     Raises:
-        ValueError: they are.
+        ValueError: all varied data are zero.
     """
     system = motion.system
     loads = [system.load, *(x.load for x in system.excitations)]
@@ -96,14 +96,14 @@ def run_members(
     executor: Executor | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> list[xr.Dataset]:
-    """Run the members; return the kept variables and ``energy_residual`` of each, in their order.
+    """Run the members; return the kept variables and ``energy_residual`` of each, in order.
 
     The result does not depend on the executor.
 
     Args:
-        members: to run.
+        members: members to run.
         executor: executor of threads or processes; one thread per core unless given.
-        progress: called with the part done, 0 to 1.
+        progress: callback that receives the completed fraction, 0 to 1.
 
     Raises:
         NumericsError: a member cannot be computed.
@@ -111,7 +111,7 @@ def run_members(
     threads = ThreadPoolExecutor(len(os.sched_getaffinity(0)))
     runs = list[xr.Dataset]()
     with threads if executor is None else nullcontext(executor) as pool:
-        # The iterator cancels what has not begun when it is left early.
+        # If an error ends the loop, the iterator cancels the remaining members.
         for run in pool.map(_run, members):
             runs.append(run)
             if progress is not None:
@@ -149,21 +149,21 @@ def integrate_ensemble(
 
     Args:
         motion: motion of member 0, without changes.
-        members: their number, at least two.
+        members: number of members, at least two.
         relative: largest relative change, positive.
         seed: seed of the changes; the same seed gives the same members on every machine.
-        vary: the data that change, all by one factor: the loads, all clearances, or the initial
+        vary: changed data, all by the same factor: the loads, all clearances, or the initial
             velocity.
-        integrator: integrator of member 0, :class:`AdaptiveStep` unless given; the others make its
-            steps.
-        executor: see :func:`run_members`; for MPI, the pool of ``mpi4py.futures``.
-        progress: called with the part done, 0 to 1.
-        unchanged: trajectory of member 0, if it is known.
+        integrator: integrator of member 0, :class:`AdaptiveStep` unless given; the other members
+            use its steps.
+        executor: executor as in :func:`run_members`; for MPI, the pool of ``mpi4py.futures``.
+        progress: callback that receives the completed fraction, 0 to 1.
+        unchanged: trajectory of member 0, if it is available.
 
     Returns:
-        Dims ``member``, ``time``, ``station``: of ``KEPT`` what the system observes, and
-        ``energy_residual`` (member); coordinate ``change`` (member), relative. Attributes:
-        ``vary``, ``relative``, ``seed``, ``integrator``, and ``step`` in s of member 0.
+        A dataset with dims ``member``, ``time``, ``station``: the variables of ``KEPT`` that the
+        system observes, and ``energy_residual`` (member); coordinate ``change`` (member), relative.
+        Attributes: ``vary``, ``relative``, ``seed``, ``integrator``, and ``step`` in s of member 0.
 
     Raises:
         ValueError: an argument is out of its range, or the varied data are zero.

@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Predictability horizons: how long a motion can be predicted, and what limits it.
+"""Predictability horizons: the time for which a motion can be predicted, and its limits.
 
-A small relative change ε of the data makes two runs diverge as ε exp(λ t), so that they reach a
-given distance at
-
-    T(ε) = T(1) − ln(ε)/λ
-
-and data a thousand times better extend the horizon by ln(1000)/λ only (Lorenz 1963, *Deterministic
-nonperiodic flow*). That holds while the distance is small: λ is read at a small part of the range,
-and larger parts may be reached at about the same time from any ε. A linear system has no such time:
-there the distance stays in proportion to ε.
+A small relative change ε of the data makes two runs diverge as ε exp(λ t). They reach a given
+distance at T(ε) = T(1) − ln(ε)/λ, so that data a thousand times more accurate extend the horizon
+only by ln(1000)/λ (Lorenz 1963, *Deterministic nonperiodic flow*). This holds for small distances:
+λ is determined at a small fraction of the range, while larger fractions may be reached at about the
+same time for any ε. A linear system has no horizon: its distance stays proportional to ε.
 """
 
 from __future__ import annotations
@@ -29,23 +25,24 @@ from dynamics.motion import Motion
 from dynamics.predictability.ensemble import EnsembleMember, Vary, check_varied, run_members
 from dynamics.trajectory import Trajectory
 
-# Parts of the range at which two curves are distinguishable, and at which they are unrelated.
+# Fractions of the range at which two curves become distinguishable, and unrelated.
 SHARES = (0.01, 0.20)
-# Part of the range up to which the distance is still in proportion to ε.
+# Fraction of the range up to which the distance is proportional to ε.
 EARLY = 1.0e-4
 
-# Parts of the duration that are run in turn; most runs diverge within the first.
+# Fractions of the duration that are run in turn; most runs diverge within the first one.
 _PARTS = 0.25, 1.0
-# Part of the progress of each of these, for the large changes and again for the small ones.
+# Share of the progress of each fraction, for the large changes and again for the small ones.
 _STAGE = 0.5 / len(_PARTS)
 
 
 def horizon(members: Array, time: Array, share: float) -> float:
-    """Return the time in s at which members (num_members, num_times) first diverge; NaN if never.
+    """Return the time in s at which members (num_members, num_times) diverge; NaN if they do not.
 
-    Their spread then exceeds a share of the range of member 0: half the distance of the largest
-    and smallest member, the largest error of the best single prediction. A standard deviation
-    would be smaller while most members are together, and give a later horizon.
+    Members diverge when their spread exceeds a share of the range of member 0. The spread is half
+    the distance between the largest and the smallest member, which is the error of the best single
+    prediction. A standard deviation would be smaller while most members agree, and give a later
+    horizon.
     """
     spread = 0.5 * np.ptp(members, axis=0)
     passed = np.flatnonzero(spread > share * np.ptp(members[0]))
@@ -54,13 +51,13 @@ def horizon(members: Array, time: Array, share: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Growth:
-    """The line T(ε) through measured horizons.
+    """Line T(ε) through measured horizons.
 
     Args:
-        rate: λ in 1/s; NaN where fewer than two horizons are known, or smaller ε gave no later
-            ones beyond the scatter.
-        start: T(1) in s, NaN as above.
-        scatter: root mean square distance of the horizons from the line, in s.
+        rate: λ in 1/s; NaN with fewer than two horizons, or if smaller ε do not give later horizons
+            beyond the scatter.
+        start: T(1) in s; NaN like ``rate``.
+        scatter: root mean square distance of the horizons from the line in s.
     """
 
     rate: float
@@ -69,14 +66,14 @@ class Growth:
 
     @classmethod
     def fit(cls, relatives: Array, times: Array) -> Growth:
-        """Least squares of T (num,) in s, NaN where there is none, over ln ε."""
+        """Fit a line to T (num,) in s over ln ε by least squares; NaN horizons are ignored."""
         known = np.isfinite(times)
         if known.sum() < 2:
             return cls(np.nan, np.nan, np.nan)
         logs = np.log(relatives[known])
         slope, start = np.polyfit(logs, times[known], 1)
         scatter = float(np.sqrt(np.mean((times[known] - slope * logs - start) ** 2)))
-        # The slope's own error, twice: what a line through scattered times may have by chance.
+        # Twice the standard error of the slope, which may result from scatter by chance.
         if not slope < -2.0 * scatter / (np.sqrt(known.sum()) * np.std(logs)):
             return cls(np.nan, np.nan, scatter)
         return cls(float(-1.0 / slope), float(start), scatter)
@@ -91,14 +88,13 @@ class Horizons:
     """Horizons of one system under changes of several sizes.
 
     Args:
-        relatives: (num_relatives,) ε, rising.
-        shares: (num_shares,) parts of the range, rising.
-        times: (num_relatives, num_shares) in s, NaN where the spread stays below.
-        of_step: (num_shares,) time in s at which a run with a finer step, or tolerance, has
-            diverged as far.
-        growth: (num_shares) the lines through ``times``.
-        step_change: the ε whose horizon at the first share is that of the finer step, by the first
-            line; 0 where the finer step has none, NaN without a line.
+        relatives: ε (num_relatives,), ascending.
+        shares: fractions (num_shares,) of the range, ascending.
+        times: horizons (num_relatives, num_shares) in s; NaN if the spread stays below the share.
+        of_step: time (num_shares,) in s at which a run with a finer step or tolerance diverges.
+        growth: line through ``times`` for each share.
+        step_change: ε with the same horizon at the first share as the finer step, by the first
+            line; 0 if the finer step does not diverge, NaN without a line.
     """
 
     relatives: Array
@@ -112,12 +108,11 @@ class Horizons:
     def limits(self) -> list[Literal["step", "physics", "nothing"]]:
         """The limit of predictability at each share (num_shares).
 
-        ``step``: a finer step changes the run more than the largest change of the data, so that it
-        would help. ``physics``: it does not; data are not known that well. ``nothing``: neither
-        makes two runs diverge so far within the duration.
-
-        Where growth is known, its line decides for all shares, since the order in which two runs
-        reach a large share is chance.
+        ``step``: a finer step changes the run more than the largest change of the data, so that a
+            finer step would help. ``physics``: the changes of data have the larger effect.
+            ``nothing``: neither makes runs diverge to this share within the duration. If the growth
+            is measured, its line decides for all shares, since the order in which two runs reach a
+            large share is chance.
         """
         largest = self.relatives[-1]
         found: list[Literal["step", "physics", "nothing"]] = []
@@ -145,13 +140,12 @@ def measure_horizons(
     progress: Callable[[float], None] = lambda part: None,
     unchanged: Trajectory | None = None,
 ) -> Horizons:
-    """Return the horizons of a motion: with a finer step, and with changes of each size.
+    """Return the horizons of a motion for a finer step and for changes of each size.
 
-    Where the runs of the largest change do not diverge to the first share, smaller changes are not
-    run; nor is the rest of runs that diverge early to all shares.
-
-    Few partners suffice for the growth at a small share; its scatter is a measure of its error.
-    Horizons at large shares are chance, and are the earlier the more partners there are.
+    If runs with the largest change do not diverge to the first share, smaller changes are not run.
+    Runs that diverge to all shares end early. Few partners suffice for the growth at a small share,
+    with its scatter as a measure of error. Horizons at large shares are random, and earlier with
+    more partners.
 
     >>> kicked = Motion(ball, duration=1.0, velocity=[3.0])
     >>> found = measure_horizons(kicked, [1e-9, 1e-6], "velocity", observer="height")
@@ -159,17 +153,18 @@ def measure_horizons(
     (2, 2)
 
     Args:
-        motion: without changes.
+        motion: motion without changes.
         relatives: ε, each between 0 and 1.
-        vary: the data that change, see :func:`dynamics.predictability.ensemble.integrate_ensemble`.
-        partners: runs for each size, with changes from ε/2 to ε of either sign, the first ε.
-        integrator: integrator of the unchanged run, :class:`AdaptiveStep` unless given; the others
-            make its steps, and one of them half of each.
-        executor: see :func:`dynamics.predictability.ensemble.run_members`.
-        shares: parts of the observer's range, rising.
-        observer: the output that is compared.
-        progress: called with the part done, 0 to 1.
-        unchanged: trajectory of the motion, if it is known.
+        vary: changed data, see :func:`dynamics.predictability.ensemble.integrate_ensemble`.
+        partners: number of runs for each size, with changes between ε/2 and ε of either sign; the
+            first change is ε.
+        integrator: integrator of the unchanged run, :class:`AdaptiveStep` unless given; the other
+            runs use its steps, one of them half of each.
+        executor: executor as in :func:`dynamics.predictability.ensemble.run_members`.
+        shares: fractions of the observer's range, ascending.
+        observer: name of the compared output.
+        progress: callback that receives the completed fraction, 0 to 1.
+        unchanged: trajectory of the motion, if it is available.
 
     Raises:
         ValueError: the varied data are zero.
@@ -192,7 +187,7 @@ def measure_horizons(
         progress(before + _STAGE * part)
 
     def measure(groups: Sequence[Sequence[EnsembleMember]], done: float) -> Array:
-        """Return horizons (num_groups, num_shares) in s; ``done`` is the part done before."""
+        """Return the horizons (num_groups, num_shares) in s; ``done`` is the earlier progress."""
         found = np.full((len(groups), len(shares)), np.nan)
         for number, part in enumerate(_PARTS):
             left = [g for g in range(len(groups)) if np.isnan(found[g]).any()]
@@ -204,7 +199,7 @@ def measure_horizons(
                 found[g] = [horizon(np.array([whole, *near]), time, share) for share in shares]
         return found
 
-    # The longest run first, so that none waits for it in the end.
+    # The longest run starts first, so that no core waits for it at the end.
     of_step, of_largest = measure([finer, largest], 0.0)
     of_smaller = np.full((len(smaller), len(shares)), np.nan)
     if np.isfinite(of_largest[0]):
@@ -225,6 +220,6 @@ def measure_horizons(
 def horizons_of(
     ensemble: xr.Dataset, shares: Sequence[float] = SHARES, observer: str = "tip"
 ) -> list[float]:
-    """Return the horizons (num_shares) of an ensemble in s, NaN where its spread stays below."""
+    """Return the horizons (num_shares) of an ensemble in s; NaN for shares out of reach."""
     members, time = ensemble[observer].values, ensemble["time"].values
     return [horizon(members, time, share) for share in shares]
