@@ -21,7 +21,7 @@ from studies.reference_models.prismatic import ANGLE, BOX, PlainBox
 from studies.refined import Reference, Refined, refined_table
 from studies.study import Criterion, Piece, Plot, Progress, Proof, define_study
 
-# Thickness of the plates that vibrate, over their longer side.
+# Thickness of the vibrating plates over their longer side.
 THIN, THICK = 0.001, 0.1
 
 NOTES = (
@@ -41,18 +41,18 @@ DRILLING_NOTE = (
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """Meshes as numbers of edges along a side, each twice the one before, three at least."""
+    """Meshes as numbers of edges along a side, each twice the previous one, at least three."""
 
     roof: Sequence[int] = (4, 8, 16, 32, 64)
     cylinder: Sequence[int] = (12, 24, 48, 96)
     hemisphere: Sequence[int] = (8, 16, 32, 64)
     twisted: Sequence[int] = (1, 2, 4, 8, 16)
     plate: Sequence[int] = (4, 8, 16, 32, 64)
-    torsion: Sequence[int] = (2, 4, 8)  #: over the width of each wall, one or more
-    slenderness: int = 20  #: edges along a twisted member for each one over a wall
+    torsion: Sequence[int] = (2, 4, 8)  #: edges over the width of each wall
+    slenderness: int = 20  #: edges along a twisted member per edge over a wall
     box: float = 0.2  #: edge length of the boxes in m
-    frequencies: int = 10  #: how many of a box or plate
-    decades: int = 4  #: how far the drilling tie varies, in powers of ten
+    frequencies: int = 10  #: number of frequencies of a box or plate
+    decades: int = 4  #: range of the drilling penalty in powers of ten
 
 
 def refined(
@@ -114,7 +114,7 @@ def torsion(sizes: Sizes) -> Iterator[Refined]:
 
 
 def exactness(box: PlainBox, sizes: Sizes) -> Iterator[Proof]:
-    """Check what is exact up to round-off: patches under constant strain, and a rotated box."""
+    """Check cases that are exact up to round-off: patches under constant strain, a rotated box."""
     patch = Patch.of()
     criterion: Criterion = ("analytic", "the field that is held on its edges", 1.0e-11)
     for state in constant_strains():
@@ -130,11 +130,11 @@ def exactness(box: PlainBox, sizes: Sizes) -> Iterator[Proof]:
 
 
 def drilling(box: PlainBox, y: float, sizes: Sizes) -> Iterator[Table | Proof]:
-    """Vary the drilling tie of boxes up to 100 times its default, and of a twisted beam.
+    """Vary the drilling penalty of boxes up to 100 times its default, and of a twisted beam.
 
     Args:
         box: an outer segment.
-        y: where the inner segment presses on it, in m from the middle.
+        y: place of contact with the inner segment in m from the middle.
         sizes: parameters of the study.
     """
     powers = 10.0 ** np.arange(sizes.decades + 1)
@@ -167,7 +167,7 @@ def drilling(box: PlainBox, y: float, sizes: Sizes) -> Iterator[Table | Proof]:
 
 @define_study("benchmarks", "The shell element")
 def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Run benchmarks, patches, plates, torsion, a rotated box, and the drilling tie."""
+    """Run benchmarks, patches, plates, torsion, a rotated box, and the drilling penalty."""
     sizes = sizes or Sizes()
     outer, inner = (segment.section for segment in build_boom(friction_case()).segments)
     assert outer is not None

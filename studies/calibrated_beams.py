@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Accuracy of a beam that is calibrated_beam by a shell, relative to that shell.
+"""Accuracy of a beam that a shell calibrates, relative to that shell.
 
-The paper's boom with friction over plays and loads up to ten times the paper's, near webs and with
-pads: textbook beams, the beam with springs, the beam with the fields of its section, and between
-them the shell in more and more coordinates. All share one mesh: the reference is
-the shell of that mesh, whose own error is the subject of another study (``working_load``).
+The study runs the paper's boom with friction over plays, and over loads up to ten times the
+paper's, with contact near webs and at pads. It compares textbook beams, the beam with springs, the
+beam with section fields, and shells with different numbers of coordinates. The reference is the
+shell of the same mesh, whose error is the subject of another study (``working_load``).
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from studies.pads import with_pads
 from studies.study import Criterion, Piece, Progress, Proof, define_study
 from studies.working_load import Point, PointMotion, set_point
 
-# Permitted errors of the tip, as parts of its range, of first peaks, and of frequencies.
+# Permitted errors of the tip as fractions of its range, of first peaks, and of frequencies.
 SPRINGS, FIELDED, PEAK, FREQUENCY = 0.025, 0.01, 0.003, 0.001
-# Frequencies of the boom with closed contacts that springs and fields preserve; those beyond have
-# the inertia of the section in them.
+# Number of frequencies with closed contacts that springs and fields preserve; higher ones depend on
+# the inertia of the section.
 OF_SPRINGS, OF_FIELDS = 2, 6
 SHELL, EULER, PLAIN = "shell", "Euler–Bernoulli", "Timoshenko"
 SPRUNG, WITH_FIELDS = "with springs", "with section fields"
@@ -40,12 +40,15 @@ SPRUNG, WITH_FIELDS = "with springs", "with section fields"
 class Sizes:
     """Parameters of the study."""
 
-    mesh_size: float = 0.2  #: of the shells in m
+    mesh_size: float = 0.2  #: edge length of the shells in m
     plays: Sequence[float] = (0.0, 2.0e-3, 4.0e-3, 7.0e-3, 10.0e-3, 14.0e-3)  #: 2Δ in m
-    loads: Sequence[float] = (1.0, 3.0, 10.0)  #: over the paper's
-    pad: tuple[float, float] = (0.1, 0.06)  #: length and width in m
-    coordinates: Sequence[int] = (10, 20)  #: of each segment of shells in fewer of them
-    duration: float = 5.0  #: in s
+    loads: Sequence[float] = (1.0, 3.0, 10.0)  #: loads over the paper's
+    pad: tuple[float, float] = (0.1, 0.06)  #: length and width of pads in m
+    coordinates: Sequence[int] = (
+        10,
+        20,
+    )  #: numbers of coordinates of each segment of reduced shells
+    duration: float = 5.0  #: duration of the motions in s
 
 
 def move_all(
@@ -62,12 +65,12 @@ def move_all(
 
 
 def tip_errors(moved: Sequence[PointMotion], shell: Sequence[PointMotion]) -> Array:
-    """Return the tip's largest distance (num_points,) as a part of the shell's range."""
+    """Return the tip's largest distance (num_points,) as a fraction of the shell's range."""
     return np.array([one.tip_error(other) for one, other in zip(moved, shell, strict=True)])
 
 
 def peak_errors(moved: Sequence[PointMotion], shell: Sequence[PointMotion]) -> Array:
-    """Return relative errors (num_points,) of the first peaks; NaN without one."""
+    """Return the relative errors (num_points,) of the first peaks; NaN without a peak."""
     return np.array([one.peak_errors(other)[0] for one, other in zip(moved, shell, strict=True)])
 
 
@@ -75,12 +78,12 @@ def peak_errors(moved: Sequence[PointMotion], shell: Sequence[PointMotion]) -> A
 class ModelComparison:
     """Results of all models with one type of contact."""
 
-    where: str  #: segments touch
-    points: Sequence[Point]  #: of all motions
-    #: By the name of the model, the shell's first.
+    where: str  #: contact of the segments, in words
+    points: Sequence[Point]  #: points of all motions
+    #: Motions by the name of the model, the shell's first.
     systems: Mapping[str, GapSystem]
     moved: Mapping[str, Sequence[PointMotion]]
-    seconds: tuple[float, float]  #: of its reduction, and of the calibration
+    seconds: tuple[float, float]  #: wall time of the reduction, and of the calibration
 
     def off(self, name: str) -> Array:
         """Return the errors (num_points,) of the tip."""
@@ -138,7 +141,7 @@ class ModelComparison:
 
 
 def calibrated_beam(case: Case, model: Model, fields: bool) -> Model:
-    """Return a beam calibrated_beam by a shell of the case, with its contact."""
+    """Return a beam that a shell of the case calibrates, with the shell's contact."""
     return BeamElements.model_validate(
         {
             "name": "calibrated_beam",

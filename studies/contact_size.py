@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Local compliance of walls under contacts of every size, on finer meshes and by plate theory.
 
-The paper's boom with friction, its stations squeezed
-(:mod:`shell_model.contact.local_compliance`), without a reduction; and its first peak, which
-shows the effect on the motion.
+The study uses the unreduced shells of the paper's boom with friction, under equal and opposite
+forces at a station (:mod:`shell_model.contact.local_compliance`). The first peak shows the effect
+on the motion.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from studies.pads import with_pads
 from studies.refined import Refined, refined_table
 from studies.study import Criterion, Piece, Progress, Proof, define_study
 
-# Permitted errors of the local compliance and of a pressed wall.
+# Permitted errors of the local compliance and of a wall under a pad.
 ALLOWED = 0.01
 NANO = 1.0e9
 UNIT = "1e-9 m/N"
 
-# N/m of an elastic support, without effect on self-balanced forces.
+# Stiffness in N/m of an elastic support, without effect on self-equilibrated forces.
 SPRING = 1.0e6
 # Distance beside a support at which its force is balanced, in m: beyond its fine mesh.
 BESIDE = 0.33
@@ -41,8 +41,8 @@ class Sizes:
 
     #: Edge lengths over the default ones, each half the one before.
     meshes: Sequence[float] = (1.0, 0.5, 0.25)
-    default: float = 1.0  #: of them, whose motion is taken
-    lengths: Sequence[float] = (0.05, 0.1, 0.2)  #: of contacts at corners, in m
+    default: float = 1.0  #: loads of the motions
+    lengths: Sequence[float] = (0.05, 0.1, 0.2)  #: lengths of contacts at corners in m
     #: Lengths and widths in m.
     pads: Sequence[tuple[float, float]] = ((0.1, 0.03), (0.1, 0.06), (0.2, 0.06))
     plate: Sequence[float] = (0.0125, 0.00625)  #: edge lengths in m of the plate's mesh
@@ -51,7 +51,7 @@ class Sizes:
 
 
 class Contact(NamedTuple):
-    """Contact: its name and case, and length and width in m of the pressed area."""
+    """Contact: name, case, and length and width in m of the loaded area."""
 
     name: str
     case: Case
@@ -94,12 +94,12 @@ def station_compliances(contact: Contact, part: float) -> Array:
 def support_compliance(case: Case, parts: Sequence[float]) -> list[float]:
     """Return the local compliance of the outer segment at its last support in m/N for each mesh.
 
-    An elastic support pulls the walls there, and halves of its force push the same walls back on
-    both sides, where all meshes have a line.
+    The force of an elastic support acts on the walls, and half of it acts on the same walls in the
+    opposite direction on both sides, where all meshes have a line.
 
     Args:
         case: case of the boom.
-        parts: ratios of the edge lengths to the default ones, falling.
+        parts: ratios of the edge lengths to the default ones, descending.
     """
     from shell_model.boom_shell import assemble_segments
     from shell_model.contact.local_compliance import shell_compliance

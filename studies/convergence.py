@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Verification of the models: ``python -m studies.convergence``.
 
-Studies of benchmarks, meshes, steps and other models; each prints its tables when it is done, and
-all together leave a report, and a page of every value beside its reference.
+The studies cover benchmarks, meshes, steps and other models. Each prints its tables; together they
+write a report, and a page with every value and its reference.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ def draw(plot: Plot, folder: Path) -> Figure:
         axes = sheet.add_subplot()
         strokes = theme.strokes(list(plot.curves), [])
         for label, (x, y) in plot.curves.items():
-            # Many points are drawn as a curve, few as measurements.
+            # Many points are drawn as a curve, few points as markers.
             marker, stroke = "o" if len(x) <= 20 else "", strokes[label]
             color, dashes = stroke.color, stroke.linestyle
             axes.plot(x, y, color, ls=dashes, marker=marker, markersize=5.0, label=label)
         axes.set(xlabel=plot.x, ylabel=plot.y)
         if plot.logarithmic:
             axes.set(xscale="log", yscale="log")
-            # Sizes span a decade or less: their own values say more than powers of ten.
+            # The axis has labels at the sizes, which span a decade or less.
             sizes = sorted({float(value) for x, _ in plot.curves.values() for value in x})
             axes.xaxis.set_major_locator(FixedLocator(sizes))
             axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
@@ -95,7 +95,7 @@ def markdown(studies: Sequence[Study]) -> str:
 
 def _row(proof: Proof) -> tuple[str, ...]:
     unit = f" {proof.unit}" if proof.unit else ""
-    # As many digits as show the error.
+    # The number of digits shows the error.
     digits = 6 if proof.error < 1.0e-3 else 5
     return (
         proof.what,
@@ -156,11 +156,11 @@ def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
 
     Args:
         names: names of ``STUDIES``.
-        folder: gets ``convergence.json`` and ``.md``, ``verification.md``, ``report.html``.
-        console: for the tables.
+        folder: folder for ``convergence.json`` and ``.md``, ``verification.md``, ``report.html``.
+        console: console for the tables.
     """
     studies = []
-    # FEniCSx does not outlive a fork, and a study's memory ends with its process.
+    # FEniCSx does not survive a fork, and the end of a process frees its memory.
     fresh = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(os.cpu_count(), fresh, show_notices, max_tasks_per_child=1) as pool:
         for study, seconds in pool.map(run, names):
@@ -179,7 +179,7 @@ def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
 
 
 def main() -> None:
-    """Run the studies that are named on the command line, or all; 1 if a proof does not hold."""
+    """Run the studies on the command line, or all; return 1 if a proof does not hold."""
     show_notices()
     console = wide_console()
     names = sys.argv[1:] or STUDIES

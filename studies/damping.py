@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Requested damping ratios against those measured in vibrations of booms with closed contacts."""
+"""Damping ratios in vibrations of booms with closed contacts, compared with the given ratios."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ MESH_SIZE = 0.2
 
 RATIOS = (0.005, 0.02, 0.05)
 MODES = 3
-# The numbers of the loads of the cases are those of the masses.
+# Loads of the cases are numerically equal to their masses.
 GRAVITY = 9.80665
-# Number of periods of each mode, and steps of each.
+# Number of periods of each mode, and of steps per period.
 PERIODS, STEPS = 1.1, 2000
 # Change of a contact's penetration by the vibration.
 SWING = 0.02
@@ -52,7 +52,7 @@ NOTE = (
 class PressedBoom:
     """Boom under its weight, at rest."""
 
-    system: GapSystem  #: under its weight, without damping and friction
+    system: GapSystem  #: system under its weight, without damping and friction
     rest: Array  #: (num_modes,) in √kg·m
     omega: Array  #: (MODES,) of the first modes in rad/s
     shapes: Array  #: (num_modes, MODES)

@@ -31,7 +31,7 @@ OUTER, INNER = 83.16, 55.07
 # Stations, the far support and the tip in m, the play in m, the contacts in N/m.
 TAIL, HEAD, SUPPORT, TIP, PLAY, STIFF = 9.0, 10.0, 2.0, 19.0, 0.014, 1.0e9
 MODELS = ("timoshenko", "shell")
-# Section forces are read between them.
+# Places in m between which section forces are compared.
 ALONG_OUTER, ALONG_INNER = 5.5, 14.0
 # N/m on a cantilever.
 LOAD = -100.0

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Reduced shell against the unreduced one with another integrator.
 
-The paper's boom with friction, whose motion is regular: on one mesh, all degrees of freedom by the
-generalised-α method with ever shorter steps, and the reduction by the time step of every run. A
-reduction with more coordinates separates the errors of reduction and integration.
-Once as the paper loads it, near webs, and once with pads under ten times the load.
+The motion of the paper's boom with friction is regular. On one mesh, the study integrates all
+degrees of freedom by the generalised-α method with decreasing steps, and the reduced shell by the
+program's time step. A reduction with more coordinates separates the errors of reduction and
+integration. The cases are the paper's load with contact near webs, and ten times the load with
+pads.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from studies.motions import STEP, friction_case, gap_system, scale_loads, set_du
 from studies.pads import with_pads
 from studies.study import Criterion, Piece, Progress, Proof, define_study
 
-# Permitted error of the tip, as a part of its range.
+# Permitted error of the tip as a fraction of its range.
 ALLOWED = 0.005
 
 METHOD = "all degrees of freedom, generalised-α (Chung and Hulbert 1993)"
@@ -45,12 +46,13 @@ class Sizes:
     """Parameters of the study."""
 
     mesh: float = 0.2  #: edge length in m
-    duration: float = 1.0  #: of the motion in s
-    #: Of the direct integration in s, parts of the output step, each half the one before.
+    duration: float = 1.0  #: duration of the motion in s
+    #: Steps of the direct integration in s, fractions of the output step, each half the previous
+    #: one.
     steps: Sequence[float] = (1.0e-3, 5.0e-4, 2.5e-4, 1.25e-4, 6.25e-5)
     #: The same with pads under ``LOAD`` times the load.
     hard_steps: Sequence[float] = (2.5e-4, 1.25e-4)
-    #: Of the reduction with more coordinates.
+    #: Options of the reduction with more coordinates.
     shifts: tuple[float, ...] = (5.0, 50.0, 300.0, 1500.0, 8000.0, 40000.0)
     moments: int = 5
 
@@ -63,17 +65,17 @@ class Run:
     unknowns: int  #: degrees of freedom, or modal coordinates
     step: float  #: in s
     tip: Array  #: (num_times,) in m
-    impulse: float  #: of all contact forces in N·s, from their means over output steps
-    energy_residual: float  #: as a part of the work done
+    impulse: float  #: impulse of all contact forces in N·s
+    energy_residual: float  #: energy residual as a fraction of the work
     seconds: float  #: wall time of the motion
 
 
 def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, progress: Progress) -> list[Run]:
-    """Return motions of the shell reduced, with more coordinates, then unreduced by falling steps.
+    """Return motions of the reduced shell, of one with more coordinates, then of the full shell.
 
     Args:
-        case: in the plane, with prescribed normal forces and a model ``shell``.
-        steps: steps of the unreduced one in s.
+        case: planar case with prescribed normal forces and a model ``shell``.
+        steps: steps of the full shell in s, descending.
         sizes: parameters of the study.
         progress: reports the progress.
     """
@@ -176,7 +178,7 @@ def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterato
 
 @define_study("direct", "The reduction against the full order")
 def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Study the paper's boom with friction, all its degrees of freedom against few coordinates."""
+    """Compare all degrees of freedom of the paper's boom with few coordinates."""
     sizes = sizes or Sizes()
     case = friction_case()
     runs = runs_of(case, sizes.steps, sizes, progress)

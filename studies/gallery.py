@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Pictures of docs/gallery.md, from finished runs.
+"""Pictures of docs/gallery.md from finished runs.
 
-``python -m studies.gallery`` takes them from the folders ``paper``, ``spatial``,
-``three-segments`` and ``convergence`` of runs/out, which ``make verify convergence`` leaves, and
-``drawn-out-sweep``, which ``make gallery`` makes, and writes the pictures in docs/gallery.
+``python -m studies.gallery`` writes docs/gallery from the folders ``paper``, ``spatial``,
+``three-segments`` and ``convergence`` of runs/out, which ``make verify convergence`` writes, and
+``drawn-out-sweep``, which ``make gallery`` writes.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ from runs.report.snapshots import TITLES, telling_instants
 RUNS, GALLERY = Path("runs/out"), Path("docs/gallery")
 MODEL = "shell"
 
-# Of the mesh: the view's elevation in degrees, and metres to each side of the overlap.
+# View of the mesh: elevation in degrees, and metres to each side of the overlap.
 PIXELS, ELEVATION, BESIDE = (SHEET[0], 660), 28.0, 0.9
 
-# Distortions of sections are drawn up to this part of the outer section's height.
+# Limit of the drawn distortion of sections, as a fraction of the outer section's height.
 CHANGE_DRAWN = 0.05
 
-# Picture of the gallery → its run and file.
+# Run and file of each picture of the gallery.
 COPIED = {
     "boom-first-peak": ("paper", "snapshots/boom-first-peak.png"),
     "overlap-largest-force": ("paper", "snapshots/overlap-largest-force.png"),
@@ -63,7 +63,7 @@ def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
     """Yield names and pictures, one after the other.
 
     Args:
-        runs: the folder of the runs' folders.
+        runs: folder with the folders of runs.
 
     Raises:
         BadInput: a run or one of its pictures is missing.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Responses to loads with histories against closed forms, for any position of kinks."""
+"""Responses to loads with histories, compared with closed forms for any position of kinks."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from dynamics.motion import Motion
 from geometry.arrays import Array
 from studies.study import Criterion, Progress, Proof, define_study
 
-# Distance of outputs, steps, and duration in s. A step is a tenth of the shortest 1/ω below.
+# Output step, time step and duration in s. A step is a tenth of the smallest 1/ω below.
 OUTPUT_STEP, STEP = 0.02, 2.0e-5
 DURATION = 4.0
 # ω of masses of 1 kg on springs in rad/s: free, of a boom, of the plates of a shell.
 OMEGAS = (0.0, 2.0, 19.0, 300.0, 5.0e3)
-# The one with reported vibration.
+# ω of the mass whose vibration is reported.
 BOOM = 19.0
 # Force in N.
 FORCE = 10.0
@@ -45,8 +45,8 @@ def response(omega: float, history: Ramp | PiecewiseLinear, time: Array) -> Arra
     a ramp by as much as the slope changes there.
 
     Args:
-        omega: in rad/s, 0 without a spring.
-        history: with kinks from t = 0 on.
+        omega: ω in rad/s, 0 without a spring.
+        history: history with kinks from t = 0 on.
         time: (num_times,) in s.
     """
     kinks = np.array(history.kinks)

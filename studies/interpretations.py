@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Study of the interpretations of the paper's data that its statements exclude.
 
-The print leaves open whether the play of 14 mm is 2Δ or Δ, whether the contact stiffness has lost
-its exponent, which functions the series has at its ends, and which contact law a figure belongs
-to. The study runs every combination with the beam models and judges it; the authors cannot have
-computed a combination that a statement contradicts.
+The paper does not state clearly whether the play of 14 mm is 2Δ or Δ, whether the contact stiffness
+has lost its exponent in print, which functions the series has at its ends, and to which contact law
+a figure belongs. The study runs and judges every combination with the beam models; the authors
+cannot have used a combination that contradicts a statement.
 """
 
 from __future__ import annotations
@@ -42,17 +42,18 @@ SERIES = ("kantorovich-4", "kantorovich-5")
 WITH_PLAY = (*SERIES, "beam-fe")
 MODELS = (*WITH_PLAY, "beam-fe-tied")
 
-# The rules of every run judge the first three; the others need several runs.
+# A single run suffices to judge the first three statements; the others need several runs.
 COMMON = ("S1", "S5", "S6")
 JUDGED = ("S1", "S2", "S3", "S4", "S5", "S6", "S9")
 
 Stiffness = Literal["restored", "literal"]
 # "1010 kN/m" with the exponent lost in print, in N/m², and literally, in N/mⁿ.
 RESTORED, LITERAL = 1.0e13, 1.01e6
-# About the mean force of a loaded pad in N, at which the laws of all exponents are equally stiff.
+# Approximate mean force of a loaded pad in N, at which the laws of all exponents have the same
+# stiffness.
 PAD_FORCE = 2.5e4
-# The soft literal contacts would let the integrator take steps that resonate with the highest modes
-# of the beam elements; in s.
+# Step in s for the soft literal contacts, whose adaptive steps would resonate with the highest
+# modes of beam elements.
 LITERAL_STEP = 1.0e-5
 
 # Runs of an interpretation with slightly changed loads, since chaos makes a single run a sample.
@@ -66,8 +67,8 @@ class Interpretation:
     """One interpretation of the data."""
 
     play: float  #: 2Δ in m
-    stiffness: Stiffness  #: of the contact, with the lost exponent restored or literal
-    base: Base  #: of the series
+    stiffness: Stiffness  #: contact stiffness, with the lost exponent restored or literal
+    base: Base  #: base of the series
     exponent: float  #: n of all models with play
 
     def __str__(self) -> str:
@@ -77,8 +78,8 @@ class Interpretation:
     def contact_stiffness(self) -> float:
         """Contact stiffness k in N/mⁿ.
 
-        Its unit depends on n, so the restored one of another n than the paper's 2 has the tangent
-        n k^(1/n) F^(1−1/n) of the quadratic law at the pads' force F.
+        Its unit depends on n. For other n than the paper's 2, the restored stiffness gives the
+        tangent n k^(1/n) F^(1−1/n) of the quadratic law at the pads' force F.
         """
         if self.stiffness == "literal":
             return LITERAL
@@ -87,7 +88,7 @@ class Interpretation:
         return float((tangent / (n * PAD_FORCE ** (1.0 - 1.0 / n))) ** n)
 
     def case(self, paper: Case, change: float = 0.0) -> Case:
-        """Return the paper's case in this interpretation, with the beam models alone.
+        """Return the paper's case in this interpretation, with the beam models only.
 
         Args:
             paper: case of the file.
@@ -106,7 +107,7 @@ class Interpretation:
             for model in paper.models
             if model.name in MODELS
         )
-        # No box of uniform walls leaves a play of 28 mm, and beams do not need the plates.
+        # No box with uniform walls leaves a play of 28 mm, and beams do not need plates.
         segments = tuple(
             segment.model_copy(
                 update={"height_to_width": None, "load": (1.0 + change) * segment.load}
@@ -150,7 +151,7 @@ class JudgedInterpretation:
     """An interpretation with its findings."""
 
     interpretation: Interpretation
-    findings: Mapping[str, Finding]  #: by the statement's id
+    findings: Mapping[str, Finding]  #: findings by the statement's id
     peaks: Mapping[str, float]  #: first tip peak of each model in m
     energy_residual: float  #: the largest of all runs
 
@@ -173,9 +174,9 @@ def survey(
     """Return interpretations with their findings, runs of two groups side by side.
 
     Args:
-        interpretations: those that differ in the base of the series alone in succession; they
-            share the motions of the beam elements.
-        members: runs of each.
+        interpretations: interpretations, ordered so that those that differ only in the base of the
+            series follow one another and share the motions of beam elements.
+        members: number of runs of each.
     """
     paper = case_file.load(str(PAPER))
 
@@ -193,9 +194,9 @@ def survey(
 def _judge(
     interpretation: Interpretation, paper: Case, members: int, motions: Cache
 ) -> JudgedInterpretation:
-    """Run an interpretation and judge all statements but S9, which needs several of them.
+    """Run an interpretation and judge all statements except S9, which needs several ones.
 
-    Motions of other interpretations are reused, and its own are added to them.
+    Motions of other interpretations are reused, and new motions are added to them.
     """
     changes = perturbations(members, CHANGE, 0)
     runs = [_results(interpretation.case(paper, change), motions) for change in changes]
@@ -217,9 +218,9 @@ def _judge(
 
 
 def judge_exponents(judged: Sequence[JudgedInterpretation]) -> list[JudgedInterpretation]:
-    """Add S9 to interpretations that differ in their exponent alone, which share the verdict.
+    """Add the common verdict on S9 to interpretations that differ only in the exponent.
 
-    Its number is the part by which a model's larger first tip peak exceeds the smaller one.
+    Its number is the relative difference between a model's larger and smaller first tip peak.
     """
     groups: dict[Interpretation, list[JudgedInterpretation]] = {}
     for entry in judged:

@@ -17,7 +17,7 @@ from studies.motions import friction_case, gap_system, scale_mesh, set_duration,
 from studies.refined import Refined, refined_table
 from studies.study import Piece, Progress, define_study
 
-# Permitted error of the default mesh, relative to the limit of infinitely fine ones.
+# Permitted error of the default mesh, relative to infinitely fine meshes.
 ALLOWED = 0.01
 
 NOTE = (
@@ -33,9 +33,9 @@ class Sizes:
 
     #: Edge lengths over the default ones, each half the one before, three at least.
     meshes: Sequence[float] = (4.0, 2.0, 1.0, 0.5)
-    default: float = 1.0  #: the one whose error is checked
+    default: float = 1.0  #: edge length of the mesh whose error is checked
     duration: float = 3.0  #: of the motion in s
-    #: How many of the lowest natural frequencies, of the first tip peaks.
+    #: Numbers of natural frequencies and of first tip peaks.
     frequencies: int = 3
     peaks: int = 3
 

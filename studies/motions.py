@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Motion shared by the studies: the paper's example with friction.
+"""Motion of the paper's example with friction, which several studies use.
 
-It is regular, so that two runs may be compared from moment to moment.
+It is regular, so that two runs can be compared pointwise.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ from runs.pipeline.models import MotionPlan, build
 CASE = CASES / "friction-walk.toml"
 
 OUTPUT_STEP = 1.0e-3
-# In s: a shell's tip differs by at most 0.02 % of its range over 5 s from that with half of it.
+# Time step in s; half of it changes a shell's tip by at most 0.02 % of its range in 5 s.
 STEP = 2.0e-5
 
 _Task = TypeVar("_Task")
 _Found = TypeVar("_Found")
 
-# Frequency for the flexibility of a station: below all elastic modes, above the rigid ones.
+# Frequency for the flexibility of a station in Hz: below all elastic modes, above rigid motion.
 SLOW = 5.0
 
 
@@ -113,7 +113,7 @@ def run_parallel(move: Callable[[_Task], _Found], tasks: Iterable[_Task]) -> lis
 
 
 def without_friction(system: GapSystem) -> GapSystem:
-    """Return the system with contact rows alone."""
+    """Return the system with contact rows only."""
     return replace(system, friction_rows=np.zeros((0, system.num_modes)), frictions=())
 
 

@@ -38,9 +38,9 @@ def pad_proofs(case: Case, size: tuple[float, float], system: GapSystem) -> Iter
     The value of its row for a rigid motion is the work of its unit force.
 
     Args:
-        case: one with the pads.
-        size: their length and width in m.
-        system: the shell with them.
+        case: case with the pads.
+        size: length and width of the pads in m.
+        system: shell with the pads.
     """
     boom = build_boom(case)
     start, _ = boom.overlap(boom.joints[0])

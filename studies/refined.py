@@ -13,7 +13,7 @@ from studies.study import Kind, Proof
 
 # Safety factor of a grid convergence index of three or more grids (Roache 1998).
 SAFETY = 1.25
-# Below it the values on the meshes do not converge.
+# Observed order below which the values do not converge.
 LEAST_ORDER = 0.5
 
 
@@ -30,10 +30,10 @@ class Reference(NamedTuple):
 class Refined:
     """Quantity on successively finer meshes."""
 
-    what: str  #: quantity
-    unit: str  #: of the values; empty for a pure number, or where the source names none
-    sizes: Sequence[float]  #: of the meshes, falling by one ratio each
-    values: Sequence[float]  #: one for each
+    what: str  #: name of the quantity
+    unit: str  #: unit of the values; empty for a pure number, or if the source gives none
+    sizes: Sequence[float]  #: sizes of the meshes, decreasing by a constant ratio
+    values: Sequence[float]  #: value on each mesh
     reference: Reference | None = None  #: reference of the finest, if known
 
     @property

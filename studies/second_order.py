@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Columns against known solutions: Euler's cases, Greenhill's, beam-columns, frequencies."""
+"""Columns compared with known solutions: Euler's cases, Greenhill's, beam-columns, frequencies."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ SHARE = 0.3
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """Model of a column, with its system and the critical factor of its axial force."""
+    """Model of a column, with its system and critical factor."""
 
     of: Callable[[Boom], tuple[GapSystem, float | None]]  #: a boom of one segment
     in_shear: bool  #: whether shear bends it, too
@@ -125,7 +125,7 @@ def study(progress: Progress) -> Iterator[Proof]:
 def _euler(name: str, model: Model) -> Iterator[Proof]:
     source = "Euler 1744, shear by Engesser 1891" if model.in_shear else "Euler 1744"
     for case, (supports, part) in EULER.items():
-        # No closed form is known for a shear-flexible column.
+        # A shear-flexible column has no closed form.
         if model.in_shear and case == "clamped and hinged":
             continue
         reference = model.critical(part * CRITICAL)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Error of the shell relative to a solid for walls of growing thickness.
 
-A short pair of boxes keeps its mid-lines while its walls grow. Every quantity of
-both models is the limit of refinement, so that only the theory's error remains: a shell's walls end
-on one another's mid-lines, where a solid has corners. Both are reduced by symmetry classes to a
-quarter, and read the same way.
+A short pair of boxes has constant mid-lines and walls of increasing thickness. Every quantity of
+both models is the limit of refinement, so that only the error of the theory remains: walls of a
+shell meet at mid-lines, where a solid has corners. Both models use a quarter of the segment, and
+the same readings.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Probe(NamedTuple):
 
     what: str  #: its name
     family: SymmetryClass  #: symmetry class of the motions
-    places: Mapping[float, float]  #: x in m → weight of what is read there
+    places: Mapping[float, float]  #: weights of the readings by x in m
     read: Callable[[Outline], Row]  #: of the section
 
     def row(self, outline: Callable[[float], Outline]) -> Row:
@@ -96,7 +96,7 @@ class Quarter:
     def measure(self) -> dict[str, float]:
         """Return the lowest elastic frequency in Hz under ``FREQUENCY``, and compliances by probe.
 
-        Compliances are at ``SLOW``, in m/N or rad/(N·m). There is one factorisation.
+        Compliances are at ``SLOW``, in m/N or rad/(N·m). One factorisation serves both.
         """
         model = self.model
         solve = ShiftedSolver(model, SLOW)
@@ -225,7 +225,7 @@ class Quantity(NamedTuple):
     allowed: float = ALLOWED  #: permitted error of the thinnest walls
 
     def of(self, answers: Sequence[Mapping[SymmetryClass, Mapping[str, float]]]) -> float:
-        """Return its value in one of the models."""
+        """Return the value of the quantity in one of the models."""
         return answers[self.segment][self.family][self.probe]
 
 
@@ -341,7 +341,7 @@ def slenderness_at(comparisons: Sequence[Comparison], what: Quantity, limit: flo
     return f"{ratios[last - 1] * (ratios[last] / ratios[last - 1]) ** part:.3f}"
 
 
-# Thick and slender: as a rod in its length, its section cannot breathe.
+# A thick and slender box, which behaves as a rod because its section cannot breathe.
 BAR = box("bar", 0.0, 2.0, (0.10, 0.08), 0.03)
 # Of sums of 1e5 terms that cancel, which compilers order differently.
 ROUND_OFF = 1.0e-8

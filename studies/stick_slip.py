@@ -28,7 +28,7 @@ from runs.pipeline.models import MotionPlan, build
 from runs.report.tables import Table
 from studies.study import Criterion, Piece, Progress, Proof, define_study
 
-# m in kg, k in N/m, R in N; static friction is so many times that.
+# m in kg, k in N/m, R in N, and the ratio of static friction to R.
 MASS, STIFFNESS, FRICTION, STICKING = 500.0, 1.0e5, 1000.0, 1.5
 SPEED = 0.05
 RATIOS = (0.01, 0.1, 0.5)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Effect of collars and diaphragms on the flexibility at the contacts of the boom's segments.
 
-A collar goes around the head of the outer segment or the tail of the inner one, a diaphragm closes
-the tail alone: the inner segment slides through the head. Flexibility is static, so that the mass
-of a stiffener has no part in it: the outer segment stands on its own supports, the inner one on two
-pins far from the joint, and Timoshenko's beam on the same is taken off.
+A collar is at the head of the outer segment or the tail of the inner one. A diaphragm can close
+only the tail, since the inner segment slides through the head. Flexibilities are static, so that
+the mass of stiffeners has no effect. The outer segment has its supports, the inner one has two pins
+far from the joint, and the flexibility of the Timoshenko beam on the same supports is subtracted.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Sizes:
     diaphragms: Sequence[float] = (0.004, 0.008, 0.016)
     #: x in m of the inner segment's supports for its static flexibility.
     pins: tuple[float, float] = (14.0, 19.0)
-    frequencies: int = 3  #: how many of the lowest ones
+    frequencies: int = 3  #: number of the lowest frequencies
     #: Edge lengths in m where an analytic value is the reference.
     plate_mesh: float = 0.04
     ring_mesh: float = 0.0125
@@ -103,7 +103,7 @@ def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes
     free = shell.rigid_motions().shape[1]
     frequencies = natural_frequencies(shell, free + sizes.frequencies)[free:]
     name = f"{segment.name}, {what}"
-    # What a slide along x carries.
+    # The part of the compliance that a translation along x causes.
     slide = np.zeros(shell.free.size)
     slide[shell.node_dofs[:, 0]] = 1.0
     mass = quadratic_form(shell.mass, slide)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Accuracy of recovered stresses: against a beam away from contacts, by refinement near them.
+"""Accuracy of stresses: compared with a beam away from contacts, by refinement near them.
 
-The inner segment of the paper's boom rests on the forces that its contacts need under its
-load: a static state with known moments, and known forces where it touches.
+The inner segment of the paper's boom is in equilibrium under its load and contact forces, so that
+its moments and contact forces are statically determinate.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Sizes:
 
     #: Edge lengths in m, each half the one before, three at least.
     meshes: Sequence[float] = (0.2, 0.1, 0.05, 0.025)
-    default: float = 0.1  #: the one that a run takes unless told otherwise
+    default: float = 0.1  #: default edge length of a run
     places: Sequence[float] = (12.0, 14.0, 16.0)  #: x in m away from contacts
 
 
@@ -135,8 +135,8 @@ class InnerSegmentState:
 def contact_forces(boom: Boom) -> dict[float, tuple[int, float]]:
     """Return side and strength in N of the contact forces on the inner segment by x.
 
-    They follow from its equilibrium. Its load lifts it: it presses up at the outer segment's end,
-    and down at its own tail.
+    They follow from its equilibrium. The load acts upwards, so that it presses upwards at the outer
+    segment's end, and downwards at its tail.
     """
     segment, (tail, head) = boom.segments[INNER], boom.joints[0].stations
     lift = segment.load * segment.length

@@ -13,8 +13,8 @@ from runs.report.tables import Plain, Table
 # Callback with the next step of a study.
 Progress = Callable[[str], None]
 
-# Kind of reference: a measurement, a formula, a published value, another code or another theory of
-# this project, or its own earlier value.
+# Kind of reference: a measurement, a formula, a published value, another code, another theory of
+# this project, or an earlier value.
 Kind = Literal["measured", "analytic", "external", "other code", "non-regression"]
 # Last fields of a proof, which several may share: kind, source, and permitted error.
 Criterion = tuple[Kind, str, float]
@@ -27,11 +27,11 @@ class Proof:
     what: str  #: measured quantity, and the model
     value: float  #: measured
     reference: float  #: exact or expected value, in the same unit
-    unit: str  #: of both; empty for a pure number
-    kind: Kind  #: of the reference
+    unit: str  #: unit of both; empty for a pure number
+    kind: Kind  #: kind of the reference
     source: str  #: formula, author and year, or the other model
     allowed: float  #: largest permitted relative error
-    order: float | None = None  #: observed order of convergence, where something was refined
+    order: float | None = None  #: observed order of convergence, if there was a refinement
 
     @property
     def error(self) -> float:
@@ -82,7 +82,7 @@ _Given = ParamSpec("_Given")
 def define_study(
     name: str, title: str
 ) -> Callable[[Callable[_Given, Iterable[Piece]]], Callable[_Given, Study]]:
-    """Make a study of a generator of tables, proofs and plots, each in the order of its kind."""
+    """Make a study from a generator of tables, proofs and plots."""
 
     def define(parts: Callable[_Given, Iterable[Piece]]) -> Callable[_Given, Study]:
         @wraps(parts)

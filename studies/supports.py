@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Booms on hinges, cylinders, rotational springs and dashpots, against closed forms."""
+"""Booms on hinges, cylinders, rotational springs and dashpots, compared with closed forms."""
 
 from __future__ import annotations
 
@@ -55,9 +55,9 @@ def tip_compliance(segment: Segment, cylinder: Cylinder, shear_stiffness: float)
     to the lug, by L − x beyond it.
 
     Args:
-        segment: one from x = 0.
-        cylinder: its lug is at x in m.
-        shear_stiffness: G A_s in N; infinite of a beam that is rigid in shear.
+        segment: segment that starts at x = 0.
+        cylinder: cylinder with its lug at x in m.
+        shear_stiffness: G A_s in N; infinite for a beam rigid in shear.
     """
     lug, beyond = cylinder.x, segment.end - cylinder.x
     force = segment.end / lever(cylinder)

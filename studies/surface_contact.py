@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Contact over the whole overlap against contact at the stations, on the paper's boom.
 
-Without friction the motion is chaotic after its first presses, so the first peak is compared; with
-friction the tip over the whole run.
+Without friction the motion is chaotic after the first contacts, so that only the first peak is
+compared; with friction the tip is compared over the whole run.
 """
 
 from __future__ import annotations

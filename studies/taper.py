@@ -32,7 +32,7 @@ from studies.study import Criterion, Kind, Progress, Proof, define_study
 
 ALPHA = 0.5
 HEAD = BoxSection(*(ALPHA * size for size in (BOX.height, BOX.width, BOX.flange, BOX.web)))
-# From the clamp to where the cone would end, in m.
+# Distance in m from the clamp to the apex of the cone.
 WHOLE = LENGTH / (1.0 - ALPHA)
 
 ELEMENTS = "shear-flexible elements"

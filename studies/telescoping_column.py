@@ -87,7 +87,7 @@ def _proofs(name: str, build: Callable[[Boom], list[SegmentModel]]) -> Iterator[
     criterion: Criterion = ("analytic", "beam-column, Timoshenko and Gere 1961", ALLOWED)
     for time, x in ((0.0, START), (1.0, END)):
         row = system.observers["head"].row
-        # Of what one segment alone moves.
+        # Check of a travel by a single segment.
         own = np.flatnonzero(row)
         stiffness = system.at_time(time).stiffness[np.ix_(own, own)]
         head = float(row[own] @ np.linalg.solve(stiffness, row[own]))

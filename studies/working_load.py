@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Mesh error of the default mesh under high contact forces.
 
-The paper's boom with friction, with its sections held, over plays from none to the paper's and
-loads up to ten times the paper's, which is what gravity does: each point on the default mesh, and
-with all edges half and twice as long. One reduction serves all points of a mesh: plays and loads
-are the laws' and the load's.
+The study runs the paper's boom with friction and constant sections, over plays up to the paper's
+and loads up to ten times the paper's, which correspond to gravity. Each point is computed on the
+default mesh, and with all edges half and twice as long. One reduction serves all points of a mesh,
+since only contact laws and loads differ.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from studies.study import Piece, Progress, Proof, define_study
 # Permitted errors of the first peak, and of the tip as a part of its range.
 PEAK, TIP = 0.002, 0.02
 TIP_OF_RANGE = "tip, part of its range"
-# Outputs over which a pad's force is averaged: single impacts take microseconds.
+# Number of outputs over which a pad's force is averaged: single impacts take microseconds.
 HELD = 20
 
 

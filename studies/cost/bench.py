@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Cost of the time step and of a shell: ``python -m studies.cost.bench``.
 
-Everything is measured in one process; compared methods take turns, so that other load
-of the machine affects all of them.
+One process measures everything. Compared methods take turns, so that other load of the machine
+affects all of them.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ from studies.motions import OUTPUT_STEP, friction_case, gap_system, model_of
 PAPER = CASES / "paper.toml"
 OUT = Path("runs/out/bench")
 
-# Goal: wall s of the ensemble of series.
+# Goal for the wall time in s of the ensemble of series.
 ENSEMBLE_GOAL = 10.0
 
 # Steps in s, and solvers with at most the same error.
@@ -70,30 +70,32 @@ MEMBERS_STEP = 1.0e-4
 class Sizes:
     """Parameters of the measurements."""
 
-    duration: float = 10.0  #: of ensembles and of telescoping booms, in s
+    duration: float = 10.0  #: durations of ensembles and of telescoping booms in s
     #: Models with friction, their motion in s, its steps in s and the step of the converged one.
     models: Sequence[str] = ("kantorovich-5", "beam-fe", "timoshenko", "shell")
     regular: float = 5.0
     steps: Sequence[float] = (1.0e-3, 2.0e-4, 1.0e-4, 5.0e-5, 2.0e-5, 1.0e-5)
     converged: float = 2.5e-6
-    early: float = 0.4  #: of the series without friction in s, before its motion is chaotic
+    early: float = (
+        0.4  #: duration of the series without friction in s, before its motion is chaotic
+    )
     #: Steps in s, and the solvers that each is compared with.
     levels: Sequence[tuple[float, Sequence[str]]] = LEVELS
     most: int = 3  #: repetitions of short runs
     #: Wall seconds of all repetitions of one run, beyond which there are no more.
     budget: float = 6.0
-    members: int = 256  #: of the ensemble of series
-    shell_members: int = 32  #: of the ensemble of shells, 0 for none
+    members: int = 256  #: members of the ensemble of series
+    shell_members: int = 32  #: members of the ensemble of shells, 0 for none
     telescoping: Sequence[str] = MODELS  #: models that telescope
     problems: Sequence[str] = tuple(PROBLEMS)  #: motions in other programs
 
 
 class Method(NamedTuple):
-    """Method that computes the series: a row of the table, and its function."""
+    """Method for the motion of the series: row of the table, and function."""
 
     solver: str
     tolerance: str  #: relative tolerance, or step, as text
-    error: float  #: of the tip, as a part of its range
+    error: float  #: error of the tip as a fraction of its range
     run: Callable[[], object]
 
 
@@ -103,7 +105,7 @@ def five_terms(case: Case) -> GapSystem:
 
 
 def off(tip: Array, exact: Array) -> float:
-    """Return the largest error of a tip (num_times,) as a part of the range of the exact one."""
+    """Return the largest error of a tip (num_times,) as a fraction of the exact tip's range."""
     return float(np.abs(tip - exact).max() / np.ptp(exact))
 
 

@@ -18,14 +18,14 @@ from studies.motions import OUTPUT_STEP
 
 Rates = Callable[[float, Array], Array]
 
-# Methods of solve_ivp, whose loop is in Python, and the one solver whose loop is in Fortran.
+# Methods of solve_ivp, whose loop is in Python, and a solver whose loop is in Fortran.
 METHODS = ("LSODA", "DOP853", "Radau")
 SOLVERS = (*METHODS, "odeint")
 
-# The loosest with no more error than ours is taken.
+# Relative tolerances, of which the loosest one with at most our error is used.
 TOLERANCES = 10.0 ** np.arange(-3.0, -13.5, -0.5)
-# Absolute tolerance over the relative one: of 1, 0.01, 1e-3, 1e-4 and 1e-5 the one with which
-# LSODA took the least time for the same energy residual.
+# Ratio of absolute and relative tolerance: of 1, 0.01, 1e-3, 1e-4 and 1e-5 the fastest one of LSODA
+# for the same energy residual.
 ABSOLUTE = 1.0e-3
 
 
@@ -58,7 +58,7 @@ def compiled_rates(system: GapSystem) -> Rates:
 
 
 def array_rates(system: GapSystem) -> Rates:
-    """Return the same in NumPy, as for a generic solver; friction by its speed's sign."""
+    """Return the rates in NumPy, for a generic solver; friction has the sign of the speed."""
     n = system.num_modes
     terms = contact_terms(system.laws)
     side, stiffness, onset, exponent = (
@@ -96,14 +96,14 @@ def generic(name: str, rates: Rates, num_states: int, duration: float, tolerance
 
 
 def match_tolerance(error: Callable[[float], float], target: float) -> tuple[float | None, float]:
-    """Return the loosest of ``TOLERANCES`` that errs by no more than ``target``, and its error.
+    """Return the loosest of ``TOLERANCES`` with an error of at most ``target``, and the error.
 
-    By bisection, as if less tolerance erred less; None, and the least error that was found, where
-    the tightest ones err more.
+    Bisection assumes that the error decreases with the tolerance. If even the tightest ones have
+    larger errors, the result is None and the least error.
 
     Args:
-        error: error of a tolerance.
-        target: in the same unit.
+        error: function that returns the error of a tolerance.
+        target: permitted error.
     """
     found: dict[int, float] = {}
 

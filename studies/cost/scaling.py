@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Cost of a shell by its size and by ranks: ``python -m studies.cost.scaling``.
 
-Every run has processes of its own, so that its peak memory is its own.
+Every run has its own processes, so that peak memories are separate.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ STAGES = ("mesh", "assembly", "rows", "reduction", "fields", "mesh error")
 # Stages with reported memory peaks.
 REMEMBERED = ("mesh", "assembly", "reduction", "fields")
 
-# Of the motions in s; the last is that of the goal.
+# Durations of the motions in s; the last is that of the goal.
 STEPS = (1.0e-4, 1.0e-5)
 
 
@@ -55,7 +55,7 @@ STEPS = (1.0e-4, 1.0e-5)
 class Sizes:
     """Parameters of the measurements."""
 
-    #: Edge lengths in m, falling; the last makes about a million degrees of freedom a segment.
+    #: Edge lengths in m, descending; the last gives about a million degrees of freedom per segment.
     meshes: Sequence[float] = (0.1, 0.06, 0.035, 0.018)
     default: float = 0.1  #: edge length in m of the motions
     #: Numbers of ranks on which the default mesh is reduced and moves; the last is that of the
@@ -95,7 +95,7 @@ def measure(sizes: Sizes) -> Iterator[Table]:
     )
     dofs, last, (seconds, peak) = [run["dofs"] for run in runs], runs[-1], MILLION_GOALS
     wall = _exponent(dofs, [run["total_seconds"] for run in runs])
-    # Processes occupy this much at their start, without any shell.
+    # Memory of processes at their start, without shells.
     memory = _exponent(dofs, [run["peaks"]["fields"] - run["idle"] for run in runs])
     yield Table.of_rows(
         "scaling-goals",
@@ -137,7 +137,7 @@ def _exponent(sizes: Sequence[float], values: Sequence[float]) -> float:
 
 
 def _measure_run(ranks: int, *what: object) -> dict[str, Any]:
-    """Return the results of a run in processes of its own."""
+    """Return the results of a run in separate processes."""
     launcher = [] if ranks == 1 else ["mpirun", "-n", str(ranks), "--oversubscribe"]
     if launcher and shutil.which("mpirun") is None:
         raise FileNotFoundError("several ranks take mpirun, which is not installed")
@@ -155,7 +155,7 @@ def _measure_run(ranks: int, *what: object) -> dict[str, Any]:
 
 
 def _run(what: str, name: str, size: str, duration: str = "0") -> None:
-    """Run once in processes of its own; rank 0 prints the measurements."""
+    """Run once in separate processes; rank 0 prints the measurements."""
     from mpi4py import MPI
 
     from shell_model.boom_shell import ShellOptions
@@ -201,7 +201,7 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
 
 def _motion(system: GapSystem, duration: float, step: float) -> list[float]:
     """Return step, seconds of a motion, nanoseconds of a step, contact changes, energy residual."""
-    # The first output compiles.
+    # The first output compiles the loop.
     FixedStep(step)(Motion(system, 1.0e-3))
     start = perf_counter()
     motion = FixedStep(step)(Motion(system, duration))
@@ -211,8 +211,8 @@ def _motion(system: GapSystem, duration: float, step: float) -> list[float]:
 
 
 def _peak() -> float:
-    """Return this program's largest resident set so far, in GB."""
-    # getrusage would include the parent's, which was this process before it began.
+    """Return the largest resident memory of this process so far in GB."""
+    # getrusage would include the memory of the parent before the fork.
     status = Path("/proc/self/status").read_text(encoding="ascii")
     (line,) = (line for line in status.splitlines() if line.startswith("VmHWM:"))
     return float(line.split()[1]) * 1024.0 / 1.0e9

@@ -26,10 +26,11 @@ CASE = CASES / "drawn-out.toml"
 MODELS = ("kantorovich-5", "beam-fe", "timoshenko", "shell")
 DURATION = 10.0
 
-# Goals: processor time over that at rest, and processor s from the mesh of a shell to its system.
+# Goals: processor time relative to a fixed extension, and processor time in s from a shell's mesh
+# to its system.
 BEAM_GOAL, SHELL_GOAL, BUILT_GOAL = 3.0, 5.0, 15.0
 
-# Lateral resistance: prescribed forces in N that press pads sideways, or dashpots in N·s/m.
+# Lateral resistance: prescribed normal forces of pads in N, or dashpots in N·s/m.
 RESISTED: Mapping[str, Mapping[str, Any]] = {
     "nothing": {},
     "friction": {"joint.normal_forces": [450.0, 500.0]},
@@ -101,7 +102,7 @@ def _cost(case: Case, name: str) -> Cost:
     begin = process_time()
     system = gap_system(case, build_boom(case), model)
     built = process_time() - begin
-    # One output compiles the time loop.
+    # The first output compiles the time loop.
     move(system, OUTPUT_STEP)
     begin = process_time()
     move(system, case.time.duration)

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from runs.report.tables import Table, write
 
-# Shorter runs are repeated for this many seconds together, and the mean counts.
+# Total time in s for which short runs are repeated to measure their mean.
 MEASURABLE = 0.05
 
 NOISE = (
@@ -29,7 +29,7 @@ def time_in_turns(
     Args:
         runs: functions to time.
         most: largest number of repetitions of each.
-        budget: wall seconds of one run, all its repetitions, beyond which it is not repeated.
+        budget: total wall time in s of one run's repetitions, beyond which it is not repeated.
     """
     seconds: list[list[float]] = [[] for _ in runs]
     for _ in range(most):
@@ -63,9 +63,9 @@ def write_tables(
         folder: created if missing.
         name: name of the files.
         title: heading of the Markdown file.
-        data: in the JSON file in addition to the tables' own.
-        tables: measurements.
-        console: for the tables.
+        data: additional data for the JSON file.
+        tables: tables of measurements.
+        console: console for the tables.
     """
     shown = []
     for table in tables:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Examples of the paper, moved by numerics of 1997, and by this program.
+"""Examples of the paper, integrated by numerical methods of 1997 and by this program.
 
-The paper moves elements by the modal technique in 4375 steps for 7 s, with gaps and friction as
-forces on a few modes. It states neither the scheme, nor the number of modes, nor whether gaps were
-iterated: this study tries all.
+The paper integrates beam elements by the modal technique in 4375 steps for 7 s, with gaps and
+friction as forces on a few modes. It does not state the scheme, the number of modes, or whether
+gaps were iterated: this study tries all combinations.
 """
 
 from __future__ import annotations
@@ -32,22 +32,22 @@ from studies.numerics_1997.schemes import CENTRAL, NEWMARK, WILSON, Scheme, inte
 SERIES = ("kantorovich-4", "kantorovich-5")
 ELEMENTS, TIED = "beam-fe", "beam-fe-tied"
 
-# The paper's step, 4375 of which make 7 s, and its neighbours, in s.
+# The paper's step of 7 s / 4375 and two others in s.
 STEPS = (3.2e-3, 1.6e-3, 0.8e-3)
 PAPER_STEP = STEPS[1]
-# A few modes of both segments, which the modal technique keeps.
+# Numbers of modes of both segments in the modal technique.
 MODES = (6, 8, 10, 12, 14)
-# Slightly changed loads: each run is a sample.
+# Relative changes of loads, since each run is a sample.
 MEMBERS, RELATIVE, SEED = 4, 1.0e-9, 1
 
 
 @dataclass(frozen=True, slots=True)
 class Numerics:
-    """Numerics of 1997 for motions of modes."""
+    """Numerical method of 1997 for modal equations."""
 
-    scheme: Scheme  #: of its steps
+    scheme: Scheme  #: scheme of the steps
     iterated: bool  #: whether gaps and friction agree with the end of a step, or lag by one
-    step: float  #: in s
+    step: float  #: step in s
 
     def __str__(self) -> str:
         gaps = "iterated" if self.iterated else "lagged"
@@ -87,7 +87,7 @@ class ModelRun:
         return self.gained / self.put_in
 
     def at(self, time: Array) -> ModelRun:
-        """Return the same at other times in s."""
+        """Return the run at other times in s."""
         curves = self.tip, self.head, self.gained
         tip, head, gained = (np.interp(time, self.time, curve) for curve in curves)
         return ModelRun(time, tip, head, gained, self.put_in, self.unconverged)
@@ -154,8 +154,8 @@ class Example:
     """Example of the paper."""
 
     case: Case  #: its file's
-    systems: Mapping[str, GapSystem]  #: of its models by their names
-    cutoff: float  #: of the slow motion in Hz
+    systems: Mapping[str, GapSystem]  #: systems of its models by name
+    cutoff: float  #: cut-off of the slow motion in Hz
     accurate: Sequence[
         Sample
     ]  #: by this program; a single one if friction makes the motion regular

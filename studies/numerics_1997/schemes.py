@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Step-by-step integration of modal equations by schemes of the 1990s, for studies alone.
+"""Step-by-step integration of modal equations by schemes of the 1990s.
 
 Newmark's average acceleration (1959), Wilson's θ (1973) and central differences are one family:
 the equation of motion holds θ steps ahead, and the acceleration of a step's end is on the line to
@@ -31,7 +31,7 @@ from studies.study import Proof
 ROUNDS, NEWTON = 8, 30
 # Tolerance of penetrations in m.
 TOLERANCE = 1.0e-13
-# Divergence limit in √kg·m.
+# Limit of coordinates in √kg·m, beyond which a motion diverges.
 DIVERGED = 1.0e5
 
 
@@ -39,9 +39,9 @@ DIVERGED = 1.0e5
 class Scheme:
     """Scheme of the family."""
 
-    name: str  #: its usual one
+    name: str  #: name in the literature
     beta: float  #: of the displacement within a step, after Newmark (1959); γ is ½
-    theta: float = 1.0  #: where in steps the equation of motion holds
+    theta: float = 1.0  #: time, in steps, at which the equation of motion holds
 
 
 NEWMARK = Scheme("Newmark", 0.25)
@@ -51,7 +51,7 @@ CENTRAL = Scheme("central differences", 0.0)
 
 @dataclass(frozen=True, slots=True)
 class SchemeRun:
-    """Results of such a code."""
+    """Results of such a scheme."""
 
     trajectory: Trajectory  #: an output for each step, NaN after the last finite one
     finite_steps: int  #: steps until the motion is not finite
@@ -82,7 +82,7 @@ def integrate(motion: Motion, scheme: Scheme, iterated: bool) -> SchemeRun:
 
     Args:
         motion: motion of a system under constant loads without damping.
-        scheme: one of the family.
+        scheme: scheme of the family.
         iterated: whether gaps and friction agree with the end of a step, or lag by one.
     """
     system = motion.system
@@ -237,7 +237,7 @@ def textbook_root(scheme: Scheme, phase: float) -> complex:
 
 
 def measured_root(scheme: Scheme, phase: float) -> complex:
-    """Return the same, measured from the motion of an oscillator."""
+    """Return the root λ, measured from the motion of an oscillator."""
     motion = Motion(oscillator(), STEPS * phase, phase, position=np.ones(1))
     way = integrate(motion, scheme, iterated=False).trajectory.states[:, 0]
     behind = np.stack([way[2:-1], way[1:-2], way[:-3]], axis=1)

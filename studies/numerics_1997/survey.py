@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Numerics of 1997 that reproduce the paper's statements S3, S7, S8 and S10.
+"""Numerical methods of 1997 that reproduce the paper's statements S3, S7, S8 and S10.
 
-The measures are those of :mod:`runs.paper.rules`; runs of the elements are by the modal technique,
-those of the series also by a general solver with at most 2000 steps.
+The measures are those of :mod:`runs.paper.rules`. Beam elements are integrated by the modal
+technique, the series also by a general solver with at most 2000 steps.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from studies.numerics_1997.samples import (
 )
 
 METHODS = {"LSODA": LSODA, "RK45": RK45}
-# In m: a deflection of half the boom's length ends the integration.
+# Deflection in m that ends the integration: half the boom's length.
 LARGEST_TIP = 10.0
 
 
@@ -47,14 +47,14 @@ class Solved:
 
 
 def solve(system: GapSystem, duration: float, method: str, tolerance: float, most: int) -> Solved:
-    """Move a system from rest until ``duration`` in s, or for as many steps as are allowed.
+    """Integrate a system from rest until ``duration`` in s, with a limited number of steps.
 
     Args:
-        system: one under constant loads, without damping.
+        system: gap system under constant loads, without damping.
         duration: duration in s.
         method: one of ``METHODS``.
-        tolerance: relative, and absolute in the units of a and ȧ.
-        most: steps.
+        tolerance: relative tolerance, also the absolute one in the units of a and ȧ.
+        most: maximum number of steps.
     """
     start = np.zeros(2 * system.num_modes)
     within = {"rtol": tolerance, "atol": tolerance}
@@ -75,7 +75,7 @@ WITHOUT, WITH = CASES / "paper.toml", CASES / "paper-friction.toml"
 
 # Tolerances of the general solver, from rough to fine.
 TOLERANCES = (1.0e-2, 1.0e-3, 1.0e-4, 1.0e-6, 1.0e-8)
-# In s about the 7 s after which the paper's elements with friction were lost.
+# Interval in s around the 7 s after which the paper's elements with friction diverged.
 ABOUT = 1.0
 
 
@@ -85,7 +85,7 @@ Way = tuple[str, float, str, bool]
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Outcome of a statement with numerics of 1997."""
+    """Outcome of a statement with numerical methods of 1997."""
 
     shown: bool  #: whether most runs with some numerics show it
     why: str  #: which, and in how many runs
