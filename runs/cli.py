@@ -299,6 +299,19 @@ def check(case: CaseFile, picture: Picture = None) -> int:
 
 
 @app.command()
+def live(
+    case: CaseFile,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Print the address of the page, and open none.")
+    ] = False,
+) -> None:
+    """Serve a page of a case: change its numbers, and see the results of its beam at once."""
+    from runs.live.server import serve
+
+    serve(case, browser=not no_browser)
+
+
+@app.command()
 def export(
     case: CaseFile,
     to: Annotated[str, typer.Option(metavar="opensees", help="The other program.")],

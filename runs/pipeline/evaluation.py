@@ -39,12 +39,18 @@ from runs.pipeline.strength import COUNTS, life, wall_stresses
 from runs.pipeline.summary import Summary
 
 
-class _Model(NamedTuple):
+class LoadedModel(NamedTuple):
     """A model of a boom and its lines; the load of its system includes all constant loads."""
 
     boom: Boom
     system: GapSystem
     lines: Sequence[Line]
+
+    @classmethod
+    def of(cls, boom: Boom, model: Model, built: Built) -> LoadedModel:
+        """Return a built model of the boom of a case."""
+        system, shown = built.system.gather_loads(), boom.bonded if model.bonded else boom
+        return cls(shown, system, with_cylinders(shown, system, model.lines(boom, built)))
 
     def at_rest(
         self, found: Mapping[float, Array], extended: Mapping[float, Array] = MappingProxyType({})
@@ -92,14 +98,13 @@ def evaluate_model(
         trajectory: motion of the model.
         shell: further output of a shell; None for a beam.
     """
-    system, shown = built.system.gather_loads(), boom.bonded if model.bonded else boom
-    lines = with_cylinders(shown, system, model.lines(boom, built))
-    played, times = _Model(shown, system, lines), instants(system, case.time.duration)
+    played = LoadedModel.of(boom, model, built)
+    system, times = played.system, instants(played.system, case.time.duration)
     found, extended = positions(system, times), extended_positions(system, case.time.duration)
     own = played.at_rest(found, extended)
     own = played.with_motion(own, found | extended, trajectory, case, model)
     if shell is not None and own.motion is not None:
-        walls = wall_stresses(shown, shell.stresses)
+        walls = wall_stresses(played.boom, shell.stresses)
         own = replace(own, motion=replace(own.motion, walls=walls))
     own = replace(own, residual_vibration=residual_vibration(system, trajectory, case, model))
     if model.bonded or not boom.joints:
@@ -129,15 +134,17 @@ def evaluate_model(
     return replace(own, motion_bonded=other.motion, life_bonded=other.life)
 
 
-def _bonded(boom: Boom, model: Model, played: _Model, found: Mapping[float, Array]) -> _Model:
+def _bonded(
+    boom: Boom, model: Model, played: LoadedModel, found: Mapping[float, Array]
+) -> LoadedModel:
     """Return the same model without play."""
     without = boom.bonded
     if (own := model.without_play(boom)) is not None:
         system = own[0].gather_loads()
-        return _Model(without, system, with_cylinders(without, system, own[1]))
+        return LoadedModel(without, system, with_cylinders(without, system, own[1]))
     initial = [position for time, position in found.items() if _at_initial_extension(boom, time)]
     system, basis = bonded_system(played.system.at_time(0.0), initial)
-    return _Model(without, system, [line.on(basis) for line in played.lines])
+    return LoadedModel(without, system, [line.on(basis) for line in played.lines])
 
 
 def _at_initial_extension(boom: Boom, time: float) -> bool:

@@ -154,7 +154,7 @@ def _move(
         plan.warm()
     with stages.stage("motion") as report_progress:
         trajectory = plan.trajectory(report_progress)
-    summary = _summary(model, system, trajectory, built.num_dofs)
+    summary = summarise_motion(model, system, trajectory, built.num_dofs)
     if summary.step_error is None and system.frictions and case.regular:
         with stages.stage("twice the step") as report_progress:
             summary.step_error = plan.step_error(trajectory, report_progress)
@@ -186,9 +186,17 @@ def _move(
     return CompletedMotion(trajectory, summary, ensemble)
 
 
-def _summary(
+def summarise_motion(
     model: Model, system: GapSystem, trajectory: Trajectory, num_dofs: int
 ) -> ModelSummary:
+    """Return the summary of a model's motion.
+
+    Args:
+        model: of the case.
+        system: that of the model, with all constant loads in its ``load``.
+        trajectory: its motion.
+        num_dofs: before any reduction.
+    """
     attributes = trajectory.data.attrs
     peaks = np.abs(trajectory.data["contact_force_peak"].values)
     summary = ModelSummary(

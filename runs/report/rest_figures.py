@@ -35,7 +35,7 @@ _DISPLACED = {"bending in z": "deflection", "bending in y": "lateral", "twist": 
 MODES = 4
 
 
-class _Line(NamedTuple):
+class Line(NamedTuple):
     """Curve of one segment in a panel."""
 
     name: str
@@ -52,7 +52,7 @@ def at_rest(run: FigureContext) -> list[Figure]:
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     if not rests:
         return []
-    lines = {name: _rest_lines(rest, name, run.strokes[name].color) for name, rest in rests.items()}
+    lines = {name: rest_lines(rest, name, run.strokes[name].color) for name, rest in rests.items()}
     # None means the position at the end of telescoping.
     tied = [
         rest
@@ -62,7 +62,7 @@ def at_rest(run: FigureContext) -> list[Figure]:
         if rest.time == rests[name].time
     ]
     if tied and not rests.keys() & set(run.bonded):
-        lines["without play"] = _rest_lines(tied[0], "without play", theme.PLAY_FREE)
+        lines["without play"] = rest_lines(tied[0], "without play", theme.PLAY_FREE)
     caption = (
         "Static under the maximum load: deflection and section forces. Positive normal forces are "
         "tension, positive moments give tension at the top. In an overlap each segment has its own "
@@ -126,41 +126,37 @@ def _read_first(run: FigureContext) -> Iterator[tuple[str, ModelDesignResults]]:
             yield name, run.design[name]
 
 
-def _rest_lines(rest: StaticResult, name: str, color: str) -> dict[str, list[_Line]]:
-    lines: dict[str, list[_Line]] = {what: [] for what in _PANELS}
+def rest_lines(rest: StaticResult, name: str, color: str) -> dict[str, list[Line]]:
+    """Return the lines of a static state by their quantity, under the name of its source."""
+    lines: dict[str, list[Line]] = {what: [] for what in _PANELS}
     dashes = "--" if color == theme.PLAY_FREE else "-"
     for diagram in rest.diagrams:
         curves = {"normal": diagram.normal, **diagram.curves}
         for what in lines.keys() & curves.keys():
             values = np.array(curves[what])
-            lines[what].append(_Line(name, np.array(diagram.x), values, color, dashes))
+            lines[what].append(Line(name, np.array(diagram.x), values, color, dashes))
     return lines
 
 
-def _both_ends(envelope: Envelope, what: str, name: str, color: str) -> Iterator[_Line]:
+def _both_ends(envelope: Envelope, what: str, name: str, color: str) -> Iterator[Line]:
     dashes = "--" if color == theme.PLAY_FREE else "-"
     for side in (envelope.low, envelope.high):
         if what in side:
-            yield _Line(name, np.array(envelope.x), np.array(side[what]), color, dashes)
+            yield Line(name, np.array(envelope.x), np.array(side[what]), color, dashes)
 
 
 def _stacked(
     run: FigureContext,
-    lines: Mapping[str, Mapping[str, Sequence[_Line]]],
+    lines: Mapping[str, Mapping[str, Sequence[Line]]],
     stem: str,
     title: str,
     caption: str,
 ) -> list[Figure]:
-    """Draw panels of all non-zero quantities above one another; nothing if all are zero."""
-    of = {
-        what: [line for each in lines.values() for line in each.get(what, ())] for what in _PANELS
-    }
-    shown = [what for what, several in of.items() if any(line.values.any() for line in several)]
-    if not shown:
+    """Draw panels of the non-zero quantities above one another; nothing where all are zero."""
+    if not (shown := _shown(lines)):
         return []
     sheet, panels = new_sheet(len(shown), 1.2 + 1.4 * len(shown))
-    curves = []
-    for number, (axes, what) in enumerate(zip(panels, shown, strict=True)):
+    for axes, what in zip(panels, shown, strict=True):
         heading, factor = _PANELS[what]
         for name, each in lines.items():
             for line in each.get(what, ()):
@@ -171,18 +167,46 @@ def _stacked(
                     linestyle=line.dashes,
                     label=name,
                 )
-                dashes = "dash" if line.dashes == "--" else "solid"
-                curves.append(
-                    Curve(name, factor * line.values, line.color, dashes, panel=number, at=line.x)
-                )
         axes.set_title(heading)
     panels[-1].set_xlabel("x along the boom (m)")
-    ends = np.array([edge(line.x) for edge in (np.min, np.max) for line in of[shown[0]]])
-    chart = Chart(
-        np.sort(ends)[[0, -1]],
-        "",
-        curves,
-        [_PANELS[what][0] for what in shown],
-        along="x along the boom (m)",
-    )
+    chart = chart_along(lines)
     return [run.finish(sheet, panels[0], stem, title, caption, part="rest", chart=chart)]
+
+
+def chart_along(lines: Mapping[str, Mapping[str, Sequence[Line]]]) -> Chart:
+    """Return the chart of the non-zero quantities along the boom.
+
+    Args:
+        lines: those of each quantity, by the name of their source, see :func:`rest_lines`.
+    """
+    shown = _shown(lines)
+    ends = [
+        edge(line.x)
+        for edge in (np.min, np.max)
+        for each in lines.values()
+        for line in each.get(shown[0], ())
+    ]
+    curves = [
+        Curve(
+            name,
+            _PANELS[what][1] * line.values,
+            line.color,
+            "dash" if line.dashes == "--" else "solid",
+            panel=number,
+            at=line.x,
+        )
+        for number, what in enumerate(shown)
+        for name, each in lines.items()
+        for line in each.get(what, ())
+    ]
+    titles = [_PANELS[what][0] for what in shown]
+    return Chart(np.sort(ends)[[0, -1]], "", curves, titles, along="x along the boom (m)")
+
+
+def _shown(lines: Mapping[str, Mapping[str, Sequence[Line]]]) -> list[str]:
+    """Return the quantities that are not zero everywhere."""
+    return [
+        what
+        for what in _PANELS
+        if any(line.values.any() for each in lines.values() for line in each.get(what, ()))
+    ]

@@ -42,7 +42,7 @@ def summary_table(results: Results) -> Table | None:
     used = [utilisations(results, name) for name in names]
     walls, fibres = ([one.get(part) for one in used] for part in ("plate", "outer fibre"))
     hardest = governing_pads(results)
-    pads = {name: _pad(pad) for name, pad in hardest.items()}
+    pads = {name: pad_text(pad) for name, pad in hardest.items()}
     stations = [None if hardest else _largest(one, "contact force", at="\nat {} m") for one in own]
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     # Take the direction in which the tip moves most.
@@ -132,18 +132,20 @@ def play_effect(results: Results) -> str:
     return " ".join(sentences)
 
 
-def utilisation_verdict(results: Results) -> str:
-    """Return text with the utilisations of the leading model, the governing one first.
+def utilisation_verdict(results: Results, model: str | None = None) -> str:
+    """Return text with the utilisations of a model, the governing one first.
+
+    The model is the leading one unless given.
 
     It is empty if the case gives no strengths, allowable pressures or fatigue life.
     """
-    first = results.leading_models[0]
-    known = [one for one in utilisations(results, first).values() if one.value is not None]
+    model = model or results.leading_models[0]
+    known = [one for one in utilisations(results, model).values() if one.value is not None]
     if not known:
         return ""
     known.sort(key=lambda one: one.value or 0.0, reverse=True)
     used = "; ".join(map(str, known))
-    return f"Utilisation {used}; without a safety factor.{_not_given(results, first)}"
+    return f"Utilisation {used}; without a safety factor.{_not_given(results, model)}"
 
 
 def _not_given(results: Results, model: str) -> str:
@@ -174,7 +176,7 @@ def governing_pads(results: Results) -> dict[str, PadLoad]:
     return {pad.model: pad for pad in pads}
 
 
-def _pad(pad: PadLoad) -> str:
+def pad_text(pad: PadLoad) -> str:
     """Return text with force, pressure and position of a pad."""
     used = _used(pad.utilisation, "allowable")
     force, pressure = amount(pad.force, "N"), amount(pad.pressure, "Pa")

@@ -118,8 +118,8 @@ def plan(
         shaping = tuple(setting for setting in settings if setting[0].shapes_sections)
         label = _label(settings)
         if shaping not in plates:
-            plates[shaping] = _inferred(_checked(file, label, chosen(shaping)))
-        held = _hold(chosen(settings), plates[shaping])
+            plates[shaping] = inferred_plates(_checked(file, label, chosen(shaping)))
+        held = hold_plates(chosen(settings), plates[shaping])
         checked = _checked(file, label, held, any(plates[shaping]))
         points.append(Point(values, label, case_file.select(checked, file, None, mesh_size)))
     _check_influence(file, variations, points)
@@ -164,7 +164,8 @@ def _checked(file: str, label: str, case: Case, held: bool = False) -> Case:
     return case
 
 
-def _inferred(case: Case) -> Plates:
+def inferred_plates(case: Case) -> Plates:
+    """Return the plates that a checked case infers, None for each segment without inference."""
     sections = [segment.section for segment in build_boom(case).segments]
     return [
         SectionTable(
@@ -176,7 +177,7 @@ def _inferred(case: Case) -> Plates:
     ]
 
 
-def _hold(case: Case, plates: Plates) -> Case:
+def hold_plates(case: Case, plates: Plates) -> Case:
     """Return the case with inferred plates fixed, or without inference where none matter."""
     in_space = any(joint.lateral_play is not None for joint in case.joints)
     matter = in_space or any(model.needs_plates for model in case.models)

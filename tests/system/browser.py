@@ -63,8 +63,17 @@ class Page:
         for domain in ("Page", "Runtime", "Log", "Network"):
             self._ask(f"{domain}.enable")
 
-    def open(self, path: Path, width: int, height: int = 800) -> None:
-        """Load a file at a width in CSS pixels, as a telephone does."""
+    def open(self, source: Path | str, width: int, height: int = 800) -> None:
+        """Load a file or an address at a width in CSS pixels, as a telephone does."""
+        self.set_width(width, height)
+        self._loaded = False
+        url = source.resolve().as_uri() if isinstance(source, Path) else source
+        self._ask("Page.navigate", url=url)
+        while not self._loaded:
+            self._receive()
+
+    def set_width(self, width: int, height: int = 800) -> None:
+        """Set the size of the window in CSS pixels."""
         self._ask(
             "Emulation.setDeviceMetricsOverride",
             width=width,
@@ -72,10 +81,6 @@ class Page:
             deviceScaleFactor=1,
             mobile=True,
         )
-        self._loaded = False
-        self._ask("Page.navigate", url=path.resolve().as_uri())
-        while not self._loaded:
-            self._receive()
 
     def evaluate(self, expression: str) -> Any:
         """Return the value of a JavaScript expression in the page."""

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Results of the beam of a changed case: first at rest, then in motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from dynamics.failure import NumericsError
+from geometry.typography import TO_MILLI
+from runs.case.checked_case import CheckedCase
+from runs.live.boom_figure import boom_figure
+from runs.pipeline.design_results import DesignResults, ModelDesignResults
+from runs.pipeline.evaluation import LoadedModel
+from runs.pipeline.model_run import summarise_motion
+from runs.pipeline.models import MotionPlan, build_on
+from runs.pipeline.motion_results import MotionResult
+from runs.pipeline.pads import pad_loads
+from runs.pipeline.proportions import proportion_cautions
+from runs.pipeline.results import Results, label
+from runs.pipeline.section_forces import section_forces
+from runs.pipeline.static_results import (
+    StaticResult,
+    extended_positions,
+    instants,
+    positions,
+)
+from runs.pipeline.strength import Fibres, FibreStress, largest_stresses
+from runs.pipeline.summary import Summary
+from runs.pipeline.utilisation import utilisations
+from runs.report import theme
+from runs.report.charts import Chart, Curve
+from runs.report.formatting import amount, fixed, number, percent
+from runs.report.rest_figures import chart_along, rest_lines
+from runs.report.summary_table import governing_pads, pad_text, summary_table, utilisation_verdict
+
+# A table of the page: title and value of each row.
+Rows = list[tuple[str, str]]
+
+# Heights of the charts in pixels: of a panel, and of the axis below all of them.
+_PANEL, _BELOW = 150, 60
+
+
+def beam_results(checked: CheckedCase, check_current: Callable[[], None]) -> Iterator[Any]:
+    """Yield the results of a case's only model at rest, then with its motion, as JSON values.
+
+    Args:
+        checked: the case, with one beam.
+        check_current: called between steps of the computation; raises where it is to end.
+
+    Raises:
+        NumericsError: the beam has no rest, or its motion cannot be computed.
+    """
+    case, boom, (model,) = checked.case, checked.boom, checked.case.models
+    built = build_on(checked.joined(model), case, model)
+    loaded = LoadedModel.of(boom, model, built)
+    duration = case.time.duration
+    check_current()
+    found = positions(loaded.system, instants(loaded.system, duration))
+    if not found:
+        raise NumericsError("the beam finds no rest under the loads of t = 0")
+    check_current()
+    extended = extended_positions(loaded.system, duration)
+    own = loaded.at_rest(found, extended)
+    forces = [[station.force for station in rest.stations] for rest in own.static]
+    pushed = xr.Dataset(
+        {"contact_force_peak": (("model", "time", "station"), [forces])},
+        coords={"model": [model.name]},
+    )
+    still = MotionResult([], [], list(_fibres(loaded, [*found.values()])), [])
+    results = _results(checked, ModelDesignResults(motion=still), pushed)
+    results.summary.pads = list(pad_loads(case, boom, pushed))
+    farthest = own.farthest_static
+    assert farthest is not None
+    yield {
+        "stage": "rest",
+        "rows": _rows_at_rest(own, results),
+        "verdict": utilisation_verdict(results, model.name),
+        "cautions": proportion_cautions(case, boom),
+        "boom": boom_figure(case, boom, farthest),
+        "forces": _plain(chart_along({"": rest_lines(farthest, "", theme.PALETTE[0])})),
+    }
+    check_current()
+    plan = MotionPlan.of(built.system, case, model)
+    trajectory = plan.trajectory(lambda _: check_current())
+    check_current()
+    own = loaded.with_motion(own, found | extended, trajectory, case, model)
+    results = _results(checked, own, label(boom, {model.name: trajectory}))
+    summary = summarise_motion(model, plan.motion.system, trajectory, built.num_dofs)
+    results.summary.models = {model.name: summary}
+    results.conclude()
+    table = summary_table(results)
+    assert table is not None
+    time, data = trajectory.time, trajectory.data
+    tips = [name for name in ("tip", "tip_lateral") if name in data]
+    curves = [
+        Curve(name.replace("_", " "), TO_MILLI * data[name].values, theme.PALETTE[k])
+        for k, name in enumerate(tips)
+    ]
+    yield {
+        "stage": "motion",
+        "rows": table.rows,
+        "verdict": utilisation_verdict(results, model.name),
+        "cautions": results.summary.cautions,
+        "tip": _plain(Chart(time, "tip deflection (mm)", curves)),
+    }
+
+
+def _results(checked: CheckedCase, own: ModelDesignResults, data: xr.Dataset) -> Results:
+    """Return the results of the only model."""
+    case = checked.case
+    design = DesignResults({case.models[0].name: own})
+    return Results(case, data, Summary(
+        title=case.title, case_hash="", versions={}, models={}, failures={}, design=design
+    ))  # fmt: skip
+
+
+def _fibres(loaded: LoadedModel, rests: Sequence[Any]) -> Iterator[FibreStress]:
+    """Yield the largest stress of each segment at rest, at equilibria (num_modes,)."""
+    states, times = np.array(rests), np.zeros(len(rests))
+    for index, (segment, line) in enumerate(zip(loaded.boom.segments, loaded.lines, strict=True)):
+        if (fibres := Fibres.of(segment, line)) is not None:
+            curves = section_forces(loaded.boom, index, line, states, times)
+            yield largest_stresses(segment, fibres, curves, curves, times)[0]
+
+
+def _rows_at_rest(own: ModelDesignResults, results: Results) -> Rows:
+    rests: Sequence[StaticResult] = own.static
+    rows = [("Tip deflection under the loads of t = 0", f"{fixed(rests[0].tip, 1, TO_MILLI)} mm")]
+    if own.farthest_static is not None and own.farthest_static.tip != rests[0].tip:
+        tip = own.farthest_static.tip
+        rows.append(("Tip deflection, maximum", f"{fixed(tip, 1, TO_MILLI)} mm"))
+    hertz = ", ".join(number(mode.frequency) for mode in own.modes[:3])
+    rows.append(("First frequencies, contacts closed", f"{hertz} Hz"))
+    (model,) = results.case.models
+    if fibre := utilisations(results, model.name).get("outer fibre"):
+        used = "" if fibre.value is None else f", {percent(fibre.value)} of yield"
+        place = f"{fibre.segment}, x = {fibre.x:.4g} m"
+        rows.append(("Bending stress", f"{amount(fibre.load, 'Pa')}{used}\n{place}"))
+    for pad in governing_pads(results).values():
+        rows.append(("Governing pad", pad_text(pad)))
+    return rows
+
+
+def _plain(chart: Chart) -> Any:
+    """Return a chart for the page, without a legend where one curve is shown."""
+    figure = chart.figure.to_dict()
+    names = {trace["name"] for trace in figure["data"]}
+    for trace in figure["data"]:
+        trace.setdefault("x", chart.time)
+        trace["showlegend"] = trace["showlegend"] and len(names) > 1
+    height = _BELOW + _PANEL * len(chart.panels)
+    figure["layout"] |= {"height": height, "margin": {"l": 62, "r": 12, "t": 26, "b": 50}}
+    return figure

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The numbers of a case that a designer may change, with their units and ranges."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from pydantic import ValidationError
+
+from geometry.boom import Boom
+from geometry.fields import described, fields_of, is_number, names_of
+from runs.case import reading
+from runs.case.build import build_boom
+from runs.case.checked_case import CheckedCase
+from runs.case.kinds.finite_element import BeamElements
+from runs.case.limits import is_table
+from runs.case.messages import BadInput
+from runs.case.sanity import usual_ranges
+from runs.case.schema import Case
+from runs.sweep.points import hold_plates, inferred_plates
+from runs.sweep.variation import Place, Tables, unit_of
+
+# Name of the beam of the page, and its elements in the longest segment.
+BEAM, ELEMENTS = "beam", 4
+
+# Tolerance of the beam's motion, which the page draws only.
+TOLERANCE = 1.0e-2
+
+# A range without limits spans these parts of the number.
+_LEAST, _MOST = 0.5, 2.0
+
+# Keys that designers change first, in this order.
+_FIRST = (
+    r"gravity\.angle",
+    r"payload\.mass",
+    r"load\[\d+\]\.(magnitude|ramp)",
+    r"joint\[\d+\]\.extension",
+    r"joint\[\d+\]\.drive\.(time|speed)",
+    r"joint\[\d+\]\.play",
+    r"joint\[\d+\]\.pad\.(length|offset)",
+    r"segment\[\d+\]\.section\.(flange|web|top|bottom|thickness)",
+)
+
+# Tables whose numbers the page leaves alone: the beam is its own model.
+_WITHOUT = ("ensemble", "model", "title", "units", "shown_units")
+
+# Lists with more numbers are histories and measured curves.
+_LONGEST = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Knob:
+    """A number of a case, or several equal ones, with a range.
+
+    Args:
+        key: in the case file, ``joint[1].play``, or ``joint.play`` for all joints.
+        keys: of its numbers.
+        help: description of the key.
+        value: in the unit.
+        unit: in the case's system of units; empty for none.
+        range: lower and upper end of its slider; None where no range is known.
+    """
+
+    key: str
+    keys: Sequence[str]
+    help: str
+    value: float
+    unit: str
+    range: tuple[float, float] | None
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A case whose numbers change; its inferred plates stay those of the file.
+
+    Args:
+        file: of the case.
+        case: checked, with inferred plates as given ones.
+        boom: of the file.
+    """
+
+    file: str
+    case: Case
+    boom: Boom
+
+    @classmethod
+    def load(cls, file: str) -> Draft:
+        """Read a case file.
+
+        Raises:
+            BadInput: the file cannot be read, or its content is invalid.
+        """
+        case = reading.select(reading.load(file), file, members=0)
+        return cls(file, hold_plates(case, inferred_plates(case)), build_boom(case))
+
+    @cached_property
+    def _tables(self) -> Tables:
+        return self.case.model_dump(
+            mode="json", by_alias=True, exclude_none=True, exclude={"ensemble"}
+        )
+
+    @cached_property
+    def _numbers(self) -> Mapping[str, tuple[Place, float]]:
+        """Place and value in SI units of each number by its key."""
+        return {
+            place.name: (
+                replace(place, size=self.case.system.size(self._unit(place) or "1")),
+                value,
+            )
+            for place, value in _walk(self._tables, ())
+        }
+
+    def _unit(self, place: Place) -> str:
+        return unit_of(place, self.case)
+
+    @property
+    def keys(self) -> list[str]:
+        """Keys of all numbers."""
+        return list(self._numbers)
+
+    def knobs(self) -> list[Knob]:
+        """Return the knobs that matter first; equal numbers of all joints share one."""
+        found: dict[str, list[str]] = {}
+        for pattern in _FIRST:
+            keys = [key for key in self._numbers if re.fullmatch(pattern, key)]
+            groups: dict[str, list[str]] = {}
+            for key in keys:
+                groups.setdefault(re.sub(r"^joint\[\d+\]", "joint", key), []).append(key)
+            for common, several in groups.items():
+                equal = len({self._numbers[key][1] for key in several}) == 1
+                found |= {common: several} if equal else {key: [key] for key in several}
+        return [self._knob(key, several) for key, several in found.items()]
+
+    def knob(self, key: str) -> Knob:
+        """Return the knob of a key.
+
+        Raises:
+            BadInput: the case has no such number.
+        """
+        return self._knob(key, [key])
+
+    def _knob(self, key: str, keys: Sequence[str]) -> Knob:
+        if keys[0] not in self._numbers:
+            raise BadInput(self.file, key, "is not a number of the case; choose one of the list")
+        place, value = self._numbers[keys[0]]
+        unit, system = self._unit(place), self.case.system
+        limits, text = self._range(place, value), _described(self.case, place)
+        in_unit = [system.of(one, unit or "1") for one in (value, *(limits or ()))]
+        return Knob(
+            key,
+            keys,
+            text,
+            in_unit[0],
+            system.label(unit) if unit else "",
+            (in_unit[1], in_unit[2]) if limits else None,
+        )
+
+    def _range(self, place: Place, value: float) -> tuple[float, float] | None:
+        """Return a range in SI units, within the limits of the schema and of the checks."""
+        low, high = _limits(self.case, place)
+        if not (math.isfinite(low) and math.isfinite(high)):
+            ends = sorted((_LEAST * value, _MOST * value))
+            if place.steps[0] == "joint" and place.steps[-1] == "extension":
+                # Where the segments come apart.
+                ends[1] = value + self.boom.overlap_left(self.boom.joints[int(place.steps[1])])
+            low, high = max(low, ends[0]), min(high, ends[1])
+        for usual in usual_ranges(self.case, self.boom):
+            if usual.key == place.name and usual.value == value:
+                low, high = max(low, usual.least), min(high, usual.most)
+                if value == 0.0 and math.isfinite(usual.most):
+                    high = usual.most
+        return (low, high) if low < high else None
+
+    def changed(self, values: Mapping[str, float]) -> Case:
+        """Return the case with other numbers, before its checks.
+
+        Args:
+            values: by key, in the unit of the case.
+
+        Raises:
+            BadInput: a number is out of the limits of its key.
+        """
+        tables = deepcopy(self._tables)
+        for key, value in values.items():
+            if key not in self._numbers or not is_number(value) or not math.isfinite(value):
+                raise BadInput(self.file, key, f"must be a number of the case, got {value!r}")
+            self._numbers[key][0].put(tables, float(value))
+        try:
+            return Case.model_validate(tables)
+        except ValidationError as error:
+            raise BadInput.from_validation(self.file, error) from None
+
+    def beam(self, case: Case) -> CheckedCase:
+        """Return a changed case with the beam of the page as its only model, after all checks.
+
+        Raises:
+            BadInput: the case is invalid.
+        """
+        with_play = next((model for model in case.models if not model.bonded), case.models[0])
+        plates = all(segment.section is not None for segment in self.boom.segments)
+        beam = BeamElements(
+            name=BEAM,
+            element_length=max(segment.length for segment in self.boom.segments) / ELEMENTS,
+            theory="timoshenko" if plates else "euler-bernoulli",
+            contact=with_play.contact,
+        )
+        time = case.time.model_copy(update={"tolerance": max(case.time.tolerance, TOLERANCE)})
+        return reading.check(case.model_copy(update={"models": (beam,), "time": time}), self.file)
+
+
+def _walk(here: Any, steps: tuple[str | int, ...]) -> Iterator[tuple[Place, float]]:
+    """Yield all numbers of tables and lists, with their places."""
+    if isinstance(here, Mapping):
+        for key, value in here.items():
+            if steps or key not in _WITHOUT:
+                yield from _walk(value, (*steps, key))
+    elif isinstance(here, list):
+        if len(here) <= _LONGEST or isinstance(here[0], Mapping):
+            for index, value in enumerate(here):
+                yield from _walk(value, (*steps, index))
+    elif is_number(here):
+        yield Place(steps), float(here)
+
+
+def _field(case: Case, place: Place) -> Any:
+    """Return the field of the innermost table of a place; None within a plain mapping."""
+    here: Any = case
+    found = None
+    for step in place.steps:
+        if is_table(here):
+            name = names_of(type(here))[str(step)]
+            found, here = fields_of(type(here))[name], getattr(here, name)
+        else:
+            here = here[step]
+    return found
+
+
+def _described(case: Case, place: Place) -> str:
+    field = _field(case, place)
+    return "" if field is None else described(field)
+
+
+def _limits(case: Case, place: Place) -> tuple[float, float]:
+    """Return the limits of the schema, infinite without any."""
+    field = _field(case, place)
+    rules = [] if field is None else field.metadata
+    low = max((rule.ge for rule in rules if hasattr(rule, "ge")), default=-math.inf)
+    high = min((rule.le for rule in rules if hasattr(rule, "le")), default=math.inf)
+    return float(low), float(high)

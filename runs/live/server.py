@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The server of the live page, on this machine only, under an address with a secret token."""
+
+from __future__ import annotations
+
+import json
+import webbrowser
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, field
+from functools import cached_property, partial
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from secrets import token_urlsafe
+from threading import Lock
+from typing import Any
+
+import numpy as np
+
+from dynamics.failure import NUMERICS
+from runs.case.messages import BadInput
+from runs.live.beam import beam_results
+from runs.live.knobs import Draft
+from runs.pipeline.model_run import failure_reason
+from runs.report.pages import page
+
+# Bytes of a request at most.
+_LARGEST = 1_000_000
+
+
+class Superseded(Exception):
+    """A request whose page has sent a newer one."""
+
+
+@dataclass
+class LivePage:
+    """The live page of a case, which any number of tabs show.
+
+    Args:
+        draft: the case.
+        token: first part of the path of each address.
+    """
+
+    draft: Draft
+    token: str = field(default_factory=token_urlsafe)
+    _newest: dict[str, int] = field(default_factory=dict)
+    _computing: Lock = field(default_factory=Lock)
+
+    @cached_property
+    def files(self) -> dict[str, tuple[str, bytes]]:
+        """Media type and content of each file of the page."""
+        from plotly.offline import get_plotlyjs
+
+        draft = self.draft
+        html = page(
+            "live.html",
+            title=draft.case.title,
+            knobs=[asdict(knob) for knob in draft.knobs()],
+            keys=draft.keys,
+        )
+        return {
+            "": ("text/html; charset=utf-8", html.encode()),
+            "plotly.js": ("text/javascript; charset=utf-8", get_plotlyjs().encode()),
+        }
+
+    def beam(self, request: dict[str, Any]) -> Iterator[Any]:
+        """Yield the results of the beam with the values of a request, or its refusal.
+
+        A request of the same tab with a higher number ends the computation.
+        """
+        tab, number = str(request["tab"]), int(request["number"])
+        self._newest[tab] = max(number, self._newest.get(tab, 0))
+
+        def check_current() -> None:
+            if self._newest[tab] != number:
+                raise Superseded
+
+        with self._computing:
+            check_current()
+            checked = self.draft.beam(self.draft.changed(dict(request["values"])))
+            yield from beam_results(checked, check_current)
+
+    def knob(self, request: dict[str, Any]) -> Iterator[Any]:
+        """Yield the knob of a key."""
+        yield asdict(self.draft.knob(str(request["key"])))
+
+    @property
+    def answers(self) -> dict[str, Callable[[dict[str, Any]], Iterator[Any]]]:
+        """Answer to a request by its path below the token."""
+        return {"beam": self.beam, "knob": self.knob}
+
+    def lines(self, path: str, request: dict[str, Any]) -> Iterator[bytes]:
+        """Yield the lines of an answer, each a JSON value; an error is the last of them."""
+        from plotly.io.json import to_json_plotly
+
+        try:
+            with np.errstate(all="ignore"):
+                for value in self.answers[path](request):
+                    yield str(to_json_plotly(value)).encode() + b"\n"
+        except Superseded:
+            return
+        except BadInput as error:
+            yield _refusal(error.key, error.what)
+        except NUMERICS as error:
+            yield _refusal("", failure_reason(error))
+        except (KeyError, TypeError, ValueError) as error:
+            yield _refusal("", f"the request is not understood ({error})")
+
+
+def _refusal(key: str, what: str) -> bytes:
+    return json.dumps({"stage": "refused", "key": key, "what": what}).encode() + b"\n"
+
+
+class _Handler(BaseHTTPRequestHandler):
+    """The answers to one connection."""
+
+    def __init__(self, live: LivePage, *connection: Any) -> None:
+        self._live = live
+        super().__init__(*connection)
+
+    def do_GET(self) -> None:
+        """Send a file of the page."""
+        path = self._path()
+        if path is None or path not in self._live.files:
+            self.send_error(HTTPStatus.NOT_FOUND)
+            return
+        kind, content = self._live.files[path]
+        self._begin(kind)
+        self.wfile.write(content)
+
+    def do_POST(self) -> None:
+        """Answer a request line by line."""
+        path, size = self._path(), self.headers.get("Content-Length", "")
+        if path not in self._live.answers:
+            self.send_error(HTTPStatus.NOT_FOUND)
+            return
+        if not (size.isdecimal() and int(size) <= _LARGEST):
+            self.send_error(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
+            return
+        try:
+            request = json.loads(self.rfile.read(int(size)))
+        except ValueError:
+            request = None
+        if not isinstance(request, dict):
+            self.send_error(HTTPStatus.BAD_REQUEST)
+            return
+        self._begin("application/x-ndjson")
+        try:
+            for line in self._live.lines(str(path), request):
+                self.wfile.write(line)
+        except ConnectionError:
+            # The page has sent a newer request, or is closed.
+            pass
+
+    def log_message(self, *_: Any) -> None:
+        """Print nothing."""
+
+    def _path(self) -> str | None:
+        """Return the path below the token; None for another one."""
+        before, _, path = self.path.removeprefix("/").partition("/")
+        return path if before == self._live.token else None
+
+    def _begin(self, kind: str) -> None:
+        self.send_response(HTTPStatus.OK)
+        self.send_header("Content-Type", kind)
+        self.send_header("Cache-Control", "no-store")
+        self.send_header("Referrer-Policy", "no-referrer")
+        self.end_headers()
+
+
+def make_server(live: LivePage) -> tuple[ThreadingHTTPServer, str]:
+    """Return a server of a live page on a free port, and the page's address."""
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(_Handler, live))
+    server.daemon_threads = True
+    return server, f"http://127.0.0.1:{server.server_port}/{live.token}/"
+
+
+def serve(file: str, browser: bool) -> None:
+    """Serve the live page of a case file until the process is interrupted.
+
+    Args:
+        file: a case file.
+        browser: whether to open the page in the user's browser.
+
+    Raises:
+        BadInput: the file cannot be read, or its content is invalid.
+    """
+    server, address = make_server(LivePage(Draft.load(file)))
+    print(f"{address}\nThe page ends with Ctrl-C.", flush=True)
+    if browser:
+        webbrowser.open(address)
+    server.serve_forever()

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The live page without a browser: its knobs, its answers, and requests that it refuses."""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Iterator
+from http.client import HTTPConnection
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+import pytest
+
+from runs import CASES
+from runs.case.messages import BadInput
+from runs.live import beam
+from runs.live.knobs import Draft
+from runs.live.server import LivePage, make_server
+from runs.pipeline.context import RunContext
+from runs.pipeline.run import run_case
+from tests.runs.sweeping import COARSE
+
+LIFT = str(CASES / "lift.toml")
+
+
+@pytest.fixture(scope="module")
+def draft() -> Draft:
+    return Draft.load(LIFT)
+
+
+def refused(draft: Draft, **values: float) -> tuple[str, str]:
+    """Return key and fault of a refusal; two underscores stand for a point."""
+    with pytest.raises(BadInput) as caught:
+        draft.beam(draft.changed({key.replace("__", "."): one for key, one in values.items()}))
+    return caught.value.key, caught.value.what
+
+
+def test_equal_numbers_of_joints_share_a_knob(draft: Draft) -> None:
+    knobs = {knob.key: knob for knob in draft.knobs()}
+    assert knobs["joint.play"].keys == ["joint[1].play", "joint[2].play"]
+    assert (knobs["joint[1].extension"].value, knobs["joint[2].extension"].value) == (4.8, 4.4)
+    assert knobs["gravity.angle"].range == (-90.0, 90.0)
+    # The overlap of the file is 1.2 m.
+    assert knobs["joint[2].extension"].range == pytest.approx((2.2, 5.6))
+    assert knobs["payload.mass"].unit == "kg"
+
+
+def test_knobs_have_the_unit_of_the_case(tmp_path: Path) -> None:
+    text = Path(LIFT).read_text(encoding="utf-8")
+    path = tmp_path / "shown.toml"
+    path.write_text(f'shown_units = "mm-t-s"\n{text}', encoding="utf-8")
+    knob = Draft.load(str(path)).knob("joint[1].play")
+    assert (knob.value, knob.unit, knob.range) == (3.0, "mm", (1.5, 6.0))
+    changed = Draft.load(str(path)).changed({"joint[1].play": 4.5})
+    assert changed.joints[0].play == 0.0045
+
+
+def test_a_number_that_the_schema_refuses_is_named(draft: Draft) -> None:
+    with pytest.raises(BadInput) as caught:
+        draft.changed({"joint[1].play": -0.001})
+    assert caught.value.key == "joint[1].play"
+    assert caught.value.what == "must be a number not less than 0, got -0.001"
+    with pytest.raises(BadInput, match="is not a number of the case; choose one of the list"):
+        draft.knob("joint[3].play")
+    with pytest.raises(BadInput, match="must be a number of the case, got 'wide'"):
+        draft.changed({"joint[1].play": "wide"})  # type: ignore[dict-item]
+
+
+def test_a_number_that_the_boom_refuses_is_named(draft: Draft) -> None:
+    with pytest.raises(BadInput) as caught:
+        draft.beam(draft.changed({"joint[2].extension": 6.5}))
+    assert caught.value.key.startswith("joint[2]")
+
+
+@pytest.mark.slow
+def test_the_beam_has_the_numbers_of_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reference: the same beam by a run of the case, at the tolerance of the page."""
+    draft = Draft.load(str(COARSE))
+    checked = draft.beam(draft.changed({}))
+    kept: list[Any] = []
+    make = beam.summary_table
+    monkeypatch.setattr(
+        beam, "summary_table", lambda results: kept.append(results) or make(results)
+    )
+    rest, motion = beam.beam_results(checked, lambda: None)
+    assert (rest["stage"], motion["stage"]) == ("rest", "motion")
+    run = run_case(checked.case, "", RunContext())
+    assert run is not None
+    run.evaluate()
+    own, other = kept[0].summary, run.results.summary
+    assert own.models["beam"].first_peak == other.models["beam"].first_peak
+    assert own.design.models["beam"].static == other.design.models["beam"].static
+    assert own.design.models["beam"].motion == other.design.models["beam"].motion
+    assert own.pads == other.pads
+
+
+@pytest.fixture(scope="module")
+def address(draft: Draft) -> Iterator[str]:
+    server, address = make_server(LivePage(draft))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield address
+    server.shutdown()
+    server.server_close()
+
+
+def sent(address: str, method: str, path: str, body: str | None = None) -> tuple[int, str]:
+    """Return status and text of an answer; a path that starts with / has no token."""
+    where = urlsplit(address)
+    connection = HTTPConnection(where.netloc, timeout=60)
+    connection.request(method, path if path[:1] == "/" else where.path + path, body)
+    answer = connection.getresponse()
+    return answer.status, answer.read().decode()
+
+
+def test_the_page_is_there_with_its_token_alone(address: str) -> None:
+    status, text = sent(address, "GET", "")
+    assert (status, "joint.play" in text) == (200, True)
+    assert sent(address, "GET", "/")[0] == 404
+    assert sent(address, "GET", "/another/plotly.js")[0] == 404
+    assert sent(address, "POST", "/another/beam", "{}")[0] == 404
+    assert urlsplit(address).hostname == "127.0.0.1"
+
+
+@pytest.mark.parametrize("body", ["", "{", "[]", "7"])
+def test_a_request_that_is_no_table_ends_nothing(address: str, body: str) -> None:
+    assert sent(address, "POST", "beam", body)[0] == 400
+    assert sent(address, "GET", "")[0] == 200
+
+
+@pytest.mark.parametrize(
+    ("request_", "key", "what"),
+    [
+        ({}, "", "the request is not understood ('tab')"),
+        (
+            {"tab": "1", "number": 1, "values": {"joint[1].play": None}},
+            "joint[1].play",
+            "must be a number of the case, got None",
+        ),
+        (
+            {"tab": "1", "number": 2, "values": {"payload.mass": 0}},
+            "payload.mass",
+            "must be a number greater than 0, got 0",
+        ),
+    ],
+)
+def test_a_refusal_names_the_key(
+    address: str, request_: dict[str, Any], key: str, what: str
+) -> None:
+    status, text = sent(address, "POST", "beam", json.dumps(request_))
+    assert (status, json.loads(text)) == (200, {"stage": "refused", "key": key, "what": what})
+
+
+def test_an_older_request_of_a_tab_is_not_answered(draft: Draft) -> None:
+    page = LivePage(draft)
+    newest = {"tab": "a", "number": 2, "values": {}}
+    first = next(page.beam(newest))
+    assert first["stage"] == "rest"
+    assert list(page.lines("beam", newest | {"number": 1})) == []

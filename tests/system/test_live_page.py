@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The live page in a real browser: numbers change, results follow, refusals are shown."""
+
+from __future__ import annotations
+
+import re
+import threading
+from collections.abc import Iterator
+
+import pytest
+
+from runs import CASES
+from runs.live.knobs import Draft
+from runs.live.server import LivePage, make_server
+from tests.system.browser import Page, blank_page, find_browser
+
+pytestmark = pytest.mark.slow
+
+# Sets a field as a user does.
+SET = (
+    "(e => {{ e.value = {}; e.dispatchEvent(new Event('input')); }})"
+    "(document.getElementById('number {}'))"
+)
+SLIDE = (
+    "(e => {{ e.value = {}; e.dispatchEvent(new Event('input')); }})"
+    "(document.querySelector('input[type=range][aria-label=\"{}\"]'))"
+)
+ANSWERED = "document.body.dataset.answered == number"
+REFUSED = "document.getElementById('shown').classList.contains('stale')"
+# z of the farthest point of the last segment, and its tip in mm at rest.
+END = "Math.min(...document.getElementById('boom').data[1].y.slice(-3))"
+ROW = (
+    "[...document.querySelectorAll('#{} tr')].find(r => r.cells[0].textContent.startsWith('{}'))"
+    ".cells[1].textContent"
+)
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
+    browser = find_browser()
+    if browser is None:
+        pytest.skip("the live page is opened in chromium, and there is none on PATH")
+    server, address = make_server(LivePage(Draft.load(str(CASES / "lift.toml"))))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    with blank_page(browser, tmp_path_factory.mktemp("profile")) as opened:
+        opened.open(address, 1200)
+        opened.wait_for(ANSWERED)
+        yield opened
+    server.shutdown()
+    server.server_close()
+
+
+def tip(page: Page) -> float:
+    """Return the largest deflection of the tip at rest in mm."""
+    text = page.evaluate(ROW.format("rest", "Tip deflection, maximum"))
+    return float(re.sub(r"[^0-9.−]", "", text).replace("−", "-"))
+
+
+def test_a_slider_changes_numbers_and_pictures(page: Page) -> None:
+    """Reference: more payload lowers the tip; its place in the picture follows the number."""
+    before, drawn = tip(page), page.evaluate(END)
+    moved = page.evaluate(ROW.format("motion", "Maximum dynamic"))
+    page.evaluate(SLIDE.format(300, "payload.mass"))
+    page.wait_for(ANSWERED)
+    assert page.evaluate("document.getElementById('number payload.mass').value") == "300"
+    assert tip(page) < before - 20.0
+    # The boom leans at 45 degrees and is drawn to scale.
+    assert page.evaluate(END) - drawn == pytest.approx(
+        1e-3 * (tip(page) - before) / 2**0.5, rel=0.05
+    )
+    assert page.evaluate(ROW.format("motion", "Maximum dynamic")) != moved
+    page.evaluate(SET.format(150, "payload.mass"))
+    page.wait_for(ANSWERED)
+    assert tip(page) == before
+
+
+def test_a_refusal_stands_at_its_field(page: Page) -> None:
+    page.evaluate(SET.format(-1, "joint.play"))
+    page.wait_for(REFUSED)
+    message = (
+        "document.getElementById('number joint.play').closest('.knob').querySelector('.message')"
+    )
+    assert page.evaluate(f"{message}.textContent") == "must be a number not less than 0, got -1"
+    page.evaluate(SET.format(0.003, "joint.play"))
+    page.wait_for(f"{ANSWERED} && !{REFUSED}")
+    assert page.evaluate(f"{message}.textContent") == ""
+
+
+def test_the_last_of_many_changes_is_shown(page: Page) -> None:
+    for mass in (160, 170, 180, 190, 200):
+        page.evaluate(SET.format(mass, "payload.mass"))
+    page.wait_for(ANSWERED)
+    last = tip(page)
+    page.evaluate(SET.format(150, "payload.mass"))
+    page.wait_for(ANSWERED)
+    before = tip(page)
+    page.evaluate(SET.format(200, "payload.mass"))
+    page.wait_for(ANSWERED)
+    assert tip(page) == last < before
+    page.evaluate(SET.format(150, "payload.mass"))
+
+
+def test_any_other_number_is_found(page: Page) -> None:
+    search = (
+        "(e => {{ e.value = '{}'; e.dispatchEvent(new Event('change')); }})"
+        "(document.getElementById('search'))"
+    )
+    page.evaluate(search.format("segment[2].section.height"))
+    page.wait_for("document.getElementById('number segment[2].section.height')")
+    page.evaluate(search.format("joint[7].play"))
+    said = "document.getElementById('search-message').textContent"
+    page.wait_for(said)
+    assert page.evaluate(said) == (
+        "joint[7].play: is not a number of the case; choose one of the list"
+    )
+
+
+@pytest.mark.parametrize("width", [400, 800, 1200])
+def test_the_page_fits_its_window(page: Page, width: int) -> None:
+    page.set_width(width)
+    page.wait_for(f"document.documentElement.scrollWidth <= {width}")
+
+
+def test_the_browser_has_nothing_to_complain_of(page: Page) -> None:
+    """Requests that newer ones replace are aborted."""
+    assert {text for text in page.complaints if "ERR_ABORTED" not in text} == set()
