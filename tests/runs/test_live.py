@@ -30,13 +30,6 @@ def draft() -> Draft:
     return Draft.load(LIFT)
 
 
-def refused(draft: Draft, **values: float) -> tuple[str, str]:
-    """Return key and fault of a refusal; two underscores stand for a point."""
-    with pytest.raises(BadInput) as caught:
-        draft.beam(draft.changed({key.replace("__", "."): one for key, one in values.items()}))
-    return caught.value.key, caught.value.what
-
-
 def test_equal_numbers_of_joints_share_a_knob(draft: Draft) -> None:
     knobs = {knob.key: knob for knob in draft.knobs()}
     assert knobs["joint.play"].keys == ["joint[1].play", "joint[2].play"]

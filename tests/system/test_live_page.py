@@ -27,8 +27,8 @@ SLIDE = (
 )
 ANSWERED = "document.body.dataset.answered == number"
 REFUSED = "document.getElementById('shown').classList.contains('stale')"
-# z of the farthest point of the last segment, and its tip in mm at rest.
-END = "Math.min(...document.getElementById('boom').data[1].y.slice(-3))"
+# Height of the tip in the picture, in m.
+END = "Math.max(...document.getElementById('boom').data[1].y)"
 ROW = (
     "[...document.querySelectorAll('#{} tr')].find(r => r.cells[0].textContent.startsWith('{}'))"
     ".cells[1].textContent"
