@@ -135,7 +135,8 @@ def play_effect(results: Results) -> str:
 def utilisation_verdict(results: Results, model: str | None = None) -> str:
     """Return text with the utilisations of a model, the governing one first.
 
-    The model is by default the leading one. The text is empty if the case gives no strengths, allowable pressures or fatigue life.
+    The model is by default the leading one. The text is empty if the case gives no strengths,
+    allowable pressures or fatigue life.
     """
     model = model or results.leading_models[0]
     known = [one for one in utilisations(results, model).values() if one.value is not None]
