@@ -49,7 +49,7 @@ from shell_model.stress.fields import vertex_displacements, wall_frame
 from shell_model.stress.stresses import ShellStress
 
 # Relative residual of a mode; the error of its factor is of the order of the square.
-_RESIDUAL = 1.0e-8
+_RESIDUAL = 1.0e-6
 
 # Vectors of the Krylov space for each mode, and besides.
 _VECTORS, _BESIDES = 2, 20
@@ -57,6 +57,9 @@ _VECTORS, _BESIDES = 2, 20
 
 # Part of the largest membrane force that is round-off of single precision.
 _ROUND_OFF = 1.0e-6
+
+# Contacts that are open by less, in m, hold a segment as closed ones do.
+_TOUCHING = 1.0e-6
 
 # Order of the factors in the edge length.
 _ORDER = 2.0
@@ -196,8 +199,8 @@ class StaticState:
         still = fields.assign(state=(("time", "mode"), position[None]), time=("time", [0.0]))
         stress = ShellStress.of(still)
         forces = stress.thickness[:, None] * stress.at(0.0).membrane.astype(np.float64)
-        gaps = system.rows @ position
-        slopes = [float(law.slope(gap)) for law, gap in zip(system.laws, gaps, strict=True)]
+        near = (system.rows @ position)[:, None] + [-_TOUCHING, _TOUCHING]
+        slopes = [law.slope(gaps).max() for law, gaps in zip(system.laws, near, strict=True)]
         parts = np.flatnonzero(np.diff(stress.segment)) + 1
         return cls(np.split(forces, parts), np.array(slopes), extensions)
 
@@ -254,7 +257,10 @@ def buckle_segments(
         common = min(before.size, after.size)
         before, after = before[:common], after[:common]
         factors = after * (after / before) ** (1.0 / (2.0**_ORDER - 1.0))
-        shapes = None if shapes is None else shapes[:common]
+        # Extrapolation may exchange near ones.
+        order = np.argsort(factors)
+        after, factors = after[order], factors[order]
+        shapes = None if shapes is None else shapes[order]
         found.append(SegmentBuckling(factors, after / factors - 1.0, mesh, shapes))
     return found
 

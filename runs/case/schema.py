@@ -271,6 +271,14 @@ class LifeTable(CaseTable):
     """the number of occurrences of this motion in the service life"""
 
 
+class BucklingTable(CaseTable):
+    """Data of the buckling analysis of walls, in the static state with the farthest tip."""
+
+    modes: Count = 1
+    """the number of buckling modes of the walls of each segment of a shell; beams have estimates by
+    panel formulas"""
+
+
 if TYPE_CHECKING:
     Model = ModelTable
 else:
@@ -331,6 +339,8 @@ class Case(CaseKeys, CaseHeading):
     """the table of the boom's damping"""
     life: LifeTable = LifeTable.model_validate({})
     """the table of the fatigue assessment"""
+    buckling: BucklingTable | None = None
+    """the table of the buckling analysis of walls; none is made unless given"""
     models: Annotated[tuple[Model, ...], Field(min_length=1, max_length=MOST_MODELS)] = Field(
         alias="model"
     )

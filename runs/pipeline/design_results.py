@@ -9,10 +9,12 @@ from dataclasses import dataclass, field
 from runs.case.schema import Model
 from runs.pipeline.modes import Mode, ModeComparison
 from runs.pipeline.motion_results import MotionResult
+from runs.pipeline.panels import PanelBuckling
 from runs.pipeline.residual_vibration import ResidualVibration
 from runs.pipeline.static_results import StaticResult
 from runs.pipeline.statics import Reaction
 from runs.pipeline.strength import Life
+from runs.pipeline.wall_buckling import WallBuckling
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +35,9 @@ class ModelDesignResults:
             without play, or if they cannot be computed.
         life: fatigue damage of each segment with a known section, where cycles can be counted.
         life_bonded: fatigue damage without play.
+        buckling: buckling of the walls of each segment of a shell, in the static state with the
+            farthest tip; empty for beams, and unless the case requests it.
+        panels: estimates of the lowest buckling factors by panel formulas, in the same state.
         residual_vibration: vibration during telescoping; None without telescoping, if the run ends
             before its drives, or without an equilibrium.
     """
@@ -46,6 +51,8 @@ class ModelDesignResults:
     motion_bonded: MotionResult | None = None
     life: list[Life] = field(default_factory=list)
     life_bonded: list[Life] = field(default_factory=list)
+    buckling: list[WallBuckling] = field(default_factory=list)
+    panels: list[PanelBuckling] = field(default_factory=list)
     residual_vibration: ResidualVibration | None = None
 
     @property

@@ -26,6 +26,7 @@ from runs.pipeline.model_quality import quality_notes, reference_of
 from runs.pipeline.models import MotionPlan
 from runs.pipeline.modes import ModeComparison, matched, modes
 from runs.pipeline.motion_results import Motions, evaluate_motion
+from runs.pipeline.panels import weakest_panels
 from runs.pipeline.residual_vibration import residual_vibration
 from runs.pipeline.section_forces import with_cylinders
 from runs.pipeline.static_results import (
@@ -106,6 +107,10 @@ def evaluate_model(
     if shell is not None and own.motion is not None:
         walls = wall_stresses(played.boom, shell.stresses)
         own = replace(own, motion=replace(own.motion, walls=walls))
+    if shell is not None and shell.buckling is not None:
+        own = replace(own, buckling=shell.buckling.segments)
+    if case.buckling is not None and (rest := own.farthest_static) is not None:
+        own = replace(own, panels=weakest_panels(shown.segments, rest))
     own = replace(own, residual_vibration=residual_vibration(system, trajectory, case, model))
     if model.bonded or not boom.joints:
         return own

@@ -19,6 +19,7 @@ from geometry.boom import Boom
 from runs.pipeline.modes import MODES
 from runs.pipeline.results import CONVENTIONS
 from runs.pipeline.static_results import positions
+from runs.pipeline.wall_buckling import BuckledShell
 from shell_model.stress.field_series import series_times, write_field_series
 from shell_model.stress.history import StressSummary, stress_near_places, summarise
 from shell_model.stress.stresses import ShellStress
@@ -46,12 +47,15 @@ class ShellOutput:
         stresses: von Mises stresses near stations and supports over time.
         largest: maximum of these stresses, and the section forces of the walls at its time.
         meshes: mesh of each segment, by name.
+        buckling: buckling of its walls, with the shapes in ``fields``; None unless the case
+            requests it.
     """
 
     fields: xr.Dataset
     stresses: xr.Dataset
     largest: StressSummary
     meshes: dict[str, PlatedMesh]
+    buckling: BuckledShell | None = None
 
     @property
     def modes(self) -> xr.Dataset | None:
@@ -65,7 +69,12 @@ class ShellOutput:
 
     @classmethod
     def of(
-        cls, boom: Boom, name: str, reduced: ReducedShell, trajectory: Trajectory
+        cls,
+        boom: Boom,
+        name: str,
+        reduced: ReducedShell,
+        trajectory: Trajectory,
+        buckling: BuckledShell | None = None,
     ) -> ShellOutput:
         """Return the output of a shell after its motion, on rank 0.
 
@@ -74,6 +83,7 @@ class ShellOutput:
             name: name of the model.
             reduced: the reduced shell.
             trajectory: motion of the shell.
+            buckling: buckling of its walls.
         """
         assert reduced.fields is not None
         names = [segment.name for segment in boom.segments]
@@ -82,10 +92,12 @@ class ShellOutput:
             time=("time", trajectory.time, {"units": "s"}),
             **_modes(reduced),
         ).assign_attrs(model=name)
+        if buckling is not None and buckling.shapes is not None:
+            fields = fields.assign(buckling.shapes)
         shell = ShellStress.of(fields)
         stresses = stress_near_places(shell, _places(boom), names).assign_attrs(model=name)
         meshes = dict(zip(names, reduced.meshes, strict=True))
-        return cls(fields, stresses, summarise(shell, stresses), meshes)
+        return cls(fields, stresses, summarise(shell, stresses), meshes, buckling)
 
     def write_files(self, folder: Path, prefix: str) -> None:
         """Write stresses, series and meshes to a run's folder, which already has the fields.

@@ -19,6 +19,7 @@ from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Segment
 from runs.case import toml
 from runs.case.kinds.model import Built, Workshop
+from runs.case.kinds.shell import Shell
 from runs.case.schema import Case, Model
 from runs.folder.cache import key
 from runs.pipeline import members
@@ -34,6 +35,7 @@ from runs.pipeline.summary import (
     ModelSummary,
     StationSpring,
 )
+from runs.pipeline.wall_buckling import wall_buckling
 from shell_model.stages import Stages
 
 # Wall of the outer segment that presses, by direction and sign of the inner one's force.
@@ -105,6 +107,11 @@ def run_model(
                 raise
             raise SharedFailure(failure_reason(error)) from error
         stages.seconds |= built.seconds
+    buckling = None
+    if case.buckling is not None and isinstance(model, Shell):
+        assert comm is not None
+        with stages.stage("buckling"):
+            buckling = wall_buckling(boom, case, model, built, comm)
     with members.rank_executor(comm if case.ensemble else None) as executor:
         if not context.first_rank:
             return None
@@ -133,7 +140,7 @@ def run_model(
         summary.local_compliance = list(reduced.local_compliance)
         summary.mesh_error = reduced.mesh_error
         with stages.stage("stress"):
-            shell = ShellOutput.of(boom, model.name, reduced, motion.trajectory)
+            shell = ShellOutput.of(boom, model.name, reduced, motion.trajectory, buckling)
         summary.stress = shell.largest
     summary.seconds, summary.wall_time = stages.seconds, perf_counter() - begin
     return ModelRun(model, built, motion, shell, stages)

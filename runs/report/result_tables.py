@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from runs.pipeline.static_results import StaticResult
 from runs.report.figure_context import of_rests
 from runs.report.formatting import NONE, amount, number
 from runs.report.model_tables import metric_columns
-from runs.report.tables import Column, Table
+from runs.report.tables import Cell, Column, Table
 
 # Fraction of a number that is negligible.
 HARDLY = 0.005
@@ -35,6 +35,7 @@ def result_tables(results: Results) -> list[Table]:
         *record_tables(results),
         pad_table(results),
         stress_table(results),
+        buckling_table(results),
         life_table(results),
     ]
     return [table for table in found if table is not None]
@@ -323,6 +324,46 @@ def stress_table(results: Results) -> Table | None:
         "half a wall near stations and supports, plate bending included.",
     )
     return Table("Stress", columns, notes, "stress")
+
+
+def buckling_table(results: Results) -> Table | None:
+    """Return buckling factors of the walls of each segment; None unless the case asks for them."""
+    rows: list[Sequence[Cell]] = []
+    for name, own in results.summary.design.models.items():
+        shells = {
+            one.segment: (one.factors[0], one.walls[0], one.x[0], one.mesh_errors[0])
+            for one in own.buckling
+            if one.factors
+        }
+        panels = {one.segment: (one.factor, one.wall, one.x) for one in own.panels}
+        rows += [
+            (name, segment, *shells.get(segment, (None,) * 4), *panels.get(segment, (None,) * 3))
+            for segment in dict.fromkeys([*shells, *panels])
+        ]
+    if not rows:
+        return None
+    headings = (
+        ("model",),
+        ("segment",),
+        ("factor, shell", ".3g"),
+        ("wall",),
+        ("at x", ".4g", "m"),
+        ("mesh error", ".2g", "%"),
+        ("factor, panel\nformulas", ".3g"),
+        ("wall",),
+        ("at x", ".4g", "m"),
+    )
+    columns = [
+        Column(heading[0], cells, *heading[1:])
+        for heading, cells in zip(headings, zip(*rows, strict=True), strict=True)
+        if any(cell is not None for cell in cells)
+    ]
+    notes = (
+        "Static under the maximum load: factor of all loads at which a wall buckles, elastic and "
+        "flat. Shell: pads included; extrapolated from two meshes, of which the finer one is off "
+        "by the mesh error. Panel formulas: long walls on simple supports, without pads.",
+    )
+    return Table("Buckling of walls", columns, notes, "buckling")
 
 
 def life_table(results: Results) -> Table | None:

@@ -98,6 +98,8 @@ class Scene:
         motion: trajectories of this model, in which ``tip`` is along the third direction.
         stress: stresses of the triangles of a shell.
         from_above: whether y replaces z, see :meth:`views`.
+        buckling: first buckling modes of a shell, see
+            :class:`runs.pipeline.wall_buckling.BuckledShell`; None without any.
     """
 
     boom: Boom
@@ -110,6 +112,7 @@ class Scene:
     motion: xr.Dataset
     stress: ShellStress | None = None
     from_above: bool = False
+    buckling: xr.Dataset | None = None
 
     @classmethod
     def views(cls, fields: xr.Dataset, motion: xr.Dataset, case: Case) -> list[Scene]:
@@ -134,6 +137,7 @@ class Scene:
             state=fields["state"].load(),
             motion=motion,
             stress=ShellStress.of(fields),
+            buckling=fields if "buckled" in fields else None,
         )
         if not boom.spatial:
             return [side]

@@ -27,6 +27,7 @@ from runs.pipeline.summary import Snapshots
 from runs.process import workers
 from runs.report import opengl, theme
 from runs.report.boom_pictures import BoomView, draw_boom
+from runs.report.buckling_pictures import render_buckling
 from runs.report.figure_context import Figure
 from runs.report.overlap_pictures import StressScale, draw_overlap, draw_stress
 from runs.report.scene import Instant, Scene
@@ -62,6 +63,7 @@ _GIVEN = re.compile(r"[0-9.e+-]+s")
 _NAME = re.compile(
     r"(?P<view>boom|overlap|stress)(?P<above>-above)?(-(?P<joint>\d+))?-(?P<when>.+)"
 )
+_BUCKLING = re.compile(r"buckling-(?P<segment>\d+)\.png")
 
 Times = Sequence[float] | None
 Render = Callable[[Sequence[Scene], Path, Times], list[Path]]
@@ -140,7 +142,7 @@ def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> li
 
 
 # A function that draws the pictures of a shell.
-RENDERED: Sequence[Render] = (render_stills, render_film)
+RENDERED: Sequence[Render] = (render_stills, render_film, render_buckling)
 
 
 def render_files(
@@ -328,6 +330,13 @@ def describe_one(results: Results, path: Path) -> Figure:
             "magnification as in the pictures of the boom."
         )
         return Figure(path, f"Boom in motion, first {last:g} s", caption)
+    if mode := _BUCKLING.fullmatch(name):
+        segment = results.boom.segments[int(mode["segment"]) - 1].name
+        caption = (
+            f"The first buckling mode of the walls of {segment!r} in {model!r}, where they move "
+            "most, in the static state with the farthest tip. A mode has no size of its own."
+        )
+        return Figure(path, f"Buckling of {segment}", caption)
     seen = _NAME.fullmatch(name.removesuffix(path.suffix))
     assert seen is not None, f"{path.name} is not a snapshot's name"
     above, aside = (", seen from above", " sideways") if seen["above"] else ("", "")

@@ -77,6 +77,7 @@ def summary_table(results: Results) -> Table | None:
         Column("Foot pin reaction, maximum", _each(own, "reaction, across and along"), unit="kN"),
         Column("Bending stress, maximum (utilisation)", bending, unit="MPa"),
         Column("Plate stress at pads (patch mean, utilisation)", plates, unit="MPa"),
+        Column("Plate buckling factor, lowest (segment)", [_buckling(one) for one in own]),
         Column("Fatigue damage (Miner)", damages, ".3g"),
     )
     rows = {column.heading.replace("\n", ", "): column.text for column in rows_of_models}
@@ -188,6 +189,14 @@ _FACES = {"above": "top", "below": "bottom", "left": "left", "right": "right"}
 def _stress(most: Utilisation) -> str:
     stress = number(TO_MEGA * most.load)
     return f"{stress}{_used(most.value, 'yield')}\n{most.segment}, x = {most.x:.1f} m"
+
+
+def _buckling(own: ModelDesignResults) -> str | None:
+    """Return the lowest buckling factor of walls with its segment, by the shell if there is one."""
+    shells = [(one.factors[0], one.segment) for one in own.buckling if one.factors]
+    panels = [(one.factor, f"{one.segment}, panel formulas") for one in own.panels]
+    lowest = min(shells or panels, default=None)
+    return lowest and f"{number(lowest[0])} ({lowest[1]})"
 
 
 def _used(part: float | None, limit: str) -> str:

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Buckling of the walls of a shell in the static state with the farthest tip."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from dynamics.failure import NumericsError
+from geometry.boom import Boom
+from geometry.telescoping import travel
+from runs.case.kinds.model import Built
+from runs.case.kinds.shell import Shell
+from runs.case.schema import Case
+from runs.pipeline.static_results import extended_positions, instants, positions
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from geometry.plating import PlatedMesh
+    from shell_model.buckling import SegmentBuckling, StaticState
+
+
+@dataclass(frozen=True, slots=True)
+class WallBuckling:
+    """The lowest buckling factors of the walls of a segment of a shell.
+
+    Args:
+        segment: its name.
+        factors: factors of all loads, rising; without any where no wall is pressed.
+        mesh_errors: the part by which the mesh of the shapes exceeds each.
+        walls: name of the wall of the largest displacement of each mode.
+        x: place of this displacement of each mode in m.
+    """
+
+    segment: str
+    factors: list[float]
+    mesh_errors: list[float]
+    walls: list[str]
+    x: list[float]
+
+
+@dataclass(frozen=True, slots=True)
+class BuckledShell:
+    """Buckling of a shell's segments: numbers, and the first shape of each.
+
+    Args:
+        segments: results of each segment.
+        shapes: ``buckling_points`` (buckling_point, component) in m, ``buckling_shape`` at them,
+            the largest displacement of a segment being about 1; ``buckling_triangles``
+            (buckling_triangle, corner), ``buckling_segment`` of each; ``buckling_factor`` (buckled)
+            of each segment that buckles; None where none does.
+    """
+
+    segments: list[WallBuckling]
+    shapes: xr.Dataset | None
+
+
+def wall_buckling(
+    boom: Boom, case: Case, model: Shell, built: Built, comm: MPI.Intracomm
+) -> BuckledShell | None:
+    """Return the buckling of a shell's walls, on rank 0; None elsewhere. Collective.
+
+    Args:
+        boom: that of the case.
+        case: with a table of the buckling analysis.
+        model: the shell.
+        built: the same before its motion.
+        comm: the ranks that share it.
+
+    Raises:
+        NumericsError: the boom has no static state, or a segment no buckling modes.
+    """
+    from shell_model.buckling import buckle_segments
+
+    assert case.buckling is not None
+    assert built.shell is not None
+    joined = model.joined(boom).boom
+    meshes: Sequence[PlatedMesh | None] = built.shell.meshes or [None] * len(boom.segments)
+    state = comm.bcast(_static_state(joined, case, built) if comm.rank == 0 else None)
+    if state is None:
+        raise NumericsError("the boom has no static state in which its walls could buckle")
+    count = case.buckling.modes
+    found = buckle_segments(joined, meshes, state, model.options(), count, comm)
+    if comm.rank != 0:
+        return None
+    names = [segment.name for segment in boom.segments]
+    segments = [_located(name, one) for name, one in zip(names, found, strict=True)]
+    return BuckledShell(segments, _first_shapes(found))
+
+
+def _static_state(boom: Boom, case: Case, built: Built) -> StaticState | None:
+    """Return the state with the farthest tip; None without an equilibrium."""
+    from shell_model.buckling import StaticState
+
+    system, duration = built.system.gather_loads(), case.time.duration
+    found = positions(system, instants(system, duration))
+    found |= extended_positions(system, duration)
+    if not found:
+        return None
+    tip = system.observers["tip"].row
+    time = max(found, key=lambda time: abs(float(tip @ found[time])))
+    ways = [travel(boom, number, time) for number in range(len(boom.segments))]
+    extensions = {
+        number: ways[joint.inner] - ways[joint.outer] for number, joint in enumerate(boom.joints)
+    }
+    assert built.shell is not None
+    assert built.shell.fields is not None
+    return StaticState.of(built.shell.fields, system.at_time(time), found[time], extensions)
+
+
+def _located(name: str, found: SegmentBuckling) -> WallBuckling:
+    """Return the numbers of a segment, and where each mode moves most."""
+    mesh, shapes = found.mesh, found.shapes
+    assert mesh is not None
+    assert shapes is not None
+    walls, places = [], []
+    for shape in shapes:
+        point = int(np.linalg.norm(shape, axis=1).argmax())
+        # On a fold, either wall.
+        wall = int(mesh.walls[(mesh.triangles == point).any(axis=1)].min())
+        walls.append(mesh.plates[wall] if wall < len(mesh.plates) else "diaphragm")
+        places.append(float(mesh.points[point, 0]))
+    return WallBuckling(name, found.factors.tolist(), found.mesh_errors.tolist(), walls, places)
+
+
+def _first_shapes(found: Sequence[SegmentBuckling]) -> xr.Dataset | None:
+    """Return the first shape of each segment that buckles; None where none does."""
+    buckled = {k: one for k, one in enumerate(found) if one.factors.size}
+    if not buckled:
+        return None
+    points, triangles, shapes, numbers, begin = [], [], [], [], 0
+    for number, one in buckled.items():
+        assert one.mesh is not None
+        assert one.shapes is not None
+        points.append(one.mesh.points)
+        triangles.append(one.mesh.triangles + begin)
+        shapes.append(one.shapes[0])
+        numbers.append(np.full(len(one.mesh.triangles), number))
+        begin += len(one.mesh.points)
+    at_points, of_triangles = ("buckling_point", "component"), "buckling_triangle"
+    return xr.Dataset(
+        {
+            "buckling_points": (at_points, np.concatenate(points)),
+            "buckling_shape": (at_points, np.concatenate(shapes).astype(np.float32)),
+            "buckling_triangles": (
+                (of_triangles, "corner"),
+                np.concatenate(triangles).astype(np.int32),
+            ),
+            "buckling_segment": (of_triangles, np.concatenate(numbers).astype(np.int32)),
+            "buckling_factor": ("buckled", [one.factors[0] for one in buckled.values()]),
+        },
+        coords={"buckled": np.array([*buckled], dtype=np.int32)},
+    )

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Buckling of walls from the case to the report."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from PIL import Image
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from protractile.cases import run_case
+from runs import CASES
+from runs.pipeline.results import Results
+from runs.pipeline.summary import Summary
+from runs.report import opengl, sheet
+from runs.report.buckling_pictures import render_buckling
+from runs.report.opengl import RenderingUnavailable
+from runs.report.result_tables import buckling_table
+from runs.report.summary_table import summary_table
+from tests.runs.case_texts import read_case
+from tests.runs.moving_segments import moving_scene
+
+SHELL = """
+[[model]]
+name = "shell"
+kind = "shell"
+mesh_size = 0.25
+contact_tolerance = "any"
+
+[buckling]
+modes = 2
+"""
+
+
+def run(folder: Path, name: str, **changes: str) -> Results:
+    """Return the results of a shipped case with a shell of few triangles, and a beam."""
+    text = (CASES / name).read_text(encoding="utf-8")
+    for key, value in changes.items():
+        (line,) = (line for line in text.splitlines() if line.startswith(f"{key} = "))
+        text = text.replace(line, f"{key} = {value}", 1)
+    head, *models = text.split("[[model]]")
+    beam = next(model for model in models if "timoshenko" in model)
+    return run_case(read_case(folder, f"{head}[[model]]{beam}{SHELL}"))
+
+
+@pytest.mark.slow
+def test_a_run_has_factors_of_shell_and_panels(tmp_path: Path) -> None:
+    """Reference: other code, panel formulas. The shell exceeds them by the restraint at folds; the
+    load in its line of contact, at the tail, takes from them.
+    """
+    results = run(tmp_path, "coarse.toml", statements="[]", duration="0.01")
+    summary = Summary.model_validate_json(str(results.summary))
+    shell, beam = (summary.design.models[name] for name in ("shell", "timoshenko"))
+    assert [one.segment for one in shell.buckling] == ["outer", "inner"]
+    assert not beam.buckling
+    for own, estimate in zip(shell.buckling, shell.panels, strict=True):
+        assert own.factors[0] < own.factors[1]
+        assert 0.5 * estimate.factor < own.factors[0] < 1.5 * estimate.factor
+    for own, estimate in zip(beam.panels, shell.panels, strict=True):
+        assert own.factor == pytest.approx(estimate.factor, rel=0.1)
+    table = buckling_table(results)
+    assert table is not None
+    titles = [column.title for column in table.columns]
+    assert titles[2:] == [
+        *("factor, shell", "wall", "at x", "mesh error"),
+        *("factor, panel\nformulas", "wall", "at x"),
+    ]
+    first = summary_table(results)
+    assert first is not None
+    row = first.columns[0].cells.index("Plate buckling factor, lowest (segment)")
+    lowest = min((one.factors[0], one.segment) for one in shell.buckling)
+    cells = {column.title: str(column.cells[row]) for column in first.columns[1:]}
+    assert cells["shell"] == f"{lowest[0]:.3g} ({lowest[1]})"
+    assert cells["timoshenko"].endswith(", panel formulas)")
+
+
+@pytest.mark.slow
+def test_a_telescoping_shell_buckles_where_its_tip_is_farthest(tmp_path: Path) -> None:
+    """Reference: other code, panel formulas of the same state, at the largest extension."""
+    results = run(tmp_path, "drawn-out.toml", duration="0.05")
+    shell = results.summary.design.models["shell"]
+    assert shell.farthest_static is not None
+    for own, estimate in zip(shell.buckling, shell.panels, strict=True):
+        assert estimate.factor < own.factors[0] < 2.0 * estimate.factor
+
+
+def test_a_case_without_the_table_has_none(tmp_path: Path) -> None:
+    text = (CASES / "coarse.toml").read_text(encoding="utf-8")
+    results = run_case(read_case(tmp_path, text), models=["timoshenko"])
+    assert buckling_table(results) is None
+    assert not results.summary.design.models["timoshenko"].panels
+
+
+def test_each_mode_has_its_picture(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reference: by hand. A dent in the bottom is seen upside down; a mode has no instant."""
+    try:
+        opengl.require_opengl()
+    except RenderingUnavailable as reason:
+        pytest.skip(str(reason))
+    monkeypatch.setattr(sheet, "FINER", 1)
+    scene = moving_scene()
+    points = scene.points[scene.owner == 0]
+    triangles = scene.triangles[scene.segment == 0]
+    bottom = np.isclose(points[:, 2], points[:, 2].min())
+    shape = np.zeros_like(points)
+    shape[bottom, 2] = np.exp(-((points[bottom, 0] - 5.0) ** 2))
+    data = xr.Dataset(
+        {
+            "buckling_points": (("buckling_point", "component"), points),
+            "buckling_shape": (("buckling_point", "component"), shape),
+            "buckling_triangles": (("buckling_triangle", "corner"), triangles),
+            "buckling_segment": ("buckling_triangle", np.zeros(len(triangles), dtype=np.int32)),
+            "buckling_factor": ("buckled", [2.5]),
+        },
+        coords={"buckled": [0]},
+    )
+    views = [replace(scene, buckling=data)]
+    assert render_buckling([scene], tmp_path) == render_buckling(views, tmp_path, [0.1]) == []
+    (path,) = render_buckling(views, tmp_path)
+    assert path.name == "buckling-1.png"
+    pixels = np.asarray(Image.open(path).convert("RGB"), dtype=int)
+    picture = pixels[120 : 900 - 235]
+    # Of viridis, the dark end is at the dent, on the upper face.
+    dark = np.argwhere(picture.sum(axis=2) < 200)
+    assert len(dark) > 100
