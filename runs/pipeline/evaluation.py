@@ -110,7 +110,7 @@ def evaluate_model(
     if shell is not None and shell.buckling is not None:
         own = replace(own, buckling=shell.buckling.segments)
     if case.buckling is not None and (rest := own.farthest_static) is not None:
-        own = replace(own, panels=weakest_panels(shown.segments, rest))
+        own = replace(own, panels=weakest_panels(played.boom.segments, rest))
     own = replace(own, residual_vibration=residual_vibration(system, trajectory, case, model))
     if model.bonded or not boom.joints:
         return own
