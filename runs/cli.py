@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The command line.
 
-Exit status: 0 success, 1 a demand of the case is not met, 2 bad input, 3 numerical failure."""
+Exit status: 0 success, 1 a demand or a limit of the case is not met, 2 bad input, 3 numerical
+failure.
+"""
 
 from __future__ import annotations
 
@@ -204,7 +206,7 @@ def snapshot(
 @app.command()
 def sweep(
     case: CaseFile,
-    vary: Vary,
+    vary: Vary = [],  # noqa: B006
     out: SweepFolder = None,
     models: ModelNames = None,
     mesh_size: MeshSize = None,
@@ -216,6 +218,22 @@ def sweep(
             metavar="MODEL", help="Print the differences of the other models from this one."
         ),
     ] = None,
+    until: Annotated[
+        str | None,
+        typer.Option(
+            metavar="QUANTITY<NUMBER",
+            help="Bisect between the values of the one key, down to 0.1 %, until a quantity of "
+            "sweep.csv is there, in the unit of the case: 'tip<0.9', 'first_frequency>1.2'.",
+        ),
+    ] = None,
+    sensitivity: Annotated[
+        bool,
+        typer.Option(
+            "--sensitivity",
+            help="Change each number of the case by 1 %, in place of --vary, and print how much "
+            "results of a beam change.",
+        ),
+    ] = False,
 ) -> int:
     """Run a case over values of its numbers, and chart its models.
 
@@ -223,14 +241,27 @@ def sweep(
     play in the case file, at every point. Under mpirun all ranks except the first run points;
     otherwise all cores do. Ensembles are left out.
     """
+    from runs.case.messages import BadInput
     from runs.folder.cache import Cache
     from runs.pipeline import estimates, members
     from runs.process import workers
     from runs.sweep import output as charts
-    from runs.sweep import points
+    from runs.sweep import points, search
     from runs.sweep import run as sweep_runs
+    from runs.sweep import sensitivity as changes
 
-    plan = points.plan(case, vary, _names(models), mesh_size, against)
+    if sensitivity == bool(vary):
+        what = "missing" if not sensitivity else "does not go with --sensitivity"
+        raise BadInput(case, "--vary", f"{what}; give one of both")
+
+    def plan_of(texts: Sequence[str]) -> Plan:
+        return points.plan(case, texts, _names(models), mesh_size, against)
+
+    if sensitivity:
+        plan, refused = changes.plan_changes(case, _names(models), mesh_size)
+    else:
+        plan = plan_of(vary)
+    bound = None if until is None else search.parse_bound(until, plan)
     if not large:
         estimates.refuse_large(estimates.sweep_cost([point.case for point in plan.points]), case)
     comm = _enter_mpi(plan.points[0].case, case) or sweep_runs.launched_world(case)
@@ -244,10 +275,25 @@ def sweep(
                 return 0
             with progress.display() as report_progress:
                 cache = None if no_cache else Cache.of_user()
-                outcomes = sweep_runs.run_points(plan, folder, pool, report_progress, cache)
+
+                def run_plan(plan: Plan) -> list[Outcome]:
+                    return sweep_runs.run_points(plan, folder, pool, report_progress, cache)
+
+                if bound is None:
+                    outcomes = run_plan(plan)
+                else:
+                    plan, outcomes = search.bisect(plan, bound, plan_of, run_plan)
+        if sensitivity:
+            table = changes.changes(plan, outcomes)
+            changes.write(table, folder)
+            print(printable(str(folder / changes.CSV)))
+            changes.show(table, plan.points[0].case, refused, Terminal())
+            return _show_failures(plan, outcomes)
         data = charts.write(plan, outcomes, folder)
         print(printable(str(folder / charts.CSV)))
-        charts.show(data, against, Terminal())
+        charts.show(data, plan, Terminal())
+        if bound is not None:
+            search.show(plan, outcomes, bound, Terminal())
         return _show_failures(plan, outcomes)
 
 
@@ -482,14 +528,18 @@ def _check_temporary_folder(file: str) -> None:
 def _show(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
     """Print models, numerics, judgements and results of runs; return the exit status."""
     from runs.client import show
+    from runs.report.limits import limit_faults
     from runs.report.terminal_tables import print_models, print_results
 
     console = Terminal()
     for results in runs.values():
         print_models(results, console)
     status = show(judged, console)
-    for results in runs.values():
+    for file, results in runs.items():
         print_results(results, console)
+        for fault in limit_faults(results):
+            status = 1
+            say(message(f"{shown(file)}: {fault}"))
     return status
 
 

@@ -279,6 +279,30 @@ class BucklingTable(CaseTable):
     panel formulas"""
 
 
+class LimitsTable(CaseTable):
+    """Limits of results; the exit status of a run is 1 where its leading model exceeds one."""
+
+    tip: Annotated[Positive, In("m")] | None = None
+    """the largest permitted tip deflection in m, of the motion"""
+    tip_at_rest: Annotated[Positive, In("m")] | None = None
+    """the largest permitted static tip deflection in m"""
+    stress: Annotated[Positive, In("Pa")] | None = None
+    """the largest permitted stress of an outer fibre in Pa"""
+    wall_stress: Annotated[Positive, In("Pa")] | None = None
+    """the largest permitted stress of a shell's walls in Pa"""
+    pad_pressure: Annotated[Positive, In("Pa")] | None = None
+    """the largest permitted pressure of a pad in Pa"""
+    first_frequency: Annotated[Positive, In("Hz")] | None = None
+    """the least permitted first natural frequency in Hz"""
+    decay_time: Annotated[Positive, In("s")] | None = None
+    """the longest permitted time in s in which modal damping leaves a tenth of the vibration"""
+    settling_time: Annotated[Positive, In("s")] | None = None
+    """the longest permitted time in s until the tip stays near its final mean"""
+
+    # The quantities whose limit is the least permitted value.
+    LEAST: ClassVar = frozenset({"first_frequency"})
+
+
 if TYPE_CHECKING:
     Model = ModelTable
 else:
@@ -341,6 +365,8 @@ class Case(CaseKeys, CaseHeading):
     """the table of the fatigue assessment"""
     buckling: BucklingTable | None = None
     """the table of the buckling analysis of walls; none is made unless given"""
+    limits: LimitsTable | None = None
+    """the table of limits of results; none are checked unless given"""
     models: Annotated[tuple[Model, ...], Field(min_length=1, max_length=MOST_MODELS)] = Field(
         alias="model"
     )

@@ -13,6 +13,7 @@ from runs.report import theme
 from runs.report.charts import packed_charts, packed_plotly
 from runs.report.figure_context import Figure
 from runs.report.formatting import number, percent
+from runs.report.limits import limit_table
 from runs.report.model_tables import model_tables
 from runs.report.pages import Addition, page
 from runs.report.predictability import comparison_tables, predictability_tables
@@ -47,9 +48,9 @@ def render(
         snapshots: snapshots on the disk.
         viewer: file of the interactive viewer beside the report.
     """
-    summary = summary_table(results)
+    first_screen = [summary_table(results), limit_table(results)]
     tables: dict[str, list[Table]] = {
-        "summary": [summary] if summary else [],
+        "summary": [table for table in first_screen if table],
         "results": result_tables(results),
         "predictability": predictability_tables(results),
         "compared": comparison_tables(results),

@@ -13,7 +13,7 @@ from dynamics.predictability.horizon import SHARES
 from geometry.arrays import Array
 from geometry.typography import TO_MILLI
 from runs.report import theme
-from runs.report.charts import Chart
+from runs.report.charts import Chart, Curve
 from runs.report.figure_context import Figure, FigureContext, farthest, highest, new_sheet
 from runs.report.formatting import fixed, scientific
 
@@ -43,6 +43,8 @@ def tip(run: FigureContext) -> list[Figure]:
         for name in run.models:
             run.line(axes, name, run.time, TO_MILLI * run.of(name, place))
             _members(run, axes, name, place)
+        if limit := _limit(run, place):
+            axes.axhline(limit, label="limit", **theme.LIMIT)
         way = DIRECTIONS[place]
         caption = f"Deflection of the tip{way}, all models.{_sampled(run, place)}"
         title, stem = f"Tip{way}: {_reach(run, place)}", place.replace("_", "-")
@@ -128,7 +130,18 @@ def _chart(run: FigureContext, place: str) -> Chart:
         run.curve(name, TO_MILLI * run.of(name, place), band=_band(run, name, place))
         for name in run.models
     ]
+    if limit := _limit(run, place):
+        curves.append(Curve("limit", np.full(run.time.size, limit), theme.INK, "dot"))
     return Chart(run.time, "deflection (mm)", curves)
+
+
+def _limit(run: FigureContext, place: str) -> float | None:
+    """Return the permitted tip deflection in mm on the side of the farthest one, if any."""
+    limits = run.case.limits
+    if place != "tip" or limits is None or limits.tip is None:
+        return None
+    reaches = [farthest(run.of(name, place)) for name in run.models]
+    return float(np.copysign(TO_MILLI * limits.tip, max(reaches, key=abs)))
 
 
 def _reach(run: FigureContext, place: str) -> str:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from math import log, pi
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from runs.pipeline.low_pass import mean_period
 from runs.pipeline.model_quality import off_at_rest
 from runs.pipeline.motion_results import Peak
 from runs.pipeline.pads import PadLoad
+from runs.pipeline.quantities import decay_time
 from runs.pipeline.results import Results
 from runs.pipeline.utilisation import Utilisation, utilisations
 from runs.report.figure_context import farthest, tip_directions
@@ -22,8 +22,6 @@ from runs.report.formatting import NONE, SHOWN, amount, fixed, number, percent
 from runs.report.result_tables import hardly, times
 from runs.report.tables import Column, Table
 
-# Fraction of the initial vibration that remains after the decay time.
-TENTH = 0.1
 # Utilisation above which a number is highlighted.
 NEAR = 0.9
 
@@ -37,8 +35,7 @@ def summary_table(results: Results) -> Table | None:
     tips = [results.trajectories["tip"].sel(model=name).values for name in names]
     hertz = [one.modes[0].frequency if one.modes else None for one in own]
     # The decay follows from modal damping, without other dissipation.
-    decay = 2.0 * pi * results.case.damping.modal / log(1.0 / TENTH)
-    decay_times = [1.0 / (decay * f) if f and decay else None for f in hertz]
+    decay_times = [decay_time(results.case.damping.modal, f) for f in hertz]
     used = [utilisations(results, name) for name in names]
     walls, fibres = ([one.get(part) for one in used] for part in ("plate", "outer fibre"))
     hardest = governing_pads(results)

@@ -12,6 +12,7 @@ from runs.pipeline.results import Results
 from runs.pipeline.utilisation import utilisations
 from runs.report.figure_context import farthest
 from runs.report.formatting import number, percent
+from runs.report.limits import limit_table
 from runs.report.model_tables import model_table
 from runs.report.summary_table import (
     governing_pads,
@@ -48,7 +49,8 @@ def print_results(results: Results, console: Console) -> None:
     """Print the governing design results of each model, then the leading model's utilisation."""
     if not results.summary.design.models:
         return
-    result_table(results).show(console)
+    for table in filter(None, (result_table(results), limit_table(results))):
+        table.show(console)
     for line in filter(None, (play_effect(results), utilisation_verdict(results))):
         text = f"{results.leading_models[0]}: {line[0].lower()}{line[1:]}"
         console.print(text, markup=False, highlight=False)

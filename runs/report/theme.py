@@ -33,6 +33,9 @@ OUTLINED: list[AbstractPathEffect] = [withStroke(linewidth=3, foreground="white"
 # Colour maps of deflections and of stresses; zero is light.
 DEFLECTION, STRESS = "viridis_r", "cividis_r"
 
+# Line of a limit.
+LIMIT: dict[str, Any] = {"color": INK, "linewidth": 1.2, "linestyle": ":"}
+
 RC: dict[Any, Any] = {
     "figure.dpi": DPI,
     "savefig.dpi": DPI,

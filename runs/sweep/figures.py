@@ -25,13 +25,16 @@ from matplotlib.figure import Figure as Sheet
 from geometry.arrays import Array
 from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
 from runs.pipeline.metrics import Metric
+from runs.pipeline.quantities import QUANTITIES
 from runs.report import theme
 from runs.report.figure_context import new_sheet
 from runs.report.formatting import number
-from runs.sweep.quantities import DISTANCES, LEVELS, QUANTITIES, TIP_OFF, UNTIL
+from runs.sweep.distances import DISTANCES, LEVELS, TIP_OFF, UNTIL
 from runs.sweep.residual_vibration import draw_vibration
 
 CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
+# Attribute of a limited quantity.
+PERMITTED = "permitted"
 # Readable cells of a map along each axis.
 MOST_CELLS = 10
 # Above the first or below the second number, the values of a key are shown in another unit.
@@ -88,11 +91,20 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
                 sheet, panels = _lines(data[keys[0]], _of_models(part, changing, strokes))
                 for axes, quantity in zip(panels, changing, strict=True):
                     axes.set_yscale("log" if quantity.logarithmic else "linear")
+                    if (permitted := _permitted(part, quantity)) is not None:
+                        axes.axhline(permitted, **theme.LIMIT)
+                        axes.set_title(f"{axes.get_title(loc='left')}, dotted: limit")
                 where = "".join(f", {_quantity(key)} {value:g}" for key, value in there.items())
                 name = f"sweep-lines-{count}.png" if there else "sweep-lines.png"
                 _finish(sheet, f"Sweep over {_quantity(keys[0])}{where}", folder / name)
         if len(keys) == 1:
             draw_vibration(data, strokes, folder / "sweep-residual-vibration.png")
+
+
+def _permitted(data: xr.Dataset, quantity: Metric) -> float | None:
+    """Return the limit of a quantity in its displayed unit; None without any."""
+    permitted = data[quantity.name].attrs.get(PERMITTED)
+    return None if permitted is None else float(quantity.factor * permitted)
 
 
 def _at_ends(data: xr.Dataset, keys: Sequence[str]) -> Iterator[dict[str, float]]:
@@ -226,6 +238,7 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
     """Draw a quantity over two keys, a panel for each model that has it, on a common scale."""
     x, y = (data[key] for key in keys)
     values = quantity.factor * data[quantity.name].transpose("model", *keys[::-1])
+    permitted = _permitted(data, quantity)
     failed = data["failed"].transpose("model", *keys[::-1])
     known = np.isfinite(values.values).any(axis=(1, 2))
     names = [str(name) for name in values["model"].values[known]]
@@ -247,6 +260,8 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
         elif min(cells.shape) >= LEAST_FOR_CONTOURS and np.nanmax(cells) > np.nanmin(cells):
             lines = axes.contour(x.values, y.values, cells, colors="white", linewidths=0.8)
             axes.clabel(lines, fontsize=9.0)
+        if permitted is not None and np.nanmin(cells) < permitted < np.nanmax(cells):
+            axes.contour(x.values, y.values, cells, [permitted], colors="red", linestyles=":")
         rows, columns = np.nonzero(failed.sel(model=name).values)
         axes.plot(x.values[columns], y.values[rows], "x", color=theme.INK)
         axes.set(title=name, facecolor=theme.RULE)
@@ -256,6 +271,7 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
     left_out = [str(name) for name in values["model"].values[~known]]
     remarks = [
         *([f"grey: no {quantity.title}"] if values[known].isnull().any() else []),
+        *([] if permitted is None else [f"red, dotted: limit of {permitted:.4g}"]),
         *(["×: the numerics failed"] if failed[known].values.any() else []),
         *([f"without any: {', '.join(left_out)}"] if left_out else []),
     ]

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +14,16 @@ import xarray as xr
 from rich.console import Console
 
 from runs.folder.files import changed_folder, exclusive, whole
+from runs.pipeline.limits import Limit
 from runs.pipeline.metrics import Metric, metrics
+from runs.pipeline.quantities import QUANTITIES
 from runs.pipeline.results import CONVENTIONS
 from runs.pipeline.summary import ModelSummary
 from runs.report.formatting import NONE, number
 from runs.report.tables import Table
-from runs.sweep.figures import draw, draw_distances
+from runs.sweep.distances import DISTANCES, UNTIL
+from runs.sweep.figures import PERMITTED, draw, draw_distances
 from runs.sweep.points import Plan
-from runs.sweep.quantities import DISTANCES, QUANTITIES, UNTIL
 from runs.sweep.residual_vibration import describe, vibration_curves
 from runs.sweep.run import Outcome
 
@@ -38,8 +41,9 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
 
     Returns:
         dims: the varied keys, in the unit of the case, and ``model``; the quantities of
-        :mod:`runs.sweep.quantities`, NaN where a model has none, and with a reference distances
-        from it, and ``compared_until``, the time up to which tips are compared;
+        :mod:`runs.pipeline.quantities`, NaN where a model has none, and with a reference distances
+        from it, and ``compared_until``, the time up to which tips are compared; a limit of the
+        case is the attribute ``permitted`` of its quantity;
         ``failed``, 1 where the numerics did.
     """
     dims, models = list(plan.coordinates), plan.coordinates["model"]
@@ -51,17 +55,19 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
     ]
     shape = *plan.shape, len(models)
     found: dict[str, Any] = {}
+    permitted = {limit.quantity.name: {PERMITTED: limit.permitted} for limit in plan.limits}
     for one in quantities:
         values = np.array([row.get(one.name) for row in rows], dtype=float).reshape(shape)
-        found[one.name] = dims, values, {"units": one.unit, "long_name": one.title}
+        attributes = {"units": one.unit, "long_name": one.title}
+        found[one.name] = dims, values, attributes | permitted.get(one.name, {})
     failed = np.array([row["failed"] for row in rows], dtype=np.int8).reshape(shape)
     found["failed"] = dims, failed, {"long_name": "the numerics failed"}
     if plan.reference is not None:
         ends = np.array([one.until for one in outcomes], dtype=float).reshape(plan.shape)
-        attributes = {"units": "s", "long_name": "tips compared until"}
-        found = {UNTIL: (dims[:-1], ends, attributes), **found}
-    attributes = {"Conventions": CONVENTIONS, "title": plan.title}
-    return xr.Dataset(found, coords=plan.coordinates, attrs=attributes)
+        until = {"units": "s", "long_name": "tips compared until"}
+        found = {UNTIL: (dims[:-1], ends, until), **found}
+    about = {"Conventions": CONVENTIONS, "title": plan.title}
+    return xr.Dataset(found, coords=plan.coordinates, attrs=about)
 
 
 def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
@@ -84,7 +90,7 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
     return data
 
 
-def show(data: xr.Dataset, reference: str | None, console: Console) -> None:
+def show(data: xr.Dataset, plan: Plan, console: Console) -> None:
     """Print ranges of each model, its maximum tip deflection, and distances from a reference.
 
     The energy residual is the largest of all points. Telescoping speeds follow below.
@@ -110,12 +116,22 @@ def show(data: xr.Dataset, reference: str | None, console: Console) -> None:
         ("model", *(heading.replace(" ", "\n") for heading in headings)),
         rows,
     ).show(console)
+    vibrations = vibration_curves(data).items()
     for line in (
-        line for name, one in vibration_curves(data).items() for line in describe(name, one)
+        *_within_limits(data, plan.limits),
+        *(line for name, one in vibrations for line in describe(name, one)),
     ):
         console.print(line, markup=False, highlight=False)
-    if reference is not None:
-        _show_distances(data, reference, console)
+    if plan.reference is not None:
+        _show_distances(data, plan.reference, console)
+
+
+def _within_limits(data: xr.Dataset, limits: Sequence[Limit]) -> Iterator[str]:
+    """Yield at how many points the limits of the case hold, in each model."""
+    for limit, name in product(limits, data["model"].values):
+        values = data[limit.quantity.name].sel(model=name).values.ravel()
+        held = sum(limit.permits(value) for value in values)
+        yield f"{name}: {limit} at {held} of {values.size} points"
 
 
 def _show_distances(data: xr.Dataset, reference: str, console: Console) -> None:

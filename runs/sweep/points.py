@@ -9,7 +9,7 @@ Where no model needs plates, none are inferred, and beams accept any play.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, replace
 from itertools import product
@@ -26,7 +26,8 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.sections import SectionTable
-from runs.sweep.variation import Tables, Variation, parse, unit_of
+from runs.pipeline.limits import Limit, limits_of
+from runs.sweep.variation import UNUSED, Tables, Variation, parse, unit_of
 
 Setting = tuple[Variation, float]
 
@@ -56,6 +57,7 @@ class Plan:
     bonded: Sequence[str]  #: names of the models without play
     points: Sequence[Point]  #: all combinations, the last variation changing fastest
     reference: str | None = None  #: the model with which the others are compared, if any
+    limits: Sequence[Limit] = ()  #: those of the case, which no run depends on
 
     @property
     def coordinates(self) -> dict[str, Any]:
@@ -92,7 +94,7 @@ def plan(
     """
     whole = case_file.load(file)
     case_file.select(whole, file, models, mesh_size, 0)
-    tables = whole.model_dump(mode="json", by_alias=True, exclude_none=True, exclude={"ensemble"})
+    tables = tables_of(whole)
     variations = parse(texts, tables, file)
     first = _written(file, tables, tuple((v, v.values[0]) for v in variations))
     system = whole.system
@@ -108,20 +110,11 @@ def plan(
         for one in variations
     ]
 
-    def chosen(settings: Sequence[Setting]) -> Case:
-        return case_file.select(_written(file, tables, settings), file, models)
-
-    plates: dict[Sequence[Setting], Plates] = {}
-    points = []
-    for values in product(*(variation.values for variation in variations)):
-        settings = tuple(zip(variations, values, strict=True))
-        shaping = tuple(setting for setting in settings if setting[0].shapes_sections)
-        label = _label(settings)
-        if shaping not in plates:
-            plates[shaping] = inferred_plates(_checked(file, label, chosen(shaping)))
-        held = hold_plates(chosen(settings), plates[shaping])
-        checked = _checked(file, label, held, any(plates[shaping]))
-        points.append(Point(values, label, case_file.select(checked, file, None, mesh_size)))
+    combinations = (
+        tuple(zip(variations, values, strict=True))
+        for values in product(*(variation.values for variation in variations))
+    )
+    points = list(make_points(whole, file, models, mesh_size, combinations))
     _check_influence(file, variations, points)
     run = points[0].case.models
     names = [model.name for model in run]
@@ -132,7 +125,42 @@ def plan(
         what = f"nothing is run beside {reference!r}; run another model, too"
         raise BadInput(file, "--against", what)
     bonded = [model.name for model in run if model.bonded]
-    return Plan(file, whole.title, variations, units, bonded, points, reference)
+    limits = limits_of(whole.limits)
+    return Plan(file, whole.title, variations, units, bonded, points, reference, limits)
+
+
+def tables_of(case: Case) -> Tables:
+    """Return a case as plain tables, without those that its runs in a sweep do not depend on."""
+    return case.model_dump(mode="json", by_alias=True, exclude_none=True, exclude={*UNUSED})
+
+
+def make_points(
+    whole: Case,
+    file: str,
+    models: Sequence[str] | None,
+    mesh_size: float | None,
+    combinations: Iterable[Sequence[Setting]],
+) -> Iterator[Point]:
+    """Yield the checked point of each combination of settings of a case.
+
+    Raises:
+        BadInput: a combination is invalid.
+    """
+    tables = tables_of(whole)
+
+    def chosen(settings: Sequence[Setting]) -> Case:
+        return case_file.select(_written(file, tables, settings), file, models)
+
+    plates: dict[Sequence[Setting], Plates] = {}
+    for settings in combinations:
+        shaping = tuple(setting for setting in settings if setting[0].shapes_sections)
+        label = _label(settings)
+        if shaping not in plates:
+            plates[shaping] = inferred_plates(_checked(file, label, chosen(shaping)))
+        held = hold_plates(chosen(settings), plates[shaping])
+        checked = _checked(file, label, held, any(plates[shaping]))
+        values = tuple(value for _, value in settings)
+        yield Point(values, label, case_file.select(checked, file, None, mesh_size))
 
 
 def _written(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:

@@ -21,13 +21,14 @@ from runs.case.schema import Case
 from runs.case.user_files import check_left
 from runs.folder.cache import Cache, key
 from runs.pipeline.context import RunContext
+from runs.pipeline.quantities import Measured, measure
 from runs.pipeline.run import run_case
 from runs.process import ending
 from runs.process.ending import when_interrupted
 from runs.process.progress import Progress
 from runs.process.workers import end
+from runs.sweep.distances import Features, comparable_until
 from runs.sweep.points import Plan
-from runs.sweep.quantities import Features, Measured, comparable_until, measure
 
 if TYPE_CHECKING:
     from mpi4py import MPI

@@ -26,6 +26,9 @@ from runs.case.units import scaled
 # A case file as plain tables and lists.
 Tables = dict[str, Any]
 
+# Tables of a case that the runs of a sweep do not depend on, and why.
+UNUSED = {"ensemble": "a sweep runs no ensembles", "limits": "no run depends on it"}
+
 # Weeks of computing: a request for more is an error.
 MOST_POINTS = 10_000
 
@@ -105,8 +108,8 @@ def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
             raise BadInput(file, f"--vary {text}", f"not understood; {_REMEDY}")
         if key in [variation.key for variation in variations]:
             raise BadInput(file, option, "given twice; give all its values at once")
-        if key.split(".")[0].split("[")[0] == "ensemble":
-            raise BadInput(file, option, "a sweep runs no ensembles; leave it out")
+        if (unused := UNUSED.get(key.split(".")[0].split("[")[0])) is not None:
+            raise BadInput(file, option, f"{unused}; leave it out")
         try:
             variations.append(Variation(key, _values(numbers), find(key, tables)))
         except Unplaced as reason:

@@ -22,8 +22,7 @@ from runs.folder.cache import Cache
 from runs.pipeline.low_pass import mean_period
 from runs.pipeline.models import MotionPlan, build
 from runs.sweep import output
-from runs.sweep.points import Plan, plan
-from runs.sweep.quantities import (
+from runs.sweep.distances import (
     CHANGE,
     DISTANCES,
     HELD,
@@ -32,6 +31,7 @@ from runs.sweep.quantities import (
     comparable_until,
     held_force,
 )
+from runs.sweep.points import Plan, plan
 from runs.sweep.run import Outcome, run_point
 from tests.runs.sweeping import COARSE, run
 
@@ -85,11 +85,11 @@ def against(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Plan:
     return plan("case.toml", ["joint.play=0.008,0.014"], MODELS, None, "kantorovich-5")
 
 
-def shown(data: xr.Dataset) -> str:
+def shown(data: xr.Dataset, planned: Plan) -> str:
     """Return the output about a sweep on a terminal of 80 columns."""
     console = Console(width=80, legacy_windows=False)
     with console.capture() as captured:
-        output.show(data, "kantorovich-5", console)
+        output.show(data, planned, console)
     return captured.get()
 
 
@@ -119,7 +119,7 @@ def test_a_sweep_tells_the_distances_of_its_models(against: Plan) -> None:
         "sweep-lines.png",
     ]
     assert run(against)[0].off.keys() == {"kantorovich-4", "beam-fe-tied"}
-    table = shown(data).partition("Distances from kantorovich-5")[2]
+    table = shown(data, against).partition("Distances from kantorovich-5")[2]
     first = [line.split()[0] for line in table.splitlines() if line.strip()]
     assert [word for word in first if word in MODELS] == ["kantorovich-4", "beam-fe-tied"]
     assert "the time step changes the tip of kantorovich-5 by" in " ".join(table.split())
@@ -136,7 +136,7 @@ def test_a_sweep_says_until_when_it_compares_and_what_steps_change(against: Plan
     there = data["step_error"].sel({"joint.play": 0.014, "model": "kantorovich-5"})
     assert float(there) == pytest.approx(doubled)
     assert 0.0 < doubled < 1.0e-3
-    until, changes = shown(data).splitlines()[-2:]
+    until, changes = shown(data, against).splitlines()[-2:]
     assert until == "tips are compared until 0.9 s"
     assert changes.startswith("the time step changes the tip of kantorovich-5 by 0.0")
     assert changes.endswith(" % of its range")

@@ -20,13 +20,13 @@ from runs.case.schema import Case
 from runs.case.units import System
 from runs.check import print_check
 from runs.pipeline.drives import lag_cautions
+from runs.pipeline.quantities import measure
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Summary
 from runs.report import theme
 from runs.report.figure_context import FigureContext
 from runs.report.force_figures import drives
 from runs.report.result_tables import result_tables, stick_slip_table
-from runs.sweep.quantities import measure
 from tests.runs.case_texts import read_case, refusal
 from tests.runs.summaries import printed
 

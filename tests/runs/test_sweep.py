@@ -17,10 +17,10 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
+from runs.pipeline.quantities import QUANTITIES, measure, settling_time
 from runs.process.terminal import shown
 from runs.sweep import output
 from runs.sweep import run as sweep
-from runs.sweep.quantities import QUANTITIES, measure, settling_time
 from runs.sweep.run import Outcome
 from tests.runs.sweeping import FAST, Planned, run
 
@@ -145,6 +145,7 @@ def test_beams_that_need_no_plates_take_any_play(planned: Planned) -> None:
             ["ensemble.members=2,3"],
             "ensemble.members: a sweep runs no ensembles; leave it out",
         ),
+        (["limits.tip=2,3"], "limits.tip: no run depends on it; leave it out"),
         (
             ["payload.gravity=1,2"],
             "payload.gravity=1: payload.mass: missing; it is the mass in kg",
@@ -239,13 +240,16 @@ def test_files_hold_the_same_numbers_with_units(planned: Planned) -> None:
     assert data["joint.play"].attrs["units"] == "m"
     assert {q.name: data[q.name].attrs["units"] for q in QUANTITIES} == {
         "tip_at_rest": "m",
+        "tip": "m",
         "tip_amplitude": "m",
         "dynamic_factor": "1",
         "contact_force": "N",
         "stress": "Pa",
         "wall_stress": "Pa",
+        "pad_pressure": "Pa",
         "damage": "1",
         "first_frequency": "Hz",
+        "decay_time": "s",
         "mass": "kg",
         "settling_time": "s",
         "first_contact": "s",

@@ -13,12 +13,12 @@ import xarray as xr
 from matplotlib.figure import Figure as Sheet
 from PIL import Image
 
+from runs.pipeline.quantities import QUANTITIES
 from runs.report import theme
 from runs.report.formatting import number
 from runs.sweep import output
 from runs.sweep.figures import in_shown_units
 from runs.sweep.points import Plan
-from runs.sweep.quantities import QUANTITIES
 from runs.sweep.run import Outcome
 from tests.runs.sweeping import FAST, Planned
 
@@ -65,7 +65,7 @@ def charts(sweeping: Plan, *quantities: Sequence[str]) -> None:
         (["joint.play=0:0.01:4"], ["sweep-lines.png"]),
         (
             ["joint.play=0:0.01:4", "joint.stiffness=1e8,1e9,1e10,1e11"],
-            [f"sweep-{name.replace('_', '-')}.png" for name in sorted(CHARTED)],
+            sorted(f"sweep-{name.replace('_', '-')}.png" for name in CHARTED),
         ),
         (
             ["joint.play=0,0.01", "segment[2].load=20,40,60", "damping.modal=0,0.1"],

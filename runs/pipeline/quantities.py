@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Numbers of each model that a sweep charts and a case limits."""
+
+from __future__ import annotations
+
+from math import log, pi
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
+from runs.pipeline.design_results import ModelDesignResults
+from runs.pipeline.metrics import Metric, metrics, records
+from runs.pipeline.results import Results
+from runs.pipeline.summary import ModelSummary
+
+# Name of the quantity → its value in SI units, None where a model has none.
+Measured = dict[str, float | None]
+
+# The tip has settled when it stays within this part of its initial amplitude.
+BAND = 0.05
+# Its final mean is that of the last part of the run, for which it must have stayed there at least.
+FINAL = 0.2
+# A tip at rest, for example started in equilibrium, moves by round-off of this part.
+ROUND_OFF = 1.0e-12
+# Decay time: until the vibration has fallen to this part.
+TENTH = 0.1
+
+# Sources of a model's numbers beside its fields: results that are records, and its summary.
+_DECLARING: list[type] = [*records(ModelDesignResults).values(), ModelSummary]
+
+# Quantities of the boom at rest, of its motion, and of its accuracy.
+QUANTITIES = (
+    Metric("tip_at_rest", "m", "tip at rest", TO_MILLI, "mm"),
+    Metric("tip", "m", "tip deflection", TO_MILLI, "mm"),
+    Metric("tip_amplitude", "m", "tip amplitude", TO_MILLI, "mm"),
+    Metric("dynamic_factor", "1", "dynamic factor", 1.0, "–"),
+    Metric("contact_force", "N", "contact force", TO_KILO, "kN"),
+    Metric("stress", "Pa", "stress", TO_MEGA, "MPa"),
+    Metric("wall_stress", "Pa", "wall stress", TO_MEGA, "MPa"),
+    Metric("pad_pressure", "Pa", "pad pressure", TO_MEGA, "MPa"),
+    Metric("damage", "1", "damage", 1.0, "–", logarithmic=True),
+    Metric("first_frequency", "Hz", "first frequency", 1.0, "Hz"),
+    Metric("decay_time", "s", "decay time to 10 %", 1.0, "s"),
+    Metric("mass", "kg", "mass", 1.0, "kg"),
+    Metric("settling_time", "s", "settling time", 1.0, "s"),
+    Metric("drive_force", "N", "largest force of an elastic drive", TO_KILO, "kN"),
+    Metric("drive_slip", "m", "longest slip on a drive", TO_MILLI, "mm"),
+    *(one for kind in _DECLARING for one in metrics(kind).values() if one.name),
+)
+
+
+def measure(results: Results, model: str) -> Measured:
+    """Return the quantities of one model of a run.
+
+    The tip at rest is the static deflection under the largest loads, at any extension, the tip the
+    largest one of the motion. The tip's amplitude, its dynamic part, is half the distance between
+    its highest and its lowest place. The dynamic factor is the largest deflection over the largest
+    at rest. The contact force is the largest mean of an output interval at any station, since the
+    peak of an impact is too short to load a pad. The stress is that of an outer fibre, from section
+    forces. The wall stress is a shell's own over a patch. The pad pressure is that of a pad at its
+    peak. The damage is that of a fatigue life at the governing place. The decay time is that of the
+    first mode. Residual vibration is that of
+    :class:`runs.pipeline.residual_vibration.ResidualVibration`; force and slip of elastic drives
+    are those of :class:`dynamics.drive.stick_slip.StickSlip`.
+    """
+    time = np.asarray(results.trajectories["time"].values, dtype=float)
+    tip = np.asarray(results.trajectories["tip"].sel(model=model).values, dtype=float)
+    summary = results.summary.models[model]
+    own = results.summary.design.models.get(model, ModelDesignResults())
+    declaring = [*(getattr(own, name) for name in records(ModelDesignResults)), summary]
+    moved = own.motion
+    peaks = () if moved is None else moved.peaks
+    deflection = next((peak for peak in peaks if peak.what == "deflection"), None)
+    contacts = (peak.largest for peak in peaks if peak.what == "contact force")
+    fibres = () if moved is None else (abs(fibre.stress) for fibre in moved.fibres)
+    walls = () if moved is None else (wall.patch for wall in moved.walls)
+    pads = (pad.pressure for pad in results.summary.pads if pad.model == model)
+    frequency = own.modes[0].frequency if own.modes else None
+    damages = (one.life_damage for one in own.life if one.life_damage is not None)
+    return {
+        "tip_at_rest": None if deflection is None else deflection.at_rest,
+        "tip": float(np.abs(tip).max()),
+        "tip_amplitude": float(0.5 * np.ptp(tip)),
+        "dynamic_factor": None if deflection is None else deflection.factor,
+        "contact_force": max(contacts, default=None),
+        "stress": max(fibres, default=None),
+        "wall_stress": max(walls, default=None),
+        "pad_pressure": max(pads, default=None),
+        "damage": max(damages, default=None),
+        "first_frequency": frequency,
+        "decay_time": decay_time(results.case.damping.modal, frequency),
+        # Of all segments and the masses that they carry.
+        "mass": sum(segment.mass for segment in results.boom.segments),
+        "drive_force": max((one.peak for one in summary.stick_slip.values()), default=None),
+        "drive_slip": max((one.slip for one in summary.stick_slip.values()), default=None),
+        "settling_time": settling_time(time, tip),
+    } | {
+        metric.name: getattr(record, field, None)
+        for record, kind in zip(declaring, _DECLARING, strict=True)
+        for field, metric in metrics(kind).items()
+        if metric.name
+    }
+
+
+def decay_time(ratio: float, frequency: float | None) -> float | None:
+    """Return the time in s in which a damping ratio leaves a tenth of a vibration in Hz.
+
+    None without damping or a frequency.
+    """
+    return log(1.0 / TENTH) / (2.0 * pi * ratio * frequency) if ratio and frequency else None
+
+
+def settling_time(time: Array, tip: Array) -> float | None:
+    """Return the time from which the tip stays within 5 % of its initial amplitude.
+
+    The band lies around the final mean, that of the last fifth of the run; the initial amplitude is
+    the largest distance from it. None where the tip leaves the band within that last fifth: it does
+    not settle within the run. That fifth must be longer than the slowest oscillation for this to
+    mean much.
+
+    Args:
+        time: (num_times,) in s, rising.
+        tip: (num_times,) in m.
+    """
+    last = time >= time[-1] - FINAL * (time[-1] - time[0])
+    off = np.abs(tip - tip[last].mean())
+    outside = off > max(BAND * off.max(), ROUND_OFF * np.abs(tip).max())
+    if outside[last].any():
+        return None
+    # A tip inside from the start settles at once.
+    return float(time[np.flatnonzero(outside)[-1] + 1]) if outside.any() else float(time[0])

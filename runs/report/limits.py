@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Limits of a case in the report and in the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from runs.pipeline.limits import check_limits
+from runs.pipeline.results import Results
+from runs.report.tables import Column, Table
+
+
+def limit_table(results: Results) -> Table | None:
+    """Return the limits of the case beside the numbers of the leading models."""
+    checks = list(check_limits(results))
+    if not checks:
+        return None
+    columns = [
+        Column("limit", [str(check.limit) for check in checks]),
+        Column("holds", ["✓" if check.holds else "✗" for check in checks]),
+    ]
+    columns += [
+        Column(name, [check.limit.shown(check.values.get(name)) for check in checks])
+        for name in results.leading_models
+    ]
+    notes = [f"The number of {results.leading_models[0]} decides, where it has one."]
+    return Table("Limits of the case", columns, notes, "limits", ["✗"])
+
+
+def limit_faults(results: Results) -> Iterator[str]:
+    """Yield the key, the number and the model of each limit that does not hold."""
+    for check in check_limits(results):
+        if check.holds:
+            continue
+        what = "no model has such a result"
+        if check.decisive is not None:
+            model, value = check.decisive
+            what = f"{check.limit.shown(value)} in {model}; the case demands {check.limit}"
+        yield f"limits.{check.limit.quantity.name}: {what}"

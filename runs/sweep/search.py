@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Value of one key at which a quantity reaches a bound: ``--until 'tip<0.9'``, by bisection."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+
+import numpy as np
+from rich.console import Console
+
+from geometry.typography import choices
+from runs.case.messages import BadInput
+from runs.case.units import scaled
+from runs.pipeline.limits import Limit
+from runs.pipeline.quantities import QUANTITIES
+from runs.report.tables import Table
+from runs.sweep.points import Plan
+from runs.sweep.run import Outcome
+
+OPTION = "--until"
+# Width of the last bracket over the larger of its ends.
+CLOSE = 1.0e-3
+
+_BOUND = re.compile(r"\s*([a-z_]+)\s*(<|>)=?\s*([-+.\deE]+)\s*")
+
+
+def parse_bound(text: str, plan: Plan) -> Limit:
+    """Read a bound on a quantity of sweeps, in the unit of the case.
+
+    Raises:
+        BadInput: it is not understood, or the plan has several keys or models.
+    """
+    known = {one.name: one for one in QUANTITIES}
+    found = _BOUND.fullmatch(text)
+    try:
+        if found is None:
+            raise ValueError
+        value = float(found[3])
+    except ValueError:
+        what = f"{text!r} is not understood; give QUANTITY<NUMBER or QUANTITY>NUMBER"
+        raise BadInput(plan.file, OPTION, what) from None
+    if found[1] not in known:
+        what = f"{found[1]!r} is no quantity of a sweep; give {choices([*known])}"
+        raise BadInput(plan.file, OPTION, what)
+    for several, what, remedy in (
+        (plan.variations, "keys vary", "give one --vary"),
+        (plan.coordinates["model"], "models run", "name one with --models"),
+    ):
+        if len(several) > 1:
+            raise BadInput(plan.file, OPTION, f"{len(several)} {what}; {remedy}")
+    quantity = known[found[1]]
+    si = scaled(value, plan.points[0].case.system.size(quantity.unit))
+    return Limit(quantity, si, least=found[2] == ">")
+
+
+def bisect(
+    plan: Plan,
+    bound: Limit,
+    plan_of: Callable[[Sequence[str]], Plan],
+    run: Callable[[Plan], list[Outcome]],
+) -> tuple[Plan, list[Outcome]]:
+    """Return the plan and outcomes of all values of the key, with a bracket of the bound.
+
+    Args:
+        plan: of the first values.
+        bound: of one quantity; the first values have numbers on both sides of it.
+        plan_of: returns the plan of other variations, KEY=VALUES each.
+        run: returns the outcomes of a plan.
+
+    Raises:
+        BadInput: the bound is not reached once between the values, or a point has no number.
+    """
+    while True:
+        outcomes = run(plan)
+        low, high = _bracket(plan, outcomes, bound)
+        values = plan.variations[0].values
+        if values[high] - values[low] <= CLOSE * max(abs(values[low]), abs(values[high])):
+            return plan, outcomes
+        middle = 0.5 * (values[low] + values[high])
+        tried = ",".join(map(repr, (*values, middle)))
+        plan = plan_of([f"{plan.variations[0].key}={tried}"])
+
+
+def numbers(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> list[float]:
+    """Return the quantity at each point in SI units; BadInput where there is none."""
+    found = []
+    for point, outcome in zip(plan.points, outcomes, strict=True):
+        (model,) = plan.coordinates["model"]
+        value = outcome.models.get(model, {}).get(bound.quantity.name)
+        if value is None:
+            what = f"{model} has no {bound.quantity.title} at {point.label}"
+            raise BadInput(plan.file, OPTION, what)
+        found.append(value)
+    return found
+
+
+def _bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> tuple[int, int]:
+    """Return the positions of the values on both sides of the bound."""
+    found = numbers(plan, outcomes, bound)
+    within = [bound.permits(value) for value in found]
+    changes = [pair for pair in pairwise(range(len(found))) if within[pair[0]] != within[pair[1]]]
+    if len(changes) == 1:
+        return changes[0]
+    key, span = plan.variations[0].key, f"{bound.shown(min(found))} to {bound.shown(max(found))}"
+    what = (
+        f"{bound.quantity.title} passes it {len(changes)} times over {key}, from {span}; give "
+        f"values of {key} around one place where it does"
+    )
+    raise BadInput(plan.file, OPTION, what)
+
+
+def show(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console: Console) -> None:
+    """Print the bracket, and a caution where the quantity is not monotone."""
+    found, key = np.array(numbers(plan, outcomes, bound)), plan.variations[0].key
+    quantity, values = bound.quantity, plan.variations[0].values
+    rows = [
+        (f"{values[i]:.6g}", quantity.factor * found[i], "✓" if bound.permits(found[i]) else "✗")
+        for i in _bracket(plan, outcomes, bound)
+    ]
+    unit = f" ({plan.units[0]})" if plan.units[0] else ""
+    columns = {f"{key}{unit}": "", f"{quantity.title}\n{quantity.shown_unit}": ".5g", "holds": ""}
+    ways = np.sign(np.diff(found))
+    note = f"The {quantity.title} is not monotone over {key}: other places may hold, too."
+    notes = [note] if (ways > 0.0).any() and (ways < 0.0).any() else []
+    Table.of_rows("search", f"Bracket of {key}: {bound}", columns, rows, notes).show(console)

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Change of each result of a beam by 1 % of each number of a case, by central differences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from rich.console import Console
+
+from geometry.typography import TO_PERCENT, listed
+from runs.case import reading as case_file
+from runs.case.messages import BadInput
+from runs.case.schema import Case
+from runs.folder.files import changed_folder, exclusive, whole
+from runs.pipeline.quantities import QUANTITIES
+from runs.report.tables import Column, Table
+from runs.sweep.points import Plan, Point, make_points, tables_of
+from runs.sweep.run import Outcome
+from runs.sweep.variation import Place, Variation
+
+OPTION = "--sensitivity"
+CSV = "sensitivity.csv"
+# Relative change of a number to either side.
+CHANGE = 0.01
+# Results in a terminal of 80 columns, and most numbers there.
+SHOWN = ("tip_at_rest", "tip", "stress", "contact_force", "first_frequency")
+MOST_ROWS = 20
+# Changes below this part are round-off.
+NONE = 1.0e-7
+
+# Tables whose numbers describe no boom, and keys of curves.
+_OTHER = {"time", "model", "observe", "life"}
+_CURVES = {"table", "force_table"}
+
+
+def plan_changes(
+    file: str, models: Sequence[str] | None, mesh_size: float | None
+) -> tuple[Plan, list[str]]:
+    """Return the case and two points for each of its numbers, and the keys that cannot change.
+
+    Raises:
+        BadInput: the case is invalid, or there is not one model to run.
+    """
+    case = case_file.load(file)
+    if models is None:
+        models = [model.name for model in case.models if not model.needs_shell][-1:]
+    if len(models) != 1:
+        what = f"{len(models)} models are chosen; name one with --models, a beam say"
+        raise BadInput(file, OPTION, what)
+    points: list[Point] = [*make_points(case, file, models, mesh_size, [()])]
+    refused = []
+    tables = tables_of(case)
+    for place, value in _numbers({k: v for k, v in tables.items() if k not in _OTHER}, ()):
+        values = (1.0 - CHANGE) * value, (1.0 + CHANGE) * value
+        variation = Variation(place.name, values, (place,))
+        try:
+            settings = [[(variation, value)] for value in values]
+            points += make_points(case, file, models, mesh_size, settings)
+        except BadInput:
+            refused.append(place.name)
+    return Plan(file, case.title, (), (), (), points), refused
+
+
+def _numbers(here: object, steps: tuple[str | int, ...]) -> Iterator[tuple[Place, float]]:
+    """Yield the numbers of a case but whole ones, zeros and curves."""
+    if isinstance(here, float) and here:
+        yield Place(steps), here
+    elif isinstance(here, Mapping):
+        for key, value in here.items():
+            if key not in _CURVES:
+                yield from _numbers(value, (*steps, key))
+    elif isinstance(here, list):
+        for i, value in enumerate(here):
+            yield from _numbers(value, (*steps, i))
+
+
+def changes(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
+    """Return the relative change of each result (columns) by 1 % of each key (index).
+
+    The keys with the largest change of a result of ``SHOWN`` come first; those without any are left
+    out.
+    """
+    (model,) = plan.coordinates["model"]
+    names = [one.name for one in QUANTITIES if one.charted]
+    found = pd.DataFrame(
+        [one.models.get(model, {}) for one in outcomes], columns=names, dtype=float
+    )
+    base, below, above = found.iloc[0], found.iloc[1::2], found.iloc[2::2]
+    keys = [point.label.partition("=")[0] for point in plan.points[1::2]]
+    parts = (above.to_numpy() - below.to_numpy()) / (2.0 * base.abs().to_numpy())
+    table = pd.DataFrame(parts, keys, names).replace([np.inf, -np.inf], np.nan)
+    table = table.mask(table.abs() < NONE, 0.0)
+    largest = table[list(SHOWN)].abs().max(axis=1)
+    order = largest.sort_values(ascending=False, kind="stable")
+    return table.loc[order.index[order > 0.0]].dropna(axis=1, how="all")
+
+
+def write(data: pd.DataFrame, folder: Path) -> None:
+    """Write ``sensitivity.csv`` into the folder of a sweep: changes in % by 1 %."""
+    with exclusive(folder), changed_folder(folder) as part, whole(part / CSV) as path:
+        percent = (TO_PERCENT * data).rename_axis("key").reset_index()
+        percent.to_csv(path, index=False, float_format="%.6g", lineterminator="\r\n")
+
+
+def show(data: pd.DataFrame, case: Case, refused: Sequence[str], console: Console) -> None:
+    """Print the numbers with the largest influence."""
+    top = data.head(MOST_ROWS)
+    columns = [Column("1 % more of", list(top.index))]
+    columns += [
+        Column(one.title.replace(" ", "\n"), top[one.name].tolist(), ".3g", "%")
+        for one in QUANTITIES
+        if one.name in SHOWN and one.name in top
+    ]
+    notes = [f"Refused with 1 % more or less: {listed(refused)}."] if refused else []
+    if len(data) > len(top):
+        notes.append(f"{len(data) - len(top)} more numbers are in {CSV}.")
+    title = f"Change of results by 1 % of each number: {case.models[0].name}"
+    Table(title, columns, notes, "sensitivity").show(console)

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Limits of a case in tables, figures and sweeps, and in the exit status."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure as Sheet
+from rich.console import Console
+
+from protractile.cases import run_case
+from runs import cli
+from runs.case import reading
+from runs.case.messages import BadInput
+from runs.pipeline.limits import Limit, check_limits, limits_of
+from runs.pipeline.quantities import decay_time, measure
+from runs.report.limits import limit_faults, limit_table
+from runs.sweep import output
+from runs.sweep.points import plan
+from tests.runs.cantilever import (
+    CANTILEVER,
+    LENGTH,
+    LOAD,
+    MASS,
+    SECOND,
+    YOUNG,
+    static_tip,
+)
+from tests.runs.sweeping import run
+
+
+@pytest.fixture(autouse=True)
+def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def write(limits: str, text: str = CANTILEVER) -> str:
+    Path("case.toml").write_text(text + f"\n[limits]\n{limits}\n", encoding="utf-8")
+    return "case.toml"
+
+
+def test_limits_decide_by_the_numbers_of_a_run() -> None:
+    """Reference: analytic, q L⁴/(8 E J) and f = 1.8751² √(E J/m)/(2π L²) of a cantilever."""
+    tip = static_tip()
+    case = reading.load(write(f"tip_at_rest = {1.001 * tip}\nfirst_frequency = 3.4\ntip = {tip}"))
+    results = run_case(case)
+    checks = {check.limit.quantity.name: check for check in check_limits(results)}
+    # A load that is suddenly there deflects twice as far.
+    assert {name: check.holds for name, check in checks.items()} == {
+        "tip_at_rest": True,
+        "tip": False,
+        "first_frequency": True,
+    }
+    assert checks["tip_at_rest"].values["beam"] == pytest.approx(tip, rel=1e-6)
+    frequency = 1.875104**2 * np.sqrt(2.0e5 / 20.0) / (2.0 * np.pi * 16.0)
+    assert checks["first_frequency"].values["beam"] == pytest.approx(frequency, rel=1e-4)
+    assert measure(results, "beam")["decay_time"] == pytest.approx(
+        np.log(10.0) / (0.02 * 2.0 * np.pi * frequency), rel=1e-4
+    )
+    table = limit_table(results)
+    assert table is not None
+    assert [row[1] for row in table.rows] == ["✓", "✗", "✓"]
+    (fault,) = limit_faults(results)
+    far = 1e3 * measure(results, "beam")["tip"]
+    assert fault == f"limits.tip: {far:.4g} mm in beam; the case demands tip deflection ≤ 16 mm"
+
+
+def test_limits_are_in_the_units_of_the_case() -> None:
+    """Reference: analytic, 900 mm and 160 MPa."""
+    text = f'units = "mm-t-s"\n{CANTILEVER}'
+    for given, converted in (
+        (YOUNG, 2.0e5), (7850.0, 7.85e-9), (LENGTH, 4000.0), (MASS, 2.0e-5), (SECOND, 1.0e6),
+        (LOAD, 0.1),
+    ):  # fmt: skip
+        assert f"= {given}" in text
+        text = text.replace(f"= {given}", f"= {converted}")
+    case = reading.load(write("tip = 900\nstress = 160.0", text))
+    assert {limit.quantity.name: limit.permitted for limit in limits_of(case.limits)} == {
+        "tip": 0.9,
+        "stress": 160.0e6,
+    }
+
+
+@pytest.mark.parametrize(
+    ("limits", "line"),
+    [
+        ("tip = -0.9", "limits.tip: must be a number greater than 0, got -0.9"),
+        ("tips = 0.9", "limits.tips: unknown key; the nearest known one is tip"),
+    ],
+)
+def test_a_limit_that_is_none_is_refused(limits: str, line: str) -> None:
+    with pytest.raises(BadInput) as refused:
+        reading.load(write(limits))
+    assert str(refused.value) == f"case.toml: {line}"
+
+
+@pytest.mark.usefixtures("few_figures")
+def test_the_exit_status_is_1_beyond_a_limit(capsys: pytest.CaptureFixture[str]) -> None:
+    """A limit of what no model has does not hold, either."""
+    write("tip = 0.001\npad_pressure = 1e6\ndecay_time = 10.0")
+    for command in (["run", "case.toml", "--out", "out"], ["report", "out"]):
+        with pytest.raises(SystemExit) as ended:
+            cli.main(command)
+        out, err = capsys.readouterr()
+        assert ended.value.code == 1
+        first, second = err.splitlines()
+        name = command[1]
+        assert first.startswith(f"protractile: {name}: limits.tip: ")
+        assert second == f"protractile: {name}: limits.pad_pressure: no model has such a result"
+        assert "Limits of the case" in out
+    assert "Limits of the case" in Path("out/report.html").read_text(encoding="utf-8")
+    write("tip = 1.0")
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["run", "case.toml", "--out", "out"])
+    assert ended.value.code == 0
+
+
+def test_a_sweep_draws_and_counts_limits(sheets: list[Sheet]) -> None:
+    """Reference: analytic, static tips of q L⁴/(8 E J)."""
+    limit = static_tip(4.5)
+    planned = plan(write(f"tip_at_rest = {limit}"), ["segment[1].length=4,4.4,4.6,5"], None, None)
+    assert all(point.case.limits is None for point in planned.points)
+    data = output.write(planned, run(planned), Path("out"))
+    assert data["tip_at_rest"].attrs["permitted"] == limit
+    console = Console(width=80, legacy_windows=False)
+    with console.capture() as captured:
+        output.show(data, planned, console)
+    shown = f"beam: tip at rest ≤ {1e3 * limit:.4g} mm at 2 of 4 points"
+    assert shown in captured.get().splitlines()
+    (axes,) = (axes for axes in sheets[0].axes if "dotted: limit" in axes.get_title(loc="left"))
+    line = axes.lines[-1]
+    assert np.asarray(line.get_ydata()) == pytest.approx(1e3 * limit)
+
+
+def test_permitted_values_themselves_are_permitted() -> None:
+    (limit,) = limits_of(reading.load(write("first_frequency = 2.0")).limits)
+    assert isinstance(limit, Limit)
+    assert limit.permits(2.0)
+    assert not limit.permits(1.99)
+    assert not limit.permits(float("nan"))
+    assert decay_time(0.0, 2.0) is None

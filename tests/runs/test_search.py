@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Values of a key at a bound, and changes of results by those of each number."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from runs import cli
+from tests.runs.cantilever import CANTILEVER, static_tip
+
+LENGTHS = "segment[1].length=3:5:3"
+
+
+@pytest.fixture(autouse=True)
+def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("case.toml").write_text(CANTILEVER, encoding="utf-8")
+
+
+def protractile(*arguments: str) -> int | str | None:
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["sweep", "case.toml", *arguments])
+    return ended.value.code
+
+
+def test_a_bound_is_bracketed(capsys: pytest.CaptureFixture[str]) -> None:
+    """Reference: analytic, the length at which q L⁴/(8 E J) is that of 4.321 m."""
+    bound = f"tip_at_rest<{static_tip(4.321)}"
+    assert protractile("--vary", LENGTHS, "--until", bound, "--out", "out") == 0
+    table = pd.read_csv("out/sweep.csv")
+    lengths = table["segment[1].length"]
+    low = lengths[table["tip_at_rest"] <= static_tip(4.321)].max()
+    high = lengths[table["tip_at_rest"] > static_tip(4.321)].min()
+    assert low <= 4.321 <= high
+    assert high - low <= 1e-3 * high
+    assert len(table) == 3 + 8
+    told = capsys.readouterr().out
+    bracket = told[told.index("Bracket of segment[1].length: tip at rest ≤ ") :]
+    assert [row.split()[0] for row in bracket.splitlines() if row.strip().endswith(("✓", "✗"))] == [
+        f"{low:.6g}",
+        f"{high:.6g}",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        ((), "--vary: missing; give one of both"),
+        (
+            ("--vary", LENGTHS, "--sensitivity"),
+            "--vary: does not go with --sensitivity; give one of both",
+        ),
+        (
+            ("--vary", LENGTHS, "--until", "tip=0.9"),
+            "--until: 'tip=0.9' is not understood; give QUANTITY<NUMBER or QUANTITY>NUMBER",
+        ),
+        (
+            ("--vary", LENGTHS, "--vary", "segment.load=1,2", "--until", "tip<0.9"),
+            "--until: 2 keys vary; give one --vary",
+        ),
+    ],
+)
+def test_a_search_without_an_aim_is_refused(
+    arguments: tuple[str, ...], line: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert protractile(*arguments) == 2
+    assert capsys.readouterr().err == f"protractile: case.toml: {line}\n"
+
+
+def test_a_bound_on_no_side_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    """Reference: analytic, static tips of lengths of 3 and 5 m."""
+    assert protractile("--vary", LENGTHS, "--until", "tip_at_rest<0.5", "--out", "out") == 2
+    assert capsys.readouterr().err == (
+        "protractile: case.toml: --until: tip at rest passes it 0 times over segment[1].length, "
+        f"from {1e3 * static_tip(3.0):.4g} mm to {1e3 * static_tip(5.0):.4g} mm; give values of "
+        "segment[1].length around one place where it does\n"
+    )
+
+
+def test_changes_are_those_of_closed_forms(capsys: pytest.CaptureFixture[str]) -> None:
+    """Reference: analytic, powers of the numbers in q L⁴/(8 E J) and √(E J/m)/L²."""
+    assert protractile("--sensitivity", "--out", "out") == 0
+    table = pd.read_csv("out/sensitivity.csv", index_col="key")
+    powers = {
+        "segment[1].length": (4.0, -2.0),
+        "segment[1].load": (1.0, 0.0),
+        "material.youngs_modulus": (-1.0, 0.5),
+        "segment[1].second_moment_of_area": (-1.0, 0.5),
+        "segment[1].mass_per_length": (0.0, -0.5),
+    }
+    for key, of in powers.items():
+        for name, power in zip(("tip_at_rest", "first_frequency"), of, strict=True):
+            change = 50.0 * (1.01**power - 0.99**power)
+            # A longer beam has an element more, which counts 2e-5.
+            assert table.loc[key, name] == pytest.approx(change, rel=1e-4, abs=1e-9)
+    assert table.index[0] == "segment[1].length"
+    assert table.loc["damping.modal", "decay_time"] == pytest.approx(-1.0, rel=2e-4)
+    assert "Change of results by 1 % of each number: beam" in capsys.readouterr().out
