@@ -21,6 +21,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from beam_model.segment_model import EACH_SIDE
+from beam_model.wall_compliance import contact_compliance
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.section import BoxSection
@@ -63,6 +65,9 @@ class Proportions:
 HEIGHT, OUTER_WALL, INNER_WALL = 0.4945, 6.64e-3, 4.87e-3
 _ROOM, BESIDE = 0.0141, 0.17
 
+# Length and width in m of the pads of booms with pads.
+PAD = (0.1, 0.06)
+
 BOOMS: Mapping[str, Proportions] = {
     "the paper's": Proportions(),
     "half as long": Proportions(length=5.0, overlap=0.7),
@@ -74,8 +79,8 @@ BOOMS: Mapping[str, Proportions] = {
     "thick walls": Proportions(walls=2.0),
     "narrow": Proportions(aspect=2.5),
     "wide": Proportions(aspect=1.0),
-    "pads": Proportions(pad=(0.1, 0.06)),
-    "pads, thick walls": Proportions(walls=2.0, pad=(0.1, 0.06)),
+    "pads": Proportions(pad=PAD),
+    "pads, thick walls": Proportions(walls=2.0, pad=PAD),
 }
 
 
@@ -115,8 +120,6 @@ def boom_case(given: Proportions) -> Case:
 # Compliance of a wall near its web, in 1/(E t): c₀ + c₁ ln of the box's width over the pressed
 # length.
 NEAR_WEBS = 0.20, 0.70
-# Under a pad, in d²/(E t³), d from the middle of the pad to the web.
-PADS = 1.8
 # Excess of the bending frequency with springs, over its squared ratio to the flange's.
 FLANGES = 0.065
 # Excess of shear over that of Timoshenko's beam, as a part: it is not uniform over the webs.
@@ -125,6 +128,8 @@ UNEVEN = 0.09
 _NEAR = 0.15
 # Permitted geometric mean of measured errors over those of the rule, and of springs.
 MEAN_OFF, PEAK = 0.25, 0.005
+# Permitted relative error of the compliance of walls under pads.
+WALLS = 0.08
 # Rules above this value mean that the tip's motion is unpredictable.
 UNPREDICTABLE = 0.5
 
@@ -136,6 +141,7 @@ class Sizes:
     booms: Mapping[str, Proportions] = field(default_factory=lambda: BOOMS)  #: by their names
     mesh_size: float = 0.2  #: of the shells in m
     contact_tolerance: float = 0.04  #: of the same
+    wall_tolerance: float = 0.01  #: of those that show the compliance of walls under pads
     plays: Sequence[float] = (0.0, 4.0e-3, 14.0e-3)  #: 2Δ in m
     #: Over the weight at 1 m/s²; under less of them friction stops the boom early.
     loads: Sequence[float] = (10.0,)
@@ -162,19 +168,24 @@ class Rule:
             model_of(case, name).without_play(boom) for name in ("beam-fe-rotary", "timoshenko")
         ]
         tips = [static_tip(system) for system, _ in filter(None, tied)]
-        inner, overlap = boom.segments[1], given.overlap
-        # Of the weight, and of 1 N at the tip: down at the tail, up at the head.
-        over = inner.length / overlap
-        weight = inner.load * inner.length
-        at_head, at_tail = 0.5 * weight * over, weight * (0.5 * over - 1.0)
-        pressed = at_head * over + at_tail * (over - 1.0)
+        inner = boom.segments[1]
+        # Where tail and head press, from the start of the inner segment.
+        tail = 0.0 if given.pad is None else 0.5 * given.pad[0]
+        head = given.overlap - tail
+        arm, weight = head - tail, inner.load * inner.length
+
+        def pressed_by(x: float) -> Array:
+            """Return the forces (2,) in N of a unit force at x in m, down at the tail."""
+            return np.array([x - head, x - tail]) / arm
+
+        pressed = weight * pressed_by(0.5 * inner.length) * pressed_by(inner.length)
         assert tied[1] is not None
         return cls(
             bending=tips[0],
             shear=tips[1] - tips[0],
-            pressed=station_compliance(given, case) * pressed,
+            pressed=float(station_compliances(given, case) @ pressed),
             frequency=float(tied[1][0].frequencies[0]),
-            lever=2.0 * over - 1.0,
+            lever=2.0 * (inner.length - tail) / arm - 1.0,
         )
 
     @property
@@ -205,20 +216,17 @@ class Rule:
         return min(1.0, self.missing_part(name) * (1.0 / root + periods * mu * psi))
 
 
-def station_compliance(given: Proportions, case: Case) -> float:
-    """Return the compliance of a station in m/N, of both walls."""
+def station_compliances(given: Proportions, case: Case) -> Array:
+    """Return the compliance (2,) of tail and head in m/N, of both walls on one side."""
+    if given.pad is not None:
+        return np.diag(contact_compliance(build_boom(case)))[:: len(EACH_SIDE)]
     material = case.material
     assert material is not None
-    e = material.youngs_modulus
-    walls = given.walls * OUTER_WALL, given.walls * INNER_WALL
     width = HEIGHT / given.aspect
-    if given.pad is None:
-        # A corner is pressed over a tenth of the overlap.
-        spread = NEAR_WEBS[0] + NEAR_WEBS[1] * np.log(width / (0.1 * given.overlap))
-        return float(spread / e * sum(1.0 / wall for wall in walls))
-    # From the middle of the pad, which lies beside the inner web, to each web.
-    to_webs = 0.5 * (given.pad[1] + BESIDE * width), 0.5 * given.pad[1]
-    return PADS / e * sum(d**2 / wall**3 for d, wall in zip(to_webs, walls, strict=True))
+    # A corner is pressed over a tenth of the overlap.
+    spread = NEAR_WEBS[0] + NEAR_WEBS[1] * np.log(width / (0.1 * given.overlap))
+    walls = 1.0 / (given.walls * OUTER_WALL) + 1.0 / (given.walls * INNER_WALL)
+    return np.full(2, spread / material.youngs_modulus * walls)
 
 
 @dataclass(frozen=True, slots=True)
@@ -284,6 +292,21 @@ def measure(given: Proportions, sizes: Sizes) -> BoomErrors:
         {name: tip_errors(moved, of_shell) for name, moved in beams.items()},
         inner_bending(systems[SHELL], systems[SPRUNG]),
     )
+
+
+def wall_compliances(given: Proportions, sizes: Sizes) -> tuple[Array, Array]:
+    """Return the compliance (2,) of tail and head in m/N under pads, of plates and of the shell.
+
+    A force presses the walls of both sides apart.
+    """
+    case = boom_case(replace(given, pad=given.pad or PAD))
+    walls = contact_compliance(build_boom(case))
+    above, below = slice(0, None, 2), slice(1, None, 2)
+    apart = walls[above, above] + walls[below, below] - walls[above, below] - walls[below, above]
+    fine = {"mesh_size": sizes.mesh_size, "contact_tolerance": sizes.wall_tolerance}
+    shell = build_all(case, {SHELL: shell_of(case).model_copy(update=fine)})[SHELL].shell
+    assert shell is not None
+    return 0.5 * np.diag(apart), np.asarray(shell.local_compliance)[above]
 
 
 def ratios(found: Sequence[BoomErrors], name: str, tips: bool) -> Array:
@@ -381,6 +404,28 @@ def springs_table(found: Mapping[str, BoomErrors], sizes: Sizes) -> Table:
     )
 
 
+def wall_table(found: Mapping[str, tuple[Array, Array]], sizes: Sizes) -> Table:
+    """Return a table of the compliance of walls under pads, of plates and of the shell."""
+    rows: list[Sequence[Cell]] = []
+    for name, (plates, shell) in found.items():
+        stations = zip(1.0e9 * plates, 1.0e9 * shell, 100.0 * (plates / shell - 1.0), strict=True)
+        rows.append((name, *(float(one) for station in stations for one in station)))
+    columns = {"boom": ""}
+    for station in ("tail", "head"):
+        columns |= {f"{station}, plates\n(1e-9 m/N)": ".1f", f"{station}, shell\n(1e-9 m/N)": ".1f"}
+        columns |= {f"{station}\n(%)": ".1f"}
+    return Table.of_rows(
+        "rule-of-thumb-walls",
+        "Compliance of walls under pads",
+        columns,
+        rows,
+        (
+            f"Pads of {PAD[0]:g} x {PAD[1]:g} m in all booms; shells of {sizes.mesh_size:g} m with "
+            f"a contact tolerance of {sizes.wall_tolerance:g}.",
+        ),
+    )
+
+
 def proofs(found: Sequence[BoomErrors]) -> Iterator[Proof]:
     """Return the proofs of the rule against the shells, and of springs."""
     booms = f"{len(found)} booms"
@@ -401,8 +446,16 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     for name, given in sizes.booms.items():
         progress(name)
         found[name] = measure(given, sizes)
+    walls = {}
+    for name, given in sizes.booms.items():
+        progress(f"{name}, walls under pads")
+        walls[name] = wall_compliances(given, sizes)
     every = list(found.values())
     yield boom_table(found, sizes)
     yield scatter_table(every, sizes)
     yield springs_table(found, sizes)
+    yield wall_table(walls, sizes)
     yield from proofs(every)
+    worst = max(float(np.abs(plates / shell - 1.0).max()) for plates, shell in walls.values())
+    what = f"compliance of walls under pads, worst of {2 * len(walls)} stations"
+    yield Proof(what, worst, 0.0, "", "other code", "shells", WALLS)

@@ -8,7 +8,9 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
+from beam_model.statics import static_state
 from runs.case.build import build_boom
+from runs.pipeline.statics import boom_with_play
 from studies.calibrated_beams import EULER, PLAIN, SPRUNG
 from studies.rule_of_thumb import (
     BOOMS,
@@ -83,6 +85,15 @@ def test_the_flange_s_frequency_is_that_of_a_strip() -> None:
     rigidity = 2.1e11 * wall**3 / (12.0 * (1.0 - 0.3**2))
     expected = 0.5 * np.pi * np.sqrt(rigidity / (7850.0 * wall)) / width**2
     assert flange_frequency(case) == pytest.approx(expected)
+
+
+def test_the_rule_lowers_the_tip_by_walls_as_statics_do() -> None:
+    """Reference: other code, beam elements with and without springs of the walls."""
+    given = BOOMS["pads"]
+    case = boom_case(given)
+    boom = boom_with_play(case, build_boom(case))
+    soft, rigid = (static_state(boom, walls=factor).tip for factor in (1.0, 0.0))
+    assert Rule.of(given, case).pressed == pytest.approx(soft - rigid, rel=3e-3)
 
 
 @pytest.mark.slow
