@@ -219,6 +219,7 @@ class GapSystem:
     def at_time(self, time: float) -> GapSystem:
         """Return the system at the constant extension of a time in s."""
         rows_at = {kind: getattr(self, kind).copy() for kind in KINDS}
+        laws = list(self.laws)
         softening = self.softening if self.softening.size else np.zeros((self.num_modes,) * 2)
         for travel in self.travels:
             extension = float(travel.history(np.array(time)))
@@ -227,8 +228,10 @@ class GapSystem:
                 softening = softening + force.softening(extension)
             for (kind, position), row in zip(travel.moving, rows, strict=True):
                 rows_at[kind][position] = row
+            for (_, position), shift in zip(travel.moving, travel.shifts, strict=False):
+                laws[position] = laws[position].behind(-shift * extension, shift * extension)
         softening = softening if softening.any() else np.zeros((0, 0))
-        return replace(self, **rows_at, travels=(), softening=softening)
+        return replace(self, **rows_at, laws=laws, travels=(), softening=softening)
 
     def in_own_modes(self) -> GapSystem:
         """Return the system in the modes of the softened stiffness."""

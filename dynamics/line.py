@@ -43,8 +43,11 @@ class Line:
     paired: bool
 
     def read(self, states: Array) -> dict[Quantity, Array]:
-        """Return each quantity (..., num_places) for modal coordinates (..., num_modes)."""
-        return {name: states @ row.T for name, row in self.rows.items()}
+        """Return each quantity (..., num_places) for modal coordinates (..., num_modes).
+
+        Coordinates of a load on a rope may follow those of the boom.
+        """
+        return {name: states[..., : row.shape[1]] @ row.T for name, row in self.rows.items()}
 
     def on(self, basis: Array) -> Line:
         """Return the line in other coordinates b of a = Φ b, with Φ (num_modes, num_others)."""

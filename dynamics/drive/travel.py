@@ -43,9 +43,12 @@ class Travel:
         axial_forces: axial forces that move with the extension.
         axial_load: axial load of all moved segments in N, against which the drive works.
         elastic: data of an elastic drive; None for a rigid drive.
+        shifts: growth of the displacement of each row per m of extension, as for a rope that is
+            wound up; none unless given.
 
     Raises:
-        ValueError: the table has another number of rows, or the history does not begin with 0.
+        ValueError: the table has another number of rows or shifts, or the history does not begin
+            with 0.
     """
 
     history: History
@@ -55,11 +58,14 @@ class Travel:
     axial_forces: Sequence[MovingAxialForce] = ()
     axial_load: float = 0.0
     elastic: ElasticDrive | None = None
+    shifts: Sequence[float] = ()
 
     def __post_init__(self) -> None:
         rows = self.table.coefficients.shape[2]
         if rows != len(self.moving):
             raise ValueError(f"the table has {rows} rows, and {len(self.moving)} move")
+        if len(self.shifts) not in (0, rows):
+            raise ValueError(f"shifts must be none or {rows}, got {len(self.shifts)}")
         start = float(self.history(np.zeros(())))
         if abs(start) > 1.0e-9:
             raise ValueError(f"a travel must be 0 at t = 0, got {start:g} m")

@@ -322,6 +322,10 @@ def march(
                 if m > 0:
                     free_flow(a, v, flow, depth, total, tilt, end)
                     read_rows(rows_end, end, free)
+                    for j in range(moving.number.size):
+                        free[moving.number[j]] += (
+                            moving.shifts[j] * extensions[1, moving.spans[j, 0]]
+                        )
                     if not solve_rows(laws, problem, matrix, y, time):
                         break
                     _push(rows_mean, now, total)

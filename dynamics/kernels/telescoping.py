@@ -28,12 +28,14 @@ class MovingRows(NamedTuple):
     Args:
         number: (num_moving,) the position of each among all rows.
         spans: (num_moving, 4) its travel, its first and last knot, and its first piece.
+        shifts: (num_moving,) growth of its displacement per m of extension.
         knots: of all travels in m.
         cubics: (num_pieces of all rows, 4, num_modes) coefficients of the part of a piece passed.
     """
 
     number: Indices
     spans: Indices
+    shifts: Array
     knots: Array
     cubics: Array
 
@@ -65,9 +67,11 @@ def moving_rows(system: GapSystem) -> MovingRows:
     """Return the rows of a system that travels move."""
     firsts = np.cumsum([0, *(len(getattr(system, kind)) for kind in KINDS)])
     first_of = dict(zip(KINDS, firsts[:-1].tolist(), strict=True))
-    numbers, spans, cubics, pieces = [], [], [np.zeros((0, 4, system.num_modes))], 0
+    numbers, spans, shifts, pieces = [], [], list[float](), 0
+    cubics = [np.zeros((0, 4, system.num_modes))]
     first_knots = np.cumsum([0, *(len(travel.table.knots) for travel in system.travels)]).tolist()
     for number, travel in enumerate(system.travels):
+        shifts += travel.shifts or [0.0] * len(travel.moving)
         for row, (kind, position) in enumerate(travel.moving):
             numbers.append(first_of[kind] + position)
             spans.append((number, first_knots[number], first_knots[number + 1] - 1, pieces))
@@ -76,6 +80,7 @@ def moving_rows(system: GapSystem) -> MovingRows:
     return MovingRows(
         np.array(numbers, dtype=np.int64),
         np.array(spans, dtype=np.int64).reshape(-1, 4),
+        np.array(shifts),
         np.concatenate([np.zeros(0), *(travel.table.knots for travel in system.travels)]),
         np.ascontiguousarray(np.concatenate(cubics)),
     )

@@ -29,6 +29,7 @@ from runs.case import actions
 from runs.case.actions import values
 from runs.case.contact import JointTable
 from runs.case.elastic_drive import check_elastic_drives
+from runs.case.hoist import check_hoist, hoist_thrust
 from runs.case.schema import Case
 from runs.case.segment import SegmentTable
 
@@ -65,7 +66,10 @@ def build_boom(case: Case) -> Boom:
         _segment(case, number, section, ends[number]) for number, section in enumerate(sections)
     )
     along = 0.0 if case.gravity is None else actions.gravity_along(case.gravity)
-    segments = with_compression(segments, joints, actions.thrusts(case, segments), along)
+    thrusts = actions.thrusts(case, segments) + hoist_thrust(
+        case, len(segments) - 1, segments[-1].end
+    )
+    segments = with_compression(segments, joints, thrusts, along)
     boom = Boom(
         segments,
         joints,
@@ -76,6 +80,7 @@ def build_boom(case: Case) -> Boom:
     )
     check_pressed(boom)
     check_elastic_drives(case, boom)
+    check_hoist(case)
     return boom
 
 

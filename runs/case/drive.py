@@ -32,11 +32,12 @@ Ways = Annotated[
 ]
 
 
-class DriveTable(CaseTable):
-    """A drive that telescopes an inner segment during the motion of the boom."""
+class TravelTable(CaseTable):
+    """Length over time, of a drive or a winch."""
 
     travel: Annotated[Number, In("m")] | None = None
-    """the length in m by which the segment extends; negative where it retracts"""
+    """the length in m by which the segment extends, or the load is hoisted; negative where the
+    segment retracts, or the load is lowered"""
     time: Annotated[Positive, In("s")] | None = None
     """the duration of the travel in s, on a smooth S-curve"""
     speed: Annotated[Positive, In("m/s")] | None = None
@@ -54,15 +55,6 @@ class DriveTable(CaseTable):
     columns: tuple[Text, Text] | None = None
     """the names of the columns of times and lengths in the heading of the file; not needed if the
     file has only two columns"""
-    least_overlap: Annotated[NotNegative, In("m")] = 0.0
-    """the least overlap in m that must remain; any positive overlap unless given"""
-    stiffness: Annotated[Positive, In("N/m")] | None = None
-    """the stiffness in N/m of the rope, chain or cylinder that moves the segment, which may then
-    stick and slip; rigid unless given"""
-    dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
-    """the viscous damping in N s/m parallel to this stiffness"""
-    static_friction: Annotated[Positive, In("1")] | None = None
-    """the coefficient of friction while the segment sticks; the joint's unless given"""
 
     def history(self, where: str) -> History:
         """Return the history of the extension in m.
@@ -118,6 +110,20 @@ class DriveTable(CaseTable):
                 f"must be 0 m at t = 0, where the boom is as it is given, got {start:g} m",
             )
         return history
+
+
+class DriveTable(TravelTable):
+    """A drive that telescopes an inner segment during the motion of the boom."""
+
+    least_overlap: Annotated[NotNegative, In("m")] = 0.0
+    """the least overlap in m that must remain; any positive overlap unless given"""
+    stiffness: Annotated[Positive, In("N/m")] | None = None
+    """the stiffness in N/m of the rope, chain or cylinder that moves the segment, which may then
+    stick and slip; rigid unless given"""
+    dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
+    """the viscous damping in N s/m parallel to this stiffness"""
+    static_friction: Annotated[Positive, In("1")] | None = None
+    """the coefficient of friction while the segment sticks; the joint's unless given"""
 
     def drive(
         self,
@@ -175,7 +181,7 @@ def resolving_times(histories: Sequence[History], duration: float) -> Array:
 
 
 def _said(key: str) -> str:
-    return described(DriveTable.model_fields[key])
+    return described(TravelTable.model_fields[key])
 
 
 def _carrier(place: float | Distance, where: str, what: str, inner: str) -> Carrier:

@@ -19,8 +19,9 @@ from geometry.typography import choices
 from runs.case.build import build_boom, check_names, check_varied
 from runs.case.checked_case import CheckedCase
 from runs.case.columns import Column, read_pairs
-from runs.case.contact import ContactTable, JointTable, table_law
+from runs.case.contact import ContactTable, table_law
 from runs.case.conversion import in_si
+from runs.case.drive import TravelTable
 from runs.case.kinds.shell import check_mesh_size
 from runs.case.limits import MOST_MEMBERS, units_of
 from runs.case.messages import BadInput
@@ -33,6 +34,7 @@ from runs.case.user_files import read_text
 MOST_OUTPUTS = 10_000_000
 
 History = TypeVar("History", bound=HistoryTable)
+Travel = TypeVar("Travel", bound=TravelTable)
 Law = TypeVar("Law", bound=ContactTable)
 
 # Maximum number of digits of an integer option: longer numbers are input errors.
@@ -212,7 +214,10 @@ def _read_tables(case: Case, path: str) -> Case:
         return replace(table, force_file=None, force_columns=None, force_table=points)
 
     joints = [
-        _driven(path, f"joint[{i}].drive", contact(f"joint[{i}]", joint), system)
+        replace(
+            contact(f"joint[{i}]", joint),
+            drive=joint.drive and _travel(path, f"joint[{i}].drive", joint.drive, system),
+        )
         for i, joint in enumerate(case.joints, start=1)
     ]
     models = [
@@ -227,6 +232,7 @@ def _read_tables(case: Case, path: str) -> Case:
             "models": tuple(models),
             "loads": standing("load", case.loads),
             "base": standing("base", case.base),
+            "hoist": case.hoist and _travel(path, "hoist", case.hoist, system),
         }
     )
 
@@ -248,19 +254,15 @@ def _history(path: str, key: str, table: History, system: System) -> History:
     return table.model_copy(update={"file": None, "columns": None, "table": read.values, **amount})
 
 
-def _driven(path: str, key: str, joint: JointTable, system: System) -> JointTable:
-    """Return a joint with the pairs of its drive's CSV file, if the drive has one."""
-    drive = joint.drive
-    if drive is None:
-        return joint
-    _check_columns(path, f"{key}.columns", drive.columns, drive.file)
-    if drive.file is None:
-        return joint
-    _check_file_alone(path, key, drive.table)
+def _travel(path: str, key: str, travel: Travel, system: System) -> Travel:
+    """Return a drive or a winch with the pairs of its CSV file, if it has one."""
+    _check_columns(path, f"{key}.columns", travel.columns, travel.file)
+    if travel.file is None:
+        return travel
+    _check_file_alone(path, key, travel.table)
     wanted = Column("time", system.unit("s")), Column("length", system.unit("m"))
-    read = read_pairs(path, f"{key}.file", drive.file, drive.columns, wanted).values
-    update = {"file": None, "columns": None, "table": read}
-    return replace(joint, drive=drive.model_copy(update=update))
+    read = read_pairs(path, f"{key}.file", travel.file, travel.columns, wanted).values
+    return travel.model_copy(update={"file": None, "columns": None, "table": read})
 
 
 def _check_file_alone(path: str, key: str, table: object) -> None:

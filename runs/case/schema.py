@@ -32,6 +32,7 @@ from geometry.observation import Observation, Recorded
 from geometry.segment import Material
 from geometry.support import Support
 from runs.case.contact import JointTable
+from runs.case.hoist import HoistTable
 from runs.case.kinds import KINDS
 from runs.case.kinds.model import ModelTable
 from runs.case.limits import (
@@ -353,6 +354,8 @@ class Case(CaseKeys, CaseHeading):
     gravity: GravityTable | None = None
     """the table of the weight of all masses, across and along the boom; unless given, only the
     payload has weight"""
+    hoist: HoistTable | None = None
+    """the table of a load on a rope below the tip"""
     base: Annotated[tuple[BaseTable, ...], Few] = ()
     """the accelerations of the ground"""
     observe: Annotated[tuple[ObserveTable, ...], Few] = ()

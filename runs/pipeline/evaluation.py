@@ -112,7 +112,8 @@ def evaluate_model(
     if case.buckling is not None and (rest := own.farthest_static) is not None:
         own = replace(own, panels=weakest_panels(played.boom.segments, rest))
     own = replace(own, residual_vibration=residual_vibration(system, trajectory, case, model))
-    if model.bonded or not boom.joints:
+    if model.bonded or not boom.joints or case.hoist is not None:
+        # The boom without play has no rope.
         return own
     try:
         bonded = _bonded(boom, model, played, found)

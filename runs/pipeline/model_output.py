@@ -86,9 +86,10 @@ class ShellOutput:
             buckling: buckling of its walls.
         """
         assert reduced.fields is not None
-        names = [segment.name for segment in boom.segments]
+        names, states = [segment.name for segment in boom.segments], trajectory.states
         fields = reduced.fields.assign(
-            state=(("time", "mode"), trajectory.states.astype(np.float32)),
+            # A hoisted load has a coordinate of its own besides.
+            state=(("time", "mode"), states[:, : reduced.system.num_modes].astype(np.float32)),
             time=("time", trajectory.time, {"units": "s"}),
             **_modes(reduced),
         ).assign_attrs(model=name)

@@ -11,10 +11,12 @@ import numpy as np
 
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
+from dynamics.hanging_load import HangingLoad
 from dynamics.motion import Motion, build_motion
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs.case.elastic_drive import with_elastic_drives
+from runs.case.hoist import hanging_load, with_hanging_load
 from runs.case.kinds.model import Built, Joined, ModelTable, Workshop
 from runs.case.schema import Case, Model
 
@@ -45,7 +47,8 @@ def build_on(
 ) -> Built:
     """Build a model on the boom of a case; arguments and errors as in :func:`build`."""
     built = model.build(joined, workshop)
-    return replace(built, system=with_elastic_drives(built.system, case, joined.boom))
+    system = with_elastic_drives(built.system, case, joined.boom)
+    return replace(built, system=with_hanging_load(system, case, joined.boom))
 
 
 def initial_motion(system: GapSystem, case: Case) -> Motion:
@@ -72,10 +75,12 @@ class MotionPlan:
     Args:
         motion: motion of the system under the loads from t = 0 on.
         integrator: integrator with the step of the model or the case, or else with error control.
+        load: the load that the boom hoists.
     """
 
     motion: Motion
     integrator: FixedStep | AdaptiveStep
+    load: HangingLoad | None
 
     @classmethod
     def of(cls, system: GapSystem, case: Case, model: ModelTable) -> MotionPlan:
@@ -87,15 +92,15 @@ class MotionPlan:
         """
         from dynamics.integrator import AdaptiveStep, FixedStep
 
-        motion, time = initial_motion(system, case), case.time
+        motion, time, load = initial_motion(system, case), case.time, hanging_load(case)
         step = model.step or time.step
         if step is None:
-            return cls(motion, AdaptiveStep(time.tolerance))
+            return cls(motion, AdaptiveStep(time.tolerance), load)
         if time.duration / step > MOST_STEPS:
             raise NumericsError(
                 f"a step of {step:.3g} s makes {time.duration / step:.3g} steps; make it longer"
             )
-        return cls(motion, FixedStep(step))
+        return cls(motion, FixedStep(step), load)
 
     def warm(self) -> None:
         """Compile the time loop by one output, so that later wall times exclude compilation."""
@@ -106,7 +111,8 @@ class MotionPlan:
 
     def trajectory(self, progress: Callable[[float], None] | None = None) -> Trajectory:
         """Return the motion."""
-        return self.integrator(self.motion, progress)
+        found = self.integrator(self.motion, progress)
+        return found if self.load is None else self.load.separate(found)
 
     def step_error(self, trajectory: Trajectory, progress: Callable[[float], None]) -> float:
         """Return the change of the tip for a doubled fixed step, as a fraction of its range."""

@@ -109,7 +109,7 @@ def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> 
     found: list[Mode] = []
     for frequency, shape in zip(omega[:MODES] / (2.0 * np.pi), shapes.T, strict=False):
         curves = [
-            {name: np.interp(x, line.x, line.rows[name] @ shape) for name in motions}
+            {name: np.interp(x, line.x, line.read(shape)[name]) for name in motions}
             for x, line in zip(even, lines, strict=True)
         ]
         energies = {

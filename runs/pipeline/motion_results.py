@@ -43,9 +43,10 @@ class Peak:
 
     Args:
         what: name of the quantity: ``deflection``, ``contact force``, ``cylinder force``,
-            ``reaction``, with axial loads also ``reaction along the boom`` and ``reaction, across
-            and along``, ``moment at the support`` or ``bending moment``; in space the same for y,
-            marked ``lateral``, and ``torque at the support``.
+            ``rope force`` (at rest the weight of the load), ``reaction``, with axial loads also
+            ``reaction along the boom`` and ``reaction, across and along``, ``moment at the
+            support`` or ``bending moment``; in space the same for y, marked ``lateral``, and
+            ``torque at the support``.
         where: name of the place in the results or the case.
         unit: SI unit.
         largest: maximum of the motion; for contacts the maximum of the means over output intervals,
@@ -170,6 +171,9 @@ def _observed(motions: Motions) -> Iterator[Peak]:
     for name in forces(motions.boom):
         still = [rest.cylinders[name] for rest in rests]
         yield _peak("cylinder force", name, "N", time, data[name].values, still)
+    if "rope_force_peak" in data:
+        rope = data["rope_force_peak"]
+        yield _peak("rope force", "", "N", time, rope.values, [rope.attrs["weight"]])
 
 
 def _bending_moments(
@@ -196,7 +200,7 @@ def _reactions(motions: Motions, number: int) -> Iterator[Peak]:
         row = np.zeros(states[0].shape[1])
         if name in line.rows:
             row = line.beside(name, x, -1) - line.beside(name, x, 1)
-        return [each @ row for each in states]
+        return [each[:, : row.size] @ row for each in states]
 
     for support in segment.supports:
         where, across = f"{segment.name} at {support.x:g} m", []

@@ -131,13 +131,14 @@ def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:
 
 
 def instants(system: GapSystem, duration: float) -> list[float]:
-    """Return 0 and the times in s at which a variable load has an extreme value.
+    """Return 0 and the times in s at which a variable load or a hoist has an extreme value.
 
     Args:
         system: gap system whose ``load`` includes all constant loads.
         duration: duration of the motion in s.
     """
-    times, values = _over_time(system.excitations, system, duration)
+    winches = [travel for travel in system.travels if travel.shifts]
+    times, values = _over_time([*system.excitations, *winches], system, duration)
     return _distinct(times, values, [0, *values.argmax(axis=1), *values.argmin(axis=1)])
 
 
@@ -148,7 +149,8 @@ def extended_instants(system: GapSystem, duration: float) -> list[float]:
         system: gap system whose ``load`` includes all constant loads.
         duration: duration of the motion in s.
     """
-    times, ways = _over_time(system.travels, system, duration)
+    drives = [travel for travel in system.travels if not travel.shifts]
+    times, ways = _over_time(drives, system, duration)
     _, loads = _over_time(system.excitations, system, duration)
     found: list[int] = []
     for way in ways:

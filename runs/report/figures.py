@@ -23,6 +23,7 @@ from runs.report.force_figures import (
     drives,
     first_contacts,
     friction,
+    hoisting,
     stress_history,
 )
 from runs.report.motion_figures import (
@@ -50,6 +51,7 @@ FIGURES: Sequence[Callable[[FigureContext], list[Figure]]] = (
     contact_peaks,
     friction,
     drives,
+    hoisting,
     stress_history,
     at_rest,
     envelopes,

@@ -159,6 +159,22 @@ def drives(run: FigureContext) -> list[Figure]:
     ]
 
 
+def hoisting(run: FigureContext) -> list[Figure]:
+    """Draw the force of the rope and the height of the hoisted load."""
+    if "rope_force" not in run.data:
+        return []
+    forces = _of_models(run, "rope_force", TO_KILO)
+    shown = {"rope force (kN)": forces, "height (mm)": _of_models(run, "load_height", TO_MILLI)}
+    weight = TO_KILO * run.data["rope_force_peak"].attrs["weight"]
+    caption = (
+        "Above: force of all falls of the rope, means of the output intervals. Below: height of "
+        f"the load above its place at t = 0. The load weighs {fixed(weight, 1)} kN."
+    )
+    largest = farthest([farthest(force) for force in forces.values()])
+    title = f"Hoisting: rope force up to {fixed(largest, 1)} kN"
+    return [_of_drive(run, "hoist", shown, "force (kN), height (mm)", title, caption)]
+
+
 def _stick_slip(run: FigureContext, suffix: str, inner: str) -> Figure:
     shown = {
         "force of the drive (kN)": _of_models(run, f"drive_force{suffix}", TO_KILO),

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from runs.case.hoist import hanging_load
 from runs.pipeline.design_results import ModelDesignResults, PlayDifference
 from runs.pipeline.metrics import records
 from runs.pipeline.motion_results import Peak
@@ -31,6 +32,7 @@ def result_tables(results: Results) -> list[Table]:
         mode_table(results),
         peak_table(results),
         drive_table(results),
+        hoist_table(results),
         stick_slip_table(results),
         *record_tables(results),
         pad_table(results),
@@ -220,6 +222,34 @@ def drive_table(results: Results) -> Table | None:
         "of contact forces on sloping segments and of axial loads.",
     )
     return Table("Drives", columns, notes, "drives")
+
+
+def hoist_table(results: Results) -> Table | None:
+    """Return lift-off, rope force and dynamic factor of every model; None without a hoist."""
+    load, data = hanging_load(results.case), results.trajectories
+    if load is None:
+        return None
+    rows = []
+    for model in data["model"].values:
+        mean, peak = (
+            np.asarray(data[name].sel(model=model).values, dtype=float)
+            for name in ("rope_force", "rope_force_peak")
+        )
+        raised = np.flatnonzero(mean >= load.weight)
+        lifted = None if load.slack is None or not raised.size else data["time"].values[raised[0]]
+        rows.append((str(model), lifted, peak.max(), peak.max() / load.weight))
+    models, lifted, most, factors = zip(*rows, strict=True)
+    columns = (
+        Column("model", models),
+        Column("lift-off", lifted, ".3f", "s"),
+        Column("rope force,\nmaximum", most, ".3g", "kN"),
+        Column("factor φ₂", factors, ".3f"),
+    )
+    notes = (
+        "At lift-off the force of all falls reaches the weight of the load. φ₂ is their largest "
+        "force over this weight.",
+    )
+    return Table("Hoisting", columns, notes, "hoist")
 
 
 def _effort(results: Results, model: str, suffix: str) -> tuple[float, float, float, float]:

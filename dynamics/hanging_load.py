@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A load on a rope below the tip: hoisting, lift-off and hanging.
+
+The load m has a coordinate z of its own, its height above its place at t = 0. The rope pulls only,
+
+    T = k max(w cos α − z + h(t) − s, 0),
+
+with the deflection w of the tip across the boom, the luffing angle α, the length h that the winch
+has wound up since t = 0, and the slack s. The ground bears the load while it lies there. Both are
+contact rows. A travel moves that of the rope, so that the energy ledger has the work of the winch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dynamics.arrays import Array
+from dynamics.contact import PowerContact
+from dynamics.drive.row_table import RowTable
+from dynamics.drive.travel import Travel
+from dynamics.excitation import History
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.trajectory import Trajectory
+
+# Stiffness of the ground over that of the rope.
+_GROUND = 100.0
+
+
+@dataclass(frozen=True, slots=True)
+class HangingLoad:
+    """A load on a rope, and its winch.
+
+    Args:
+        mass: m in kg.
+        stiffness: k of the rope in N/m.
+        gravity: acceleration in m/s².
+        hoist: length in m that the winch winds up, over time; a rope of constant length where it is
+            None.
+        cosine: cos α of the luffing angle.
+        slack: s in m at w = 0 of a load that lies on the ground at t = 0; the load hangs where it
+            is None.
+
+    Raises:
+        ValueError: mass, stiffness or gravity is not finite and positive.
+    """
+
+    mass: float
+    stiffness: float
+    gravity: float
+    hoist: History | None = None
+    cosine: float = 1.0
+    slack: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "stiffness", "gravity"):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise ValueError(f"{name} must be finite and positive, got {getattr(self, name)}")
+
+    @property
+    def weight(self) -> float:
+        """Weight m g in N."""
+        return self.mass * self.gravity
+
+    def hang(self, system: GapSystem, tip: Array, x: float) -> GapSystem:
+        """Return a boom's system with the load on its tip.
+
+        The coordinate of the load is the last one. Stations of the rope and of the ground follow
+        those of the boom, with one contact row each.
+
+        Args:
+            system: of the boom without the load.
+            tip: (num_modes,) row of the deflection w.
+            x: of the tip in m.
+        """
+
+        def widen(rows: Array) -> Array:
+            return np.pad(rows, [(0, 0)] * (rows.ndim - 1) + [(0, 1)])
+
+        def widen_table(table: RowTable) -> RowTable:
+            return RowTable(table.knots, widen(table.coefficients))
+
+        height = np.append(np.zeros(system.num_modes), 1.0 / np.sqrt(self.mass))
+        rope, rows = self.cosine * widen(tip) - height, len(system.rows)
+        travels = [
+            replace(
+                travel,
+                table=widen_table(travel.table),
+                axial_forces=[
+                    replace(force, table=widen_table(force.table)) for force in travel.axial_forces
+                ],
+            )
+            for travel in system.travels
+        ]
+        if self.hoist is not None:
+            constant = np.pad(rope[None, None, None], [(0, 0), (0, 3), (0, 0), (0, 0)])
+            table = RowTable(np.array([0.0, 1.0]), constant)
+            travels.append(Travel(self.hoist, table, (("rows", rows),), shifts=(1.0,)))
+        pulling = PowerContact(self.stiffness, 1.0).upper().behind(self.slack or 0.0)
+        contacts = [(rope, pulling)]
+        if self.slack is not None:
+            ground = PowerContact(_GROUND * self.stiffness, 1.0).lower()
+            contacts.append((height, ground.behind(0.0, -self.weight / ground.below)))
+        numbers = [len(system.stations) + number for number in range(len(contacts))]
+        return replace(
+            system,
+            omega2=np.append(system.omega2, 0.0),
+            load=widen(system.load) - self.weight * height,
+            rows=np.concatenate([widen(system.rows), [row for row, _ in contacts]]),
+            laws=[*system.laws, *(law for _, law in contacts)],
+            station_of_row=np.array([*system.station_of_row, *numbers], dtype=np.int64),
+            stations=[*system.stations, *(x for _ in contacts)],
+            station_directions=[*system.station_directions, *("z" for _ in contacts)],
+            grounded=[*system.grounded, *numbers],
+            observers={
+                **{
+                    name: seen._replace(row=widen(seen.row))
+                    for name, seen in system.observers.items()
+                },
+                "load_height": Observer(height),
+            },
+            damping=widen(system.damping),
+            dashpots=widen(system.dashpots),
+            friction_rows=widen(system.friction_rows),
+            excitations=[replace(one, load=widen(one.load)) for one in system.excitations],
+            released_load=widen(system.released_load),
+            initial_impulse=widen(system.initial_impulse),
+            travels=travels,
+            softening=np.pad(system.softening, (0, 1 if system.softening.size else 0)),
+        )
+
+    def separate(self, motion: Trajectory) -> Trajectory:
+        """Return the motion with the force of the rope apart from those of the boom's stations.
+
+        ``rope_force`` and ``rope_force_peak`` in N, the mean and the largest of the output interval
+        that ends then, are positive in tension; their attribute ``weight`` is m g.
+        """
+        own = motion.data.sizes["station"] - (1 if self.slack is None else 2)
+        data = motion.data.isel(station=slice(own))
+        for name in ("contact_force", "contact_force_peak"):
+            force = motion.data[name].isel(station=own, drop=True)
+            force.attrs["long_name"] = force.attrs["long_name"].replace("contact", "rope")
+            force.attrs["weight"] = self.weight
+            data[name.replace("contact", "rope")] = force
+        return Trajectory(data, motion.states)

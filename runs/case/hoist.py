@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Hoisting of a load on a rope below the tip, in a case file."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import Field
+
+from dynamics.excitation import is_constant
+from dynamics.gap_system import GapSystem
+from dynamics.hanging_load import HangingLoad
+from dynamics.motion import initial_state
+from geometry.axial import Thrust
+from geometry.boom import Boom, BoomError
+from geometry.fields import Flag, In, NotNegative, Positive
+from runs.case.drive import TravelTable
+
+if TYPE_CHECKING:
+    from runs.case.schema import Case
+
+
+class HoistTable(TravelTable):
+    """A load on a rope below the tip, and the winch that hoists it."""
+
+    mass: Annotated[Positive, In("kg")]
+    """the mass in kg of the load"""
+    stiffness: Annotated[Positive, In("N/m")] | None = None
+    """the stiffness in N/m of all falls of the rope together; that of area, modulus, length and
+    falls unless given"""
+    area: Annotated[Positive, In("m^2")] | None = None
+    """the metallic cross-section in m^2 of one fall"""
+    modulus: Annotated[Positive, In("Pa")] | None = None
+    """the modulus of elasticity in Pa of the rope"""
+    length: Annotated[Positive, In("m")] | None = None
+    """the length in m of the falls"""
+    falls: Annotated[int, Field(strict=True, ge=1, le=100)] = 1
+    """the number of falls"""
+    hanging: Flag = False
+    """whether the load hangs on the rope at t = 0; it lies on the ground unless given"""
+    slack: Annotated[NotNegative, In("m")] = 0.0
+    """the length in m that the winch takes up before the rope is straight, of a load that lies on
+    the ground"""
+
+
+def check_hoist(case: Case) -> None:
+    """Check the data of a hoisted load.
+
+    Raises:
+        BoomError: a key is missing or contradicts another one.
+    """
+    table = case.hoist
+    if table is None:
+        return
+    if case.gravity is None:
+        raise BoomError("hoist.mass", "nothing weighs without the table gravity; give it")
+    if table.hanging and table.slack:
+        raise BoomError("hoist.slack", "the load hangs; leave slack or hanging out")
+    if case.ensemble is not None:
+        raise BoomError("hoist", "an ensemble of hoisted loads is not available; leave one out")
+    of_rope = {key: getattr(table, key) for key in ("area", "modulus", "length")}
+    for key, value in of_rope.items():
+        if table.stiffness is None and value is None:
+            raise BoomError(f"hoist.{key}", "missing; give it, or the stiffness of the rope")
+        if table.stiffness is not None and value is not None:
+            raise BoomError(f"hoist.{key}", "stiffness is given; leave one of them out")
+    if table.travel is not None or table.table is not None:
+        table.history("hoist")
+    elif not table.hanging:
+        raise BoomError("hoist.travel", "missing; it is the length in m that the winch winds up")
+
+
+def hanging_load(case: Case) -> HangingLoad | None:
+    """Return the hoisted load of a checked case."""
+    from runs.case.actions import gravity_across
+
+    table = case.hoist
+    if table is None or case.gravity is None:
+        return None
+    stiffness = table.stiffness
+    if stiffness is None:
+        assert table.area
+        assert table.modulus
+        assert table.length
+        stiffness = table.falls * table.modulus * table.area / table.length
+    given = table.travel is not None or table.table is not None
+    history = table.history("hoist") if given else None
+    gravity = case.gravity.acceleration
+    return HangingLoad(
+        table.mass,
+        stiffness,
+        gravity,
+        None if history is None or is_constant(history) else history,
+        gravity_across(case.gravity) / gravity,
+        None if table.hanging else table.slack,
+    )
+
+
+def hoist_thrust(case: Case, segment: int, x: float) -> tuple[Thrust, ...]:
+    """Return the axial force on the boom's tip of a hanging load, which acts throughout."""
+    from runs.case.actions import gravity_along
+
+    if case.hoist is None or case.gravity is None:
+        return ()
+    return (Thrust(segment, x, case.hoist.mass * gravity_along(case.gravity)),)
+
+
+def with_hanging_load(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
+    """Return a model's system with the hoisted load of its case, if there is one.
+
+    Raises:
+        NumericsError: the boom has no equilibrium from which to start.
+    """
+    load = hanging_load(case)
+    if load is None:
+        return system
+    tip = system.observers["tip"].row
+    if load.slack is not None:
+        # The rope of a load on the ground reaches the tip of the boom where it rests.
+        rest = tip @ initial_state(system, case.start.at_rest)[1]
+        load = replace(load, slack=load.slack + load.cosine * float(rest))
+    return load.hang(system, tip, boom.segments[-1].end)

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Hoisting in a case: statics and results of a hanging load, messages for bad input."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dynamics.equilibrium import rest_at
+from protractile.cases import change, run_case
+from runs import CASES
+from runs.case.build import build_boom
+from runs.case.messages import BadInput
+from runs.case.reading import load
+from runs.case.schema import Case, LoadTable
+from runs.pipeline.models import build
+from runs.report.result_tables import hoist_table
+
+HOIST = (CASES / "hoist.toml").read_text(encoding="utf-8")
+
+
+def of_beam(case: Case) -> Case:
+    """Return a case with its series alone."""
+    return case.model_copy(update={"models": case.models[:1]})
+
+
+def static_tip(case: Case, time: float) -> float:
+    system = build(case, build_boom(case), case.models[0]).system
+    return float(system.observers["tip"].row @ rest_at(system.gather_loads(), time))
+
+
+def test_hanging_load_at_rest() -> None:
+    """Reference: the same boom under the load across it and the same force along it."""
+    case = of_beam(load(str(CASES / "hoist.toml")))
+    weight = 5000.0 * 9.80665
+    across = LoadTable(segment="fly", x="head", magnitude=-0.5 * weight)  # type: ignore[arg-type] # read as in a file
+    force = case.axial[0].force
+    assert force is not None
+    axial = case.axial[0].model_copy(update={"force": force + np.sqrt(0.75) * weight})
+    loaded = case.model_copy(update={"hoist": None, "loads": (across,), "axial": (axial,)})
+    assert static_tip(case, 5.0) == pytest.approx(static_tip(loaded, 0.0), rel=1e-6)
+    assert abs(static_tip(case, 0.0)) < 0.5 * abs(static_tip(case, 5.0))
+
+
+def test_results_of_a_hoist() -> None:
+    """Reference: the height at which the load leaves the ground, and the energy balance."""
+    case = of_beam(load(str(CASES / "hoist.toml")))
+    results = run_case(change(case, **{"time.duration": 4.0}))
+    (summary,) = results.summary.models.values()
+    assert summary.energy_residual < 1e-11
+    table = hoist_table(results)
+    assert table is not None
+    model, lifted, force, factor = (column.cells[0] for column in table.columns)
+    assert model == "series"
+    data = results.trajectories.sel(model="series")
+    height = data["load_height"].values
+    # The ground, a hundred times as stiff as four falls, is left at this height.
+    left = 5000.0 * 9.80665 / (100.0 * 4.0 * 1.0e11 * 1.1e-4 / 35.0)
+    first = data["time"].values[np.argmax(height > left)]
+    assert float(lifted) == pytest.approx(first, abs=0.005)  # type: ignore[arg-type] # a number here
+    assert float(force) == pytest.approx(float(factor) * 5000.0 * 9.80665)  # type: ignore[arg-type] # numbers here
+    assert 1.0 < float(factor) < 1.5  # type: ignore[arg-type] # a number here
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "message"),
+    [
+        (
+            "area = 1.1e-4 # a rope of 16 mm\n",
+            "",
+            "hoist.area: missing; give it, or the stiffness of the rope",
+        ),
+        (
+            "falls = 4\n",
+            "falls = 4\nstiffness = 1e6\n",
+            "hoist.area: stiffness is given; leave one of them out",
+        ),
+        (
+            "travel = 1.2\nspeed = 0.2\nramp = 0.2\nstart = 0.1\n",
+            "",
+            "hoist.travel: missing; it is the length in m that the winch winds up",
+        ),
+        (
+            "falls = 4\n",
+            "falls = 4\nhanging = true\nslack = 0.1\n",
+            "hoist.slack: the load hangs; leave slack or hanging out",
+        ),
+        (
+            "[gravity]\nangle = 60.0\n",
+            "",
+            "hoist.mass: nothing weighs without the table gravity; give it",
+        ),
+    ],
+)
+def test_bad_input(tmp_path: Path, before: str, after: str, message: str) -> None:
+    assert before in HOIST
+    path = tmp_path / "case.toml"
+    path.write_text(HOIST.replace(before, after), encoding="utf-8")
+    with pytest.raises(BadInput) as error:
+        load(str(path))
+    assert str(error.value) == f"{path}: {message}"
