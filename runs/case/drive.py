@@ -36,8 +36,7 @@ class TravelTable(CaseTable):
     """Length over time, of a drive or a winch."""
 
     travel: Annotated[Number, In("m")] | None = None
-    """the length in m by which the segment extends, or the load is hoisted; negative where the
-    segment retracts, or the load is lowered"""
+    """the length in m by which the segment extends; negative where it retracts"""
     time: Annotated[Positive, In("s")] | None = None
     """the duration of the travel in s, on a smooth S-curve"""
     speed: Annotated[Positive, In("m/s")] | None = None

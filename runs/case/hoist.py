@@ -14,7 +14,7 @@ from dynamics.hanging_load import HangingLoad
 from dynamics.motion import initial_state
 from geometry.axial import Thrust
 from geometry.boom import Boom, BoomError
-from geometry.fields import Flag, In, NotNegative, Positive
+from geometry.fields import Flag, In, NotNegative, Number, Positive
 from runs.case.drive import TravelTable
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 class HoistTable(TravelTable):
     """A load on a rope below the tip, and the winch that hoists it."""
 
+    travel: Annotated[Number, In("m")] | None = None
+    """the length in m by which the winch hoists the load; negative where it lowers it"""
     mass: Annotated[Positive, In("kg")]
     """the mass in kg of the load"""
     stiffness: Annotated[Positive, In("N/m")] | None = None
@@ -68,7 +70,7 @@ def check_hoist(case: Case) -> None:
     if table.travel is not None or table.table is not None:
         table.history("hoist")
     elif not table.hanging:
-        raise BoomError("hoist.travel", "missing; it is the length in m that the winch winds up")
+        raise BoomError("hoist.travel", "missing; it is the length in m by which the winch hoists")
 
 
 def hanging_load(case: Case) -> HangingLoad | None:

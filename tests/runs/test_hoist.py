@@ -80,7 +80,7 @@ def test_results_of_a_hoist() -> None:
         (
             "travel = 1.2\nspeed = 0.2\nramp = 0.2\nstart = 0.1\n",
             "",
-            "hoist.travel: missing; it is the length in m that the winch winds up",
+            "hoist.travel: missing; it is the length in m by which the winch hoists",
         ),
         (
             "falls = 4\n",
