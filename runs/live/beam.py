@@ -10,6 +10,8 @@ import numpy as np
 import xarray as xr
 
 from dynamics.failure import NumericsError
+from dynamics.integrator import FixedStep
+from dynamics.trajectory import Trajectory
 from geometry.typography import TO_MILLI
 from runs.case.checked_case import CheckedCase
 from runs.live.boom_figure import boom_figure
@@ -40,12 +42,17 @@ from runs.report.summary_table import governing_pads, pad_text, summary_table, u
 # A table of the page: title and value of each row.
 Rows = list[tuple[str, str]]
 
+# Steps of an output interval in the preview of a motion.
+_PREVIEW_STEPS = 4
+
 # Heights of the charts in pixels: of a panel, and of the axis below all of them.
 _PANEL, _BELOW = 150, 60
 
 
 def beam_results(checked: CheckedCase, check_current: Callable[[], None]) -> Iterator[Any]:
-    """Yield the results of a case's only model at rest, then with its motion, as JSON values.
+    """Yield the results of a case's only model as JSON values.
+
+    They come at rest, then with a preview of the motion, last with the motion to its tolerance.
 
     Args:
         checked: the case, with one beam.
@@ -85,28 +92,38 @@ def beam_results(checked: CheckedCase, check_current: Callable[[], None]) -> Ite
     }
     check_current()
     plan = MotionPlan.of(built.system, case, model)
-    trajectory = plan.trajectory(lambda _: check_current())
-    check_current()
-    own = loaded.with_motion(own, found | extended, trajectory, case, model)
-    results = _results(checked, own, label(boom, {model.name: trajectory}))
-    summary = summarise_motion(model, plan.motion.system, trajectory, built.num_dofs)
-    results.summary.models = {model.name: summary}
-    results.conclude()
-    table = summary_table(results)
-    assert table is not None
-    time, data = trajectory.time, trajectory.data
-    tips = [name for name in ("tip", "tip_lateral") if name in data]
+    # Steps of one length give a picture long before the error is known.
+    for stage, integrator in (
+        ("preview", FixedStep(case.time.output_step / _PREVIEW_STEPS)),
+        ("motion", plan.integrator),
+    ):
+        trajectory = integrator(plan.motion, lambda _: check_current())
+        check_current()
+        moved = loaded.with_motion(own, found | extended, trajectory, case, model)
+        results = _results(checked, moved, label(boom, {model.name: trajectory}))
+        summary = summarise_motion(
+            model, plan.motion.system, trajectory, built.num_dofs, own.static[0].tip
+        )
+        results.summary.models = {model.name: summary}
+        results.conclude()
+        table = summary_table(results)
+        assert table is not None
+        yield {
+            "stage": stage,
+            "rows": table.rows,
+            "verdict": utilisation_verdict(results),
+            "cautions": results.summary.cautions,
+            "tip": _tip_chart(trajectory),
+        }
+
+
+def _tip_chart(trajectory: Trajectory) -> Any:
     curves = [
-        Curve(name.replace("_", " "), TO_MILLI * data[name].values, theme.PALETTE[k])
-        for k, name in enumerate(tips)
+        Curve(name.replace("_", " "), TO_MILLI * trajectory.data[name].values, theme.PALETTE[k])
+        for k, name in enumerate(("tip", "tip_lateral"))
+        if name in trajectory.data
     ]
-    yield {
-        "stage": "motion",
-        "rows": table.rows,
-        "verdict": utilisation_verdict(results, model.name),
-        "cautions": results.summary.cautions,
-        "tip": _plain(Chart(time, "tip deflection (mm)", curves)),
-    }
+    return _plain(Chart(trajectory.time, "tip deflection (mm)", curves))
 
 
 def _results(checked: CheckedCase, own: ModelDesignResults, data: xr.Dataset) -> Results:
@@ -147,7 +164,7 @@ def _rows_at_rest(own: ModelDesignResults, results: Results) -> Rows:
 
 def _plain(chart: Chart) -> Any:
     """Return a chart for the page, without a legend where one curve is shown."""
-    figure = chart.figure.to_dict()
+    figure = chart.plain
     names = {trace["name"] for trace in figure["data"]}
     for trace in figure["data"]:
         trace.setdefault("x", chart.time)

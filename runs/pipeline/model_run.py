@@ -161,7 +161,7 @@ def _move(
         plan.warm()
     with stages.stage("motion") as report_progress:
         trajectory = plan.trajectory(report_progress)
-    summary = summarise_motion(model, system, trajectory, built.num_dofs)
+    summary = summarise_motion(model, system, trajectory, built.num_dofs, static_tip(system))
     if summary.step_error is None and system.frictions and case.regular:
         with stages.stage("twice the step") as report_progress:
             summary.step_error = plan.step_error(trajectory, report_progress)
@@ -194,7 +194,7 @@ def _move(
 
 
 def summarise_motion(
-    model: Model, system: GapSystem, trajectory: Trajectory, num_dofs: int
+    model: Model, system: GapSystem, trajectory: Trajectory, num_dofs: int, static_tip: float
 ) -> ModelSummary:
     """Return the summary of a model's motion.
 
@@ -203,6 +203,7 @@ def summarise_motion(
         system: that of the model, with all constant loads in its ``load``.
         trajectory: its motion.
         num_dofs: before any reduction.
+        static_tip: of :func:`runs.pipeline.proportions.static_tip`.
     """
     attributes = trajectory.data.attrs
     peaks = np.abs(trajectory.data["contact_force_peak"].values)
@@ -225,7 +226,7 @@ def summarise_motion(
         peak_contact_force=float(peaks.max()) if peaks.size else None,
         step_error=attributes["step_error"],
         resolving_step=attributes["resolving_step"],
-        static_tip=static_tip(system),
+        static_tip=static_tip,
     )
     if stick_slip := attributes.get("stick_slip"):
         summary.stick_slip = stick_slip

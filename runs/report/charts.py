@@ -81,9 +81,15 @@ class Chart:
 
     @property
     def figure(self) -> Any:
-        """The figure for plotly; curves without an abscissa use ``layout.meta.x``."""
+        """Figure of plotly, checked by its library; see :attr:`plain`."""
         from plotly.graph_objects import Figure
 
+        plain = self.plain
+        return Figure(plain["data"], plain["layout"])
+
+    @property
+    def plain(self) -> dict[str, Any]:
+        """The figure for plotly; curves without an abscissa use ``layout.meta.x``."""
         count = len(self.panels)
         layout: dict[str, Any] = {
             "template": "none",
@@ -122,7 +128,7 @@ class Chart:
         for curve in self.curves:
             traces += [*self._traces(curve, curve.name not in named)]
             named.add(curve.name)
-        return Figure(traces, layout)
+        return {"data": traces, "layout": layout}
 
     def _traces(self, curve: Curve, named: bool) -> Iterator[dict[str, Any]]:
         """Yield the limits of a curve's band, then its line; ``named`` puts it into the legend."""
