@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Estimates of the memory and time of a run before it starts.
 
-Estimates are never too low, and too high by a factor of at most about four. Beams are built and
-their steps are exact; a shell is not meshed yet, and its steps are estimated by a beam. The
-constants were measured on one core of an AMD EPYC (``python -m studies.cost.bench``, and
-tests/runs/test_estimates.py for the memory).
+Memory is never too low, and too high by a factor of at most about four. Time is right within a
+factor of two on an AMD EPYC without other load (tests/runs/test_estimates.py). Beams are built; a
+shell is not meshed yet, and a beam stands for it.
 """
 
 from __future__ import annotations
@@ -31,15 +30,18 @@ _LIBRARIES, _SHELL_LIBRARIES = 1.3e9, 1.6e9
 
 # Numbers of 8 bytes per output and model: fixed columns, per coordinate, per station.
 _NUMBERS, _OF_COORDINATE, _OF_STATION = 160.0, 1.5, 12.0
-# Time in s per output and model for files and figures.
-_WRITING = 3.0e-5
+# Time in s per output and model for files and figures, and per travel for results of drives.
+_WRITING, _OF_TRAVEL = 3.0e-5, 4.0e-4
 # Numbers of 8 bytes per output and member of an ensemble, and per step of an output interval.
 _OF_MEMBER, _OF_STEP = 22.0, 24.0
 
-# Time in s per step, per coordinate of a step, and per coordinate and row of a step.
-_STEP, _OF_MODE, _OF_ROW = 0.4e-6, 1.0e-8, 1.0e-9
-# Steps per output interval, and repeated windows per window, with error control.
-_SUBSTEPS, _AGAIN = 32.0, 2.0
+# Time in s of results and the loading of compiled code per model, and of the report of a run.
+_RESULTS, _REPORT, _SHELL_REPORT = 1.0, 5.0, 15.0
+# Time in s per step, per coordinate of a step, and per row of a step.
+_STEP, _OF_MODE, _OF_ROW = 0.5e-6, 1.0e-8, 0.5e-6
+# With error control: steps per output interval without impacts, fraction of the largest number of
+# steps with impacts, at a tolerance, and computed steps per step of the motion.
+_SUBSTEPS, _OF_MOST, _TOLERANCE, _AGAIN = 4.0, 0.5, 1.0e-3, 2.5
 # Number of motions that measure the horizons.
 _HORIZONS = 24
 
@@ -56,7 +58,9 @@ class Cost:
 
     def __str__(self) -> str:
         minutes = self.seconds / 60.0
-        time = f"{max(minutes, 1.0):.0f} min" if minutes < 90.0 else f"{minutes / 60.0:.3g} h"
+        time = f"{minutes:.0f} min" if minutes < 90.0 else f"{minutes / 60.0:.3g} h"
+        if minutes < 1.5:
+            time = f"{float(f'{self.seconds:.1g}'):g} s"
         return f"{self.memory / 1e9:.2g} GB and {time}"
 
     def __add__(self, other: Cost) -> Cost:
@@ -100,6 +104,12 @@ def run_cost(case: Case) -> Cost:
 
 def preview_cost(preview: Preview) -> Cost:
     """Return the cost of a run; models that are already built as beams are used again."""
+    shell = any(model.needs_shell for model in preview.declared.case.models)
+    return models_cost(preview) + Cost(0.0, _SHELL_REPORT if shell else _REPORT)
+
+
+def models_cost(preview: Preview) -> Cost:
+    """Return the cost of a run without its report."""
     case = preview.declared.case
     shell = any(model.needs_shell for model in case.models)
     total = Cost(_SHELL_LIBRARIES if shell else _LIBRARIES, 0.0)
@@ -113,7 +123,8 @@ def preview_cost(preview: Preview) -> Cost:
 def sweep_cost(cases: Sequence[Case]) -> Cost:
     """Return the cost of a sweep of checked cases on all cores."""
     at_a_time = min(len(cases), os.cpu_count() or 1)
-    sample = [run_cost(case) for case in cases[:: -(-len(cases) // _SAMPLE)]]
+    chosen = cases[:: -(-len(cases) // _SAMPLE)]
+    sample = [models_cost(Preview(CheckedCase(case))) for case in chosen]
     seconds = sum(cost.seconds for cost in sample) / len(sample) * len(cases)
     return Cost(at_a_time * max(cost.memory for cost in sample), seconds / at_a_time)
 
@@ -135,7 +146,7 @@ def refuse_large(cost: Cost, file: str) -> None:
 
 def _of_model(preview: Preview, model: Model) -> Cost:
     case, stand_in = preview.declared.case, model.stand_in(preview.declared.boom)
-    before = Cost(stand_in.memory, stand_in.seconds)
+    before = Cost(stand_in.memory, _RESULTS + stand_in.seconds)
     try:
         motion = preview.motion(model, stand_in.beam)
     except NUMERICS:
@@ -144,16 +155,19 @@ def _of_model(preview: Preview, model: Model) -> Cost:
     system, time = motion.system, case.time
     outputs, coordinates = time.duration / time.output_step, stand_in.coordinates
     step = model.step or time.step
-    steps = time.duration / step if step else min(_SUBSTEPS * outputs, MOST_STEPS)
+    steps = time.duration / step if step else _SUBSTEPS * outputs
+    # Contacts of a flat boom that starts at rest stay closed, others open and close.
+    if not step and system.laws and (preview.declared.boom.spatial or not case.start.at_rest):
+        steps = max(steps, _OF_MOST * MOST_STEPS * np.sqrt(_TOLERANCE / time.tolerance))
     members = case.ensemble.members if case.ensemble is not None and system.laws else 0
     doubled = bool(system.frictions) and case.regular
     alone = 1.0 + 0.5 * doubled if step else _AGAIN
     motions = alone + members + (_HORIZONS if members else 0)
     rows = len(system.laws) + len(system.frictions) + len(system.dashpots)
-    each = _STEP + coordinates * (_OF_MODE + _OF_ROW * rows)
+    each = _STEP + _OF_MODE * coordinates + _OF_ROW * rows
     numbers = _NUMBERS + _OF_COORDINATE * coordinates + _OF_STATION * len(system.stations)
     of_interval = _OF_STEP + 2 * len(system.excitations) + len(system.travels)
     return before + Cost(
         8.0 * (outputs * (numbers + _OF_MEMBER * members) + steps / outputs * of_interval),
-        outputs * _WRITING + motions * steps * each,
+        outputs * (_WRITING + _OF_TRAVEL * len(system.travels)) + motions * steps * each,
     )

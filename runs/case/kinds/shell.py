@@ -33,7 +33,7 @@ _FLAT, _SPATIAL = 60, 210
 # Measured costs: dofs per mesh size squared of a uniform mesh, of a graded one outside its
 # refinement zones, and inside them; bytes per dof and per coordinate of a dof; s.
 _DOFS, _GRADED_DOFS, _DOFS_AT_ZONES = 21.0, 42.0, 35.0
-_OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 2000.0, 5.0, 1.0e-4
+_OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 2000.0, 5.0, 0.8e-4
 # One process reduces a shell of so many dofs in a few seconds.
 _SMALL = 5.0e4
 # Number of elements of the longest segment, for the beam that stands for a shell.
