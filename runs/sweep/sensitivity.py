@@ -46,7 +46,9 @@ def plan_changes(
     """
     case = case_file.load(file)
     if models is None:
-        models = [model.name for model in case.models if not model.needs_shell][-1:]
+        beams = [model for model in case.models if not model.needs_shell]
+        with_play = [model for model in beams if not model.bonded]
+        models = [model.name for model in with_play or beams][-1:]
     if len(models) != 1:
         what = f"{len(models)} models are chosen; name one with --models, a beam say"
         raise BadInput(file, OPTION, what)
@@ -110,7 +112,7 @@ def show(data: pd.DataFrame, case: Case, refused: Sequence[str], console: Consol
     top = data.head(MOST_ROWS)
     columns = [Column("1 % more of", list(top.index))]
     columns += [
-        Column(one.title.replace(" ", "\n"), top[one.name].tolist(), ".3g", "%")
+        Column(one.title.replace(" ", "\n"), top[one.name].tolist(), ".2f", "%")
         for one in QUANTITIES
         if one.name in SHOWN and one.name in top
     ]
