@@ -10,19 +10,25 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.boom import Segment, Support
+from geometry.contact_places import Stretch
 from geometry.section import BoxSection, Section
 from shell_model.buckling import BucklingModes, buckling_modes, with_springs
+from shell_model.contact.wall_rows import CornerLines
 from shell_model.segment.segment_shell import SegmentShell
+from shell_model.stress.fields import gather_stress_modes
 from studies.reference_models.benchmarks import X, Y, Z, grid
 from studies.reference_models.finite_strip import StressField, Strips
 from studies.reference_models.plates import STEEL, rectangle
-from studies.reference_models.single_segment import shell_alone
+from studies.reference_models.single_segment import at_rest, shell_alone
 from studies.reference_models.static_shell import StaticShell, hold
 from studies.refined import Reference, Refined, refined_table
 from studies.study import Piece, Progress, define_study
 
 # Thickness of the plates over their width.
 THIN = 0.005
+
+# π² D/t³ in Pa.
+UNIT = np.pi**2 * STEEL.youngs_modulus / (12.0 * (1.0 - STEEL.poissons_ratio**2))
 
 NOTES = (
     "Edges across a plate, or across the widest wall of a box. Order, limit and index of the three "
@@ -66,7 +72,7 @@ class LoadedPlate:
         for axis, size in ((X, self.aspect), (Y, 1.0)):
             for edge in (0.0, size):
                 held |= shell.hold_at(axis, edge, [Z], [axis])
-        unit = np.pi**2 * STEEL.youngs_modulus / (12.0 * (1.0 - STEEL.poissons_ratio**2)) * THIN**3
+        unit = UNIT * THIN**3
         across = points[triangles, Y].mean(axis=1)[:, None]
         lower, upper = np.array(self.forces)
         forces = unit * ((1.0 - across) * lower + across * upper)
@@ -108,16 +114,7 @@ class LoadedBox:
 
     def shell(self, n: int, count: int = 1) -> tuple[SegmentShell, BucklingModes]:
         """Return the shell and its modes, with n edges across the widest wall."""
-        supports = Support(0.0), Support(self.length)
-        segment = Segment.of_section(
-            "box", 0.0, self.length, STEEL, self.section, supports=supports
-        )
-        widest = max(plate.length for plate in self.section.plates)
-        shell = shell_alone(segment, widest / n)
-        slide = shell.row(shell.outline(0.0).mean_displacement(X))
-        shell = replace(
-            shell, springs=with_springs(shell.springs, slide[:, None], np.array([1.0e10]))
-        )
+        shell = _supported(self.section, self.length, n)
         return shell, buckling_modes(shell, self.membrane_forces(shell), count)
 
     def membrane_forces(self, shell: SegmentShell) -> Array:
@@ -131,6 +128,53 @@ class LoadedBox:
         """Return the lowest factor by finite strips, in up to this number of half-waves."""
         stress: StressField = self.stress
         return Strips.of(self.section, STEEL).lowest(self.length, range(1, most + 1), stress)
+
+
+@dataclass(frozen=True, slots=True)
+class PressedBox:
+    """Box between the same supports, pressed in the middle of both webs' upper edges.
+
+    Args:
+        section: its walls, with thick flanges.
+        length: a in m.
+        patch: length of the load in m.
+    """
+
+    section: BoxSection
+    length: float
+    patch: float
+
+    def shell(self, n: int) -> float:
+        """Return k_F = F h/(π² D) of a web by the shell, n edges over its height.
+
+        Membrane forces are those of the shell under the load.
+        """
+        shell = _supported(self.section, self.length, n)
+        middle, half = 0.5 * self.length, 0.5 * self.patch
+        pressed = Stretch(middle - half, middle + half, middle)
+        force = -shell.row(CornerLines(shell).deflection(pressed, "z", 0.0, 1))
+        modes = gather_stress_modes(shell, at_rest(shell, force[:, None]))
+        assert modes is not None
+        assert shell.mesh is not None
+        forces = shell.mesh.thickness[:, None] * modes[0, :, :3].astype(float)
+        each = 0.5 * float(buckling_modes(shell, forces, 1).factors[0])
+        height, web = self.section.height, self.section.web
+        return each * height / (UNIT * web**3)
+
+    @property
+    def fitted(self) -> float:
+        """k_F of EN 1993-1-5, 6.4 (1), which is a fit."""
+        return float(6.0 + 2.0 * (self.section.height / self.length) ** 2)
+
+
+def _supported(section: Section, length: float, n: int) -> SegmentShell:
+    """Return a box on supports at its ends, n edges across its widest wall, held along x."""
+    supports = Support(0.0), Support(length)
+    segment = Segment.of_section("box", 0.0, length, STEEL, section, supports=supports)
+    shell = shell_alone(segment, max(plate.length for plate in section.plates) / n)
+    slide = shell.row(shell.outline(0.0).mean_displacement(X))
+    springs = with_springs(shell.springs, slide[:, None], np.array([1.0e10]))
+    return replace(shell, springs=springs)
 
 
 _STRESS = 1.0e8
@@ -148,6 +192,11 @@ BOXES = (
 # About as long as its walls and the column itself buckle alike.
 COLUMN = LoadedBox("column of box section", STOUT, 22.0 * 0.3, compression=_STRESS)
 
+PRESSED = tuple(
+    PressedBox(BoxSection(height=0.5, width=0.25, flange=0.012, web=0.004), length, 0.1)
+    for length in (0.5, 1.0)
+)
+
 
 @define_study("wall-buckling", "Buckling of walls")
 def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
@@ -164,6 +213,12 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
         values = [float(box.shell(n)[1].factors[0]) for n in edges]
         reference = Reference(box.strips(), "other code", "finite strips, Cheung 1976", 0.01)
         found.append(_refined(box.name, edges, values, reference))
+    for pressed in PRESSED:
+        progress(f"patch load on {pressed.length:g} m")
+        values = [pressed.shell(n) for n in sizes.box]
+        reference = Reference(pressed.fitted, "external", "EN 1993-1-5, 6.4, a fit", 0.15)
+        what = f"k_F of a patch load, a/h = {pressed.length / pressed.section.height:g}"
+        found.append(_refined(what, sizes.box, values, reference))
     yield from (one.proof for one in found)
     title = "Walls of shells that buckle, against known factors"
     yield refined_table("wall-buckling", title, found, "edges × {:g}", NOTES)

@@ -19,11 +19,19 @@ from shell_model.stress.stresses import triangle_areas
 from studies.reference_models.finite_strip import Strips
 from studies.reference_models.plates import STEEL
 from studies.reference_models.single_segment import shell_alone
-from studies.wall_buckling import BOXES, COLUMN, PLATES, TUBE, LoadedBox, LoadedPlate
+from studies.wall_buckling import (
+    BOXES,
+    COLUMN,
+    PLATES,
+    PRESSED,
+    TUBE,
+    UNIT,
+    LoadedBox,
+    LoadedPlate,
+    PressedBox,
+)
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, box_segment, flat_boom
 from tests.touching import touching
-
-UNIT = np.pi**2 * STEEL.youngs_modulus / (12.0 * (1.0 - STEEL.poissons_ratio**2))
 
 
 def extrapolated(coarse: float, fine: float) -> float:
@@ -82,6 +90,14 @@ def test_boxes_buckle_as_finite_strips(box: LoadedBox) -> None:
     coarse, fine = (float(box.shell(n)[1].factors[0]) for n in (8, 16))
     assert coarse > fine
     assert extrapolated(coarse, fine) == pytest.approx(box.strips(), rel=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pressed", PRESSED, ids=lambda pressed: f"{pressed.length:g} m")
+def test_webs_buckle_under_patch_loads(pressed: PressedBox) -> None:
+    """Reference: external, k_F = 6 + 2 (h/a)² of EN 1993-1-5, 6.4, a fit: 15 %."""
+    found = extrapolated(pressed.shell(8), pressed.shell(16))
+    assert found == pytest.approx(pressed.fitted, rel=0.15)
 
 
 @pytest.mark.slow
