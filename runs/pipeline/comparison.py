@@ -30,9 +30,8 @@ class PeakDifferences:
     """
 
     decides: ClassVar[str] = (
-        "Tells which of the common peaks of the slow motion differ by more than chaos alone would "
-        "explain; it cannot tell anything about the ripple, or about peaks that not all members "
-        "have."
+        "Shows which common peaks of the slow motion differ by more than chaos explains; ripple "
+        "and peaks that some members lack are not covered."
     )
 
     time: Numbers
@@ -69,8 +68,8 @@ class Distributions:
     """
 
     decides: ClassVar[str] = (
-        "Tells whether the models spend like shares of the time at like values after the horizons; "
-        "it cannot tell when they do, or in what order."
+        "Shows whether the models have the same distribution of values after the horizons, "
+        "without regard to time and order."
     )
 
     since: Number

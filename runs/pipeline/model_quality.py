@@ -148,13 +148,13 @@ def quality_notes(
             yield QualityNote(
                 "mesh",
                 f"{name}: at contacts its local compliance is within "
-                f"{_percent(model.mesh_error)} of that of an infinitely fine mesh.",
+                f"{_percent(model.mesh_error)} of the value of an infinitely fine mesh.",
             )
     name, worst = max(models.items(), key=lambda moving_force: moving_force[1].energy_residual)
     yield QualityNote(
         "energy",
-        f"Energy is accounted for within {worst.energy_residual:.1g} of the work done in every "
-        f"model; the least well in {name}.",
+        f"The energy balance holds within {worst.energy_residual:.1g} of the work in every "
+        f"model; the largest error has {name}.",
     )
 
 
@@ -201,13 +201,13 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
     if parted:
         which = listed([f"{name} {time:.2f} s" for name, time in parted.items()])
         yield (
-            "The motion is chaotic: runs whose data differ by less than can be known are "
-            f"{_percent(_PARTED)} of the tip's range apart from here on: {which}. Later curves are "
-            "samples; the heights and times of slow peaks hold longer."
+            "The motion is chaotic: runs with unmeasurably small differences of data are "
+            f"{_percent(_PARTED)} of the tip's range apart from these times on: {which}. Later "
+            f"curves are samples; heights and times of slow peaks are predictable for longer."
         )
     regular = [name for name, time in times.items() if time is None]
     if regular:
-        yield f"The motion of {listed(regular)} can be predicted over all {duration:g} s."
+        yield f"The motion of {listed(regular)} can be predicted over the whole {duration:g} s."
 
 
 def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[str]:
@@ -250,8 +250,8 @@ def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
         for name in (name for name, one in summary.models.items() if one.stress is not None):
             yield (
                 f"caution: the walls of {name} carry the axial forces of the initial extension: "
-                "their stresses and utilisations leave out the change of axial forces by drives, "
-                "which those of outer fibres include"
+                "their stresses and utilisations neglect the change of axial forces by drives, "
+                "unlike those of outer fibres"
             )
 
 

@@ -71,8 +71,8 @@ def failure_reason(error: Exception) -> str:
     if isinstance(error, NumericsError):
         return str(error)
     return (
-        f"cannot be computed ({error}); look for a number of the case that is out of proportion, "
-        "in another unit say"
+        f"cannot be computed ({error}); look for an extreme number of the case, for example in "
+        f"another unit"
     )
 
 

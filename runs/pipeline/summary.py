@@ -269,6 +269,6 @@ def check_finite(part: object) -> None:
         json.dumps(to_jsonable_python(part), allow_nan=False)
     except ValueError:
         raise NumericsError(
-            "a result is not finite; look for a number of the case that is out of proportion, in "
-            "another unit say"
+            "a result is not finite; look for an extreme number of the case, for example in "
+            "another unit"
         ) from None

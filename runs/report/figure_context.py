@@ -40,8 +40,8 @@ LETTERS = 30
 # Plotly's names of the line styles.
 CHART_DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
 THINNED = (
-    " On a screen each curve is drawn by the lowest and the highest of every few samples; "
-    "trajectories.nc has them all."
+    " The chart has the minimum and maximum of intervals of each curve; trajectories.nc has all "
+    "samples."
 )
 
 

@@ -85,9 +85,10 @@ def contact_peaks(run: FigureContext) -> list[Figure]:
     known = [peak for peak in peaks if peak is not None]
     title = "Peak contact forces" + (f": up to {max(known) * TO_KILO:.0f} kN" if known else "")
     caption = (
-        f"Largest contact force at each station in every {run.time[-1] / len(bins):.2g} s, up or "
-        f"down, on a logarithmic scale; no mark where it stays below {LEAST_FORCE * TO_KILO:g} kN."
-        " A peak lasts microseconds; pads and walls are sized by the mean contact force."
+        f"Largest contact force at each station in every {run.time[-1] / len(bins):.2g} s, "
+        f"upwards or downwards, on a logarithmic scale; without a mark below "
+        f"{LEAST_FORCE * TO_KILO:g} kN."
+        " A peak lasts microseconds; the mean contact force sizes pads and walls."
         + of_start(run.case)
     )
     return [run.finish(sheet, panels[0], "contact-peaks", title, caption)]
@@ -108,8 +109,8 @@ def friction(run: FigureContext) -> list[Figure]:
         axes.set(title=station, ylabel="force (kN)")
     caption = (
         f"Force of dry friction on {name} at each station, mean over "
-        f"{TO_MILLI * FORCE_WINDOW:g} ms. Positive where it pushes the inner segment up. Where the "
-        "segments stick, it holds them, and is less than the coefficient times the normal force."
+        f"{TO_MILLI * FORCE_WINDOW:g} ms. Positive where it pushes the inner segment up. Where "
+        f"the segments stick, it is less than the coefficient times the normal force."
     )
     title = f"{name}: friction forces up to {highest(np.abs(force).ravel()):.2g} kN"
     return [run.finish(sheet, None, "friction", title, caption)]
@@ -185,8 +186,8 @@ def _stick_slip(run: FigureContext, suffix: str, inner: str) -> Figure:
     ]
     sticks, slip = max(one.sticks for one in records), max(one.slip for one in records)
     caption = (
-        f"Above: force of the drive of {inner!r}, friction and inertia included. Below: speed of "
-        "the segment, which is 0 where it sticks."
+        f"Above: force of the drive of {inner!r}, including friction and inertia. Below: speed "
+        f"of the segment, which is 0 while it sticks."
     )
     title = f"Drive of {inner}: sticks {sticks} times, slips by up to {TO_MILLI * slip:.2g} mm"
     return _of_drive(run, f"stick-slip{suffix}", shown, "force (kN), speed (m/s)", title, caption)
@@ -205,9 +206,9 @@ def _drive(run: FigureContext, suffix: str, inner: str) -> Figure:
     }
     force = farthest([farthest(values) for values in shown["force against friction (kN)"].values()])
     caption = (
-        f"Above: force of the drive of {inner!r} against the friction of its pads, the coefficient "
-        "times their contact forces. Below: its power, that of contact forces on sloping segments "
-        "and of axial loads included; negative where the boom would slide by itself. "
+        f"Above: force of the drive of {inner!r} against the friction of its pads, the "
+        f"coefficient times their contact forces. Below: its power, including contact forces on "
+        f"sloping segments and axial loads; negative where the boom would slide by itself. "
         f"Means over {TO_MILLI * FORCE_WINDOW:g} ms."
     )
     title = f"Drive of {inner}: up to {fixed(force, 2)} kN against friction"
@@ -273,8 +274,8 @@ def stress_history(run: FigureContext) -> list[Figure]:
         caption = (
             f"Largest von Mises stress of {name} at either face within {stress.band:g} m of "
             f"each station and support, in every {run.time[-1] / time.size:.2g} s. Beside a line "
-            "of contact the stress of a triangle grows as the mesh refines, and shows place and "
-            "time alone; the mean over a patch of half a wall converges."
+            f"of contact the stress of a triangle grows with mesh refinement, and shows only "
+            f"place and time; the mean over a patch of half a wall converges."
         )
         figures.append(run.finish(sheet, fullest, f"stress-{name}", title, caption))
     return figures

@@ -61,18 +61,19 @@ def model_table(results: Results) -> Table:
     notes = []
     if shares:
         notes.append(
-            "Horizon: when the members of a model's ensemble are that part of the tip's range "
-            "around one another; beyond it a single run is a sample."
+            "Horizon: time at which the members of a model's ensemble differ by this fraction of "
+            "the tip's range; beyond it a single run is a sample."
         )
     if resolving := [model.resolving_step for model in models if model.resolving_step]:
         notes.append(
-            "≥: the impact is shorter than six steps, and the force is the largest mean of a step; "
+            "≥: the impact is shorter than six steps, so that the force is the largest mean over "
+            "a step; "
             f"time.step = {min(resolving):.1e} would resolve it."
         )
     if any(model.peak_contact_force for model in models):
         notes.append(
-            "Peak contact force: of one impact, for microseconds. Pads and walls are sized by the "
-            "means over output steps in the design results."
+            "Peak contact force: of a single impact of microseconds. The means over output steps "
+            "in the design results size pads and walls."
         )
     return Table("Models: results and numerics", columns, notes, "models")
 
@@ -119,8 +120,9 @@ def step_table(results: Results) -> Table:
         Column("openings and closings", [model.contact_changes for model in models]),
     ]
     notes = [
-        "The step error adds up, over windows of the motion, the difference that twice the step "
-        "makes to the deflections. In chaotic motion no step keeps a tolerance."
+        "The step error is the sum, over windows of the motion, of the differences of "
+        "deflections between the step and twice the step. In chaotic motion no step keeps a "
+        "tolerance."
     ]
     tried = [model.steps_for_peaks for model in models]
     within = next((found for found in tried if found), None)
@@ -128,7 +130,8 @@ def step_table(results: Results) -> Table:
         fewest = [found.fewest if found else None for found in tried]
         columns.append(Column("enough for slow peaks", fewest, unit="steps"))
         notes.append(
-            f"Enough for slow peaks: the fewest steps tried that keep the first {within.peaks} "
+            f"Enough for slow peaks: the fewest steps in trials that preserve the first "
+            f"{within.peaks} "
             f"of them within {percent(within.within)}, beyond the ensemble's spread."
         )
     errors = [model.step_error for model in models]
@@ -161,12 +164,12 @@ def law_table(results: Results) -> Table | None:
         Column("law", [str(law) for _, _, law in found], unit="k in N/mⁿ"),
         Column("first tip peak", peaks, ".1f", "mm"),
     )
-    notes = ["Force = k · penetrationⁿ, beyond the part of the play that is on its side."]
+    notes = ["Force = k · penetrationⁿ, beyond the clearance of its side."]
     if not all(joint.pad or joint.pads for _, joint, _ in found):
         notes.append(
-            "Without slide pads the segments press in the corners of their boxes. Pads beside "
-            "them, where walls are locally compliant, can move the first peak by a quarter "
-            "and more: give the pads their place (joint.pad)."
+            "Without slide pads, contact is at the corners of the boxes. Pads beside the "
+            "corners, where walls are compliant, can change the first peak by a quarter and "
+            "more: specify them (joint.pad)."
         )
     return Table("Contact laws", columns, notes, "laws")
 
@@ -204,8 +207,8 @@ def buckling_table(results: Results) -> Table | None:
         Column("static tip, constant loads", tips, ".4g", "mm"),
     )
     notes = (
-        "Buckling factor: of the axial forces, at which the boom with closed joints buckles. The "
-        "tip includes second-order effects.",
+        "Buckling factor: multiple of the axial forces at which the boom with closed joints "
+        "buckles. The tip includes second-order effects.",
     )
     return Table("Axial forces", columns, notes, "buckling")
 
@@ -241,9 +244,9 @@ def wall_table(results: Results) -> Table | None:
     )
     largest = [f"{name}: {_largest(results.case, stress)}" for name, stress in shells.items()]
     means = (
-        "Means over the row of elements beside x, on the side of the tip. Axial forces are "
-        "positive in tension; shear forces act on the part before the section, along each wall, "
-        "upwards where it is steep and else towards larger y; moments about the y-axis are "
+        "Means over the row of elements at x, on the side of the tip. Axial forces are positive "
+        "in tension; shear forces act on the part before the section, along each wall, upwards "
+        "in steep walls and towards larger y in others; moments about the y-axis are "
         "positive with tension at the top."
     )
     title = "Section forces of walls at the instant of the largest stress"
@@ -253,7 +256,7 @@ def wall_table(results: Results) -> Table | None:
 def _largest(case: Case, stress: StressSummary) -> str:
     """Return the design stress, which is a mean over a patch, and the stress at the instant."""
     triangle = (
-        f"single triangle, beside a line of contact the more the finer the mesh: "
+        f"single triangle, which grows with mesh refinement beside a line of contact: "
         f"{number(TO_MEGA * stress.von_mises, 3)} MPa{_of_yield(case, stress)} at "
         f"x = {stress.x:.2f} m in {stress.segment!r}, {stress.face} face of the wall "
         f"{stress.wall!r}, at {stress.time:.3f} s, the instant of this table."
@@ -261,7 +264,8 @@ def _largest(case: Case, stress: StressSummary) -> str:
     if (patch := stress.patch) is None:
         return f"largest von Mises stress of a {triangle}"
     return (
-        "largest von Mises stress over a patch of half a wall, which settles as the mesh refines: "
+        "largest von Mises stress over a patch of half a wall, which converges with mesh "
+        "refinement: "
         f"{number(TO_MEGA * patch.von_mises, 3)} MPa{_of_yield(case, patch)} near "
         f"x = {patch.x:.2f} m in {patch.segment!r}, at {patch.time:.3f} s; of a {triangle}"
     )
@@ -311,7 +315,7 @@ def _segments(card: CalibrationCard, names: str, count: int) -> Table:
         columns.append(
             Column("torsional stiffness\nG I_T", [beam.torsion for beam in beams], ".4g", "MN m²")
         )
-    notes = ("Stiffnesses of a Timoshenko beam that is as compliant as the shell far from pads.",)
+    notes = ("Stiffnesses of a Timoshenko beam with the compliance of the shell away from pads.",)
     title = f"Equivalent beam stiffnesses of the segments, for {names}"
     return Table(title, columns, notes, f"calibrated-segments-{count}")
 
@@ -323,8 +327,8 @@ def _springs(card: CalibrationCard, names: str, count: int) -> Table:
         Column("spring", [spring.stiffness for spring in card.springs], ".4g", "MN/m"),
     )
     notes = (
-        "In another program put each spring in series with the gap of its station: it is the local "
-        "compliance of both walls, in addition to that of the beams above.",
+        "In other programs, put each spring in series with the gap of its station. It represents "
+        "the local compliance of both walls, in addition to that of the beams above.",
     )
     title = f"Local springs of the stations, for {names}"
     return Table(title, columns, notes, f"calibrated-springs-{count}")

@@ -84,7 +84,7 @@ def close_up(run: FigureContext) -> list[Figure]:
     title, marked = f"Tip{DIRECTIONS[place]}, first {end:g} s", "Triangles mark each model's"
     if contacts:
         title += f": the segments first touch at {min(contacts):.2f} s"
-        marked = "Circles mark where a model's segments first touch, triangles its"
+        marked = "Circles mark the first contact of each model, triangles its"
     caption = f"Close-up of the tip. {marked} first peak."
     if peakless:
         caption += f" No peak within {run.case.time.duration:g} s: {', '.join(peakless)}."
@@ -194,12 +194,12 @@ def _sampled(run: FigureContext, place: str) -> str:
     )
     sampled = [found for name in run.with_play if (found := run.summary[name].ensemble)]
     if not any(time is not None for found in sampled for time in found.horizons.values()):
-        return f"{band} They stay together to the end."
+        return f"{band} They do not diverge."
     first, last = (f"{100.0 * share:g} %" for share in SHARES)
     beyond = "" if run.regular else ", beyond which a curve is one sample of a chaotic motion"
     return (
-        f"{band} Vertical lines: from when its members are {first} (dotted) and {last} (dashed) of "
-        f"the tip's range around one another{beyond}."
+        f"{band} Vertical lines: from when its members are {first} (dotted) and {last} (dashed) "
+        f"of the tip's range apart{beyond}."
     )
 
 
@@ -235,7 +235,7 @@ def slow_peaks(run: FigureContext) -> list[Figure]:
     number = f"{min(counts)} to {max(counts)}" if min(counts) < max(counts) else f"{counts[0]}"
     caption = (
         "Peaks of the slow motion of the tip: means of the members of the ensemble, with half "
-        "their range in time and height. Points end where not all members have the next peak."
+        "their range in time and height. Points end with the last peak that all members have."
     )
     title = f"Slow peaks: {number} are common to all members"
     return [run.finish(sheet, axes, "slow-peaks", title, caption, "horizons")]
@@ -265,10 +265,9 @@ def horizons(run: FigureContext) -> list[Figure]:
     axes.set(xlabel="log₁₀ of the relative change", ylabel="horizon (s)")
     axes.set_ylim(bottom=0.0)
     caption = (
-        "Time at which members of an ensemble differ by a part of the tip's range, over the "
-        "relative change of their data. The flatter a line, the less better data help. Squares: "
-        "the same for a run with a finer step; where they lie below the line, a finer step would "
-        "help."
+        "Time at which members of an ensemble differ by a fraction of the tip's range, over the "
+        "relative change of their data. The flatter a line, the smaller the benefit of better "
+        "data. Squares: a run with a finer step; below the line a finer step would help."
     )
     title = "Horizons: how long a motion can be predicted"
     return [run.finish(sheet, axes, "horizons", title, caption, "horizons")]
@@ -327,7 +326,7 @@ def residuals(run: FigureContext) -> list[Figure]:
         "Kinetic, strain and contact energy, plus losses, less the work of the loads, over the "
         "largest work: running maximum. Without contact the motion is exact to round-off."
     )
-    title = f"Unaccounted energy: up to {scientific(highest(worst), 2)} of the work"
+    title = f"Energy residual: up to {scientific(highest(worst), 2)} of the work"
     return [run.finish(sheet, axes, "energy-residual", title, caption, part="numerics")]
 
 

@@ -50,7 +50,7 @@ def predictability_tables(results: Results) -> list[Table]:
         columns = _peak_columns({name: _heights(found) for name, found in peaks.items()})
         note = (
             "Mean of an ensemble's members ± half the distance between its extremes. A column "
-            "ends where not all members have the next peak."
+            "ends with the last peak that all members have."
         )
         tables.append(Table("Slow peaks", columns, [note], "slow-peaks"))
     return tables
@@ -85,13 +85,13 @@ def _horizon_table(
     )
     notes = [
         f"Ensembles of {ensembles.members} members, {VARIED_DATA[ensembles.vary]} changed by up to "
-        f"{scientific(ensembles.relative)} of themselves. Horizon: when the members are that part "
-        "of the tip's range around one another."
+        f"{scientific(ensembles.relative)} of their values. Horizon: time at which the members "
+        "differ by this fraction of the tip's range."
     ]
     if ensembles.slow_below is not None:
         notes.append(
-            f"Slow peaks are those of the motion below {number(ensembles.slow_below)} Hz; common "
-            "ones are those that all members have."
+            f"Slow peaks are peaks of the motion below {number(ensembles.slow_below)} Hz; common "
+            f"peaks are those that all members have."
         )
     return Table("Horizons", columns, notes, "horizons")
 
@@ -112,12 +112,11 @@ def _growth_table(measured: Mapping[str, Predictability]) -> Table:
         Column("limited by", [LIMITS[found.limits[i]] for _, found, i in rows]),
     )
     notes = (
-        "Time at which runs differ by that part of the tip's range, for relative changes of the "
-        "data. Differences grow as exp(growth · time): data a thousand times better extend the "
-        "horizon by 6.9 / growth.",
-        "Finer step: the same for a run with half the step. Where this is earlier than for the "
-        "largest change, a finer step would help; where it is later, the motion itself is the "
-        "limit.",
+        "Time at which runs differ by this fraction of the tip's range, for relative changes of "
+        "the data. Differences grow as exp(growth · time): data a thousand times better extend "
+        "the horizon by 6.9 / growth.",
+        "Finer step: time for a run with half the step. If it is earlier than for the largest "
+        "change, a finer step would help; if it is later, the motion itself is the limit.",
     )
     return Table("Growth of differences", columns, notes, "growth")
 
@@ -170,10 +169,10 @@ def _level_tables(reference: str, levels: Mapping[str, Comparison]) -> list[Tabl
         f"Each model's slow peak less that of {reference}, ± both spreads together. * beyond them "
         "in time or in height."
     )
-    every = f"All values of all members after the horizons: the model's / that of {reference}."
+    every = f"All values of all members after the horizons: the model / {reference}."
     of = f"against {reference}"
     return [
-        Table(f"Tip {of}, from moment to moment", pointwise, [DECIDES["pointwise"]], "pointwise"),
+        Table(f"Tip {of}, pointwise", pointwise, [DECIDES["pointwise"]], "pointwise"),
         Table(f"Slow peaks {of}", peaks, [later, DECIDES["peaks"]], "peaks-against"),
         Table(
             f"Distribution of the tip {of}",
@@ -201,8 +200,8 @@ def _whole_table(reference: str, whole: Mapping[str, Whole]) -> Table:
             Column(f"rms\nto {end:g} s", rms, ".2f", "%"),
         ]
     notes = (
-        "Parts of the larger range of both within that time. A difference well above the step "
-        "error in the table of steps is due to the models.",
+        "Fractions of the larger range of both within this time. Differences well above the step "
+        "error in the table of steps are due to the models.",
     )
     return Table(f"Tip against {reference}, over the whole run", columns, notes, "whole")
 

@@ -84,7 +84,7 @@ def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table | Non
         Column("rotation", [tilt.rotation for _, tilt in tilts], ".3g", "mrad"),
         Column("tip deflection by it", [tilt.tip for _, tilt in tilts], ".1f", "mm"),
     )
-    note = "By play and contact compliance; of a shell, also by the local compliance of its walls."
+    note = "By play and contact compliance, in a shell also by the compliance of its walls."
     title = "Static under the maximum load: rotation of joints by play and local compliance"
     return Table(title, columns, (note + as_extended,), "tilts")
 
@@ -118,8 +118,8 @@ def _reaction_table(results: Results) -> Table | None:
         Column("force, bonded joints", beside, ".4g", "kN"),
     )
     notes = (
-        "Of beam elements, under the loads of t = 0. Positive upwards; along the boom towards the "
-        "tip.",
+        "Beam elements under the loads at t = 0. Positive upwards; along the boom, positive "
+        "towards the tip.",
     )
     return Table("Static at t = 0: support reactions", columns, notes, "reactions")
 
@@ -218,8 +218,8 @@ def drive_table(results: Results) -> Table | None:
         Column("work", work, ".3g", "kJ"),
     )
     notes = (
-        "Forces against the friction of the pads during telescoping. Power and work include those "
-        "of contact forces on sloping segments and of axial loads.",
+        "Forces against the friction of the pads during telescoping. Power and work include "
+        "contact forces on sloping segments and axial loads.",
     )
     return Table("Drives", columns, notes, "drives")
 
@@ -289,8 +289,9 @@ def stick_slip_table(results: Results) -> Table | None:
     )
     notes = (
         "Force: against friction, weight and inertia. Sticks: number of stops during telescoping. "
-        "Slips: largest advance in one slip. Then speed and acceleration of the segment. The boom "
-        "moves as with a rigid drive. Friction follows the mean contact force of each output step; "
+        "Slips: largest advance in one slip. Speed and acceleration are those of the segment. "
+        "The boom moves as with a rigid drive. Friction follows the mean contact force of each "
+        "output step; "
         "where pads chatter faster, use a smaller output_step.",
     )
     return Table("Elastic drives: stick-slip", columns, notes, "stick-slip")
@@ -321,8 +322,8 @@ def pad_table(results: Results) -> Table | None:
         Column("utilisation", [pad.utilisation for pad in pads], ".0f", "%"),
     )
     note = (
-        "Of one pad. Pads of one side of a station share its force by their stiffness, pads of a "
-        "pair evenly; the pressure is uniform."
+        "Values for one pad. Pads of one side of a station share its force in proportion to "
+        "their stiffness, pads of a pair evenly; the pressure is uniform."
     )
     return Table("Slide pads", columns, (note,), "pads")
 
@@ -351,7 +352,7 @@ def stress_table(results: Results) -> Table | None:
         columns.append(Column("of the yield strength", used, ".3g", "%"))
     notes = (
         "Outer fibre: axial stress from section forces. Wall: von Mises, mean over a patch of "
-        "half a wall near stations and supports, plate bending included.",
+        "half a wall near stations and supports, including plate bending.",
     )
     return Table("Stress", columns, notes, "stress")
 
@@ -424,8 +425,8 @@ def life_table(results: Results) -> Table | None:
     if any(life.life_damage is not None for life in lives):
         columns.append(Column("of its life", [life.life_damage for life in lives], ".3g"))
     notes = (
-        "Rainflow ranges of the outer fibre's stress where it varies most. Equivalent: the "
-        "single range per run with the same damage at a slope of 3. Runs to failure: number of "
-        "runs until the damage is 1; none without damage.",
+        "Rainflow ranges of the outer fibre's stress where it varies most. Equivalent: single "
+        "range per run with the same damage for the slope 3. Runs to failure: number of runs "
+        "until the damage is 1; empty without damage.",
     )
     return Table("Life", columns, notes, "life")

@@ -54,8 +54,8 @@ SAME = 0.02
 
 # Meaning of an arrow if a station has several contact points.
 ON_SURFACES = (
-    " The segments touch over surfaces: each arrow is the sum of the forces of the points nearest "
-    "to its station."
+    " Contact is over surfaces: each arrow is the sum of the forces at the points nearest to its "
+    "station."
 )
 
 # Name of an instant whose time in s the user requests.
@@ -123,7 +123,7 @@ def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> li
         view = BoomView.of(scene, [*_instants(views, _when(scene.motion, times)), *film])
         last = film[-1].time
         slow = SHOWN / (last - begin) if last > begin else 1.0
-        pace = f"; {slow:.3g} times slower than it is" if slow > 1.0 else ""
+        pace = f"; {slow:.3g} times slower than real time" if slow > 1.0 else ""
         pictures = list(draw_boom(view, film, last, pace, SMALL))
     # All frames share one palette, computed from several frames; otherwise colours would flicker.
     some = np.concatenate([np.asarray(picture) for picture in pictures[:: len(pictures) // 5 or 1]])
@@ -355,10 +355,11 @@ def describe_one(results: Results, path: Path) -> Figure:
         "stress": (
             f"Stress at the overlap{which}",
             f"Von Mises stresses of {state}. Above: the whole boom; below: the "
-            f"overlap{which}, cut open. The larger value of both faces, the mean of the triangles "
-            "around a point of a wall; the few beyond the end of the scale have its darkest "
-            "colour. Beside a line of contact all of these grow as the mesh refines; strength is "
-            "judged by means over a patch of half a wall, which settle and stand in the tables. "
+            f"overlap{which}, cut open. The larger value of both faces, averaged over the "
+            f"triangles of a wall around each point; values beyond the end of the scale have its "
+            f"darkest colour. Beside a line of contact they grow with mesh refinement; "
+            f"utilisations use means over a patch of half a wall, which converge and are in the "
+            f"tables. "
             "Displacements and play are magnified by the factors above the picture.",
         ),
         "overlap": (
@@ -366,7 +367,7 @@ def describe_one(results: Results, path: Path) -> Figure:
             f"The overlap{which} of {state}, cut open. Blue: outer segment; orange: inner one; "
             "arrows: forces of the inner one on the outer one. Play, and displacements relative "
             "to the outer segment, are magnified by the factor above the picture; a peak is that "
-            "of an impact, for microseconds.",
+            "of an impact of microseconds.",
         ),
     }[seen["view"]]
     if lines[model] == "surface" and seen["view"] != "boom":

@@ -215,9 +215,9 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
         for model in models
     )
     yield f"{'; '.join(described)}."
-    yield "Tip: across the boom, from the straight line of the unloaded one."
+    yield "Tip: deflection across the boom from the unloaded straight boom."
     if "Tip travel from t = 0, mm" in rows:
-        yield "Travel: the largest distance from its place at t = 0."
+        yield "Tip travel: largest distance of the tip from its position at t = 0."
     if any("×" in cell for cells in rows.values() for cell in cells):
         extended = ", at any extension" if results.case.driven else ""
         yield f"φ (×): maximum in motion over the static value under the maximum load{extended}."
@@ -228,11 +228,11 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
         )
     if "Contact force, maximum, kN" in rows:
         yield (
-            "Contact force: mean over an output step; it sizes pads and walls. Peaks of impacts in "
-            "the table of models last microseconds; they do not."
+            "Contact force: mean over an output step, which sizes pads and walls. Peaks of "
+            "impacts in the table of models last microseconds and do not."
         )
     if "Period of the motion (measured), s" in rows:
-        yield "Period: mean time between the main peaks of the tip, play included."
+        yield "Period: mean time between the main peaks of the tip, with the effect of play."
     if "Decay time to 10 %, s" in rows:
         ratio = percent(results.case.damping.modal)
         yield f"Decay time: of the amplitude, by the case's damping ratio of {ratio} alone."
@@ -247,8 +247,8 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     if shells:
         most = [f"{amount(one.von_mises, 'Pa')} in {name}" for name, one in shells.items()]
         yield (
-            f"Single elements beside lines of contact have higher stresses ({listed(most)}), which "
-            "grow as the mesh refines; the table of wall forces gives their places."
+            f"Single elements beside lines of contact have larger stresses ({listed(most)}), "
+            f"which grow with mesh refinement; the table of wall forces has their places."
         )
 
 

@@ -64,7 +64,7 @@ base = "complete"
 calibrated_by = "shell"
 contact = { stiffness = 1e9, exponent = 1.0 }
 """
-# What rubs makes motions comparable from moment to moment.
+# What rubs makes motions comparable pointwise.
 RUBBING = COARSE.replace(
     "exponent = 2.0\n", "exponent = 2.0\nfriction = 0.2\nnormal_forces = [4500.0, 5000.0]\n", 1
 )

@@ -221,8 +221,8 @@ def test_results_beyond_all_numbers_are_one_line(protractile: Protractile) -> No
     status, _, err = protractile("run", "case.toml", "--models", "beam-fe-tied", "--out", "out")
     assert (status, err) == (
         3,
-        "protractile: case.toml: model[1]: a result is not finite; look for a number of the case "
-        "that is out of proportion, in another unit say\n",
+        "protractile: case.toml: model[1]: a result is not finite; look for an extreme number of "
+        "the case, for example in another unit\n",
     )
 
 

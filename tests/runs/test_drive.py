@@ -332,7 +332,7 @@ def _check_figures(figures: Sequence[Figure]) -> None:
     assert drawn["drive"].title.startswith("Drive of inner: up to ")
     assert "work of load and drive" in drawn["energies"].caption
     residual = drawn["energy-residual"].title
-    assert residual.startswith("Unaccounted energy: up to ")
+    assert residual.startswith("Energy residual: up to ")
     assert " × 10⁻¹" in residual
 
 

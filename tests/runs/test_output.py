@@ -109,8 +109,8 @@ def test_a_model_that_nothing_answers_for_keeps_its_motion(
     found = Results.load(tmp_path)
     xr.testing.assert_identical(found.trajectories.load(), run.results.trajectories)
     assert found.summary.failures == {
-        "kantorovich-4": "cannot be computed (Singular matrix); look for a number of the case that "
-        "is out of proportion, in another unit say"
+        "kantorovich-4": "cannot be computed (Singular matrix); look for an extreme number of "
+        "the case, for example in another unit"
     }
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "cannot be computed (Singular matrix)" in page

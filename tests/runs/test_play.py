@@ -105,10 +105,10 @@ def test_chaos_is_told_of_what_is_chaotic_alone() -> None:
     )
     chaotic, regular, energy = quality_notes(summary, DesignResults({}), 10.0)
     assert [one.what for one in (chaotic, regular, energy)] == ["horizon", "horizon", "energy"]
-    assert "from here on: wild 3.20 s." in chaotic.line
-    assert regular.line == "The motion of calm can be predicted over all 10 s."
+    assert "from these times on: wild 3.20 s." in chaotic.line
+    assert regular.line == "The motion of calm can be predicted over the whole 10 s."
     assert energy.line == (
-        "Energy is accounted for within 0.0002 of the work done in every model; the least well in "
+        "The energy balance holds within 0.0002 of the work in every model; the largest error has "
         "calm."
     )
     none = summary_of({"plain": model_summary()})

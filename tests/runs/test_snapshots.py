@@ -91,7 +91,7 @@ def test_arrows_over_a_surface_are_sums() -> None:
     table = lines.case.models[0].model_copy(update={"contact_line": "surface"})
     case = lines.case.model_copy(update={"models": (table,)})
     for name in ("overlap-first-peak.png", "stress-first-peak.png"):
-        told = "each arrow is the sum of the forces of the points nearest to its station."
+        told = "each arrow is the sum of the forces at the points nearest to its station."
         assert describe_one(replace(lines, case=case), Path(name)).caption.endswith(told)
         assert told not in describe_one(lines, Path(name)).caption
 

@@ -67,7 +67,7 @@ def test_the_figure_says_how_large_and_what_to_trust(tmp_path: Path) -> None:
     assert figure.title == (
         "shell: von Mises stress over a patch up to 31 MPa, in a triangle up to 91.6 MPa"
     )
-    assert "grows as the mesh refines" in figure.caption
+    assert "grows with mesh refinement" in figure.caption
     with Image.open(figure.path) as image:
         image.verify()
 
