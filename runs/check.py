@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The output of ``check``: tables and sentences of the data that follow from a case file.
+"""Output of ``check``: tables and sentences on the data that follow from a case file.
 
-Numbers of shells are those of beams: a shell would have to be computed first.
+Beams stand for shells, which are not computed here.
 """
 
 from __future__ import annotations
@@ -57,20 +57,20 @@ from runs.pipeline.statics import (
 from runs.report.formatting import number
 from runs.report.tables import Cell, Column, Table
 
-# Number of modes whose damping is shown.
+# Number of modes in the table of damping.
 SHOWN_MODES = 3
 
-# Distance from a jump of the force, as a part of the segment.
+# Distance from a jump of the force, as a fraction of the segment.
 _BESIDE = 1.0e-9
 
-# A damping ratio below this counts as zero, as does a moment in N·m.
+# Damping ratio, and moment in N·m, below which values count as zero.
 _ROUND_OFF, _NO_MOMENT = 1.0e-12, 1.0e-3
 
 _BEAMS = "as beam elements"
 
 
 def print_check(declared: CheckedCase, console: Console) -> None:
-    """Print the tables of a checked case, and its static state in sentences at the end."""
+    """Print the tables of a checked case, then sentences on its static state."""
     case, boom, preview = declared.case, declared.boom, Preview(declared)
     found = statics(case, boom)
     shown = boom if found is None else found.with_play.boom
@@ -111,7 +111,7 @@ def print_check(declared: CheckedCase, console: Console) -> None:
 
 
 def _of(system: System, title: str, si: str, values: Sequence[float], form: str = ".4g") -> Column:
-    """Return a column of values in an SI unit, in the units of the case."""
+    """Return a column with values in the units of the case, from values in an SI unit."""
     return Column(f"{title}\n{system.label(si)}", [system.of(one, si) for one in values], form)
 
 
@@ -144,7 +144,7 @@ def _segments(case: Case, boom: Boom) -> Table:
 
 
 def _stiffeners(boom: Boom, system: System) -> Table:
-    """Return the table of stiffeners of segments with known plates; others have no shell."""
+    """Return the table of stiffeners, for segments with sections."""
     rows: list[tuple[str, str, tuple[float, float], float, float]] = []
     for segment in boom.segments:
         if segment.section is None:
@@ -240,7 +240,7 @@ def _masses(boom: Boom, system: System) -> Table:
 
 
 def axial_forces(boom: Boom, found: Statics | None) -> Table:
-    """Return the table of the extreme axial force of each segment, pressing positive.
+    """Return the table of each segment's extreme axial force, positive in compression.
 
     Args:
         boom: that of a case.
@@ -328,7 +328,7 @@ def _ratios(preview: Preview, model: Model, beam: ModelTable) -> list[str]:
             found = pressed_ratios(motion.system, rest)
     except NUMERICS:
         return ["cannot be computed"]
-    # The dashpot between open stations leaves only round-off.
+    # Dashpots between open stations contribute only round-off.
     both = (
         (hertz, ratio if ratio > _ROUND_OFF else 0.0) for hertz, ratio in zip(*found, strict=True)
     )

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Estimate of a beam's error relative to the shell without a shell: a rule, and its scatter.
+"""Rule of thumb for a beam's error relative to the shell, and its scatter.
 
-The beam lacks a part δ of the tip's static deflection: that of shear, and that of the local
-compliance of walls at contacts. A mass that falls through the play and is caught by the boom as by
-a spring shows its effect in motion: with γ the free way of the tip over its static
-deflection and s = √(2γ), the first peak is off by δ/√(1 + s²), and after n slow periods the tip by
+The beam lacks a fraction δ of the tip's static deflection: that of shear and of the local
+compliance of walls. The model of a mass that falls through the play onto a spring gives the effect
+on the motion. With the ratio γ of the tip's free travel to its static deflection and s = √(2γ), the
+first peak has the error δ/√(1 + s²), and after n slow periods the tip by
 
     δ (1/√(1 + s²) + n μ ψ)
     ψ = ½ (χ + s/(1 + s²)) / (s + χ),   μ = 2 (s + χ) √(1 + s²) / (s²/2 + 1 + √(1 + s²))

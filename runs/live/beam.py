@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Results of the beam of a changed case: first at rest, then in motion."""
+"""Results of the beam of a changed case: static results first, then motion."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ from runs.report.formatting import amount, fixed, number, percent
 from runs.report.rest_figures import chart_along, rest_lines
 from runs.report.summary_table import governing_pads, pad_text, summary_table, utilisation_verdict
 
-# A table of the page: title and value of each row.
+# Type of a table of the page: title and value of each row.
 Rows = list[tuple[str, str]]
 
 # Steps of an output interval in the preview of a motion.
@@ -52,14 +52,14 @@ _PANEL, _BELOW = 150, 60
 def beam_results(checked: CheckedCase, check_current: Callable[[], None]) -> Iterator[Any]:
     """Yield the results of a case's only model as JSON values.
 
-    They come at rest, then with a preview of the motion, last with the motion to its tolerance.
+    The static results come first, then a preview of the motion, then the motion with error control.
 
     Args:
-        checked: the case, with one beam.
-        check_current: called between steps of the computation; raises where it is to end.
+        checked: the checked case with one beam.
+        check_current: callback between steps of the computation; it raises an error to end it.
 
     Raises:
-        NumericsError: the beam has no rest, or its motion cannot be computed.
+        NumericsError: the beam has no equilibrium, or its motion cannot be computed.
     """
     case, boom, (model,) = checked.case, checked.boom, checked.case.models
     built = build_on(checked.joined(model), case, model)
@@ -92,7 +92,7 @@ def beam_results(checked: CheckedCase, check_current: Callable[[], None]) -> Ite
     }
     check_current()
     plan = MotionPlan.of(built.system, case, model)
-    # Steps of one length give a picture long before the error is known.
+    # A constant step gives a preview long before the motion with error control.
     for stage, integrator in (
         ("preview", FixedStep(case.time.output_step / _PREVIEW_STEPS)),
         ("motion", plan.integrator),
@@ -136,7 +136,7 @@ def _results(checked: CheckedCase, own: ModelDesignResults, data: xr.Dataset) ->
 
 
 def _fibres(loaded: LoadedModel, rests: Sequence[Any]) -> Iterator[FibreStress]:
-    """Yield the largest stress of each segment at rest, at equilibria (num_modes,)."""
+    """Yield the largest static stress of each segment over the equilibria (num_modes,)."""
     states, times = np.array(rests), np.zeros(len(rests))
     for index, (segment, line) in enumerate(zip(loaded.boom.segments, loaded.lines, strict=True)):
         if (fibres := Fibres.of(segment, line)) is not None:

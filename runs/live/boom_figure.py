@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The boom of a case to scale with its deflection, supports and loads, as a figure of plotly."""
+"""Figure of plotly with the boom of a case to scale, its deflection, supports and loads."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from runs.pipeline.static_results import Diagram, StaticResult
 from runs.report import symbols, theme
 from runs.report.formatting import number
 
-# The tip is drawn as far from the straight line as this part of the boom's length, at least.
+# Minimum drawn deflection of the tip as a fraction of the boom's length.
 _SHOWN = 0.03
 
-# Shape of plotly for each symbol, and its rotation in degrees, clockwise.
+# Marker of plotly for each symbol, and its clockwise rotation in degrees.
 _MARKERS: Mapping[Path, tuple[str, float]] = {
     symbols.FORCE_DOWN: ("arrow", 180.0),
     symbols.FORCE_UP: ("arrow", 0.0),
@@ -42,8 +42,8 @@ def boom_figure(case: Case, boom: Boom, rest: StaticResult) -> dict[str, Any]:
     """Return the figure of the deflected boom at its luffing angle.
 
     Args:
-        case: with supports and loads.
-        boom: that of the case.
+        case: case with supports and loads.
+        boom: boom of the case.
         rest: static state of a beam.
     """
     wanted = _SHOWN * boom.length / max(abs(rest.tip), 1e-12)

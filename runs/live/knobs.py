@@ -26,13 +26,13 @@ from runs.case.schema import Case
 from runs.sweep.points import hold_plates, inferred_plates
 from runs.sweep.variation import Place, Tables, unit_of
 
-# Name of the beam of the page, and its elements in the longest segment.
+# Name of the page's beam, and number of elements of the longest segment.
 BEAM, ELEMENTS = "beam", 4
 
-# Tolerance of the beam's motion, which the page draws only.
+# Tolerance of the beam's motion, which is only drawn.
 TOLERANCE = 1.0e-2
 
-# A range without limits spans these parts of the number.
+# Ends of a range without limits, as multiples of the number.
 _LEAST, _MOST = 0.5, 2.0
 
 # Keys that designers change first, in this order.
@@ -47,10 +47,10 @@ _FIRST = (
     r"segment\[\d+\]\.section\.(flange|web|top|bottom|thickness)",
 )
 
-# Tables whose numbers the page leaves alone: the beam is its own model.
+# Tables whose numbers cannot be changed in the page, which has its own beam.
 _WITHOUT = ("ensemble", "model", "title", "units", "shown_units")
 
-# Lists with more numbers are histories and measured curves.
+# Maximum length of a list of numbers; longer ones are histories and measured curves.
 _LONGEST = 4
 
 
@@ -59,12 +59,12 @@ class Knob:
     """A number of a case, or several equal ones, with a range.
 
     Args:
-        key: in the case file, ``joint[1].play``, or ``joint.play`` for all joints.
-        keys: of its numbers.
+        key: key in the case file, ``joint[1].play``, or ``joint.play`` for all joints.
+        keys: keys of its numbers.
         help: description of the key.
-        value: in the unit.
-        unit: in the case's system of units; empty for none.
-        range: lower and upper end of its slider; None where no range is known.
+        value: value in the unit.
+        unit: unit in the case's system; empty for dimensionless numbers.
+        range: lower and upper end of the slider; None without a range.
     """
 
     key: str
@@ -77,12 +77,12 @@ class Knob:
 
 @dataclass(frozen=True)
 class Draft:
-    """A case whose numbers change; its inferred plates stay those of the file.
+    """Case whose numbers change; inferred plates stay those of the file.
 
     Args:
-        file: of the case.
-        case: checked, with inferred plates as given ones.
-        boom: of the file.
+        file: file of the case.
+        case: checked case, with inferred plates as given ones.
+        boom: boom of the file.
     """
 
     file: str
@@ -107,7 +107,7 @@ class Draft:
 
     @cached_property
     def _numbers(self) -> Mapping[str, tuple[Place, float]]:
-        """Place and value in SI units of each number by its key."""
+        """The place and the value in SI units of each number, by key."""
         return {
             place.name: (
                 replace(place, size=self.case.system.size(self._unit(place) or "1")),
@@ -121,11 +121,11 @@ class Draft:
 
     @property
     def keys(self) -> list[str]:
-        """Keys of all numbers."""
+        """The keys of all numbers."""
         return list(self._numbers)
 
     def knobs(self) -> list[Knob]:
-        """Return the knobs that matter first; equal numbers of all joints share one."""
+        """Return the knobs, most important first; equal numbers of all joints share a knob."""
         found: dict[str, list[str]] = {}
         for pattern in _FIRST:
             keys = [key for key in self._numbers if re.fullmatch(pattern, key)]
@@ -167,7 +167,7 @@ class Draft:
         if not (math.isfinite(low) and math.isfinite(high)):
             ends = sorted((_LEAST * value, _MOST * value))
             if place.steps[0] == "joint" and place.steps[-1] == "extension":
-                # Where the segments come apart.
+                # At the limit the segments separate.
                 ends[1] = value + self.boom.overlap_left(self.boom.joints[int(place.steps[1])])
             low, high = max(low, ends[0]), min(high, ends[1])
         for usual in usual_ranges(self.case, self.boom):
@@ -181,10 +181,10 @@ class Draft:
         """Return the case with other numbers, before its checks.
 
         Args:
-            values: by key, in the unit of the case.
+            values: values by key, in the unit of the case.
 
         Raises:
-            BadInput: a number is out of the limits of its key.
+            BadInput: a number exceeds the limits of its key.
         """
         tables = deepcopy(self._tables)
         for key, value in values.items():
@@ -229,7 +229,7 @@ def _walk(here: Any, steps: tuple[str | int, ...]) -> Iterator[tuple[Place, floa
 
 
 def _field(case: Case, place: Place) -> Any:
-    """Return the field of the innermost table of a place; None within a plain mapping."""
+    """Return the field of a place in its innermost table; None within a plain mapping."""
     here: Any = case
     found = None
     for step in place.steps:
@@ -247,7 +247,7 @@ def _described(case: Case, place: Place) -> str:
 
 
 def _limits(case: Case, place: Place) -> tuple[float, float]:
-    """Return the limits of the schema, infinite without any."""
+    """Return the limits of the schema; infinite without limits."""
     field = _field(case, place)
     rules = [] if field is None else field.metadata
     low = max((rule.ge for rule in rules if hasattr(rule, "ge")), default=-math.inf)

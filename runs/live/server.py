@@ -23,17 +23,17 @@ from runs.live.knobs import Draft
 from runs.pipeline.model_run import failure_reason
 from runs.report.pages import page
 
-# Bytes of a request at most.
+# Maximum size of a request in bytes.
 _LARGEST = 1_000_000
 
 
 class Superseded(Exception):
-    """A request whose page has sent a newer one."""
+    """Error for a request that a newer one of the same page replaces."""
 
 
 @dataclass
 class LivePage:
-    """The live page of a case, which any number of tabs show.
+    """Live page of a case, for any number of tabs.
 
     Args:
         draft: the case.
@@ -47,7 +47,7 @@ class LivePage:
 
     @cached_property
     def files(self) -> dict[str, tuple[str, bytes]]:
-        """Media type and content of each file of the page."""
+        """The media type and the content of each file of the page."""
         from plotly.offline import get_plotlyjs
 
         draft = self.draft
@@ -63,7 +63,7 @@ class LivePage:
         }
 
     def beam(self, request: dict[str, Any]) -> Iterator[Any]:
-        """Yield the results of the beam with the values of a request, or its refusal.
+        """Yield the results of the beam with the values of a request, or an error.
 
         A request of the same tab with a higher number ends the computation.
         """
@@ -85,11 +85,11 @@ class LivePage:
 
     @property
     def answers(self) -> dict[str, Callable[[dict[str, Any]], Iterator[Any]]]:
-        """Answer to a request by its path below the token."""
+        """The answer to each request, by path below the token."""
         return {"beam": self.beam, "knob": self.knob}
 
     def lines(self, path: str, request: dict[str, Any]) -> Iterator[bytes]:
-        """Yield the lines of an answer, each a JSON value; an error is the last of them."""
+        """Yield the lines of an answer, one JSON value each; an error is the last line."""
         from plotly.io.json import to_json_plotly
 
         try:
@@ -111,7 +111,7 @@ def _refusal(key: str, what: str) -> bytes:
 
 
 class _Handler(BaseHTTPRequestHandler):
-    """The answers to one connection."""
+    """Handler of one connection."""
 
     def __init__(self, live: LivePage, *connection: Any) -> None:
         self._live = live
@@ -148,14 +148,14 @@ class _Handler(BaseHTTPRequestHandler):
             for line in self._live.lines(str(path), request):
                 self.wfile.write(line)
         except ConnectionError:
-            # The page has sent a newer request, or is closed.
+            # The page sent a newer request, or is closed.
             pass
 
     def log_message(self, *_: Any) -> None:
         """Print nothing."""
 
     def _path(self) -> str | None:
-        """Return the path below the token; None for another one."""
+        """Return the path below the token; None for any other path."""
         before, _, path = self.path.removeprefix("/").partition("/")
         return path if before == self._live.token else None
 

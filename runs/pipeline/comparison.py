@@ -30,8 +30,8 @@ class PeakDifferences:
     """
 
     decides: ClassVar[str] = (
-        "Shows which common peaks of the slow motion differ by more than chaos explains; ripple "
-        "and peaks that some members lack are not covered."
+        "Shows which common peaks of the slow motion differ by more than chaos explains; it "
+        "cannot tell differences of the ripple, or of peaks that some members lack."
     )
 
     time: Numbers
@@ -68,8 +68,8 @@ class Distributions:
     """
 
     decides: ClassVar[str] = (
-        "Shows whether the models have the same distribution of values after the horizons, "
-        "without regard to time and order."
+        "Shows whether the models have the same distribution of values after the horizons; it "
+        "cannot tell differences of time and order."
     )
 
     since: Number

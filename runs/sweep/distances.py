@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Distances of the models of a sweep from a reference.
 
-Tips are compared at every instant as long as they are predictable: to the end where friction under
-prescribed forces makes motions regular, else until a small change of the loads makes the reference
-diverge from itself. All other quantities are of the whole run.
+Tips are compared pointwise while they are predictable: over the whole run if friction with
+prescribed normal forces makes motions regular, or else until the reference diverges under a small
+change of the loads. Other quantities cover the whole run.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ if TYPE_CHECKING:
 
 # Relative change of the loads that measures the predictability of the reference.
 CHANGE = 1.0e-6
-# Time in s over which the force of a pad is averaged: single impacts last microseconds.
+# Averaging time in s of pad forces: single impacts last microseconds.
 HELD = 0.02
 
 TIP_OFF = "tip_off"
-# Each as a part of the reference's.
+# Names of distances, which are relative to the reference.
 DISTANCES = (
     Metric("first_peak_off", "1", "first peak deviation", TO_PERCENT, "%"),
     Metric("slow_period_off", "1", "slow period deviation", TO_PERCENT, "%"),
@@ -46,7 +46,7 @@ DISTANCES = (
     Metric("stress_off", "1", "stress deviation", TO_PERCENT, "%"),
     Metric(TIP_OFF, "1", "tip deviation", TO_PERCENT, "%"),
 )
-# Times in s up to which tips are compared: of a point, and of all its models.
+# Variables with the end of the comparison of tips in s: of a point, and of all its models.
 UNTIL = "compared_until"
 # Contours in percent.
 LEVELS = (1.0, 5.0, 20.0)
@@ -54,13 +54,13 @@ LEVELS = (1.0, 5.0, 20.0)
 
 @dataclass(frozen=True, slots=True)
 class Features:
-    """Compared features of a model."""
+    """Features of a model that are compared."""
 
-    tip: Array  #: (num_times,) in m, as long as it is compared
-    first_peak: float  #: in m
-    slow_period: float  #: mean time between the tip's outstanding peaks in s
-    pad_force: float  #: the largest mean over ``HELD`` at any station in N
-    stress: float  #: the largest of an outer fibre in Pa
+    tip: Array  #: deflection of the tip (num_times,) in m, while it is compared
+    first_peak: float  #: first peak in m
+    slow_period: float  #: mean time between the tip's main peaks in s
+    pad_force: float  #: largest mean force over ``HELD`` at any station in N
+    stress: float  #: largest stress of an outer fibre in Pa
 
     @classmethod
     def of(cls, results: Results, model: str, stress: float | None, until: float) -> Features:
@@ -78,7 +78,7 @@ class Features:
         )
 
     def distances_from(self, reference: Features) -> Measured:
-        """Return the distances from the reference; None where one of both has no number."""
+        """Return the distances from the reference; None where either has no value."""
         span = float(np.ptp(reference.tip)) if reference.tip.size else 0.0
         apart = float(np.abs(self.tip - reference.tip).max()) / span if span else np.nan
         parts = {
@@ -91,11 +91,11 @@ class Features:
 
 
 def held_force(time: Array, forces: Array) -> float:
-    """Return the largest mean over ``HELD`` in N; NaN where no contact lasts that long.
+    """Return the largest mean force over ``HELD`` in N; NaN if the run is too short.
 
     Args:
         time: (num_times,) in s, evenly spaced.
-        forces: (num_times, num_stations) in N, means of the output intervals.
+        forces: means (num_times, num_stations) over the output intervals in N.
     """
     if time.size < 2 or not np.isfinite(forces).any():
         return float("nan")
@@ -112,13 +112,13 @@ def comparable_until(
     comm: MPI.Intracomm | None,
     cache: Cache | None,
 ) -> float:
-    """Return the time in s up to which motions can be compared at every instant.
+    """Return the time in s up to which motions can be compared pointwise.
 
     Args:
-        case: a checked one.
-        model: the reference, of the case.
-        results: of its run.
-        comm, cache: as of :class:`runs.pipeline.context.RunContext`.
+        case: a checked case.
+        model: reference model of the case.
+        results: results of its run.
+        comm, cache: communicator and cache as in :class:`runs.pipeline.context.RunContext`.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     end = float(time[-1])
@@ -131,7 +131,7 @@ def comparable_until(
         same = plan.integrator.like(plan.trajectory())
         (run,) = run_members([EnsembleMember(plan.motion, vary, CHANGE, same, ("tip",))])
     except NumericsError:
-        # Differences that one time step more or less decides are not compared.
+        # The comparison excludes differences of a single time step.
         return float(time[0])
     tip = results.trajectories["tip"].sel(model=model.name).values
     return float(

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Design charts of a sweep, as PNG.
 
-One varied key: a panel for each quantity, a line for each model. Two keys: a map of each model for
-each quantity. More: lines over the first key for each combination of the ends of the others.
-Quantities that do not change, or only by noise, are omitted. Where the one key is the telescoping
-speed, the residual vibration over the speed has a chart of its own.
+For one varied key, each quantity has a panel and each model a line. For two keys, each quantity has
+a map of each model. For more keys, there are lines over the first key for each combination of the
+ends of the others. Quantities that do not change are omitted. For the telescoping speed there is
+also a chart of the residual vibration.
 """
 
 from __future__ import annotations
@@ -33,27 +33,27 @@ from runs.sweep.distances import DISTANCES, LEVELS, TIP_OFF, UNTIL
 from runs.sweep.residual_vibration import draw_vibration
 
 CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
-# Attribute of a limited quantity.
+# Attribute with the limit of a quantity.
 PERMITTED = "permitted"
-# Readable cells of a map along each axis.
+# Maximum number of readable cells of a map along each axis.
 MOST_CELLS = 10
-# Above the first or below the second number, the values of a key are shown in another unit.
+# Limits of values beyond which a key has another unit.
 _LARGE = {"N": (1.0e3, TO_KILO, "kN"), "N m": (1.0e3, TO_KILO, "kN m"),
           "Pa": (1.0e5, TO_MEGA, "MPa"), "N/m": (1.0e6, 1.0e-6, "kN/mm")}  # fmt: skip
 _SMALL = {"m": (1.0, TO_MILLI, "mm")}
-# Relative changes below this part count as none.
+# Relative change below which a quantity counts as constant.
 SAME = 1.0e-6
-# An axis is logarithmic from this ratio of its largest to its smallest value on.
+# Ratio of the largest to the smallest value above which an axis is logarithmic.
 DECADES = 100.0
-# Labels along an axis that do not overlap.
+# Maximum number of labels along an axis.
 MOST_TICKS = 6
-# Contours need at least this number of values along an axis.
+# Minimum number of values along an axis for contours.
 LEAST_FOR_CONTOURS = 4
 
-# Shades below, between and beyond the levels of distances, darker for larger ones: their lightness
-# alone tells them apart.
+# Shades below, between and beyond the levels of distances, darker for larger distances; their
+# lightness suffices to distinguish them.
 _SHADES = ("#fff3c4", "#f6b26b", "#b8577a", "#3b1f5c")
-# Limits of distances in percent, beyond which their values are not distinguished.
+# Limits of distances in percent, beyond which values have the same shade.
 _MOST, _LEAST = 100.0, 0.01
 # Alignment of text at the first and the last place along an axis.
 _SIDES: Final = ("left", "right")
@@ -61,7 +61,7 @@ _ENDS: Final = ("bottom", "top")
 # Size in inches of a map beside another one.
 _COLUMN = 3.6
 
-# Keys whose parts in order are no term of the field.
+# Terms for keys whose parts are no term in the field.
 _WORDS = {"gravity.acceleration": "gravity", "damping.modal": "modal damping"}
 
 _Word = TypeVar("_Word", bound=str)
@@ -72,9 +72,9 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
     """Draw the charts.
 
     Args:
-        data: of :func:`runs.sweep.output.gather`.
-        bonded: models without play.
-        folder: where the PNG files go; it must exist.
+        data: dataset of :func:`runs.sweep.output.gather`.
+        bonded: names of the models without play.
+        folder: existing folder for the PNG files.
     """
     data = in_shown_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
@@ -86,7 +86,7 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
             return
         for count, there in enumerate(_at_ends(data, keys[1:]), start=1):
             part = data.sel(there)
-            # Where everything failed there is nothing to draw.
+            # If all points failed, there is nothing to draw.
             if changing := _changing(part):
                 sheet, panels = _lines(data[keys[0]], _of_models(part, changing, strokes))
                 for axes, quantity in zip(panels, changing, strict=True):
@@ -102,20 +102,20 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
 
 
 def _permitted(data: xr.Dataset, quantity: Metric) -> float | None:
-    """Return the limit of a quantity in its displayed unit; None without any."""
+    """Return the limit of a quantity in its displayed unit; None without a limit."""
     permitted = data[quantity.name].attrs.get(PERMITTED)
     return None if permitted is None else float(quantity.factor * permitted)
 
 
 def _at_ends(data: xr.Dataset, keys: Sequence[str]) -> Iterator[dict[str, float]]:
-    """Yield each combination of the ends of some keys; an empty one without keys."""
+    """Yield each combination of the end values of some keys; an empty one without keys."""
     ends = [(data[key].values[0], data[key].values[-1]) for key in keys]
     for values in product(*ends):
         yield dict(zip(keys, values, strict=True))
 
 
 def _changing(data: xr.Dataset) -> list[Metric]:
-    """Return the quantities that change; where none changes, all known ones."""
+    """Return the quantities that change, or all available ones if none changes."""
     known = [one for one in CHARTED if np.isfinite(data[one.name].values).any()]
 
     def changes(one: Metric) -> bool:
@@ -128,7 +128,7 @@ def _changing(data: xr.Dataset) -> list[Metric]:
 
 
 def in_shown_units(data: xr.Dataset) -> xr.Dataset:
-    """Return the data with keys in mm, kN and so forth where their values are of that size."""
+    """Return the data with keys in readable units, such as mm or kN."""
     coordinates = {}
     for name, along in data.coords.items():
         unit = along.attrs.get("units", "")
@@ -136,7 +136,7 @@ def in_shown_units(data: xr.Dataset) -> xr.Dataset:
         for known, fits in ((_LARGE, largest.__ge__), (_SMALL, largest.__lt__)):
             bound, factor, shown = known.get(unit, (0.0, 0.0, ""))
             if shown and largest and fits(bound):
-                # Rounded to readable numbers.
+                # Values are rounded to readable numbers.
                 values = np.array([float(f"{factor * value:.12g}") for value in along.values])
                 coordinates[name] = (along.dims, values, {**along.attrs, "units": shown})
     return data.assign_coords(coordinates)
@@ -146,8 +146,8 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
     """Draw frequencies over one key, a panel for each mode.
 
     Args:
-        data: of :func:`runs.sweep.frequencies.gather`.
-        path: of the PNG file.
+        data: dataset of :func:`runs.sweep.frequencies.gather`.
+        path: path of the PNG file.
     """
     data = in_shown_units(data)
     (key,) = (str(dim) for dim in data.dims if dim not in ("model", "joints", "mode"))
@@ -166,7 +166,8 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
     with matplotlib.rc_context(theme.RC):
         sheet, panels = _lines(data[key], shown)
         for axes in panels:
-            # Margins of the range from zero on: those of an almost constant line would clip it.
+            # Margins follow from the range that includes zero: those of an almost constant line
+            # would clip it.
             axes.update_datalim([(0.0, 0.0)], updatex=False)
             axes.autoscale_view(scalex=False)
             axes.set_ylim(bottom=0.0)
@@ -177,9 +178,9 @@ def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
     """Draw distances of models from a reference: lines over one key, maps over several.
 
     Args:
-        data: of :func:`runs.sweep.output.gather`, without the reference.
-        reference: its name.
-        folder: where the PNG files go; it must exist.
+        data: dataset of :func:`runs.sweep.output.gather`, without the reference.
+        reference: name of the reference.
+        folder: existing folder for the PNG files.
     """
     data = in_shown_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
@@ -208,7 +209,7 @@ def _strokes(data: xr.Dataset, bonded: Sequence[str]) -> dict[str, theme.Stroke]
 def _of_models(
     data: xr.Dataset, quantities: Sequence[Metric], strokes: Mapping[str, theme.Stroke]
 ) -> dict[str, dict[str, tuple[Array, theme.Stroke]]]:
-    """Return title of each quantity → label of each line → its values and its stroke."""
+    """Return values and stroke of each line, by title of the quantity and label of the line."""
     return {
         f"{one.title} ({one.shown_unit})": {
             name: (one.factor * data[one.name].sel(model=name).values, stroke)
@@ -221,7 +222,7 @@ def _of_models(
 def _lines(
     along: xr.DataArray, shown: Mapping[str, Mapping[str, tuple[Array, theme.Stroke]]]
 ) -> tuple[Sheet, list[Axes]]:
-    """Return panels of lines with markers for :func:`_of_models`, with axis and legend."""
+    """Return a sheet with panels of lines with markers, with axis and legend."""
     sheet, panels = new_sheet(len(shown), 1.2 + 1.8 * len(shown))
     for axes, (title, lines) in zip(panels, shown.items(), strict=True):
         for label, (values, stroke) in lines.items():
@@ -245,7 +246,7 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
     sheet, panels = new_sheet(len(names), 1.4 + 2.4 * len(names))
     low, high = float(values.min()), float(values.max())
     for axes, name in zip(panels, names, strict=True):
-        # Labels of contours are placed correctly only if the scales are set before them.
+        # The scales must be set before the contours, so that labels are placed correctly.
         _scale_axis(axes, "x", x)
         _scale_axis(axes, "y", y)
         cells = values.sel(model=name).values
@@ -285,7 +286,7 @@ def _distance_maps(
 ) -> None:
     """Draw a distance over the last two keys, for each model that has it.
 
-    Maps side by side are of the combinations of the ends of the keys before them.
+    Maps side by side belong to the combinations of the end values of the other keys.
     """
     *before, x, y = keys
     parts = [data.sel(there) for there in _at_ends(data, before)]
@@ -332,7 +333,7 @@ def _shade(axes: Axes, off: xr.DataArray) -> ContourSet:
 
 
 def _write_ends(axes: Axes, until: xr.DataArray, longest: float) -> None:
-    """Write the time up to which tips are compared, where it is shorter than elsewhere."""
+    """Write the time up to which tips are compared, if it is shorter than at other points."""
     y, x = (until[dim].values for dim in until.dims)
     for row, column in np.argwhere(until.values < longest):
         text = f"{until.values[row, column]:.1f} s"
@@ -351,7 +352,7 @@ def _spans_decades(values: Array) -> bool:
 
 
 def _edges(values: Array) -> Array:
-    """Return bounds (num_values + 1,) halfway between rising values, on the scale of their axis."""
+    """Return bounds (num_values + 1,) halfway between ascending values on their axis."""
     along: Array = np.log(values) if _spans_decades(values) else values
     between = 0.5 * (along[:-1] + along[1:])
     bounds: Array = np.concatenate(
@@ -361,7 +362,7 @@ def _edges(values: Array) -> Array:
 
 
 def _quantity(key: Hashable) -> str:
-    """Return the words of a key: ``joint[1].play`` as *play, joint 1*."""
+    """Return a key in words: ``joint[1].play`` becomes *play, joint 1*."""
     if key in _WORDS:
         return _WORDS[str(key)]
     *path, what = re.sub(r"\[(\d+)\]", r" \1", str(key)).replace("_", " ").split(".")
@@ -372,14 +373,14 @@ def _quantity(key: Hashable) -> str:
 
 
 def _scale_axis(axes: Axes, which: Literal["x", "y"], values: xr.DataArray) -> None:
-    """Label an axis with its quantity and unit; logarithmic where values span decades."""
+    """Label an axis with quantity and unit; make it logarithmic if values span decades."""
     unit, places = values.attrs["units"], values.values
     label = _quantity(values.name) + ("" if unit == "1" else f" ({unit.translate(_SUPERSCRIPT)})")
     axes.set(**{f"{which}label": label})
     if _spans_decades(places):
         axes.set(**{f"{which}scale": "log"})
     elif places.size <= MOST_TICKS and np.ptp(np.diff(places)) <= 1.0e-9 * np.ptp(places):
-        # No values are available between them.
+        # The axis has labels only at the values of the sweep.
         axes.set(**{f"{which}ticks": places})
     else:
         axes.locator_params(axis=which, nbins=MOST_TICKS)
@@ -392,5 +393,5 @@ def _finish(sheet: Sheet, title: str, path: Path) -> None:
 
 
 def _name(quantity: Metric) -> str:
-    """Return the name of a file."""
+    """Return the file name of a quantity."""
     return f"sweep-{quantity.name.replace('_', '-')}.png"

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""First natural frequencies of a boom over numbers of its case, without any motion.
+"""First natural frequencies of a boom over numbers of its case.
 
-A boom with play has no natural frequencies of its own. The table gives those with the joints closed
-as they are at rest under the loads (:func:`dynamics.damping.pressed_modes`), and those with bonded
-joints.
+A boom with play is nonlinear and has no natural frequencies. The table has those with the contacts
+that are closed at rest under the loads (:func:`dynamics.damping.pressed_modes`), and those with
+bonded joints.
 """
 
 from __future__ import annotations
@@ -43,13 +43,15 @@ JOINTS = ("pressed", "tied")
 def first_frequencies(
     case: Case, model: Model, comm: MPI.Intracomm | None, cache: Cache | None
 ) -> Array:
-    """Return frequencies (2, MODES) in Hz, closed and bonded joints, NaN for none. Collective.
+    """Return frequencies (2, MODES) in Hz with closed and with bonded joints. Collective.
+
+    Missing values are NaN.
 
     Args:
-        case: a checked one.
-        model: of the case; a bonded one has no joints that can close.
-        comm: the ranks that share a shell.
-        cache: of reduced shells.
+        case: a checked case.
+        model: model of the case; a bonded model has no joints that can close.
+        comm: ranks that share a shell.
+        cache: cache of reduced shells.
     """
     boom = build_boom(case)
     with_play = model.joined(boom)
@@ -77,9 +79,9 @@ def measure(
     """Return first frequencies (num_cases, num_models, 2, MODES) in Hz. Collective.
 
     Args:
-        cases: checked ones, of the same models.
-        comm, cache: as of :func:`first_frequencies`.
-        progress: called with the progress.
+        cases: checked cases with the same models.
+        comm, cache: as in :func:`first_frequencies`.
+        progress: callback that receives the progress.
     """
     found = []
     for case in cases:
@@ -104,7 +106,7 @@ def gather(plan: Plan, found: Array) -> xr.Dataset:
 
 
 def table(data: xr.Dataset) -> Table:
-    """Return the lowest frequencies of each point and model as a table."""
+    """Return the table of the lowest frequencies of each point and model."""
     stacked = data["frequency"].stack(
         row=[dim for dim in data.dims if dim not in ("joints", "mode")]
     )

@@ -30,9 +30,9 @@ from runs.sweep.run import Outcome
 NETCDF = "sweep.nc"
 CSV = "sweep.csv"
 
-# Of the distances, which are relative: a hundredth of a percent.
+# Rounding of distances, which are relative: a hundredth of a percent.
 DIGITS = 4
-# Quantities in a terminal of 80 columns.
+# Maximum number of quantities in a terminal of 80 columns.
 SHOWN = ("tip_at_rest", "tip_amplitude", "contact_force", "stress")
 
 
@@ -91,9 +91,9 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
 
 
 def show(data: xr.Dataset, plan: Plan, console: Console) -> None:
-    """Print ranges of each model, its maximum tip deflection, and distances from a reference.
+    """Print the range of each model's results, and distances from a reference.
 
-    The energy residual is the largest of all points. Telescoping speeds follow below.
+    The energy residual is the largest of all points. Telescoping speeds follow.
     """
     keys = [variable.name for variable in data.coords.values() if variable.name != "model"]
     by_name = {quantity.name: quantity for quantity in QUANTITIES}
@@ -104,7 +104,7 @@ def show(data: xr.Dataset, plan: Plan, console: Console) -> None:
         ranges = [_range(values[quantity.name], quantity) for quantity in shown]
         worst = number(float(values[residual.name].max()), 1)
         rows.append((str(name), *ranges, worst, _where_largest(values["tip_amplitude"], keys)))
-    # Narrow headings leave room for the models' names on a terminal of 80 columns.
+    # Narrow headings leave space for the models' names in 80 columns.
     headings = [
         *(f"{quantity.title} {quantity.shown_unit}" for quantity in shown),
         residual.title,
@@ -127,7 +127,7 @@ def show(data: xr.Dataset, plan: Plan, console: Console) -> None:
 
 
 def _within_limits(data: xr.Dataset, limits: Sequence[Limit]) -> Iterator[str]:
-    """Yield at how many points the limits of the case hold, in each model."""
+    """Yield the number of points at which the limits of the case hold, for each model."""
     for limit, name in product(limits, data["model"].values):
         values = data[limit.quantity.name].sel(model=name).values.ravel()
         held = sum(limit.permits(value) for value in values)
@@ -172,7 +172,7 @@ def _write_csv(data: xr.Dataset, outcomes: Sequence[Outcome], path: Path) -> Non
     """Write a line for each point and model."""
     *keys, model = data["failed"].dims
     table = data.drop_vars("failed").to_dataframe([*keys, model]).reset_index()
-    # Values as given, not as computed from them.
+    # The file has the given values, not rounded ones.
     table[keys] = table[keys].astype(str)
     names = data[model].values
     table["failure"] = [one.failures.get(name, "") for one in outcomes for name in names]

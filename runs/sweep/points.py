@@ -2,9 +2,9 @@
 """Points of a sweep: a checked case for each combination of varied values.
 
 A variation of the play keeps the plates: sections are inferred with the case's own play and then
-fixed, and a play that the boxes cannot accommodate is refused. Keys that define sections (section,
-height_to_width, mass_per_length, second_moment_of_area, density) are set before the inference.
-Where no model needs plates, none are inferred, and beams accept any play.
+fixed, and a play for which the boxes have no space is refused. Keys that define sections (section,
+height_to_width, mass_per_length, second_moment_of_area, density) are set before the inference. If
+no model needs plates, none are inferred, and beams accept any play.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from runs.sweep.variation import UNUSED, Tables, Variation, parse, unit_of
 
 Setting = tuple[Variation, float]
 
-# Inferred plates of each segment, None where the case gives them or they are unknown.
+# Type of the inferred plates of each segment; None if the case gives them or has none.
 Plates = list[SectionTable | None]
 
 _WHOSE_BOXES = " (the boxes are those that the case infers with its own play)"
@@ -42,26 +42,26 @@ class Point:
     """One case of a sweep."""
 
     values: tuple[float, ...]  #: values of the varied keys, in the order of the variations
-    label: str  #: the same for messages, ``joint.play=0.01 payload.mass=200``
-    case: Case  #: the effective one, checked
+    label: str  #: label in messages, ``joint.play=0.01 payload.mass=200``
+    case: Case  #: checked case of the point
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
     """A sweep before its runs."""
 
-    file: str  #: of the case, as the user gave it
+    file: str  #: file of the case, as the user gave it
     title: str  #: of the case
-    variations: Sequence[Variation]  #: at least one
-    units: Sequence[str]  #: of each variation, '' for none
+    variations: Sequence[Variation]  #: variations, at least one
+    units: Sequence[str]  #: unit of each variation, '' if dimensionless
     bonded: Sequence[str]  #: names of the models without play
-    points: Sequence[Point]  #: all combinations, the last variation changing fastest
+    points: Sequence[Point]  #: points of all combinations; the last variation changes fastest
     reference: str | None = None  #: the model with which the others are compared, if any
     limits: Sequence[Limit] = ()  #: those of the case, which no run depends on
 
     @property
     def coordinates(self) -> dict[str, Any]:
-        """Labels of data over all points: the varied keys, and the models."""
+        """The labels of data over all points: varied keys, and models."""
         return {
             variation.key: (variation.key, np.array(variation.values), {"units": unit or "1"})
             for variation, unit in zip(self.variations, self.units, strict=True)
@@ -69,7 +69,7 @@ class Plan:
 
     @property
     def shape(self) -> list[int]:
-        """Number of values of each variation."""
+        """The number of values of each variation."""
         return [len(variation.values) for variation in self.variations]
 
 
@@ -84,9 +84,9 @@ def plan(
 
     Args:
         file: a case file.
-        texts: KEY=VALUES each, see :mod:`runs.sweep.variation`.
-        models: names; all unless given.
-        mesh_size: of all shells in m, the case's unless given.
+        texts: options KEY=VALUES, see :mod:`runs.sweep.variation`.
+        models: names of models; all unless given.
+        mesh_size: mesh size of all shells in m; the case's unless given.
         reference: name of the model with which the others are compared.
 
     Raises:
@@ -130,7 +130,7 @@ def plan(
 
 
 def tables_of(case: Case) -> Tables:
-    """Return a case as plain tables, without those that its runs in a sweep do not depend on."""
+    """Return a case as plain tables, without those that have no effect on runs of a sweep."""
     return case.model_dump(mode="json", by_alias=True, exclude_none=True, exclude={*UNUSED})
 
 
@@ -193,7 +193,7 @@ def _checked(file: str, label: str, case: Case, held: bool = False) -> Case:
 
 
 def inferred_plates(case: Case) -> Plates:
-    """Return the plates that a checked case infers, None for each segment without inference."""
+    """Return the inferred plates of a checked case; None for each segment without inference."""
     sections = [segment.section for segment in build_boom(case).segments]
     return [
         SectionTable(
@@ -206,7 +206,7 @@ def inferred_plates(case: Case) -> Plates:
 
 
 def hold_plates(case: Case, plates: Plates) -> Case:
-    """Return the case with inferred plates fixed, or without inference where none matter."""
+    """Return the case with fixed inferred plates, or without inference if plates do not matter."""
     in_space = any(joint.lateral_play is not None for joint in case.joints)
     matter = in_space or any(model.needs_plates for model in case.models)
     segments = tuple(
@@ -221,7 +221,7 @@ def hold_plates(case: Case, plates: Plates) -> Case:
 
 
 def _check_influence(file: str, variations: Sequence[Variation], points: Sequence[Point]) -> None:
-    """Refuse a key that does not influence any run."""
+    """Check that each key influences the runs."""
     digests = [toml.digest(point.case) for point in points]
     stride = len(points)
     for variation in variations:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Residual vibration over telescoping speed, beside the vibration level of the boom at rest."""
+"""Residual vibration over telescoping speed, compared with that at constant extension."""
 
 from __future__ import annotations
 
@@ -16,11 +16,10 @@ from runs.report import theme
 from runs.report.figure_context import new_sheet
 from runs.report.formatting import number
 
-# A vibration that exceeds the level by at most this part counts as equal: steps and impacts cause
-# such differences.
+# Fraction by which a vibration may exceed the level: steps and impacts cause such differences.
 _SAME = 1.0e-2
 
-# Names and line styles of the ends of the extension, at which the same boom is at rest.
+# Names and line styles of initial and final extension.
 _ENDS = {
     "residual_vibration_initial": ("at the initial extension", ":"),
     "residual_vibration_final": ("at the final extension", "--"),
@@ -28,14 +27,14 @@ _ENDS = {
 
 
 class VibrationCurve(NamedTuple):
-    """Vibrations in m of one model over rising mean speeds in m/s, and the levels at each end."""
+    """Vibrations of one model in m over ascending mean speeds in m/s, and levels at each end."""
 
     speed: Array
     vibration: Array
     levels: dict[str, Array]
 
     def where_known(self, end: str) -> VibrationCurve:
-        """Return the values at the speeds at which the level of an end is known."""
+        """Return the values at the speeds for which an end has a level."""
         known = np.isfinite(self.levels[end])
         levels = {end: self.levels[end][known]}
         return VibrationCurve(self.speed[known], self.vibration[known], levels)
@@ -45,7 +44,7 @@ def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
     """Return the vibrations of each model whose speed a sweep over one key varies.
 
     Args:
-        data: of :func:`runs.sweep.output.gather`.
+        data: dataset of :func:`runs.sweep.output.gather`.
     """
     found = {}
     for name in data["model"].values:
@@ -63,7 +62,7 @@ def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
 
 
 def fastest_within(curve: VibrationCurve, end: str) -> float | None:
-    """Return the speed in m/s up to which no vibration exceeds its level, None where all do.
+    """Return the speed in m/s up to which no vibration exceeds its level; None if all do.
 
     The vibration is interpolated linearly between speeds.
 
@@ -103,12 +102,12 @@ def describe(name: str, curve: VibrationCurve) -> Iterator[str]:
 
 
 def draw_vibration(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Path) -> None:
-    """Draw the vibration over the mean speed of the drive, where a sweep varies that.
+    """Draw the vibration over the mean speed of the drive, if a sweep varies it.
 
     Args:
-        data: of a sweep over one key.
-        strokes: of its models.
-        path: of the PNG file.
+        data: dataset of a sweep over one key.
+        strokes: strokes of the models.
+        path: path of the PNG file.
     """
     found = vibration_curves(data)
     if not found:

@@ -42,22 +42,22 @@ POINTS = "points"
 class Outcome:
     """Results of a point, by the model's name."""
 
-    models: dict[str, Measured]  #: the quantities of those that ran
-    failures: dict[str, str]  #: why the others could not be computed, a sentence each
-    #: How far they are from the reference, where there is one.
+    models: dict[str, Measured]  #: quantities of the models that ran
+    failures: dict[str, str]  #: reasons why other models failed, a sentence each
+    #: Distances from the reference, if there is one.
     off: dict[str, Measured] = field(default_factory=dict)
-    until: float | None = None  #: up to when tips are compared, in s; None where nothing is
+    until: float | None = None  #: end of the comparison of tips in s; None without a comparison
 
 
 def prepare(folder: Path, file: str) -> None:
     """Create the folder of a sweep, or take an earlier sweep's.
 
     Args:
-        folder: as the user gave it.
+        folder: folder as the user gave it.
         file: the case file, for messages.
 
     Raises:
-        BadInput: it holds other files, or the current directory.
+        BadInput: the folder contains other files, or is the current directory.
         OSError: it cannot be created.
     """
     key = f"--out {folder}"
@@ -73,7 +73,7 @@ def launched_world(file: str) -> MPI.Intracomm | None:
     """Return all ranks if a launcher such as ``mpirun`` started several, else None.
 
     Raises:
-        BadInput: a launcher did, and mpi4py is not installed.
+        BadInput: a launcher started several ranks, and mpi4py is not installed.
     """
     if ending.launched_rank() is None:
         return None
@@ -96,14 +96,14 @@ def run_points(
     """Run the points that are not finished, write each on completion, and return all outcomes.
 
     Args:
-        plan: of the sweep.
-        folder: made by :func:`prepare`.
-        pool: runs points at a time.
-        progress: called for every finished point.
-        cache: of reduced shells.
+        plan: plan of the sweep.
+        folder: folder from :func:`prepare`.
+        pool: executor of the points.
+        progress: callback for every finished point.
+        cache: cache of reduced shells.
 
     Raises:
-        MemoryError: the system has killed a process.
+        MemoryError: the system killed a process.
     """
     points, reference = plan.points, plan.reference
     kept = Cache(folder / POINTS)
@@ -118,7 +118,7 @@ def run_points(
     done = len(points) - len(futures)
     progress("sweep", stage, done / len(points))
     try:
-        # Their results are not needed.
+        # Results of remaining points are not needed.
         with when_interrupted(end):
             for future in as_completed(futures):
                 i = futures[future]
@@ -149,12 +149,12 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
         try:
             finished = run_case(alone, "", RunContext(comm, cache=cache))
         except NumericsError as error:
-            # The output prefixes it with the file, the point and the model's name.
+            # The output adds the file, the point and the model's name before it.
             failures[model.name] = str(error).removeprefix(": model[1]: ")
             continue
         assert finished is not None
         finished.evaluate()
-        # Failures of design results after a successful motion.
+        # Design results may fail after a successful motion.
         failures.update(finished.results.summary.failures)
         models[model.name] = measure(finished.results, model.name)
         if reference is not None:

@@ -20,7 +20,7 @@ from runs.sweep.points import Plan
 from runs.sweep.run import Outcome
 
 OPTION = "--until"
-# Width of the last bracket over the larger of its ends.
+# Width of the final bracket relative to the larger of its ends.
 CLOSE = 1.0e-3
 
 _BOUND = re.compile(r"\s*([a-z_]+)\s*(<|>)=?\s*([-+.\deE]+)\s*")
@@ -30,7 +30,7 @@ def parse_bound(text: str, plan: Plan) -> Limit:
     """Read a bound on a quantity of sweeps, in the unit of the case.
 
     Raises:
-        BadInput: it is not understood, or the plan has several keys or models.
+        BadInput: the text is invalid, or the plan has several keys or models.
     """
     known = {one.name: one for one in QUANTITIES}
     found = _BOUND.fullmatch(text)
@@ -64,13 +64,13 @@ def bisect(
     """Return the plan and outcomes of all values of the key, with a bracket of the bound.
 
     Args:
-        plan: of the first values.
-        bound: of one quantity; the first values have numbers on both sides of it.
-        plan_of: returns the plan of other variations, KEY=VALUES each.
-        run: returns the outcomes of a plan.
+        plan: plan of the first values.
+        bound: bound of one quantity, which the first values enclose.
+        plan_of: function that returns the plan of other variations KEY=VALUES.
+        run: function that returns the outcomes of a plan.
 
     Raises:
-        BadInput: the bound is not reached once between the values, or a point has no number.
+        BadInput: the first values do not enclose the bound exactly once, or a point has no value.
     """
     while True:
         outcomes = run(plan)
@@ -84,7 +84,7 @@ def bisect(
 
 
 def numbers(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> list[float]:
-    """Return the quantity at each point in SI units; BadInput where there is none."""
+    """Return the quantity at each point in SI units; raise BadInput for a missing value."""
     found = []
     for point, outcome in zip(plan.points, outcomes, strict=True):
         (model,) = plan.coordinates["model"]
@@ -97,7 +97,7 @@ def numbers(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> list[float
 
 
 def _bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> tuple[int, int]:
-    """Return the positions of the values on both sides of the bound."""
+    """Return the indices of the values on both sides of the bound."""
     found = numbers(plan, outcomes, bound)
     within = [bound.permits(value) for value in found]
     changes = [pair for pair in pairwise(range(len(found))) if within[pair[0]] != within[pair[1]]]
@@ -112,7 +112,7 @@ def _bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> tuple[int
 
 
 def show(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console: Console) -> None:
-    """Print the bracket, and a caution where the quantity is not monotone."""
+    """Print the bracket, and a caution if the quantity is not monotonic."""
     found, key = np.array(numbers(plan, outcomes, bound)), plan.variations[0].key
     quantity, values = bound.quantity, plan.variations[0].values
     rows = [

@@ -23,15 +23,15 @@ from runs.sweep.variation import Place, Variation
 
 OPTION = "--sensitivity"
 CSV = "sensitivity.csv"
-# Relative change of a number to either side.
+# Relative change of a number in both directions.
 CHANGE = 0.01
-# Results in a terminal of 80 columns, and most numbers there.
+# Results in a terminal of 80 columns, and maximum number of rows.
 SHOWN = ("tip_at_rest", "tip", "stress", "contact_force", "first_frequency")
 MOST_ROWS = 20
-# Changes below this part are round-off.
+# Relative change below which it is round-off.
 NONE = 1.0e-7
 
-# Tables whose numbers describe no boom, and keys of curves.
+# Tables that do not describe the boom, and keys of curves.
 _OTHER = {"time", "model", "observe", "life"}
 _CURVES = {"table", "force_table"}
 
@@ -42,7 +42,7 @@ def plan_changes(
     """Return the case and two points for each of its numbers, and the keys that cannot change.
 
     Raises:
-        BadInput: the case is invalid, or there is not one model to run.
+        BadInput: the case is invalid, or has more or fewer than one model to run.
     """
     case = case_file.load(file)
     if models is None:
@@ -67,7 +67,7 @@ def plan_changes(
 
 
 def _numbers(here: object, steps: tuple[str | int, ...]) -> Iterator[tuple[Place, float]]:
-    """Yield the numbers of a case but whole ones, zeros and curves."""
+    """Yield the numbers of a case, except integers, zeros and curves."""
     if isinstance(here, float) and here:
         yield Place(steps), here
     elif isinstance(here, Mapping):
@@ -82,8 +82,8 @@ def _numbers(here: object, steps: tuple[str | int, ...]) -> Iterator[tuple[Place
 def changes(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
     """Return the relative change of each result (columns) by 1 % of each key (index).
 
-    The keys with the largest change of a result of ``SHOWN`` come first; those without any are left
-    out.
+    Keys are in descending order of the largest change of a result of ``SHOWN``; keys without effect
+    are left out.
     """
     (model,) = plan.coordinates["model"]
     names = [one.name for one in QUANTITIES if one.charted]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Parser of ``--vary KEY=VALUES``: numbers of a case and the values that they take.
+"""Parser of ``--vary KEY=VALUES``: numbers of a case and their values.
 
-KEY is a path into the case file, counted from 1. Without a number in brackets
-it means all tables of that name: ``joint.play``, ``joint[1].play``, ``segment[2].span[2]``,
-``payload.mass``. VALUES are START:STOP:COUNT, evenly spaced, or a list 0.0,0.005,0.014.
+KEY is a path into the case file; numbers in brackets count from 1. Without brackets it means all
+tables of the name: ``joint.play``, ``joint[1].play``, ``segment[2].span[2]``, ``payload.mass``.
+VALUES are START:STOP:COUNT, evenly spaced, or a list 0.0,0.005,0.014.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from runs.case.messages import BadInput
 from runs.case.schema import PLAIN, Case
 from runs.case.units import scaled
 
-# A case file as plain tables and lists.
+# Type of a case file as plain tables and lists.
 Tables = dict[str, Any]
 
-# Tables of a case that the runs of a sweep do not depend on, and why.
+# Tables that have no effect on runs of a sweep, with the reason.
 UNUSED = {"ensemble": "a sweep runs no ensembles", "limits": "no run depends on it"}
 
-# Weeks of computing: a request for more is an error.
+# Maximum number of points, which take weeks.
 MOST_POINTS = 10_000
 
-# Evenly spaced numbers are rounded to readable ones, so that a finer sweep contains them.
+# Digits of evenly spaced numbers, which are rounded so that a finer sweep contains them.
 _DIGITS = 12
 
 _STEP = re.compile(r"([^\[\]]+?)(?:\[([0-9]{1,9})\])?")
@@ -44,12 +44,12 @@ _REMEDY = "give KEY=START:STOP:COUNT or KEY=A,B,..."
 class Place:
     """One number of a case."""
 
-    steps: tuple[str | int, ...]  #: the path to it through :data:`Tables`
-    size: Fraction = Fraction(1)  #: SI units in one of the unit in which it is set
+    steps: tuple[str | int, ...]  #: path through :data:`Tables`
+    size: Fraction = Fraction(1)  #: SI value of one unit of the case
 
     @property
     def name(self) -> str:
-        """Name in messages, counted from 1."""
+        """The name in messages, with indices from 1."""
         parts = (f".{step}" if isinstance(step, str) else f"[{step + 1}]" for step in self.steps)
         return "".join(parts).removeprefix(".")
 
@@ -60,13 +60,13 @@ class Place:
             here = here.setdefault(step, {}) if isinstance(step, str) else here[step]
         if isinstance(value, float):
             value = scaled(value, self.size)
-        # An integer fits keys of both kinds.
+        # An integer is valid for keys of both kinds.
         whole = isinstance(value, float) and value.is_integer()
         here[self.steps[-1]] = int(value) if whole else value
 
     @property
     def shapes_sections(self) -> bool:
-        """Whether the number shapes sections, as in :attr:`Variation.shapes_sections`."""
+        """True if the number determines sections, as in :attr:`Variation.shapes_sections`."""
         if self.steps[0] == "segment":
             return self.steps[2:] == ("material", "density") or self.steps[2] in {
                 "mass_per_length", "second_moment_of_area", "height_to_width", "section",
@@ -79,13 +79,13 @@ class Place:
 class Variation:
     """One option ``--vary``."""
 
-    key: str  #: as the user gave it
-    values: tuple[float, ...]  #: rising, in the unit of the case
-    places: tuple[Place, ...]  #: its places, all set to the same value
+    key: str  #: key as the user gave it
+    values: tuple[float, ...]  #: values, ascending, in the unit of the case
+    places: tuple[Place, ...]  #: places that get the same value
 
     @property
     def shapes_sections(self) -> bool:
-        """Whether sections are given by it, or inferred from it, apart from the play."""
+        """True if sections are given by the key or inferred from it; the play does not count."""
         return any(place.shapes_sections for place in self.places)
 
 
@@ -93,9 +93,9 @@ def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
     """Read all ``--vary`` options.
 
     Args:
-        texts: KEY=VALUES each.
-        tables: the case to which the keys refer.
-        file: of the case, for messages.
+        texts: options KEY=VALUES.
+        tables: case to which the keys refer.
+        file: file of the case, for messages.
 
     Raises:
         BadInput: an option is invalid, or has no place in the case.
@@ -123,7 +123,7 @@ def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
 
 
 def unit_of(place: Place, case: Case) -> str:
-    """Return the SI unit of a number of a case, '' for none."""
+    """Return the SI unit of a number of a case; '' if dimensionless."""
     here: Any = case
     units: tuple[str, ...] = ()
     for step in place.steps:
@@ -138,14 +138,14 @@ def unit_of(place: Place, case: Case) -> str:
 
 
 class Unplaced(Exception):
-    """Reason why a key has no place in the case, or an option no values."""
+    """Error for a key without a place in the case, or an option without values."""
 
 
 def find(key: str, tables: Tables) -> tuple[Place, ...]:
     """Return the places of a case to which a key refers.
 
     Raises:
-        Unplaced: there are none.
+        Unplaced: the case has no such place.
     """
     steps = [_STEP.fullmatch(step) for step in key.split(".")]
     path = [(step[1], step[2] and int(step[2])) for step in steps if step is not None]
@@ -157,7 +157,7 @@ def find(key: str, tables: Tables) -> tuple[Place, ...]:
 def _places(
     here: Any, path: Sequence[tuple[str, int | str | None]], before: Place
 ) -> Iterator[Place]:
-    """Yield all numbers to which a path leads, whether they exist yet or not."""
+    """Yield all numbers at a path, including missing ones."""
     if not path:
         yield before
         return
@@ -167,7 +167,7 @@ def _places(
     found = here.get(name)
     place = Place((*before.steps, name))
     if found is None:
-        # The schema decides whether such a key exists.
+        # The schema decides whether the key is valid.
         yield from _places({}, rest, place)
         return
     tables = isinstance(found, list) and (not found or isinstance(found[0], Mapping))
