@@ -8,14 +8,13 @@ A shell that carries the membrane forces N_ab buckles under λ times these force
 with all three components of the displacement u, so that plates buckle and columns bend alike
 (Bryan 1891; Zienkiewicz 1971). Forces keep their directions, and displacements before buckling are
 neglected. Since K is positive definite, the lowest λ are the reciprocals of the largest eigenvalues
-of −K_G φ = μ K φ: shift-and-invert at λ = 0, with one Cholesky factorisation of K. Walls have many
-modes with nearly the same λ, which a Krylov space of several vectors for each mode separates.
+of −K_G φ = μ K φ: shift-and-invert at λ = 0, with one Cholesky factorisation of K. Many modes of
+walls have nearly the same λ; a Krylov space with several vectors for each mode separates them.
 
-A segment of a boom is held as its joints hold it in the static state: by its supports and
-cylinders, and by the tangent stiffness of its contacts, behind which the other segment stays at
-rest. The places of these hold it sideways and against twist, too, and one of them along the boom.
-Modes of the boom as a whole, such as that of a column, are those of
-:func:`dynamics.second_order.buckling_factor`.
+Supports, cylinders and the tangent stiffness of closed contacts hold a segment of a boom; the
+segments that it touches stay at rest. At these places the sideways motion and the twist are fixed,
+at one of them the motion along the boom. :func:`dynamics.second_order.buckling_factor` has the
+buckling modes of the whole boom, such as those of a column.
 """
 
 from __future__ import annotations
@@ -48,20 +47,19 @@ from shell_model.segment.shell import Shell
 from shell_model.stress.fields import vertex_displacements, wall_frame
 from shell_model.stress.stresses import ShellStress
 
-# Relative residual of a mode; the error of its factor is of the order of the square.
+# Relative residual of a mode. The error of its factor is of the order of the square.
 _RESIDUAL = 1.0e-6
 
-# Vectors of the Krylov space for each mode, and besides.
+# Vectors of the Krylov space for each mode, and further ones.
 _VECTORS, _BESIDES = 2, 20
 
-
-# Part of the largest membrane force that is round-off of single precision.
+# Fraction of the largest membrane force below which a force is round-off in single precision.
 _ROUND_OFF = 1.0e-6
 
-# Contacts that are open by less, in m, hold a segment as closed ones do.
+# Gap in m below which a contact counts as closed.
 _TOUCHING = 1.0e-6
 
-# Order of the factors in the edge length.
+# Order of convergence of the factors in the edge length.
 _ORDER = 2.0
 
 
@@ -69,10 +67,9 @@ class BucklingModes(NamedTuple):
     """The lowest buckling modes of a shell.
 
     Args:
-        factors: (num_modes,) λ, rising: the multiples of the membrane forces under which the shell
-            buckles. Forces that press no wall have none.
-        shapes: (num_owned, num_modes) this rank's rows of the displacements and rotations; the
-            largest displacement has the length 1.
+        factors: (num_modes,) load factors λ in ascending order; empty without compression.
+        shapes: (num_owned, num_modes) this rank's displacements and rotations; the magnitude of
+            the largest displacement is 1.
     """
 
     factors: Array
@@ -134,12 +131,12 @@ def _compressed(forces: Array) -> bool:
 
 
 def with_springs(springs: Attached, rows: Array, stiffness: Array) -> Attached:
-    """Return springs with further ones.
+    """Return springs extended by further springs.
 
     Args:
-        springs: those that are there.
-        rows: (num_owned, num_springs) this rank's rows of what each of the others reads.
-        stiffness: (num_springs,) theirs in N/m or N·m.
+        springs: existing springs.
+        rows: (num_owned, num_springs) this rank's rows of the further springs.
+        stiffness: (num_springs,) stiffness of each row in N/m or N·m.
     """
     return Attached(np.hstack([springs.rows, rows]), np.append(springs.factors, stiffness))
 
@@ -167,13 +164,13 @@ def _softening(shell: Shell, forces: Array) -> PETSc.Mat:
 
 @dataclass(frozen=True, slots=True)
 class StaticState:
-    """State of a boom's shells that buckle.
+    """Static state of the shells of a boom.
 
     Args:
-        forces: for each segment its membrane forces (num_triangles, 3) in N/m, see
+        forces: membrane forces (num_triangles, 3) of each segment in N/m, as for
             :func:`buckling_modes`; the same on every rank.
         contact_stiffness: (num_contacts,) tangent stiffness of each contact row in N/m.
-        extensions: of the joints in m, by their positions.
+        extensions: extension of each joint in m, by its position in ``Boom.joints``.
     """
 
     forces: Sequence[Array]
@@ -191,10 +188,10 @@ class StaticState:
         """Return the state of a reduced shell at an equilibrium, on rank 0.
 
         Args:
-            fields: those of :func:`shell_model.stress.fields.gather_fields`.
-            system: that of the shell, with its extensions.
-            position: (num_modes,) the equilibrium.
-            extensions: see above.
+            fields: fields of :func:`shell_model.stress.fields.gather_fields`.
+            system: gap system of the shell at these extensions.
+            position: (num_modes,) equilibrium.
+            extensions: extension of each joint in m.
         """
         still = fields.assign(state=(("time", "mode"), position[None]), time=("time", [0.0]))
         stress = ShellStress.of(still)
@@ -210,11 +207,11 @@ class SegmentBuckling:
     """The lowest buckling modes of the walls of a segment.
 
     Args:
-        factors: (num_modes,) λ, rising, extrapolated to a mesh size of zero.
-        mesh_errors: (num_modes,) the part by which the finer mesh exceeds each.
-        mesh: the finer one, on rank 0.
-        shapes: (num_modes, num_points, 3) displacements of its points, the largest of which has
-            about the length 1, on rank 0.
+        factors: (num_modes,) λ in ascending order, extrapolated to a mesh size of zero.
+        mesh_errors: (num_modes,) relative error of each factor on the finer mesh.
+        mesh: the finer mesh, on rank 0.
+        shapes: (num_modes, num_points, 3) displacements of its points, on rank 0; the magnitude of
+            the largest one is about 1.
     """
 
     factors: Array
@@ -233,15 +230,15 @@ def buckle_segments(
 ) -> list[SegmentBuckling]:
     """Return the lowest buckling modes of each segment of a boom at rest. Collective.
 
-    Each is computed on the mesh and on one with edges of half the length, from which its factor is
-    extrapolated (Richardson 1911) in its logarithm, so that it stays positive on any mesh. Factors
-    are compared in their order, since near ones may exchange their shapes.
+    The function computes them on the mesh and on one with edges of half the length, and
+    extrapolates the logarithm of each factor (Richardson 1911), so that it stays positive.
+    It pairs the factors of both meshes by their order, since close modes may change places.
 
     Args:
-        boom: that of the shells.
-        meshes: those of the segments, on rank 0; None elsewhere.
-        state: the static state.
-        options: those of the shells.
+        boom: boom of the shells.
+        meshes: meshes of the segments, on rank 0; None elsewhere.
+        state: static state.
+        options: options of the shells.
         count: number of modes of each segment.
         comm: the ranks that share the work.
 
@@ -257,7 +254,7 @@ def buckle_segments(
         common = min(before.size, after.size)
         before, after = before[:common], after[:common]
         factors = after * (after / before) ** (1.0 / (2.0**_ORDER - 1.0))
-        # Extrapolation may exchange near ones.
+        # Extrapolation may change the order of close factors.
         order = np.argsort(factors)
         after, factors = after[order], factors[order]
         shapes = None if shapes is None else shapes[order]
@@ -284,7 +281,7 @@ def _modes_on(
         *zip(contacts, state.contact_stiffness.tolist(), strict=True),
         *((tie, None) for tie in ties(boom, shells)),
     ]
-    lines = list(ground_lines(boom, shells))
+    lines = [line for line in ground_lines(boom, shells) if line.stiffness > 0.0]
     for number, shell in enumerate(shells):
         rigid = RIGID_TURN * shell.segment.material.youngs_modulus * shell.segment.area
         rigid /= shell.segment.length
@@ -294,7 +291,7 @@ def _modes_on(
                 for one, k in joined
                 if number in one and k != 0.0
             ),
-            *((line.push, line.stiffness) for line in lines if line.segment == number),
+            *((one.push, one.stiffness) for one in lines if one.segment == number),
             *_sideways(boom, number, shell, rigid),
         ]
         rows, stiffness = (np.array(one) for one in zip(*springs, strict=True))
@@ -310,9 +307,9 @@ def _modes_on(
 def _sideways(
     boom: Boom, number: int, shell: SegmentShell, rigid: float
 ) -> Iterator[tuple[Array, float]]:
-    """Yield rows (num_owned,) that hold a segment sideways, against twist and along the boom.
+    """Yield the springs that fix a segment sideways, in twist and along the boom. Collective.
 
-    Each has its stiffness in N/m or N·m/rad, the former ``rigid``. Collective.
+    Each is a row (num_owned,) and its stiffness: ``rigid`` in N/m, or in N·m/rad.
     """
     segment = boom.segments[number]
     places = {x for one in boom.joints if number in (one.outer, one.inner) for x in one.stations}

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Buckling of walls by formulas for long panels: a quick estimate from section forces.
 
-Each wall is a long plate on simple supports at its folds, under the stresses along the boom at both
-folds, linear between, and a mean shear stress. The estimate knows neither the restraint by other
-walls nor pads, which press on a part of a wall.
+Each wall is a long plate, simply supported at its folds, under a linear stress along the boom and a
+mean shear stress. The estimate neglects the restraint by adjacent walls and the local load of pads.
 """
 
 from __future__ import annotations
@@ -25,10 +24,10 @@ class PanelBuckling:
     """The wall of a segment that buckles first by panel formulas.
 
     Args:
-        segment: its name.
+        segment: name of the segment.
         wall: name of the wall.
-        x: its place in m.
-        factor: factor of the section forces under which it buckles.
+        x: x of the cross-section in m.
+        factor: buckling factor of the section forces.
     """
 
     segment: str

@@ -30,11 +30,11 @@ class WallBuckling:
     """The lowest buckling factors of the walls of a segment of a shell.
 
     Args:
-        segment: its name.
-        factors: factors of all loads, rising; without any where no wall is pressed.
-        mesh_errors: the part by which the mesh of the shapes exceeds each.
-        walls: name of the wall of the largest displacement of each mode.
-        x: place of this displacement of each mode in m.
+        segment: name of the segment.
+        factors: factors of all loads in ascending order; empty if no wall is in compression.
+        mesh_errors: relative error of each factor on the finer of two meshes.
+        walls: wall with the largest displacement of each mode.
+        x: x of this displacement in m.
     """
 
     segment: str
@@ -46,14 +46,14 @@ class WallBuckling:
 
 @dataclass(frozen=True, slots=True)
 class BuckledShell:
-    """Buckling of a shell's segments: numbers, and the first shape of each.
+    """Buckling of the segments of a shell.
 
     Args:
-        segments: results of each segment.
-        shapes: ``buckling_points`` (buckling_point, component) in m, ``buckling_shape`` at them,
-            the largest displacement of a segment being about 1; ``buckling_triangles``
-            (buckling_triangle, corner), ``buckling_segment`` of each; ``buckling_factor`` (buckled)
-            of each segment that buckles; None where none does.
+        segments: buckling factors of each segment.
+        shapes: first mode of each segment with a factor: ``buckling_points`` (buckling_point,
+            component) in m and their ``buckling_shape``, whose largest magnitude in a segment is
+            about 1; ``buckling_triangles`` (buckling_triangle, corner) and their
+            ``buckling_segment``; ``buckling_factor`` (buckled). None if no segment has a factor.
     """
 
     segments: list[WallBuckling]
@@ -66,14 +66,14 @@ def wall_buckling(
     """Return the buckling of a shell's walls, on rank 0; None elsewhere. Collective.
 
     Args:
-        boom: that of the case.
-        case: with a table of the buckling analysis.
-        model: the shell.
-        built: the same before its motion.
-        comm: the ranks that share it.
+        boom: boom of the case.
+        case: case with a ``buckling`` table.
+        model: a shell of the case.
+        built: this shell before time integration.
+        comm: ranks that share the shell.
 
     Raises:
-        NumericsError: the boom has no static state, or a segment no buckling modes.
+        NumericsError: the boom has no static state, or the modes of a segment cannot be computed.
     """
     from shell_model.buckling import buckle_segments
 
@@ -94,7 +94,7 @@ def wall_buckling(
 
 
 def _static_state(boom: Boom, case: Case, built: Built) -> StaticState | None:
-    """Return the state with the farthest tip; None without an equilibrium."""
+    """Return the static state with the farthest tip; None without an equilibrium."""
     from shell_model.buckling import StaticState
 
     system, duration = built.system.gather_loads(), case.time.duration
@@ -114,14 +114,14 @@ def _static_state(boom: Boom, case: Case, built: Built) -> StaticState | None:
 
 
 def _located(name: str, found: SegmentBuckling) -> WallBuckling:
-    """Return the numbers of a segment, and where each mode moves most."""
+    """Return the factors of a segment, and the place of the largest displacement of each mode."""
     mesh, shapes = found.mesh, found.shapes
     assert mesh is not None
     assert shapes is not None
     walls, places = [], []
     for shape in shapes:
         point = int(np.linalg.norm(shape, axis=1).argmax())
-        # On a fold, either wall.
+        # A point of a fold belongs to two walls.
         wall = int(mesh.walls[(mesh.triangles == point).any(axis=1)].min())
         walls.append(mesh.plates[wall] if wall < len(mesh.plates) else "diaphragm")
         places.append(float(mesh.points[point, 0]))
@@ -129,7 +129,7 @@ def _located(name: str, found: SegmentBuckling) -> WallBuckling:
 
 
 def _first_shapes(found: Sequence[SegmentBuckling]) -> xr.Dataset | None:
-    """Return the first shape of each segment that buckles; None where none does."""
+    """Return the first mode of each segment with a factor, as in :class:`BuckledShell`."""
     buckled = {k: one for k, one in enumerate(found) if one.factors.size}
     if not buckled:
         return None

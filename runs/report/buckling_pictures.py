@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Pictures of the first buckling mode of each segment of a shell, where its walls move most."""
+"""Pictures of the first buckling mode of each segment of a shell, at its largest displacement."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ def render_buckling(
     """Draw the first buckling mode of each segment: ``buckling-NUMBER.png``, from 1 on.
 
     Args:
-        views: of a shell, see :meth:`Scene.views`.
-        folder: of the pictures.
-        times: instants of other pictures; modes have none, and are drawn unless these are given.
+        views: scenes of a shell, see :meth:`Scene.views`.
+        folder: folder of the pictures.
+        times: requested instants; modes belong to no instant and are drawn without them only.
     """
     scene = views[0]
     if scene.buckling is None or times is not None:
@@ -55,11 +55,11 @@ def render_buckling(
 
 
 def _draw(heading: str, points: Array, triangles: Numbers, shape: Array, path: Path) -> None:
-    """Draw a shape (num_points, 3), of which the largest is seen from the front and from above."""
+    """Draw a mode (num_points, 3), with the wall of its largest displacement towards the viewer."""
     size = np.linalg.norm(shape, axis=1)
     most = int(size.argmax())
     height = float(np.ptp(points[:, 2]))
-    # A turn about x by half shows the wall of the largest displacement.
+    # Mirror images turn this wall to the front and to the top.
     flip = np.where(points[most, 1:] * [1.0, -1.0] > 0.25 * height, -1.0, 1.0)
     sides = np.array([1.0, *flip])
     moved = sides * (points + _DRAWN * height * shape / size[most])
