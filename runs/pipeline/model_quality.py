@@ -16,7 +16,7 @@ import xarray as xr
 from dynamics.trajectory import Pointwise
 from geometry.axial import moving_force
 from geometry.boom import Boom
-from geometry.typography import TO_PERCENT, listed
+from geometry.typography import TO_MILLI, TO_PERCENT, listed
 from runs.case.actions import series_notes
 from runs.case.schema import Case, Model
 from runs.pipeline.comparison import Distributions, PeakDifferences, compare
@@ -33,6 +33,8 @@ from runs.pipeline.summary import Comparisons, Summary, Whole
 # Difference of members, as a fraction of the tip's range, beyond which their motions diverge.
 _PARTED = 0.2
 
+# Part of a lateral play that causes a caution where bulging walls close it.
+BULGED = 0.1
 # Relative error of a reduction or a mesh that causes a caution.
 POOR = 0.01
 
@@ -226,6 +228,7 @@ def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list
         *(f"failed: {name}: {why}" for name, why in summary.failures.items()),
         *_static(summary, case, boom),
         *stress_cautions(summary, boom),
+        *bulge_cautions(summary, boom),
         *_large_displacements(boom, data),
         *_numerical(summary),
         *series_notes(case),
@@ -252,6 +255,22 @@ def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
                 f"caution: the walls of {name} carry the axial forces of the initial extension: "
                 "their stresses and utilisations neglect the change of axial forces by drives, "
                 "unlike those of outer fibres"
+            )
+
+
+def bulge_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
+    """Yield cautions on lateral plays of shells that walls close at rest as they bulge."""
+    plays = {x: one.lateral_play or 0.0 for one in boom.joints for x in one.stations}
+    for name, own in summary.design.models.items():
+        found = [
+            f"{TO_MILLI * one.closed:.2g} of {TO_MILLI * plays[one.x]:g} mm at x = {one.x:g} m"
+            for one in (own.static[0].stations if own.static else ())
+            if one.direction == "y" and one.closed > BULGED * plays[one.x]
+        ]
+        if found:
+            yield (
+                f"caution: in {name} walls bulge under vertical pads at rest and close lateral "
+                f"play: {', '.join(found)}; beams do not show this"
             )
 
 

@@ -20,7 +20,7 @@ from dynamics.excitation import Excitation
 from dynamics.failure import NUMERICS
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
-from geometry.arrays import Array
+from geometry.arrays import Array, Indices
 from geometry.boom import Boom
 from geometry.contact_places import contact_centres
 from geometry.cylinder import forces
@@ -83,6 +83,8 @@ class StationLoad:
         depth: largest compression of a contact of the station in m.
         pressure: largest pressure on a pad of the station in Pa; None without pads.
         utilisation: largest utilisation of the allowable pressure; None where none is given.
+        closed: part of the lateral play in m that walls close as they bulge, negative where they
+            open it; 0 along z, and for beams.
     """
 
     place: str
@@ -93,6 +95,7 @@ class StationLoad:
     depth: float
     pressure: float | None = None
     utilisation: float | None = None
+    closed: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -274,7 +277,17 @@ def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[St
             depth=max((system.laws[row].depth(float(gaps[row])) for row in here), default=0.0),
             pressure=max((force / pad.area for pad, force in pads), default=None),
             utilisation=max(used, default=None),
+            closed=_closed(system, gaps, here) if direction == "y" else 0.0,
         )
+
+
+def _closed(system: GapSystem, gaps: Array, rows: Indices) -> float:
+    """Return the mean approach in m on the right less that on the left, which beams share."""
+    right, left = (
+        [gaps[row] for row in rows if system.laws[row].one_sided(side) is not None]
+        for side in SIGNS
+    )
+    return float(np.mean(right) - np.mean(left)) if right and left else 0.0
 
 
 def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> Iterator[Tilt]:

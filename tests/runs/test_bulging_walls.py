@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Lateral play that walls close as they bulge under vertical pads."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from runs import CASES
+from runs.case import reading
+from runs.case.build import build_boom
+from runs.pipeline.design_results import DesignResults, ModelDesignResults
+from runs.pipeline.model_quality import bulge_cautions
+from runs.pipeline.models import build
+from runs.pipeline.static_results import StaticResult, positions, station_loads
+from tests.runs.summaries import summary_of
+
+
+def test_walls_that_bulge_are_a_caution() -> None:
+    """Reference: by hand, right walls that move by a part of the lateral play; beams close none."""
+    case = reading.load(str(CASES / "spatial.toml"))
+    boom, model = build_boom(case), next(m for m in case.models if m.name == "timoshenko")
+    system = build(case, boom, model).system.gather_loads()
+    position = positions(system)[0.0]
+    plain = [*station_loads(boom, system, position)]
+    assert [one.closed for one in plain] == pytest.approx([0.0] * 4, abs=1e-12)
+
+    play = boom.joints[0].lateral_play
+    assert play is not None
+    rows = system.rows.copy()
+    for part, name in ((0.05, "9y"), (0.3, "10y")):
+        station = next(k for k, one in enumerate(plain) if one.place == name)
+        right = [
+            row
+            for row in np.flatnonzero(system.station_of_row == station)
+            if system.laws[row].one_sided(1) is not None
+        ]
+        rows[right] += part * play * position / (position @ position)
+    bulging = [*station_loads(boom, replace(system, rows=rows), position)]
+    assert [one.closed / play for one in bulging] == pytest.approx([0.0, 0.0, 0.05, 0.3])
+
+    static = StaticResult(0.0, 0.0, 0.0, [], [], bulging, {})
+    design = DesignResults({"shell": ModelDesignResults(static=[static])})
+    assert [*bulge_cautions(summary_of({}, design=design), boom)] == [
+        f"caution: in shell walls bulge under vertical pads at rest and close lateral play: "
+        f"{300.0 * play:.2g} of {1000.0 * play:g} mm at x = 10 m; beams do not show this"
+    ]
