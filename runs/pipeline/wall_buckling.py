@@ -130,29 +130,28 @@ def _located(name: str, found: SegmentBuckling) -> WallBuckling:
 
 def _first_shapes(found: Sequence[SegmentBuckling]) -> xr.Dataset | None:
     """Return the first mode of each segment with a factor, as in :class:`BuckledShell`."""
-    buckled = {k: one for k, one in enumerate(found) if one.factors.size}
+    buckled = [
+        (number, one.mesh, one.shapes[0], one.factors[0])
+        for number, one in enumerate(found)
+        if one.factors.size and one.mesh is not None and one.shapes is not None
+    ]
     if not buckled:
         return None
-    points, triangles, shapes, numbers, begin = [], [], [], [], 0
-    for number, one in buckled.items():
-        assert one.mesh is not None
-        assert one.shapes is not None
-        points.append(one.mesh.points)
-        triangles.append(one.mesh.triangles + begin)
-        shapes.append(one.shapes[0])
-        numbers.append(np.full(len(one.mesh.triangles), number))
-        begin += len(one.mesh.points)
+    numbers, meshes, shapes, factors = zip(*buckled, strict=True)
+    begins = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])[:-1]
+    triangles = [mesh.triangles + begin for mesh, begin in zip(meshes, begins, strict=True)]
+    owner = np.repeat(numbers, [len(own) for own in triangles])
     at_points, of_triangles = ("buckling_point", "component"), "buckling_triangle"
     return xr.Dataset(
         {
-            "buckling_points": (at_points, np.concatenate(points)),
+            "buckling_points": (at_points, np.concatenate([mesh.points for mesh in meshes])),
             "buckling_shape": (at_points, np.concatenate(shapes).astype(np.float32)),
             "buckling_triangles": (
                 (of_triangles, "corner"),
                 np.concatenate(triangles).astype(np.int32),
             ),
-            "buckling_segment": (of_triangles, np.concatenate(numbers).astype(np.int32)),
-            "buckling_factor": ("buckled", [one.factors[0] for one in buckled.values()]),
+            "buckling_segment": (of_triangles, owner.astype(np.int32)),
+            "buckling_factor": ("buckled", list(factors)),
         },
-        coords={"buckled": np.array([*buckled], dtype=np.int32)},
+        coords={"buckled": np.array(numbers, dtype=np.int32)},
     )
