@@ -121,7 +121,7 @@ def _at_stations(
             Utilisation("pad", name, load.x, load.pressure or 0.0, load.utilisation)
             for load in loads
         ]
-        yield _extreme(f"pad pressure at {where}", "Pa", rests, pressures, used)
+        yield _extreme(f"pad at {where}", "Pa", rests, pressures, used)
 
 
 def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> Table:
@@ -147,7 +147,8 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
         columns.append(Column("utilisation", used, ".3g", "%"))
     more = ["Drives stay where they are at t = 0."] if boom.driven else []
     title = "Rest under the loads of t = 0" + (" and under the largest loads" if vary else "")
-    return Table(title, columns, [beam_note(boom), *more])
+    kinds = "Stresses of outer fibres; pressures of pads."
+    return Table(title, columns, [beam_note(boom), kinds, *more])
 
 
 def beam_note(boom: Boom) -> str:

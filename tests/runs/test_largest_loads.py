@@ -56,8 +56,8 @@ def test_stresses_and_pads_under_a_ramp(tmp_path: Path) -> None:
     case = read_case(tmp_path, boom_of(RAMP))
     found = extremes_of(tmp_path, boom_of(RAMP))
     assert [*found] == [
-        "tip", "stress, arm at 0 m", "stress, fly at 7.9 m", "pad pressure at 6 m",
-        "pad pressure at 8 m",
+        "tip", "stress, arm at 0 m", "stress, fly at 7.9 m", "pad at 6 m",
+        "pad at 8 m",
     ]  # fmt: skip
     for segment, sizes, lever in zip(
         build_boom(case).segments, (ARM, FLY), (14.0, 6.1), strict=True
@@ -70,7 +70,7 @@ def test_stresses_and_pads_under_a_ramp(tmp_path: Path) -> None:
         assert one.utilisation.value == pytest.approx(stress / 3e8, rel=1e-6)
         assert (one.initial, one.time) == (pytest.approx(0.0, abs=1.0), 0.1)
     for x, lever in ((6, 6.1), (8, 7.9)):
-        one = found[f"pad pressure at {x} m"]
+        one = found[f"pad at {x} m"]
         # Two pads of 0.2 m x 0.05 m share the force of a side.
         pressure = 0.5 * 2000.0 * lever / 1.8 / 0.01
         assert one.largest == pytest.approx(pressure, rel=1e-6)
@@ -156,7 +156,7 @@ def test_tables_are_in_the_units_of_the_case(tmp_path: Path) -> None:
     ]
     table = static_table(case, boom, static_extremes(case, boom))
     rows = {row[0]: row for row in table.rows}
-    assert rows["pad pressure at 6000 mm"][1:] == ("0 MPa", "0.339 MPa", "0.1", "33.9")
+    assert rows["pad at 6000 mm"][1:] == ("0 MPa", "0.339 MPa", "0.1", "33.9")
     assert rows["tip"][2].endswith(" mm")
 
 
@@ -165,8 +165,9 @@ def test_statics_name_their_model_and_fit_a_terminal(tmp_path: Path) -> None:
     text = boom_of(RAMP + SINE)
     shown = printed(print_check, CheckedCase(read_case(tmp_path, text)), width=80)
     assert max(map(len, shown.splitlines())) <= 80
+    assert "loads of   utilisation" in shown
     assert "Rest under the loads of t = 0 and under the largest loads" in shown
     assert (
         "Of the boom as Timoshenko beam elements, on walls that bend under pads; no model\n"
-        "of the case."
+        "of the case.\nStresses of outer fibres; pressures of pads."
     ) in shown
