@@ -60,7 +60,7 @@ class HangingLoad:
 
     @property
     def weight(self) -> float:
-        """Weight m g in N."""
+        """The weight m g in N."""
         return self.mass * self.gravity
 
     def hang(self, system: GapSystem, tip: Array, x: float) -> GapSystem:

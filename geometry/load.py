@@ -38,9 +38,9 @@ class Member(Body, Protocol):
         """Return the load vector of an acceleration: ``force`` in N/m on the plain segment."""
 
     def turning(self, direction: Direction) -> Array:
-        """Return the inertia load of 1 rad/s² about x = 0, towards a larger slope.
+        """Return the inertia load of an angular acceleration of 1 rad/s² about x = 0.
 
-        Point masses do not contribute."""
+        It is positive towards a larger slope. Point masses do not contribute."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ import typer
 
 # Each command imports its own libraries: those of all commands take seconds to load.
 from runs.process import ending, progress, terminal
-from runs.process.terminal import Terminal, message, printable, say, shown
+from runs.process.terminal import Terminal, message, printable, say, shorten
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -432,7 +432,7 @@ def _explain(error: Exception) -> tuple[str, int] | None:
         return message(f"{error.format_message()} (protractile --help tells more)"), 2
     if isinstance(error, OSError):
         # Errors of some libraries lack the file or the reason.
-        file = "output" if error.filename is None else shown(str(error.filename))
+        file = "output" if error.filename is None else shorten(str(error.filename))
         return message(f"{file}: file: cannot be used ({error.strerror or error})"), 2
     return None
 
@@ -520,7 +520,7 @@ def _check_temporary_folder(file: str) -> None:
         raise BadInput(
             file,
             "TMPDIR",
-            f"a shell needs {_ROOM_OF_MPI / 1e6:.0f} MB in {shown(folder)!r} ({error.strerror}); "
+            f"a shell needs {_ROOM_OF_MPI / 1e6:.0f} MB in {shorten(folder)!r} ({error.strerror}); "
             "make room there, or set TMPDIR to another folder",
         ) from None
 
@@ -539,7 +539,7 @@ def _show(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
         print_results(results, console)
         for fault in limit_faults(results):
             status = 1
-            say(message(f"{shown(file)}: {fault}"))
+            say(message(f"{shorten(file)}: {fault}"))
     return status
 
 
@@ -551,7 +551,7 @@ def _report_failed_models(file: str, results: Results) -> int:
     numbers = {model.name: i for i, model in enumerate(results.case.models, start=1)}
     first, *others = (f"model[{numbers[name]}]" for name in failures)
     too = f"{', '.join(others)} failed, too; first " if others else ""
-    say(message(f"{shown(file)}: {too}{first}: {next(iter(failures.values()))}"))
+    say(message(f"{shorten(file)}: {too}{first}: {next(iter(failures.values()))}"))
     return 3
 
 
@@ -559,5 +559,5 @@ def _show_failures(plan: Plan, outcomes: Sequence[Outcome]) -> int:
     """Print a line for each model that failed at a point; return 3 if no result remains."""
     for point, outcome in zip(plan.points, outcomes, strict=True):
         for model, why in outcome.failures.items():
-            say(message(f"{shown(plan.file)}: --vary {point.label}: {model}: {why}"))
+            say(message(f"{shorten(plan.file)}: --vary {point.label}: {model}: {why}"))
     return 0 if any(outcome.models for outcome in outcomes) else 3

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The client that evaluates runs: the paper, with its part of the report and its verdicts.
+"""Interface to the client that evaluates runs, here :mod:`runs.paper`.
 
-Nothing else imports :mod:`runs.paper` except :mod:`runs.case.schema`, which adds its keys to every
-case. Another client would replace these two imports.
+The client adds its part to reports and prints verdicts. Only this module and
+:mod:`runs.case.schema`, which adds the client's keys to every case, import it.
 """
 
 from __future__ import annotations

@@ -184,9 +184,11 @@ def _reduced(
     if at_surface:
         krylov = replace(krylov, shifts=options.surface.shifts, moments=options.surface.moments)
     observed = full.columns(number, [seen.reading for seen in full.observed.values()])
-    with stages.stage("reduction", number, len(full.shells)) as tell:
+    with stages.stage("reduction", number, len(full.shells)) as progress:
         forces = np.hstack([full.forces(number), *beside])
-        own = reduce_segment(full.symmetries[number], forces, krylov, tell, observed, full.helper)
+        own = reduce_segment(
+            full.symmetries[number], forces, krylov, progress, observed, full.helper
+        )
         if at_surface and joined.size:
             own = without_stiff_modes(full.comm, own, joined)
     return own

@@ -12,18 +12,18 @@ class Stages:
     """Wall time of stages in s, and their progress.
 
     >>> stages = Stages(print)
-    >>> with stages.stage("mesh") as tell:
-    ...     tell(0.5)
+    >>> with stages.stage("mesh") as progress:
+    ...     progress(0.5)
     mesh 0.0
     mesh 0.5
     mesh 1.0
 
     Args:
-        tell: callback that receives the stage and its completed fraction.
+        progress: callback that receives the stage and its completed fraction.
     """
 
-    def __init__(self, tell: Callable[[str, float], None] | None = None) -> None:
-        self.tell = tell or (lambda stage, part: None)
+    def __init__(self, progress: Callable[[str, float], None] | None = None) -> None:
+        self.progress = progress or (lambda stage, part: None)
         self.seconds: dict[str, float] = {}
 
     @contextmanager
@@ -32,7 +32,7 @@ class Stages:
     ) -> Iterator[Callable[[float], None]]:
         """Run part ``number`` of ``count`` parts of a stage; yield a function for its progress."""
         begin = perf_counter()
-        self.tell(name, number / count)
-        yield lambda part: self.tell(name, (number + part) / count)
-        self.tell(name, (number + 1) / count)
+        self.progress(name, number / count)
+        yield lambda part: self.progress(name, (number + part) / count)
+        self.progress(name, (number + 1) / count)
         self.seconds[name] = self.seconds.get(name, 0.0) + perf_counter() - begin

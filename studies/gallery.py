@@ -31,7 +31,7 @@ from runs.report.boom_drawing import draw_boom_of
 from runs.report.opengl import require_opengl
 from runs.report.scene import SAME_PLACE, Instant, Overlap, Scene, rigid_motion, round_scale
 from runs.report.sheet import MATTE, MESHED, SHEET, Camera, Sheet, stage, surface
-from runs.report.snapshots import TITLES, telling_instants
+from runs.report.snapshots import TITLES, characteristic_instants
 
 RUNS, GALLERY = Path("runs/out"), Path("docs/gallery")
 MODEL = "shell"
@@ -86,7 +86,7 @@ def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
     require_opengl()
     with rc_context(theme.PAGE_RC):
         yield "mesh", draw_mesh(scene, overlap)
-        time = telling_instants(motion)["largest-force"]
+        time = characteristic_instants(motion)["largest-force"]
         instant = Instant(time, TITLES["largest-force"])
         yield "sections-largest-force", draw_sections(scene, instant, overlap)
 

@@ -21,7 +21,7 @@ from runs.case.limits import MOST_TIMES
 from runs.case.messages import BadInput
 from runs.case.units import Unit
 from runs.case.user_files import read_any_text
-from runs.process.terminal import shown
+from runs.process.terminal import shorten
 
 _SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
 # Between two cells: spaces that do not stand beside a comma, before a unit or after a slash.
@@ -81,7 +81,7 @@ def read_pairs(
         f"give a CSV file of two columns, {columns[0]} and {columns[1]}; a heading may say other "
         "units"
     )
-    place, name = Path(path).parent / file, f"'{shown(file)}'"
+    place, name = Path(path).parent / file, f"'{shorten(file)}'"
     try:
         rows = _rows(read_any_text(place))
         if len(rows) > MOST_TIMES:
@@ -98,7 +98,7 @@ def read_pairs(
             line = rows[falls[0] + 1].line
             raise _Unfit(f"has a {columns[0].name} in line {line} that does not rise", "sort them")
     except OSError as error:
-        what = f"'{shown(str(place))}' cannot be read ({error.strerror}); {remedy}"
+        what = f"'{shorten(str(place))}' cannot be read ({error.strerror}); {remedy}"
         raise BadInput(path, key, what) from None
     except _Unfit as unfit:
         what = f"{name} {unfit.what}; {unfit.remedy or remedy}"
@@ -206,7 +206,7 @@ def _chosen(
         wanted = [_split(name)[0] for name in names]
         for name in wanted:
             if (count := known.count(name)) != 1:
-                what = f"has {count} columns {shown(name)!r} in line {heading.line}"
+                what = f"has {count} columns {shorten(name)!r} in line {heading.line}"
                 raise _Unfit(what, "name columns that it has once")
         chosen = [known.index(name) for name in wanted]
     for row in headings:

@@ -17,7 +17,7 @@ from geometry.typography import choices
 from runs.case import schema
 from runs.case.kinds import KINDS
 from runs.case.sections import SHAPES
-from runs.process.terminal import shown
+from runs.process.terminal import shorten
 
 # Keys of the case that are arrays of tables.
 _ARRAYS = ("segment", "joint", "stop", "cylinder", "load", "axial", "base", "observe", "model")
@@ -59,7 +59,7 @@ class BadInput(Exception):
     """An input error: ``file`` as the user gave it, ``key``, the error and the valid input."""
 
     def __init__(self, file: str, key: str, what: str) -> None:
-        super().__init__(" ".join(f"{shown(file)}: {shown(key)}: {what}".split()))
+        super().__init__(" ".join(f"{shorten(file)}: {shorten(key)}: {what}".split()))
         self.file = file
         self.key = key
         self.what = what
@@ -182,7 +182,7 @@ def _field(location: Sequence[int | str]) -> FieldInfo:
 
 def _unknown_key(location: Sequence[int | str]) -> str:
     known = list(names_of(_table(location)))
-    near = get_close_matches(shown(str(location[-1])), known, n=1)
+    near = get_close_matches(shorten(str(location[-1])), known, n=1)
     if near:
         return f"unknown key; the nearest known one is {near[0]}"
     return f"unknown key; known ones are {', '.join(known)}"

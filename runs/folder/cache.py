@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from runs.folder import records
 from runs.folder.files import whole
 from runs.folder.versions import program
-from runs.process.terminal import NOTICES, shown
+from runs.process.terminal import NOTICES, shorten
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -108,9 +108,7 @@ class Cache:
         except Exception:
             # The file may be damaged, or come from elsewhere.
             pass
-        NOTICES.warning(
-            "%s: is not as it was kept; it is dropped, and computed again", shown(str(entry))
-        )
+        NOTICES.warning("%s: is damaged; it is removed and computed again", shorten(str(entry)))
         with suppress(OSError):
             entry.unlink()
         return None
@@ -155,7 +153,7 @@ class Cache:
             NOTICES.warning(
                 "%s: the cache cannot be written (%s), and results are not kept for later "
                 "runs; give another folder in %s, or --no-cache",
-                shown(str(self.folder)),
+                shorten(str(self.folder)),
                 error.strerror,
                 VARIABLE,
             )

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from runs.case.schema import Case
 from runs.paper.statements import STATEMENTS
-from runs.process.terminal import message, say, shown
+from runs.process.terminal import message, say, shorten
 from runs.report.formatting import NONE, number
 from runs.report.pages import Addition
 from runs.report.tables import as_json
@@ -121,7 +121,7 @@ def show(judged: Mapping[str, Addition], console: Console) -> int:
             if one.demanded and one.verdict != "reproduced":
                 status = 1
                 demand = f"{one.id} is {one.verdict}, and the case demands that it is reproduced"
-                say(message(f"{shown(file)}: demand: {demand}: {one.why}"))
+                say(message(f"{shorten(file)}: demand: {demand}: {one.why}"))
     return status
 
 

@@ -131,7 +131,7 @@ class SegmentMotion(NamedTuple):
 
 
 class BeamOutput(NamedTuple):
-    """Quantities of all segments at times (num_frames,) in s."""
+    """Deflections and section forces of a beam model's segments at times (num_frames,) in s."""
 
     time: Array
     segments: list[SegmentMotion]

@@ -99,7 +99,7 @@ def run_model(
     stages = Stages(partial(context.progress, model.name))
     if model.needs_shell or context.first_rank:
         helper = context.helper if context.alone else None
-        tools = None if comm is None else Workshop(comm, stages.tell, context.cache, helper)
+        tools = None if comm is None else Workshop(comm, stages.progress, context.cache, helper)
         try:
             built = build(case, boom, model, tools)
         except NUMERICS as error:
@@ -121,7 +121,7 @@ def run_model(
         name = key([*content])
         motion = store.load(name, CompletedMotion) if store else None
         if motion is None:
-            moving = Stages(stages.tell)
+            moving = Stages(stages.progress)
             motion = _move(built, model, case, cutoff, executor, moving)
             # The first model of a process compiles the time loop for the others.
             begin += moving.seconds["compilation"]

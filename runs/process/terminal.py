@@ -70,10 +70,10 @@ def say(line: str) -> None:
 
 def message(text: str) -> str:
     """Return a text as one line for stderr."""
-    return shown(f"protractile: {' '.join(text.split())}", LONGEST - 1)
+    return shorten(f"protractile: {' '.join(text.split())}", LONGEST - 1)
 
 
-def shown(text: str, longest: int = LONGEST_PART) -> str:
+def shorten(text: str, longest: int = LONGEST_PART) -> str:
     """Return a text in printable form; the middle of a long text is left out."""
     # Escapes only lengthen a text, so that two ends of this length suffice.
     safe = printable(text if len(text) <= 2 * longest else text[:longest] + text[-longest:])

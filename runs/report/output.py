@@ -139,7 +139,7 @@ def _write_pages(
 
 
 def write_csv(trajectories: xr.Dataset, path: Path) -> None:
-    """Write a line for each model and time, with columns ``NAME@PLACE`` for stations."""
+    """Write trajectories as CSV: a line per model and time, columns ``NAME@PLACE`` of stations."""
     columns = {}
     places = trajectories["place"].values if "place" in trajectories.coords else ()
     for name, variable in trajectories.data_vars.items():

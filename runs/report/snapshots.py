@@ -77,7 +77,7 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
         folder: folder of ``boom-WHEN.png``, ``overlap-WHEN.png`` and ``stress-WHEN.png`` of each
             instant (from the second joint on ``overlap-2-WHEN.png``), for a boom in space also
             ``boom-above-WHEN.png``, from above.
-        times: times in s; those of :func:`telling_instants` unless given.
+        times: times in s; those of :func:`characteristic_instants` unless given.
 
     Returns:
         The paths of the files.
@@ -167,7 +167,7 @@ def _film(scene: Scene) -> list[Instant]:
 
 def _when(motion: xr.Dataset, times: Times) -> dict[str, float]:
     """Return the times in s, by their names in file names."""
-    return telling_instants(motion) if times is None else {f"{t:g}s": t for t in times}
+    return characteristic_instants(motion) if times is None else {f"{t:g}s": t for t in times}
 
 
 def _instants(views: Sequence[Scene], when: Mapping[str, float]) -> list[Instant]:
@@ -177,7 +177,7 @@ def _instants(views: Sequence[Scene], when: Mapping[str, float]) -> list[Instant
     ]
 
 
-def telling_instants(motion: xr.Dataset) -> dict[str, float]:
+def characteristic_instants(motion: xr.Dataset) -> dict[str, float]:
     """Return characteristic times in s of a model's trajectories, by event.
 
     The events are ``first-peak`` of the tip, or ``largest-deflection`` without a peak;
@@ -378,7 +378,7 @@ def describe_one(results: Results, path: Path) -> Figure:
 def _instant(name: str, motion: xr.Dataset) -> tuple[str, str]:
     """Return texts on an event and on the tip at its time; only the first without such a time."""
     event = TITLES.get(name, name.replace("-", " "))
-    instants = telling_instants(motion)
+    instants = characteristic_instants(motion)
     if name in instants:
         time, when = instants[name], f"{event} at {instants[name]:.3f} s"
     elif _GIVEN.fullmatch(name):

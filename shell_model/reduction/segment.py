@@ -81,7 +81,7 @@ def reduce_segment(
     symmetry_classes = comm.bcast([job.symmetry_class for job in jobs])
     if not symmetry_classes:
         raise NumericsError("nothing acts on a segment, and it has no motion: give it a load")
-    tell = progress or (lambda part: None)
+    report = progress or (lambda part: None)
     # Each symmetry class may have the same number of coordinates for each of its forces.
     counts = comm.bcast([np.count_nonzero(job.forces.any(axis=0)) for job in jobs])
 
@@ -92,7 +92,7 @@ def reduce_segment(
     def reduce_here(number: int, job: Job) -> ClassCoordinates:
         done = mine.index(number)
         return _reduce_job(
-            symmetry.cell, job, own[number], lambda part: tell((done + part) / len(mine))
+            symmetry.cell, job, own[number], lambda part: report((done + part) / len(mine))
         )
 
     def reduce_there(number: int, job: Job) -> Future[ClassCoordinates]:
@@ -113,7 +113,7 @@ def reduce_segment(
     for symmetry_class, (root, one), columns in zip(symmetry_classes, found, places, strict=True):
         on_cell = None if one is None else one.shapes
         shapes[:, columns] = symmetry.expand(on_cell, symmetry_class, root)
-    tell(1.0)
+    report(1.0)
     # All natural frequencies up to this one are accurate.
     accurate = accurate[order]
     first_inaccurate = accurate.size if accurate.all() else int(np.argmin(accurate))

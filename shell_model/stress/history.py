@@ -30,7 +30,7 @@ class LargestPatch:
 
 
 @dataclass(frozen=True, slots=True)
-class CarriedAt:
+class WallForcesAt:
     """Forces of a segment's walls at the cross-section x in m, by the name of the wall."""
 
     segment: str
@@ -81,7 +81,7 @@ class StressSummary:
     z: float
     band: float
     patch: LargestPatch | None
-    walls: list[CarriedAt]
+    walls: list[WallForcesAt]
     history: StressHistory
 
 
@@ -175,7 +175,7 @@ def summarise(shell: ShellStress, history: xr.Dataset) -> StressSummary:
             places[place],
         )
     walls = [
-        CarriedAt(name, place, wall_forces(shell, time, k, place))
+        WallForcesAt(name, place, wall_forces(shell, time, k, place))
         for k, name in enumerate(names)
         for place in places
         if shell.holds(k, place)

@@ -17,7 +17,7 @@ import pytest
 
 from geometry.boom import Boom
 from runs.folder.cache import Cache, key
-from runs.process.terminal import shown
+from runs.process.terminal import shorten
 
 ROOT = Path(__file__).parents[2]
 # The file of the entry "a".
@@ -100,7 +100,7 @@ def test_every_flipped_bit_is_found(tmp_path: Path, caplog: pytest.LogCaptureFix
         entry.write_bytes(flipped)
         assert cache.load("a", np.ndarray) is None
         assert list(tmp_path.iterdir()) == []
-    message = f"{shown(str(entry))}: is not as it was kept; it is dropped, and computed again"
+    message = f"{shorten(str(entry))}: is damaged; it is removed and computed again"
     assert [record.getMessage() for record in caplog.records] == [message for _ in bits]
 
 

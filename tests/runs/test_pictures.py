@@ -21,7 +21,7 @@ from runs.report.opengl import RenderingUnavailable
 from runs.report.overlap_pictures import STRESS_PIXELS, StressScale, draw_overlap, draw_stress
 from runs.report.scene import Instant, Scene
 from runs.report.sheet import Camera, Sheet, stage, surface
-from runs.report.snapshots import render_film, render_stills, telling_instants
+from runs.report.snapshots import characteristic_instants, render_film, render_stills
 from studies.gallery import draw_mesh, draw_sections
 from tests.runs.moving_segments import CASE, TIME, moving_scene
 
@@ -53,7 +53,7 @@ def _opengl() -> None:
 def test_telling_instants_are_those_of_the_motion(shell: Scene) -> None:
     """Reference: analytic. The tip's sin² has its first peak at 0.5 s."""
     expected = {"first-peak": 0.5, "largest-force": 1.6, "first-contact": 0.2}
-    assert telling_instants(shell.motion) == pytest.approx(expected)
+    assert characteristic_instants(shell.motion) == pytest.approx(expected)
 
 
 def test_an_instant_is_shown_once(shell: Scene) -> None:
@@ -61,19 +61,21 @@ def test_an_instant_is_shown_once(shell: Scene) -> None:
     within 2 % of the run of the first peak is not seen twice."""
     motion = shell.motion.copy(deep=True)
     motion["contact_force_peak"][:] = 1.0e3
-    assert telling_instants(motion) == pytest.approx({"first-peak": 0.5, "largest-force": 0.0})
+    assert characteristic_instants(motion) == pytest.approx(
+        {"first-peak": 0.5, "largest-force": 0.0}
+    )
     end = float(TIME[-1])
     for apart, names in ((0.01, ["first-peak"]), (0.03, ["first-peak", "largest-force"])):
         blow = motion.copy(deep=True)
         at = int(np.abs(TIME - 0.5 - apart * end).argmin())
         blow["contact_force_peak"][at, 0] = 2.0e3
-        assert list(telling_instants(blow)) == names
+        assert list(characteristic_instants(blow)) == names
 
 
 def test_motion_without_contact_or_peak_still_has_an_instant(shell: Scene) -> None:
     """Half a period has no peak inside, and a model without stations NaN for its forces."""
     motion = shell.motion.where(shell.motion["time"] < 0.0).assign(tip=shell.motion["tip"])
-    assert telling_instants(motion.isel(time=slice(0, 100))) == {
+    assert characteristic_instants(motion.isel(time=slice(0, 100))) == {
         "largest-deflection": pytest.approx(TIME[99])
     }
 

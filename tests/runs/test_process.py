@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from runs import CASES
 from runs.process import ending, progress
-from runs.process.terminal import LONGEST, message, shown
+from runs.process.terminal import LONGEST, message, shorten
 
 ROOT = Path(__file__).parents[2]
 
@@ -70,15 +70,16 @@ def test_a_message_is_one_short_printable_line(text: str) -> None:
 
 
 def test_controls_are_escaped() -> None:
-    assert shown("a\x1b[31mb\u202ec\udcff é") == "a\\x1b[31mb\\u202ec\\udcff é"
+    assert shorten("a\x1b[31mb\u202ec\udcff é") == "a\\x1b[31mb\\u202ec\\udcff é"
 
 
 def test_the_middle_goes_and_both_ends_stay() -> None:
     """Reference: analytic, the name of a file at the end of a long path."""
     assert (
-        shown("/" + "long/" * 100 + "case.toml", 41) == "/long/long/long/lo ... ong/long/case.toml"
+        shorten("/" + "long/" * 100 + "case.toml", 41)
+        == "/long/long/long/lo ... ong/long/case.toml"
     )
-    assert shown("a" * 41, 41) == "a" * 41
+    assert shorten("a" * 41, 41) == "a" * 41
 
 
 def test_tells_the_stage_and_what_is_left(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -25,7 +25,7 @@ from runs.case.schema import Case, LoadTable
 from runs.case.sections import SectionTable
 from runs.folder.cache import Cache, remembered
 from runs.pipeline.models import build
-from runs.process.terminal import shown
+from runs.process.terminal import shorten
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 
 pytestmark = pytest.mark.slow
@@ -155,7 +155,7 @@ def test_a_damaged_entry_is_made_again(
     again = reduce(case, cache)
     assert "reduction" in again.seconds
     assert np.array_equal(again.system.omega2, whole.system.omega2)
-    message = f"{shown(str(entry))}: is not as it was kept; it is dropped, and computed again"
+    message = f"{shorten(str(entry))}: is damaged; it is removed and computed again"
     assert [record.getMessage() for record in caplog.records] == [message]
     assert list(reduce(case, cache).seconds) == ["cache"]
 
@@ -180,7 +180,7 @@ def test_a_cache_that_cannot_be_written_costs_time_and_a_line(
     found = reduce(case, Cache(folder))
     assert found.system.num_modes > 0
     assert [record.getMessage() for record in caplog.records] == [
-        f"{shown(str(folder))}: the cache cannot be written (Not a directory), and results "
+        f"{shorten(str(folder))}: the cache cannot be written (Not a directory), and results "
         "are not kept for later runs; give another folder in PROTRACTILE_CACHE, or "
         "--no-cache"
     ]

@@ -18,7 +18,7 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.pipeline.quantities import QUANTITIES, measure, settling_time
-from runs.process.terminal import shown
+from runs.process.terminal import shorten
 from runs.sweep import output
 from runs.sweep import run as sweep
 from runs.sweep.run import Outcome
@@ -302,7 +302,7 @@ def test_a_damaged_point_is_done_again(
     assert run(planned("joint.play=0,0.01")) == outcomes
     assert len(ran) == 4
     assert [record.getMessage() for record in caplog.records] == [
-        f"{shown(str(damaged))}: is not as it was kept; it is dropped, and computed again"
+        f"{shorten(str(damaged))}: is damaged; it is removed and computed again"
     ]
     assert run(planned("joint.play=0,0.01")) == outcomes
     assert len(ran) == 4

@@ -81,13 +81,13 @@ class Workshop:
 
     Args:
         comm: the ranks that share the work.
-        tell: callback that receives the stage and its completed fraction.
+        progress: callback that receives the stage and its completed fraction.
         cache: cache of reduced shells; without one, every shell is computed.
         helper: a second process, which takes part in reductions where there is only one rank.
     """
 
     comm: MPI.Comm
-    tell: Callable[[str, float], None] = lambda *_: None
+    progress: Callable[[str, float], None] = lambda *_: None
     cache: Cache | None = None
     helper: Executor | None = None
 

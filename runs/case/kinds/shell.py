@@ -129,7 +129,7 @@ class Shell(ModelTable):
         helper = workshop.helper if self.estimated_dofs(boom) > _SMALL else None
         made = workshop.remember(
             (boom, options),
-            partial(reduce_boom, boom, options, workshop.comm, workshop.tell, helper),
+            partial(reduce_boom, boom, options, workshop.comm, workshop.progress, helper),
         )
         shell = with_plays_and_loads(made, joined.boom)
         factor = shell.critical_factor
