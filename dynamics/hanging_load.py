@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A load on a rope below the tip: hoisting, lift-off and hanging.
 
-The load m has a coordinate z of its own, its height above its place at t = 0. The rope pulls only,
+The load m has its own coordinate z, its height above its initial position. The rope carries only
+tension,
 
     T = k max(w cos α − z + h(t) − s, 0),
 
 with the deflection w of the tip across the boom, the luffing angle α, the length h that the winch
-has wound up since t = 0, and the slack s. The ground bears the load while it lies there. Both are
-contact rows. A travel moves that of the rope, so that the energy ledger has the work of the winch.
+has wound up since t = 0, and the slack s. The ground carries the load while it lies there. Rope and
+ground are contact rows. A travel moves the row of the rope, so that the energy balance includes the
+work of the winch.
 """
 
 from __future__ import annotations
@@ -24,23 +26,22 @@ from dynamics.excitation import History
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.trajectory import Trajectory
 
-# Stiffness of the ground over that of the rope.
+# Ratio of the stiffnesses of ground and rope.
 _GROUND = 100.0
 
 
 @dataclass(frozen=True, slots=True)
 class HangingLoad:
-    """A load on a rope, and its winch.
+    """Load on a rope with a winch.
 
     Args:
         mass: m in kg.
         stiffness: k of the rope in N/m.
         gravity: acceleration in m/s².
-        hoist: length in m that the winch winds up, over time; a rope of constant length where it is
-            None.
+        hoist: length in m that the winch winds up, over time; None for a rope of constant length.
         cosine: cos α of the luffing angle.
-        slack: s in m at w = 0 of a load that lies on the ground at t = 0; the load hangs where it
-            is None.
+        slack: s in m at w = 0 of a load that lies on the ground at t = 0; None for a load that
+            hangs.
 
     Raises:
         ValueError: mass, stiffness or gravity is not finite and positive.
@@ -64,15 +65,15 @@ class HangingLoad:
         return self.mass * self.gravity
 
     def hang(self, system: GapSystem, tip: Array, x: float) -> GapSystem:
-        """Return a boom's system with the load on its tip.
+        """Return a boom's system with the load at its tip.
 
-        The coordinate of the load is the last one. Stations of the rope and of the ground follow
-        those of the boom, with one contact row each.
+        The load has the last coordinate. The stations of rope and ground follow those of the boom,
+        with one contact row each.
 
         Args:
-            system: of the boom without the load.
-            tip: (num_modes,) row of the deflection w.
-            x: of the tip in m.
+            system: gap system of the boom without the load.
+            tip: row (num_modes,) of the deflection w.
+            x: position of the tip in m.
         """
 
         def widen(rows: Array) -> Array:
@@ -131,10 +132,10 @@ class HangingLoad:
         )
 
     def separate(self, motion: Trajectory) -> Trajectory:
-        """Return the motion with the force of the rope apart from those of the boom's stations.
+        """Return the motion with the rope force separate from the forces at the boom's stations.
 
-        ``rope_force`` and ``rope_force_peak`` in N, the mean and the largest of the output interval
-        that ends then, are positive in tension; their attribute ``weight`` is m g.
+        ``rope_force`` and ``rope_force_peak`` in N, the mean and the maximum of the output interval
+        that ends at the time, are positive in tension; their attribute ``weight`` is m g.
         """
         own = motion.data.sizes["station"] - (1 if self.slack is None else 2)
         data = motion.data.isel(station=slice(own))

@@ -64,7 +64,7 @@ _ORDER = 2.0
 
 
 class BucklingModes(NamedTuple):
-    """The lowest buckling modes of a shell.
+    """Lowest buckling modes of a shell.
 
     Args:
         factors: (num_modes,) load factors λ in ascending order; empty without compression.
@@ -124,7 +124,7 @@ def buckling_modes(shell: Shell, forces: Array, count: int) -> BucklingModes:
 
 
 def _compressed(forces: Array) -> bool:
-    """Return whether the lesser principal membrane force presses anywhere, beyond round-off."""
+    """Return whether a principal membrane force is compressive anywhere, beyond round-off."""
     n_x, n_s, n_xs = forces.T
     least = 0.5 * (n_x + n_s) - np.hypot(0.5 * (n_x - n_s), n_xs)
     return bool(least.min() < -_ROUND_OFF * np.abs(forces).max())

@@ -3,5 +3,5 @@
 
 from dynamics.kernels.compiled import find_folder
 
-# Before a time loop is compiled; it goes when the process does.
+# This must be set before a time loop is compiled; the folder is removed at the end of the process.
 _folder = find_folder()

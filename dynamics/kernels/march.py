@@ -37,7 +37,7 @@ _MOST_ROUNDS, _AGREED = 40, 1.0e-10
 
 
 class LoopSystem(NamedTuple):
-    """The parts of a gap system that stay as they are.
+    """Constant parts of a gap system.
 
     Args:
         load: (num_modes,) the constant load.
@@ -54,7 +54,7 @@ class LoopSystem(NamedTuple):
 
 
 class State(NamedTuple):
-    """All that steps change.
+    """State of a motion, which steps change.
 
     Args:
         a, v: (num_modes,) modal coordinates and velocities.
@@ -126,11 +126,11 @@ def _push(rows: Array, force: Array, total: Array) -> None:
 
 @njit(**LOOP)
 def _note_contacts(state: State, laws: Laws, end: Array, free: Array, time: float) -> None:
-    """Count contacts that open or close within a step; note when the first one closes."""
+    """Count contacts that open or close within a step; store the time of the first contact."""
     closing = np.inf
     for j in range(laws.limits.size):
         low, high = laws.limits[j]["low"], laws.limits[j]["high"]
-        # One bit a side: shims press both.
+        # One bit per side, since shims press both sides.
         before = int(state.y[j] > high) + 2 * int(state.y[j] < low)
         after = int(end[j] > high) + 2 * int(end[j] < low)
         if before == after:
@@ -139,7 +139,7 @@ def _note_contacts(state: State, laws: Laws, end: Array, free: Array, time: floa
         closed = after & ~before
         if closed != 0:
             bound = high if closed == 1 else low
-            # Up to the contact the row moves as it would without it.
+            # Until contact, the row moves as without it.
             passed = (bound - state.y[j]) / (free[j] - state.y[j])
             closing = min(closing, time * min(max(passed, 0.0), 1.0))
     if np.isnan(state.tally[FIRST_CONTACT]) and closing < np.inf:

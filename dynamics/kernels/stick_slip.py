@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Steps of a mass that a spring pulls against dry friction, from sticking to slipping and back.
+"""Motion of a mass that a spring pulls against dry friction: phases of sticking and slipping.
 
-Each stretch with linear data is exact. z = s_c − s is the lag of the mass behind the far end of the
-spring. While it slips, m z̈ + c ż + k z = σ R − p. While it sticks, z grows with that end, until
-|k z + c ż + p| exceeds the static friction. A slip ends where ṡ changes its sign.
+The solution is exact for data that are linear in time. z = s_c − s is the lag of the mass behind
+the far end of the spring. While it slips, m z̈ + c ż + k z = σ R − p. While it sticks, z grows with
+that end, until |k z + c ż + p| exceeds the static friction. A slip ends where ṡ changes its sign.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from dynamics.kernels.compiled import LOOP
 
 
 class SlidingMass(NamedTuple):
-    """m in kg, k in N/m, c in N·s/m, and static friction over that of sliding."""
+    """Mass on a spring: m in kg, k in N/m, c in N·s/m, and ratio of static to sliding friction."""
 
     mass: float
     stiffness: float
@@ -137,7 +137,7 @@ def time_in_phase(body: SlidingMass, state: Array, leg: Leg, left: float) -> flo
 def advance_leg(
     body: SlidingMass, state: Array, leg: Leg, time: float, sums: Array, largest: Array
 ) -> None:
-    """Advance through a time in s of linear data, from phase to phase."""
+    """Advance the state through a leg of linear data, phase by phase."""
     left, turns = time, 0
     while left > 0.0 and turns < _MOST_TURNS:
         turns += 1

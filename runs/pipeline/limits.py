@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Limits of a case against the numbers of a run."""
+"""Comparison of the limits of a case with the numbers of a run."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from runs.pipeline.results import Results
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """The least or the largest permitted value of a quantity."""
+    """Smallest or largest permitted value of a quantity."""
 
     quantity: Metric
-    permitted: float  #: in SI units
+    permitted: float  #: permitted value in SI units
     least: bool = False  #: whether larger values are permitted
 
     @property
     def sign(self) -> str:
-        """Sign before the permitted value."""
+        """The sign before the permitted value."""
         return "≥" if self.least else "≤"
 
     def __str__(self) -> str:
@@ -30,7 +30,7 @@ class Limit:
         return f"{self.quantity.title} {self.sign} {self.shown(self.permitted)}"
 
     def shown(self, value: float | None) -> str:
-        """Return a value in SI units as text in the displayed unit, or nothing without any."""
+        """Return a value in SI units as text in the displayed unit; empty without a value."""
         unit = self.quantity.shown_unit
         return "" if value is None else f"{self.quantity.factor * value:.4g} {unit}"
 
@@ -41,19 +41,19 @@ class Limit:
 
 @dataclass(frozen=True, slots=True)
 class LimitCheck:
-    """A limit, and the numbers of models in SI units, the one that decides first."""
+    """Limit with the numbers of models in SI units; the decisive model comes first."""
 
     limit: Limit
     values: Mapping[str, float]
 
     @property
     def decisive(self) -> tuple[str, float] | None:
-        """The first model with its number; None where no model has one."""
+        """The first model with its number; None if no model has one."""
         return next(iter(self.values.items()), None)
 
     @property
     def holds(self) -> bool:
-        """Whether the decisive number is within the limit; not so without any."""
+        """True if the decisive number is within the limit; False without a number."""
         return self.decisive is not None and self.limit.permits(self.decisive[1])
 
 

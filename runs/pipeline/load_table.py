@@ -18,12 +18,12 @@ from runs.report.formatting import number
 from runs.report.tables import Column, Table
 
 _CONSTANT, _ALL = "constant", "all masses"
-# Direction of axial forces, which are positive where they compress.
+# Direction of axial forces, which are positive in compression.
 _AXIAL = "to the base"
 
 
 class _Row(NamedTuple):
-    """A load: its key, place, direction and history, largest value in an SI unit, and time in s."""
+    """Row of a load: key, place, direction, history, largest value in an SI unit, time in s."""
 
     key: str
     place: str

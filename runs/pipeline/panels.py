@@ -15,13 +15,13 @@ import numpy as np
 from geometry.segment import Material, Segment
 from runs.pipeline.static_results import Diagram, StaticResult
 
-# k of a long plate in shear (Southwell and Skan 1924).
+# Coefficient k of a long plate in shear (Southwell and Skan 1924).
 SHEAR = 5.34
 
 
 @dataclass(frozen=True, slots=True)
 class PanelBuckling:
-    """The wall of a segment that buckles first by panel formulas.
+    """Wall of a segment that buckles first by panel formulas.
 
     Args:
         segment: name of the segment.
@@ -37,7 +37,7 @@ class PanelBuckling:
 
 
 def normal_coefficient(ratio: float) -> float:
-    """Return k of a long plate by the ratio ψ of the stresses at its edges.
+    """Return k of a long plate for the ratio ψ of the stresses at its edges.
 
     ψ is the stress at the other edge over the largest compression (EN 1993-1-5, table 4.1): 4.0 in
     compression, 23.9 in bending.
@@ -53,14 +53,14 @@ def normal_coefficient(ratio: float) -> float:
 def panel_factor(
     material: Material, slenderness: float, edges: tuple[float, float], shear: float
 ) -> float:
-    """Return the buckling factor of a long panel; infinite where nothing presses or shears it.
+    """Return the buckling factor of a long panel; infinite without compression and shear.
 
-    Stresses interact after EN 1993-1-5, (10.6).
+    Stresses interact by EN 1993-1-5, (10.6).
 
     Args:
-        material: isotropic.
+        material: isotropic material.
         slenderness: width over thickness.
-        edges: stresses along the panel in Pa, positive in tension.
+        edges: axial stresses at both edges in Pa, positive in tension.
         shear: shear stress in Pa.
     """
     young, nu = material.youngs_modulus, material.poissons_ratio

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Numbers of each model that a sweep charts and a case limits."""
+"""Quantities of each model for the charts of sweeps and the limits of cases."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from runs.pipeline.metrics import Metric, metrics, records
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary
 
-# Name of the quantity → its value in SI units, None where a model has none.
+# Type of quantities by name in SI units; None if a model has no value.
 Measured = dict[str, float | None]
 
-# The tip has settled when it stays within this part of its initial amplitude.
+# Half-width of the settling band as a fraction of the initial amplitude.
 BAND = 0.05
-# Its final mean is that of the last part of the run, for which it must have stayed there at least.
+# Final fraction of the run that gives the final mean, and in which the tip must stay in the band.
 FINAL = 0.2
-# A tip at rest, for example started in equilibrium, moves by round-off of this part.
+# Fraction below which the motion of a tip is round-off, for example from equilibrium.
 ROUND_OFF = 1.0e-12
-# Decay time: until the vibration has fallen to this part.
+# Fraction of the initial vibration that remains after the decay time.
 TENTH = 0.1
 
-# Sources of a model's numbers beside its fields: results that are records, and its summary.
+# Further sources of a model's numbers: results that are records, and its summary.
 _DECLARING: list[type] = [*records(ModelDesignResults).values(), ModelSummary]
 
 # Quantities of the boom at rest, of its motion, and of its accuracy.
@@ -53,14 +53,14 @@ QUANTITIES = (
 def measure(results: Results, model: str) -> Measured:
     """Return the quantities of one model of a run.
 
-    The tip at rest is the static deflection under the largest loads, at any extension, the tip the
-    largest one of the motion. The tip's amplitude, its dynamic part, is half the distance between
-    its highest and its lowest place. The dynamic factor is the largest deflection over the largest
-    at rest. The contact force is the largest mean of an output interval at any station, since the
-    peak of an impact is too short to load a pad. The stress is that of an outer fibre, from section
-    forces. The wall stress is a shell's own over a patch. The pad pressure is that of a pad at its
-    peak. The damage is that of a fatigue life at the governing place. The decay time is that of the
-    first mode. Residual vibration is that of
+    The static tip is the deflection under the largest loads, at any extension; the tip is the
+    largest deflection of the motion. The amplitude of the tip is half the distance between its
+    highest and lowest position. The dynamic factor is the largest deflection over the largest
+    static one. The contact force is the largest mean over an output interval at any station, since
+    the peak of an impact is too short to load a pad. The stress is the axial stress in an outer
+    fibre; the wall stress of a shell is a mean over a patch. The pad pressure is the maximum over
+    pads and time. The damage is the fatigue damage at the governing place. The decay time is that
+    of the first mode. Residual vibration is that of
     :class:`runs.pipeline.residual_vibration.ResidualVibration`; force and slip of elastic drives
     are those of :class:`dynamics.drive.stick_slip.StickSlip`.
     """
@@ -104,20 +104,16 @@ def measure(results: Results, model: str) -> Measured:
 
 
 def decay_time(ratio: float, frequency: float | None) -> float | None:
-    """Return the time in s in which a damping ratio leaves a tenth of a vibration in Hz.
-
-    None without damping or a frequency.
-    """
+    """Return the time in s in which a vibration decays to a tenth; None without damping."""
     return log(1.0 / TENTH) / (2.0 * pi * ratio * frequency) if ratio and frequency else None
 
 
 def settling_time(time: Array, tip: Array) -> float | None:
     """Return the time from which the tip stays within 5 % of its initial amplitude.
 
-    The band lies around the final mean, that of the last fifth of the run; the initial amplitude is
-    the largest distance from it. None where the tip leaves the band within that last fifth: it does
-    not settle within the run. That fifth must be longer than the slowest oscillation for this to
-    mean much.
+    The centre of the band is the mean over the last fifth of the run; the initial amplitude is the
+    largest distance from it. The result is None if the tip leaves the band within the last fifth,
+    which should be longer than the slowest oscillation.
 
     Args:
         time: (num_times,) in s, rising.
@@ -128,5 +124,5 @@ def settling_time(time: Array, tip: Array) -> float | None:
     outside = off > max(BAND * off.max(), ROUND_OFF * np.abs(tip).max())
     if outside[last].any():
         return None
-    # A tip inside from the start settles at once.
+    # A tip that never leaves the band settles immediately.
     return float(time[np.flatnonzero(outside)[-1] + 1]) if outside.any() else float(time[0])

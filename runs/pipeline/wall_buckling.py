@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Buckling of the walls of a shell in the static state with the farthest tip."""
+"""Buckling of the walls of a shell in the static state with the largest tip deflection."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class WallBuckling:
-    """The lowest buckling factors of the walls of a segment of a shell.
+    """Lowest buckling factors of the walls of a segment of a shell.
 
     Args:
         segment: name of the segment.

@@ -11,7 +11,7 @@ from runs.report.tables import Column, Table
 
 
 def limit_table(results: Results) -> Table | None:
-    """Return the limits of the case beside the numbers of the leading models."""
+    """Return the table of the case's limits and the numbers of the leading models."""
     checks = list(check_limits(results))
     if not checks:
         return None
