@@ -50,7 +50,7 @@ def _opengl() -> None:
         pytest.skip(str(reason))
 
 
-def test_telling_instants_are_those_of_the_motion(shell: Scene) -> None:
+def test_characteristic_instants_are_those_of_the_motion(shell: Scene) -> None:
     """Reference: analytic. The tip's sin² has its first peak at 0.5 s."""
     expected = {"first-peak": 0.5, "largest-force": 1.6, "first-contact": 0.2}
     assert characteristic_instants(shell.motion) == pytest.approx(expected)
