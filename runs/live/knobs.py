@@ -19,6 +19,7 @@ from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.checked_case import CheckedCase
 from runs.case.kinds.finite_element import BeamElements
+from runs.case.kinds.shell import Shell
 from runs.case.limits import is_table
 from runs.case.messages import BadInput
 from runs.case.sanity import usual_ranges
@@ -195,6 +196,17 @@ class Draft:
             return Case.model_validate(tables)
         except ValidationError as error:
             raise BadInput.from_validation(self.file, error) from None
+
+    def with_shell(self, case: Case) -> Case:
+        """Return a changed case with the beam of the page and its shells, one of its own if none.
+
+        Raises:
+            BadInput: the case is invalid.
+        """
+        (beam,) = self.beam(case).case.models
+        shells = [model for model in case.models if model.meshed] or [Shell()]
+        both = case.model_copy(update={"models": (beam, *shells)})
+        return reading.check(both, self.file).case
 
     def beam(self, case: Case) -> CheckedCase:
         """Return a changed case with the beam of the page as its only model, after all checks.

@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import json
 import webbrowser
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
+from contextlib import closing
 from dataclasses import asdict, dataclass, field
 from functools import cached_property, partial
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 from secrets import token_urlsafe
 from threading import Lock
 from typing import Any
@@ -17,11 +19,16 @@ from typing import Any
 import numpy as np
 
 from dynamics.failure import NUMERICS
+from runs.case import toml
 from runs.case.messages import BadInput
 from runs.live.beam import beam_results
 from runs.live.knobs import Draft
+from runs.live.shell_run import ShellRuns
 from runs.pipeline.model_run import failure_reason
+from runs.process.ending import when_interrupted
 from runs.report.pages import page
+
+_HTML = "text/html; charset=utf-8"
 
 # Maximum size of a request in bytes.
 _LARGEST = 1_000_000
@@ -38,10 +45,12 @@ class LivePage:
     Args:
         draft: the case.
         token: first part of the path of each address.
+        shells: runs of its shells.
     """
 
     draft: Draft
     token: str = field(default_factory=token_urlsafe)
+    shells: ShellRuns = field(default_factory=ShellRuns)
     _newest: dict[str, int] = field(default_factory=dict)
     _computing: Lock = field(default_factory=Lock)
 
@@ -56,13 +65,14 @@ class LivePage:
             title=draft.case.title,
             knobs=[asdict(knob) for knob in draft.knobs()],
             keys=draft.keys,
+            file=Path(draft.file).name,
         )
         return {
-            "": ("text/html; charset=utf-8", html.encode()),
+            "": (_HTML, html.encode()),
             "plotly.js": ("text/javascript; charset=utf-8", get_plotlyjs().encode()),
         }
 
-    def beam(self, request: dict[str, Any]) -> Iterator[Any]:
+    def beam(self, request: dict[str, Any]) -> Generator[Any]:
         """Yield the results of the beam with the values of a request, or an error.
 
         A request of the same tab with a higher number ends the computation.
@@ -79,22 +89,31 @@ class LivePage:
             checked = self.draft.beam(self.draft.changed(dict(request["values"])))
             yield from beam_results(checked, check_current)
 
-    def knob(self, request: dict[str, Any]) -> Iterator[Any]:
+    def knob(self, request: dict[str, Any]) -> Generator[Any]:
         """Yield the knob of a key."""
         yield asdict(self.draft.knob(str(request["key"])))
 
-    @property
-    def answers(self) -> dict[str, Callable[[dict[str, Any]], Iterator[Any]]]:
-        """The answer to each request, by path below the token."""
-        return {"beam": self.beam, "knob": self.knob}
+    def case(self, request: dict[str, Any]) -> Generator[Any]:
+        """Yield the case file with the values of a request."""
+        yield {"stage": "case", "text": toml.dumps(self.draft.changed(dict(request["values"])))}
 
-    def lines(self, path: str, request: dict[str, Any]) -> Iterator[bytes]:
+    def shell(self, request: dict[str, Any]) -> Generator[Any]:
+        """Yield progress and results of the shell with the values of a request."""
+        case = self.draft.with_shell(self.draft.changed(dict(request["values"])))
+        yield from self.shells.run(case, self.draft.file)
+
+    @property
+    def answers(self) -> dict[str, Callable[[dict[str, Any]], Generator[Any]]]:
+        """The answer to each request, by path below the token."""
+        return {"beam": self.beam, "knob": self.knob, "case": self.case, "shell": self.shell}
+
+    def lines(self, path: str, request: dict[str, Any]) -> Generator[bytes]:
         """Yield the lines of an answer, one JSON value each; an error is the last line."""
         from plotly.io.json import to_json_plotly
 
         try:
-            with np.errstate(all="ignore"):
-                for value in self.answers[path](request):
+            with np.errstate(all="ignore"), closing(self.answers[path](request)) as answer:
+                for value in answer:
                     yield str(to_json_plotly(value)).encode() + b"\n"
         except Superseded:
             return
@@ -102,6 +121,8 @@ class LivePage:
             yield _refusal(error.key, error.what)
         except NUMERICS as error:
             yield _refusal("", failure_reason(error))
+        except OSError as error:
+            yield _refusal("", f"a file cannot be used ({error.strerror or error})")
         except (KeyError, TypeError, ValueError) as error:
             yield _refusal("", f"the request is not understood ({error})")
 
@@ -120,10 +141,13 @@ class _Handler(BaseHTTPRequestHandler):
     def do_GET(self) -> None:
         """Send a file of the page."""
         path = self._path()
-        if path is None or path not in self._live.files:
+        if path in self._live.files:
+            kind, content = self._live.files[path]
+        elif path is not None and (file := self._live.shells.file(path)) is not None:
+            kind, content = _HTML, file.read_bytes()
+        else:
             self.send_error(HTTPStatus.NOT_FOUND)
             return
-        kind, content = self._live.files[path]
         self._begin(kind)
         self.wfile.write(content)
 
@@ -145,8 +169,9 @@ class _Handler(BaseHTTPRequestHandler):
             return
         self._begin("application/x-ndjson")
         try:
-            for line in self._live.lines(str(path), request):
-                self.wfile.write(line)
+            with closing(self._live.lines(str(path), request)) as lines:
+                for line in lines:
+                    self.wfile.write(line)
         except ConnectionError:
             # The page sent a newer request, or is closed.
             pass
@@ -184,8 +209,10 @@ def serve(file: str, browser: bool) -> None:
     Raises:
         BadInput: the file cannot be read, or its content is invalid.
     """
-    server, address = make_server(LivePage(Draft.load(file)))
+    live = LivePage(Draft.load(file))
+    server, address = make_server(live)
     print(f"{address}\nThe page ends with Ctrl-C.", flush=True)
     if browser:
         webbrowser.open(address)
-    server.serve_forever()
+    with when_interrupted(live.shells.end):
+        server.serve_forever()

@@ -5,11 +5,15 @@ from __future__ import annotations
 
 import re
 import threading
+import tomllib
 from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 
 from runs import CASES
+from runs.case.schema import Case
 from runs.live.knobs import Draft
 from runs.live.server import LivePage, make_server
 from tests.system.browser import Page, blank_page, find_browser
@@ -35,19 +39,28 @@ ROW = (
 )
 
 
-@pytest.fixture(scope="module")
-def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
+@contextmanager
+def live_page(case: str, profile: Path) -> Iterator[Page]:
+    """Yield the live page of a shipped case, with its first results."""
     browser = find_browser()
     if browser is None:
         pytest.skip("the live page is opened in chromium, and there is none on PATH")
-    server, address = make_server(LivePage(Draft.load(str(CASES / "lift.toml"))))
+    live = LivePage(Draft.load(str(CASES / case)))
+    server, address = make_server(live)
     threading.Thread(target=server.serve_forever, daemon=True).start()
-    with blank_page(browser, tmp_path_factory.mktemp("profile")) as opened:
+    with blank_page(browser, profile) as opened:
         opened.open(address, 1200)
         opened.wait_for(ANSWERED)
         yield opened
     server.shutdown()
     server.server_close()
+    live.shells.end()
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
+    with live_page("lift.toml", tmp_path_factory.mktemp("profile")) as opened:
+        yield opened
 
 
 def tip(page: Page) -> float:
@@ -113,6 +126,56 @@ def test_any_other_number_is_found(page: Page) -> None:
     assert page.evaluate(said) == (
         "joint[7].play: is not a number of the case; choose one of the list"
     )
+
+
+def test_pinned_results_stand_beside_new_ones(page: Page) -> None:
+    before = page.evaluate(ROW.format("rest", "Tip deflection, maximum"))
+    page.evaluate("document.getElementById('pin').click()")
+    page.evaluate(SET.format(0.005, "joint.play"))
+    page.wait_for(ANSWERED)
+    pinned = ROW.format("rest", "Tip deflection, maximum").replace("cells[1]", "cells[2]")
+    assert page.evaluate(pinned) == before
+    assert page.evaluate(ROW.format("rest", "Tip deflection, maximum")) != before
+    assert page.evaluate("document.getElementById('tip').data.length") == 2
+    page.evaluate("document.getElementById('pin').click()")
+    page.evaluate(SET.format(0.003, "joint.play"))
+    page.wait_for(ANSWERED)
+    assert page.evaluate("document.getElementById('tip').data.length") == 1
+
+
+def test_the_case_is_saved_with_its_changes(page: Page) -> None:
+    """Reference: the text that the page receives, read as a case file."""
+    page.evaluate(
+        "URL.createObjectURL = blob => { blob.text().then(text => { window.saved = text; });"
+        " return 'data:,'; }"
+    )
+    page.evaluate(SET.format(0.004, "joint.play"))
+    page.evaluate("document.getElementById('save').click()")
+    page.wait_for("window.saved")
+    case = Case.model_validate(tomllib.loads(page.evaluate("saved")))
+    assert [joint.play for joint in case.joints] == [0.004, 0.004]
+    page.evaluate(SET.format(0.003, "joint.play"))
+    page.wait_for(ANSWERED)
+
+
+def test_a_shell_runs_beside_the_beam(tmp_path: Path) -> None:
+    """A run that is cancelled leaves room for the next, which shows its results and report."""
+    press = "document.getElementById('run').click()"
+    progress = "document.getElementById('progress').textContent"
+    with live_page("coarse.toml", tmp_path) as page:
+        page.evaluate(press)
+        page.wait_for(f"{progress}.includes(' s)')")
+        page.evaluate(press)
+        page.wait_for(f"{progress} == 'cancelled'")
+        page.evaluate(press)
+        page.wait_for("document.getElementById('run').textContent == 'Run the shell'")
+        assert page.evaluate(progress).startswith("finished in")
+        heads = "[...document.querySelectorAll('#compared th')].map(head => head.textContent)"
+        assert page.evaluate(heads) == ["", "shell", "beam"]
+        link = "document.getElementById('report')"
+        assert not page.evaluate(f"{link}.hidden")
+        page.open(page.evaluate(f"{link}.href"), 1200)
+        assert "shell" in page.evaluate("document.body.textContent")
 
 
 @pytest.mark.parametrize("width", [400, 800, 1200])
