@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from dataclasses import fields, replace
 from typing import Any
 
-from scipy.special import cosdg, sindg
-
 from dynamics.contact import PowerContact
 from dynamics.excitation import (
     History,
@@ -60,7 +58,7 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
         if weight < 0.0:
             given.append(Load(last, "z", weight, segments[last].end, Step()))
     if case.gravity is not None:
-        given += _inertia_loads(-gravity_across(case.gravity), "z", Step(), segments)
+        given += _inertia_loads(-case.gravity.across, "z", Step(), segments)
     for number, base in enumerate(case.base, start=1):
         history = history_of(f"base[{number}]", base)
         given += _inertia_loads(-base.acceleration, base.direction, history, segments)
@@ -117,16 +115,6 @@ def _inertia_loads(
     ]
 
 
-def gravity_across(gravity: GravityTable) -> float:
-    """Return g cos θ in m/s², towards −z."""
-    return gravity.acceleration * float(cosdg(gravity.angle))
-
-
-def gravity_along(gravity: GravityTable) -> float:
-    """Return g sin θ in m/s², towards the base."""
-    return gravity.acceleration * float(sindg(gravity.angle))
-
-
 def with_weight(
     boom: Boom,
     angle: float = 0.0,
@@ -147,8 +135,8 @@ def with_weight(
         thrusts: other axial forces, such as a hoist rope's.
     """
     gravity = GravityTable(acceleration=float(acceleration), angle=float(angle))
-    segments = with_compression(boom.segments, boom.joints, thrusts, gravity_along(gravity))
-    weights = _inertia_loads(-gravity_across(gravity), "z", Step(), segments)
+    segments = with_compression(boom.segments, boom.joints, thrusts, gravity.along)
+    weights = _inertia_loads(-gravity.across, "z", Step(), segments)
     return replace(boom, segments=segments, loads=(*boom.loads, *weights))
 
 

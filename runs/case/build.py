@@ -65,7 +65,7 @@ def build_boom(case: Case) -> Boom:
     segments = tuple(
         _segment(case, number, section, ends[number]) for number, section in enumerate(sections)
     )
-    along = 0.0 if case.gravity is None else actions.gravity_along(case.gravity)
+    along = 0.0 if case.gravity is None else case.gravity.along
     thrusts = actions.thrusts(case, segments) + hoist_thrust(
         case, len(segments) - 1, segments[-1].end
     )

@@ -75,8 +75,6 @@ def check_hoist(case: Case) -> None:
 
 def hanging_load(case: Case) -> HangingLoad | None:
     """Return the hoisted load of a checked case."""
-    from runs.case.actions import gravity_across
-
     table = case.hoist
     if table is None or case.gravity is None:
         return None
@@ -94,18 +92,16 @@ def hanging_load(case: Case) -> HangingLoad | None:
         stiffness,
         gravity,
         None if history is None or is_constant(history) else history,
-        gravity_across(case.gravity) / gravity,
+        case.gravity.across / gravity,
         None if table.hanging else table.slack,
     )
 
 
 def hoist_thrust(case: Case, segment: int, x: float) -> tuple[Thrust, ...]:
     """Return the axial force on the boom's tip of a hanging load, which acts throughout."""
-    from runs.case.actions import gravity_along
-
     if case.hoist is None or case.gravity is None:
         return ()
-    return (Thrust(segment, x, case.hoist.mass * gravity_along(case.gravity)),)
+    return (Thrust(segment, x, case.hoist.mass * case.gravity.along),)
 
 
 def with_hanging_load(system: GapSystem, case: Case, boom: Boom) -> GapSystem:

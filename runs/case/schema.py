@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic.dataclasses import dataclass
 from pydantic.json_schema import GenerateJsonSchema
+from scipy.special import cosdg, sindg
 
 from geometry.cylinder import Cylinder
 from geometry.fields import (
@@ -183,6 +184,16 @@ class GravityTable(CaseTable):
     """the acceleration in m/s^2"""
     angle: Annotated[float, Field(strict=True, ge=-90.0, le=90.0), In("deg")] = 0.0
     """the luffing angle of the boom in degrees, positive where the tip is up"""
+
+    @property
+    def across(self) -> float:
+        """The component g cos θ in m/s², towards −z."""
+        return self.acceleration * float(cosdg(self.angle))
+
+    @property
+    def along(self) -> float:
+        """The component g sin θ in m/s², towards the base."""
+        return self.acceleration * float(sindg(self.angle))
 
 
 class BaseTable(HistoryTable):

@@ -10,7 +10,7 @@ import numpy as np
 
 from geometry.boom import Boom
 from geometry.load import Load, PartialLoad
-from runs.case.actions import gravity_across, gravity_along, history_of, thrusts
+from runs.case.actions import history_of, thrusts
 from runs.case.drive import resolving_times
 from runs.case.schema import Case, HistoryTable, LoadTable
 from runs.case.units import System
@@ -61,8 +61,8 @@ def _rows(case: Case, boom: Boom) -> Iterator[_Row]:
     if case.gravity is not None:
         mass = sum(segment.mass for segment in boom.segments)
         for direction, acceleration in (
-            ("z", -gravity_across(case.gravity)),
-            (_AXIAL, gravity_along(case.gravity)),
+            ("z", -case.gravity.across),
+            (_AXIAL, case.gravity.along),
         ):
             if acceleration:
                 yield _Row("gravity", _ALL, direction, _CONSTANT, acceleration * mass, "N")

@@ -13,7 +13,7 @@ from dynamics.excitation import InitialImpulse, Ramp, Step
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
-from runs.case.actions import STANDARD_GRAVITY, gravity_across
+from runs.case.actions import STANDARD_GRAVITY
 from runs.case.sanity import usual_ranges
 from runs.case.schema import Case
 
@@ -168,7 +168,7 @@ def _given_twice(case: Case, boom: Boom) -> Iterator[str]:
             if table in tables[:number]:
                 first = tables.index(table) + 1
                 yield f"{name}[{number + 1}]: is {name}[{first}] once more; leave one of them out"
-    weighing = (STANDARD_GRAVITY, *([] if case.gravity is None else [gravity_across(case.gravity)]))
+    weighing = (STANDARD_GRAVITY, *([] if case.gravity is None else [case.gravity.across]))
 
     def weighs(force: float, mass: float) -> bool:
         return any(isclose(-force, g * mass, rel_tol=SAME) for g in weighing)
