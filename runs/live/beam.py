@@ -85,7 +85,7 @@ def beam_results(checked: CheckedCase, check_current: Callable[[], None]) -> Ite
     yield {
         "stage": "rest",
         "rows": _rows_at_rest(own, results),
-        "verdict": utilisation_verdict(results, model.name),
+        "utilisation": utilisation_verdict(results, model.name),
         "cautions": proportion_cautions(case, boom),
         "boom": boom_figure(case, boom, farthest),
         "forces": _plain(chart_along({"": rest_lines(farthest, "", theme.PALETTE[0])})),
@@ -111,7 +111,7 @@ def beam_results(checked: CheckedCase, check_current: Callable[[], None]) -> Ite
         yield {
             "stage": stage,
             "rows": table.rows,
-            "verdict": utilisation_verdict(results),
+            "utilisation": utilisation_verdict(results),
             "cautions": results.summary.cautions,
             "tip": _tip_chart(trajectory),
         }

@@ -28,6 +28,7 @@ from shell_model.boom_shell import ShellOptions
 from shell_model.contact.local_compliance import compliance, local_compliance
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.pad_springs import SLOW, springs, squared
+from tests.dynamics.reference import table_slope
 from tests.shell_model.booms import LATERAL_LAW, boom_in_space, flat_boom
 from tests.touching import touching
 
@@ -153,7 +154,7 @@ def test_no_ring_of_the_mesh_is_felt() -> None:
             [law.force(y) for law, y in zip(system.laws, system.rows @ rest, strict=True)]
         )
         compliances.append(local(system))
-        rates = travel.table.slope(way)[: len(system.laws)] @ rest
+        rates = table_slope(travel.table, way)[: len(system.laws)] @ rest
         pulls.append(np.array(forces[-1]) @ rates)
     weight = 55.07 * 10.0
     head, tail = np.array(forces)[:, 2:].sum(axis=1), np.array(forces)[:, :2].sum(axis=1)
