@@ -254,6 +254,7 @@ def on_segments(part: _Part, where: str, segments: Sequence[Segment]) -> _Part:
         if isinstance(name, str):
             if name not in names:
                 raise BoomError(f"{where}.{key}", f"{name!r} is no segment; give {choices(names)}")
+            # mypy cannot express that a type variable stands for dataclasses alone.
             part = replace(part, **{key: names.index(name)})  # type: ignore[type-var]
     outer, inner = (getattr(part, key, getattr(part, "segment", 0)) for key in ("outer", "inner"))
     return placed(part, segments[inner].start, segments[outer].end)

@@ -168,6 +168,7 @@ def at(place: float | Distance, tail: float, head: float) -> float:
 
 def placed(part: _Part, tail: float, head: float) -> _Part:
     """Return a part (a dataclass) with x in m in place of distances from two ends."""
+    # mypy cannot express that a type variable stands for dataclasses alone.
     found: dict[str, Any] = {}
     for field in fields(part):  # type: ignore[arg-type]
         given = getattr(part, field.name)

@@ -206,7 +206,7 @@ def snapshot(
 @app.command()
 def sweep(
     case: CaseFile,
-    vary: Vary = [],  # noqa: B006
+    vary: Vary = [],  # noqa: B006 # typer takes the default of a repeated option as a list
     out: SweepFolder = None,
     models: ModelNames = None,
     mesh_size: MeshSize = None,

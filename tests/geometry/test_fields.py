@@ -56,6 +56,7 @@ def test_impossible_numbers_are_refused(
 
 def test_a_boom_finds_the_places_of_its_parts(paper_boom: Boom) -> None:
     outer, inner = paper_boom.segments
+    # Fields are typed as they are in a boom, with x in m; a user may give other places before.
     arm = replace(
         outer,
         supports=(Support("tail"), Support(2.0)),  # type: ignore[arg-type]

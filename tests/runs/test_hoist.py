@@ -52,16 +52,17 @@ def test_results_of_a_hoist() -> None:
     assert summary.energy_residual < 1e-11
     table = hoist_table(results)
     assert table is not None
-    model, lifted, force, factor = (column.cells[0] for column in table.columns)
+    model, *numbers = (column.cells[0] for column in table.columns)
     assert model == "series"
+    lifted, force, factor = np.array(numbers, dtype=float)
     data = results.trajectories.sel(model="series")
     height = data["load_height"].values
     # The ground, a hundred times as stiff as four falls, is left at this height.
     left = 5000.0 * 9.80665 / (100.0 * 4.0 * 1.0e11 * 1.1e-4 / 35.0)
     first = data["time"].values[np.argmax(height > left)]
-    assert float(lifted) == pytest.approx(first, abs=0.005)  # type: ignore[arg-type] # a number here
-    assert float(force) == pytest.approx(float(factor) * 5000.0 * 9.80665)  # type: ignore[arg-type] # numbers here
-    assert 1.0 < float(factor) < 1.5  # type: ignore[arg-type] # a number here
+    assert lifted == pytest.approx(first, abs=0.005)
+    assert force == pytest.approx(factor * 5000.0 * 9.80665)
+    assert 1.0 < factor < 1.5
 
 
 @pytest.mark.parametrize(
