@@ -10,31 +10,23 @@ from __future__ import annotations
 import json
 import os
 import sys
-import traceback
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
-from tempfile import TemporaryFile, gettempdir
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 # Each command imports its own libraries: those of all commands take seconds to load.
-from runs.process import ending, progress, terminal
-from runs.process.terminal import Terminal, message, printable, say, shorten
+from runs.process import ending, progress, ranks, terminal
+from runs.process.terminal import Terminal, printable
 
 if TYPE_CHECKING:
-    from mpi4py import MPI
-
-    from runs.case.schema import Case
     from runs.pipeline.results import Results
     from runs.report.pages import Addition
     from runs.sweep.points import Plan
     from runs.sweep.run import Outcome
-
-# Free bytes that Open MPI needs in the temporary folder: 8.2 MB and a margin.
-_ROOM_OF_MPI = 16_000_000
 
 app = typer.Typer(
     add_completion=False,
@@ -125,15 +117,15 @@ def run(
     from runs.pipeline.run import run_case
     from runs.process import workers
     from runs.report import opengl, output
-    from runs.sweep.run import launched_world
+    from runs.report.terminal_tables import print_failures, print_runs
 
     if not large:
         estimates.refuse_large(estimates.run_cost(effective), case)
     cache = None if no_cache else Cache.of_user()
-    comm = _enter_mpi(effective, case)
+    comm = ranks.enter_mpi(effective, case)
     if comm is None and effective.ensemble is not None:
-        comm = launched_world(case)
-    with _all_ranks_end_together(comm):
+        comm = ranks.launched_world(case)
+    with ranks.all_end_together(comm):
         if ending.launched_rank() if comm is None else comm.rank:
             if comm is not None:
                 run_case(effective, case, RunContext(comm, cache=cache))
@@ -156,8 +148,8 @@ def run(
             output.write(finished, judged, part, not no_pictures, helper)
             report_progress("report", "pictures and figures", 1.0)
         print(printable(str(folder / output.REPORT)))
-        status = _show({case: finished.results}, {case: judged})
-        return _report_failed_models(case, finished.results) or status
+        status = print_runs({case: finished.results}, {case: judged})
+        return print_failures(case, finished.results) or status
 
 
 @app.command()
@@ -165,11 +157,13 @@ def report(
     folders: Annotated[list[str], typer.Argument(metavar="DIR...", help="The folders of runs.")],
 ) -> int:
     """Render the reports of runs again from their data, and print their tables."""
+    from runs.report.terminal_tables import print_runs
+
     runs, judged = {}, {}
     for folder in folders:
         with _rendered_again(folder) as (results, addition, _):
             runs[folder], judged[folder] = results, addition
-    return _show(runs, judged)
+    return print_runs(runs, judged)
 
 
 @app.command()
@@ -264,8 +258,8 @@ def sweep(
     bound = None if until is None else search.parse_bound(until, plan)
     if not large:
         estimates.refuse_large(estimates.sweep_cost([point.case for point in plan.points]), case)
-    comm = _enter_mpi(plan.points[0].case, case) or sweep_runs.launched_world(case)
-    with _all_ranks_end_together(comm):
+    comm = ranks.enter_mpi(plan.points[0].case, case) or ranks.launched_world(case)
+    with ranks.all_end_together(comm):
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
         if comm is None or comm.rank == 0:
             sweep_runs.prepare(folder, case)
@@ -288,13 +282,13 @@ def sweep(
             changes.write(table, folder)
             print(printable(str(folder / changes.CSV)))
             changes.show(table, plan.points[0].case, refused, Terminal())
-            return _show_failures(plan, outcomes)
+            return sweep_runs.print_failures(plan, outcomes)
         data = charts.write(plan, outcomes, folder)
         print(printable(str(folder / charts.CSV)))
         charts.show(data, plan, Terminal())
         if bound is not None:
             search.show(plan, outcomes, bound, Terminal())
-        return _show_failures(plan, outcomes)
+        return sweep_runs.print_failures(plan, outcomes)
 
 
 @app.command()
@@ -314,9 +308,9 @@ def frequencies(
 
     plan = points.plan(case, vary, _names(models), mesh_size)
     cases = [point.case for point in plan.points]
-    comm = _enter_mpi(cases[0], case)
+    comm = ranks.enter_mpi(cases[0], case)
     cache = None if no_cache else Cache.of_user()
-    with _all_ranks_end_together(comm):
+    with ranks.all_end_together(comm):
         if ending.launched_rank() if comm is None else comm.rank:
             if comm is not None:
                 charts.measure(cases, comm, cache)
@@ -380,7 +374,7 @@ def export(
     checked = reading.load(case)
     chosen = reading.select(checked, case, [exported(checked, case, model).name])
     path = Path(out or f"{Path(case).stem}.py")
-    comm = _enter_mpi(chosen, case, "export another one with --model")
+    comm = ranks.enter_mpi(chosen, case, "export another one with --model")
     write(chosen, case, comm, path, Cache.of_user())
     print(printable(str(path)))
     return 0
@@ -408,45 +402,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
         with terminal.flushed():
             status = command.main(arguments, prog_name="protractile", standalone_mode=False)
     except Exception as error:
-        known = _explain(error)
+        known = ranks.explain(error)
         if known is None:
             raise
         ending.fail(*known, None)
     sys.exit(status or 0)
-
-
-def _explain(error: Exception) -> tuple[str, int] | None:
-    """Return the line and the exit status for an error that the user can correct."""
-    # Imports fail without memory, and the loader of libraries has its own error for it.
-    if isinstance(error, MemoryError) or "failed to map segment" in str(error):
-        return message(f"out of memory ({error}); make the models or the output smaller"), 3
-    from dynamics.failure import NumericsError
-    from runs.case.messages import BadInput
-
-    if isinstance(error, BadInput):
-        return message(str(error)), 2
-    if isinstance(error, NumericsError):
-        return message(str(error)), 3
-    # A usage error of typer; its class has no public name.
-    if hasattr(error, "format_message"):
-        return message(f"{error.format_message()} (protractile --help tells more)"), 2
-    if isinstance(error, OSError):
-        # Errors of some libraries lack the file or the reason.
-        file = "output" if error.filename is None else shorten(str(error.filename))
-        return message(f"{file}: file: cannot be used ({error.strerror or error})"), 2
-    return None
-
-
-@contextmanager
-def _all_ranks_end_together(comm: MPI.Comm | None) -> Iterator[None]:
-    """End all ranks if one of them fails, since the others would wait for it for ever."""
-    try:
-        yield
-    except Exception as error:
-        if comm is None or comm.size == 1:
-            raise
-        known = _explain(error)
-        ending.fail(*(known or (traceback.format_exc(), 1)), comm)
 
 
 @contextmanager
@@ -474,90 +434,3 @@ def _rendered_again(folder: str) -> Iterator[tuple[Results, Addition, Path]]:
 def _names(models: str | None) -> list[str] | None:
     """Return the elements of a comma-separated list."""
     return None if models is None else [name.strip() for name in models.split(",")]
-
-
-def _enter_mpi(
-    case: Case, file: str, without: str = "run the other models with --models"
-) -> MPI.Intracomm | None:
-    """Return the communicator of the ranks that share the shells; None for a case without shells.
-
-    Raises:
-        BadInput: the case has a shell, and FEniCSx is not installed.
-    """
-    from runs.case.messages import BadInput
-
-    for number, model in enumerate(case.models, start=1):
-        if model.needs_shell:
-            _check_temporary_folder(file)
-            try:
-                import_module("shell_model.boom_shell")
-                from mpi4py import MPI
-            except ImportError as error:
-                raise BadInput(
-                    file,
-                    f"model[{number}].kind",
-                    f"a shell needs FEniCSx, which cannot be imported ({error}); install "
-                    f"python3-dolfinx (Debian) or fenics-dolfinx (conda), or {without}",
-                ) from None
-            return MPI.COMM_WORLD
-    return None
-
-
-def _check_temporary_folder(file: str) -> None:
-    """Check the space in the temporary folder, without which MPI aborts with a long message.
-
-    Raises:
-        BadInput: the folder has too little space, or is not writable.
-    """
-    from runs.case.messages import BadInput
-
-    # Open MPI uses this variable as it is, while Python may choose another folder.
-    folder = os.environ.get("TMPDIR") or gettempdir()
-    try:
-        with TemporaryFile(dir=folder) as probe:
-            os.posix_fallocate(probe.fileno(), 0, _ROOM_OF_MPI)
-    except OSError as error:
-        raise BadInput(
-            file,
-            "TMPDIR",
-            f"a shell needs {_ROOM_OF_MPI / 1e6:.0f} MB in {shorten(folder)!r} ({error.strerror}); "
-            "make room there, or set TMPDIR to another folder",
-        ) from None
-
-
-def _show(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
-    """Print models, numerics, judgements and results of runs; return the exit status."""
-    from runs.client import show
-    from runs.report.limits import limit_faults
-    from runs.report.terminal_tables import print_models, print_results
-
-    console = Terminal()
-    for results in runs.values():
-        print_models(results, console)
-    status = show(judged, console)
-    for file, results in runs.items():
-        print_results(results, console)
-        for fault in limit_faults(results):
-            status = 1
-            say(message(f"{shorten(file)}: {fault}"))
-    return status
-
-
-def _report_failed_models(file: str, results: Results) -> int:
-    """Print a line for each model that failed; return the exit status."""
-    failures = results.summary.failures
-    if not failures:
-        return 0
-    numbers = {model.name: i for i, model in enumerate(results.case.models, start=1)}
-    first, *others = (f"model[{numbers[name]}]" for name in failures)
-    too = f"{', '.join(others)} failed, too; first " if others else ""
-    say(message(f"{shorten(file)}: {too}{first}: {next(iter(failures.values()))}"))
-    return 3
-
-
-def _show_failures(plan: Plan, outcomes: Sequence[Outcome]) -> int:
-    """Print a line for each model that failed at a point; return 3 if no result remains."""
-    for point, outcome in zip(plan.points, outcomes, strict=True):
-        for model, why in outcome.failures.items():
-            say(message(f"{shorten(plan.file)}: --vary {point.label}: {model}: {why}"))
-    return 0 if any(outcome.models for outcome in outcomes) else 3

@@ -3,17 +3,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from rich.console import Console
 
 from geometry.typography import TO_MILLI
+from runs.client import show
 from runs.pipeline.results import Results
 from runs.pipeline.utilisation import utilisations
+from runs.process.terminal import Terminal, message, say, shorten
 from runs.report.figure_context import farthest
 from runs.report.formatting import number, percent
-from runs.report.limits import limit_table
+from runs.report.limits import limit_faults, limit_table
 from runs.report.model_tables import model_table
+from runs.report.pages import Addition
 from runs.report.summary_table import (
     governing_pads,
     largest_peak,
@@ -32,6 +35,37 @@ SHOWN = {
     "energy residual\nof the work": "energy\nresidual",
     "wall time\ns": "wall time\ns",
 }
+
+
+def print_runs(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
+    """Print models, numerics, judgements and results of runs; return the exit status.
+
+    Args:
+        runs: the runs, by the file or folder that messages name.
+        judged: the client's additions, by the same names.
+    """
+    console = Terminal()
+    for results in runs.values():
+        print_models(results, console)
+    status = show(judged, console)
+    for file, results in runs.items():
+        print_results(results, console)
+        for fault in limit_faults(results):
+            status = 1
+            say(message(f"{shorten(file)}: {fault}"))
+    return status
+
+
+def print_failures(file: str, results: Results) -> int:
+    """Print a line for each model of a run that failed; return the exit status."""
+    failures = results.summary.failures
+    if not failures:
+        return 0
+    numbers = {model.name: i for i, model in enumerate(results.case.models, start=1)}
+    first, *others = (f"model[{numbers[name]}]" for name in failures)
+    too = f"{', '.join(others)} failed, too; first " if others else ""
+    say(message(f"{shorten(file)}: {too}{first}: {next(iter(failures.values()))}"))
+    return 3
 
 
 def print_models(results: Results, console: Console) -> None:

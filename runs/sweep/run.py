@@ -8,6 +8,7 @@ finished point.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
@@ -23,16 +24,14 @@ from runs.folder.cache import Cache, key
 from runs.pipeline.context import RunContext
 from runs.pipeline.quantities import Measured, measure
 from runs.pipeline.run import run_case
-from runs.process import ending
 from runs.process.ending import when_interrupted
 from runs.process.progress import Progress
+from runs.process.terminal import message, say, shorten
 from runs.process.workers import end
 from runs.sweep.distances import Features, comparable_until
 from runs.sweep.points import Plan
 
 if TYPE_CHECKING:
-    from mpi4py import MPI
-
     from runs.pipeline.results import Results
 
 POINTS = "points"
@@ -67,23 +66,6 @@ def prepare(folder: Path, file: str) -> None:
         )
     check_left(folder, file, key)
     (folder / POINTS).mkdir(parents=True, exist_ok=True)
-
-
-def launched_world(file: str) -> MPI.Intracomm | None:
-    """Return all ranks if a launcher such as ``mpirun`` started several, else None.
-
-    Raises:
-        BadInput: a launcher started several ranks, and mpi4py is not installed.
-    """
-    if ending.launched_rank() is None:
-        return None
-    try:
-        from mpi4py import MPI
-    except ImportError as error:
-        raise BadInput(
-            file, "mpirun", f"mpi4py cannot be imported ({error}); run without mpirun"
-        ) from None
-    return MPI.COMM_WORLD if MPI.COMM_WORLD.size > 1 else None
 
 
 def run_points(
@@ -170,3 +152,11 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
     compared = features.pop(reference)
     off = {name: one.distances_from(compared) for name, one in features.items()}
     return Outcome(models, failures, off, until)
+
+
+def print_failures(plan: Plan, outcomes: Sequence[Outcome]) -> int:
+    """Print a line for each model that failed at a point; return 3 if no result remains."""
+    for point, outcome in zip(plan.points, outcomes, strict=True):
+        for model, why in outcome.failures.items():
+            say(message(f"{shorten(plan.file)}: --vary {point.label}: {model}: {why}"))
+    return 0 if any(outcome.models for outcome in outcomes) else 3

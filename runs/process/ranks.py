@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The ranks of a command: start of MPI for cases with shells, errors, and the common end.
+
+Bad input is imported where it is used: a command without memory cannot import.
+"""
+
+from __future__ import annotations
+
+import os
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from tempfile import TemporaryFile, gettempdir
+from typing import TYPE_CHECKING
+
+from runs.process import ending
+from runs.process.terminal import message, shorten
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from runs.case.schema import Case
+
+# Free bytes that Open MPI needs in the temporary folder: 8.2 MB and a margin.
+_ROOM_OF_MPI = 16_000_000
+
+
+def enter_mpi(
+    case: Case, file: str, without: str = "run the other models with --models"
+) -> MPI.Intracomm | None:
+    """Return the communicator of the ranks that share the shells; None for a case without shells.
+
+    Raises:
+        BadInput: the case has a shell, and FEniCSx is not installed.
+    """
+    from runs.case.messages import BadInput
+
+    for number, model in enumerate(case.models, start=1):
+        if model.needs_shell:
+            _check_temporary_folder(file)
+            try:
+                import_module("shell_model.boom_shell")
+                from mpi4py import MPI
+            except ImportError as error:
+                raise BadInput(
+                    file,
+                    f"model[{number}].kind",
+                    f"a shell needs FEniCSx, which cannot be imported ({error}); install "
+                    f"python3-dolfinx (Debian) or fenics-dolfinx (conda), or {without}",
+                ) from None
+            return MPI.COMM_WORLD
+    return None
+
+
+def launched_world(file: str) -> MPI.Intracomm | None:
+    """Return all ranks if a launcher such as ``mpirun`` started several, else None.
+
+    Raises:
+        BadInput: a launcher started several ranks, and mpi4py is not installed.
+    """
+    from runs.case.messages import BadInput
+
+    if ending.launched_rank() is None:
+        return None
+    try:
+        from mpi4py import MPI
+    except ImportError as error:
+        raise BadInput(
+            file, "mpirun", f"mpi4py cannot be imported ({error}); run without mpirun"
+        ) from None
+    return MPI.COMM_WORLD if MPI.COMM_WORLD.size > 1 else None
+
+
+def explain(error: Exception) -> tuple[str, int] | None:
+    """Return the line and the exit status for an error that the user can correct."""
+    # Imports fail without memory, and the loader of libraries has its own error for it.
+    if isinstance(error, MemoryError) or "failed to map segment" in str(error):
+        return message(f"out of memory ({error}); make the models or the output smaller"), 3
+    from dynamics.failure import NumericsError
+    from runs.case.messages import BadInput
+
+    if isinstance(error, BadInput):
+        return message(str(error)), 2
+    if isinstance(error, NumericsError):
+        return message(str(error)), 3
+    # A usage error of typer; its class has no public name.
+    if hasattr(error, "format_message"):
+        return message(f"{error.format_message()} (protractile --help tells more)"), 2
+    if isinstance(error, OSError):
+        # Errors of some libraries lack the file or the reason.
+        file = "output" if error.filename is None else shorten(str(error.filename))
+        return message(f"{file}: file: cannot be used ({error.strerror or error})"), 2
+    return None
+
+
+@contextmanager
+def all_end_together(comm: MPI.Comm | None) -> Iterator[None]:
+    """End all ranks if one of them fails, since the others would wait for it for ever."""
+    try:
+        yield
+    except Exception as error:
+        if comm is None or comm.size == 1:
+            raise
+        known = explain(error)
+        ending.fail(*(known or (traceback.format_exc(), 1)), comm)
+
+
+def _check_temporary_folder(file: str) -> None:
+    """Check the space in the temporary folder, without which MPI aborts with a long message.
+
+    Raises:
+        BadInput: the folder has too little space, or is not writable.
+    """
+    from runs.case.messages import BadInput
+
+    # Open MPI uses this variable as it is, while Python may choose another folder.
+    folder = os.environ.get("TMPDIR") or gettempdir()
+    try:
+        with TemporaryFile(dir=folder) as probe:
+            os.posix_fallocate(probe.fileno(), 0, _ROOM_OF_MPI)
+    except OSError as error:
+        raise BadInput(
+            file,
+            "TMPDIR",
+            f"a shell needs {_ROOM_OF_MPI / 1e6:.0f} MB in {shorten(folder)!r} ({error.strerror}); "
+            "make room there, or set TMPDIR to another folder",
+        ) from None
