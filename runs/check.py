@@ -26,6 +26,7 @@ from runs.case.checked_case import CheckedCase
 from runs.case.kinds.model import ModelTable
 from runs.case.schema import Case, Model
 from runs.case.units import System
+from runs.pipeline.combinations import combination_states, combination_tables
 from runs.pipeline.drives import (
     drive_lines,
     stick_slip_cautions,
@@ -34,9 +35,9 @@ from runs.pipeline.drives import (
 )
 from runs.pipeline.estimates import Preview, preview_cost
 from runs.pipeline.largest_loads import (
+    StaticBeam,
     beam_note,
     overload_cautions,
-    static_extremes,
     static_table,
 )
 from runs.pipeline.load_table import load_table
@@ -74,7 +75,7 @@ def print_check(declared: CheckedCase, console: Console) -> None:
     case, boom, preview = declared.case, declared.boom, Preview(declared)
     found = statics(case, boom)
     shown = boom if found is None else found.with_play.boom
-    extremes = [] if found is None else static_extremes(case, shown)
+    extremes = [] if found is None else StaticBeam.of(case, shown).extremes(case.system)
     print_lines = partial(console.print, markup=False, highlight=False)
     tables = [
         _segments(case, boom),
@@ -89,6 +90,7 @@ def print_check(declared: CheckedCase, console: Console) -> None:
         *([_reactions(found.with_play, case.system)] if found else []),
         *([_cylinders(found.with_play, case.system)] if found else []),
         static_table(case, shown, extremes),
+        *combination_tables(combination_states(case), case.system),
     ]
     print_lines(case.title)
     for table in tables:

@@ -156,13 +156,17 @@ def thrusts(case: Case, segments: Sequence[Segment]) -> tuple[Thrust, ...]:
 def _thrust(where: str, table: AxialTable, case: Case, segments: Sequence[Segment]) -> Thrust:
     name: Any = segments[-1].name if table.segment is None else table.segment
     place: Any = Distance(head=0.0) if table.x is None else table.x
-    thrust = on_segments(Thrust(name, place, _axial_force(where, table, case)), where, segments)
+    thrust = on_segments(Thrust(name, place, axial_force(where, table, case)), where, segments)
     segments[thrust.segment].check_place(f"{where}.x", thrust.x)
     return thrust
 
 
-def _axial_force(where: str, table: AxialTable, case: Case) -> float:
-    """Return the compressive force in N."""
+def axial_force(where: str, table: AxialTable, case: Case) -> float:
+    """Return the compressive force in N of a table of a case; ``where`` is its key.
+
+    Raises:
+        BoomError: a rope has no payload, or a force is given twice or not at all.
+    """
     if table.force is not None:
         for key in ("falls", "mass"):
             if getattr(table, key) is not None:

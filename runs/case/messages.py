@@ -20,7 +20,10 @@ from runs.case.sections import SHAPES
 from runs.process.terminal import shorten
 
 # Keys of the case that are arrays of tables.
-_ARRAYS = ("segment", "joint", "stop", "cylinder", "load", "axial", "base", "observe", "model")
+_ARRAYS = (
+    "segment", "joint", "stop", "cylinder", "load", "axial", "base", "observe", "model",
+    "load_case", "combination",
+)  # fmt: skip
 
 # Attributes of a boom, and their keys.
 _PARTS = {f"{key}s": key for key in ("segment", "joint", "load", "stop", "cylinder")}

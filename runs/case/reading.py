@@ -19,6 +19,7 @@ from geometry.typography import choices
 from runs.case.build import build_boom, check_names, check_varied
 from runs.case.checked_case import CheckedCase
 from runs.case.columns import Column, read_pairs
+from runs.case.combinations import check_combinations
 from runs.case.contact import ContactTable, table_law
 from runs.case.conversion import in_si
 from runs.case.drive import TravelTable
@@ -226,8 +227,19 @@ def _read_tables(case: Case, path: str) -> Case:
         else model.model_copy(update={"contact": contact(f"model[{i}].contact", model.contact)})
         for i, model in enumerate(case.models, start=1)
     ]
+    load_cases = [
+        one.model_copy(
+            update={
+                key: standing(f"load_case[{i}].{shown}", given)
+                for key, shown in (("loads", "load"), ("base", "base"))
+                if (given := getattr(one, key)) is not None
+            }
+        )
+        for i, one in enumerate(case.load_cases, start=1)
+    ]
     return case.model_copy(
         update={
+            "load_cases": tuple(load_cases),
             "joints": tuple(joints),
             "models": tuple(models),
             "loads": standing("load", case.loads),
@@ -325,6 +337,7 @@ def _check_boom(found: CheckedCase) -> None:
         model.check(where, found.joined(model))
     _check_step("time.step", case.time.step, case.time)
     check_varied(case, boom)
+    check_combinations(case)
 
 
 def _check_step(where: str, step: float | None, time: TimeTable) -> None:

@@ -7,6 +7,7 @@ The string below a key appears in the JSON Schema and in the message for a missi
 from __future__ import annotations
 
 from functools import reduce
+from math import prod
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
@@ -22,6 +23,7 @@ from geometry.fields import (
     Few,
     Flag,
     In,
+    Name,
     NotNegative,
     Number,
     Place,
@@ -94,6 +96,9 @@ class StopTable(BareStop):
 
 Times = Annotated[tuple[tuple[Number, Number], ...], In("s", "1")]
 
+# Groups of loads with a common factor in a combination.
+Group = Literal["dead", "payload", "wind", "dynamic", "test"]
+
 
 class HistoryTable(CaseTable):
     """History over time; constant from t = 0 on unless a key is given."""
@@ -141,6 +146,8 @@ class LoadTable(HistoryTable):
     """whether the load is a moment at x, positive where it increases the slope of the segment"""
     released: Flag = False
     """whether the load acts before t = 0 and is released at t = 0"""
+    group: Group = "payload"
+    """the group of the load, whose factor combinations give"""
 
     amount: ClassVar[str] = "magnitude"
 
@@ -165,6 +172,8 @@ class AxialTable(CaseTable):
     """the number of falls of a hoist rope, which share the mass on it"""
     mass: Annotated[Positive, In("kg")] | None = None
     """the mass in kg that the rope carries; the payload's unless given"""
+    group: Group = "payload"
+    """the group of the force, whose factor combinations give"""
 
 
 class PayloadTable(CaseTable):
@@ -175,6 +184,8 @@ class PayloadTable(CaseTable):
     gravity: Annotated[NotNegative, In("m/s^2")] | None = None
     """the acceleration of gravity in m/s^2 that acts on the payload alone from t = 0, 0 for none;
     9.80665 unless given, or that of the table gravity"""
+    group: Group = "payload"
+    """the group of its weight, whose factor combinations give; dead for a cage or a hook"""
 
 
 class GravityTable(CaseTable):
@@ -204,6 +215,8 @@ class BaseTable(HistoryTable):
     acceleration: Annotated[Number, In("m/s^2")] = 1.0
     """the acceleration in m/s^2; a factor, 1 unless given, if the heading of its file has
     such a unit"""
+    group: Group = "dynamic"
+    """the group of the inertia loads, whose factor combinations give"""
 
     amount: ClassVar[str] = "acceleration"
 
@@ -315,6 +328,72 @@ class LimitsTable(CaseTable):
     LEAST: ClassVar = frozenset({"first_frequency"})
 
 
+class LoadCaseTable(CaseTable):
+    """A load case of the boom at rest; its keys replace those of the case."""
+
+    name: Name
+    """the name of the load case"""
+    angle: Annotated[float, Field(strict=True, ge=-90.0, le=90.0), In("deg")] | None = None
+    """the luffing angle in degrees, in place of gravity.angle; the ground of cylinders turns with
+    it about the foot"""
+    extension: Annotated[dict[str, NotNegative], In("m")] = Field(default_factory=dict)
+    """inner segment = extension in m, in place of that of its joint"""
+    payload: Annotated[NotNegative, In("kg")] | None = None
+    """a mass in kg at the tip in addition to that of the table payload; it weighs along and across
+    the boom, as a load of the group payload"""
+    loads: Annotated[tuple[LoadTable, ...], Few] | None = Field(None, alias="load")
+    """the loads in place of all [[load]] of the case; those of the case unless given"""
+    axial: Annotated[tuple[AxialTable, ...], Few] | None = None
+    """the forces along the boom in place of all [[axial]] of the case; those unless given"""
+    base: Annotated[tuple[BaseTable, ...], Few] | None = None
+    """the accelerations of the ground in place of all [[base]] of the case; those unless given"""
+
+
+def _factor(given: Any) -> Any:
+    """Return a plain number as a product of one number."""
+    return (given,) if is_number(given) else given
+
+
+# A factor, as the numbers whose product it is.
+Factor = Annotated[
+    tuple[NotNegative, ...],
+    In("1"),
+    Field(min_length=1, max_length=9),
+    BeforeValidator(_factor, json_schema_input_type=NotNegative | tuple[NotNegative, ...]),
+]
+
+
+class FactorsTable(CaseTable):
+    """Factors of the groups of loads: a number, or numbers whose product is the factor."""
+
+    dead: Factor | None = None
+    """the factor of the weight of the boom and of the loads along its segments"""
+    payload: Factor | None = None
+    """the factor of the payload and of loads without another group"""
+    wind: Factor | None = None
+    """the factor of loads of the group wind"""
+    dynamic: Factor | None = None
+    """the factor of accelerations of the ground and of loads of the group dynamic"""
+    test: Factor | None = None
+    """the factor of loads of the group test"""
+
+    def of(self, group: Group) -> float | None:
+        """Return the factor of a group; None if it is not given."""
+        numbers: tuple[float, ...] | None = getattr(self, group)
+        return None if numbers is None else prod(numbers)
+
+
+class CombinationTable(CaseTable):
+    """A combination of loads, in some of the load cases or in all."""
+
+    name: Name
+    """the name of the combination"""
+    load_cases: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
+    """the names of its load cases; all unless given"""
+    factors: FactorsTable
+    """group = factor, for each group of its load cases"""
+
+
 if TYPE_CHECKING:
     Model = ModelTable
 else:
@@ -381,6 +460,10 @@ class Case(CaseKeys, CaseHeading):
     """the table of the buckling analysis of walls; none is made unless given"""
     limits: LimitsTable | None = None
     """the table of limits of results; none are checked unless given"""
+    load_cases: Annotated[tuple[LoadCaseTable, ...], Few] = Field((), alias="load_case")
+    """the load cases, one [[load_case]] each; the case itself unless given"""
+    combinations: Annotated[tuple[CombinationTable, ...], Few] = Field((), alias="combination")
+    """the combinations of loads, one [[combination]] each; each load case alone unless given"""
     models: Annotated[tuple[Model, ...], Field(min_length=1, max_length=MOST_MODELS)] = Field(
         alias="model"
     )

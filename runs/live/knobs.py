@@ -49,7 +49,9 @@ _FIRST = (
 )
 
 # Tables whose numbers cannot be changed in the page, which has its own beam.
-_WITHOUT = ("ensemble", "model", "title", "units", "shown_units")
+_WITHOUT = (
+    "ensemble", "model", "title", "units", "shown_units", "load_case", "combination",
+)  # fmt: skip
 
 # Maximum length of a list of numbers; longer ones are histories and measured curves.
 _LONGEST = 4

@@ -14,6 +14,9 @@ import numpy as np
 
 from beam_model.lines import lines
 from beam_model.statics import Elements, static_state, static_theory
+from dynamics.line import Line
+from geometry.arrays import Array
+from geometry.axial import foot_thrust
 from geometry.boom import Boom
 from runs.case.schema import Case
 from runs.case.units import System
@@ -32,6 +35,7 @@ class StaticExtreme(NamedTuple):
     """A number at rest at t = 0 and where it is largest, under the loads of a time.
 
     Args:
+        name: its name, with the part of the boom to which it belongs.
         what: its name, with the place.
         unit: SI unit.
         initial: value at t = 0.
@@ -40,6 +44,7 @@ class StaticExtreme(NamedTuple):
         utilisation: utilisation of a strength by the largest value; None without a strength.
     """
 
+    name: str
     what: str
     unit: str
     initial: float
@@ -48,50 +53,128 @@ class StaticExtreme(NamedTuple):
     utilisation: Utilisation | None = None
 
 
-def static_extremes(case: Case, boom: Boom) -> list[StaticExtreme]:
-    """Return the extremes of tip, stresses, pads, contacts and cylinders at rest.
+class StaticBeam(NamedTuple):
+    """A boom of beam elements at rest under the loads of several instants.
 
     Args:
-        case: a checked case.
-        boom: as its first model with play sees it, or without play if all models are.
-
-    Raises:
-        NumericsError: it has no rest at t = 0.
+        boom: the boom, without drives.
+        lines: lines along the segments, with the forces of cylinders.
+        positions: equilibria (num_rests, num_modes).
+        rests: static states at the equilibria.
     """
-    boom = replace(boom, joints=tuple(replace(joint, drive=None) for joint in boom.joints))
-    elements = Elements(boom, _ELEMENTS)
-    system = static_state(boom, elements).system
-    own = lines(boom, elements.segments)
-    # Springs of walls follow the coordinates of the segments.
-    basis = np.eye(own[0].rows["deflection"].shape[1], system.num_modes)
-    along = with_cylinders(boom, system, [line.on(basis) for line in own])
-    found = positions(system, instants(system, case.time.duration))
-    rests = [static_result(boom, system, along, *rest) for rest in found.items()]
 
-    extremes = [_extreme("tip", "m", rests, [rest.tip for rest in rests])]
-    if boom.spatial:
-        lateral = [rest.tip_lateral or 0.0 for rest in rests]
-        extremes.append(_extreme("tip to the side", "m", rests, lateral))
-    states, time = np.array([*found.values()]), np.array([*found])
-    for number_of, (segment, line) in enumerate(zip(boom.segments, along, strict=True)):
-        if (fibres := Fibres.of(segment, line)) is None:
-            continue
-        curves = section_forces(boom, number_of, line, states, time)
-        still = {name: values[:1] for name, values in curves.items()}
-        fibre, _ = largest_stresses(segment, fibres, curves, still, time)
-        stress = abs(fibre.stress)
-        used = Utilisation("outer fibre", segment.name, fibre.x, stress, fibre.utilisation)
-        what = f"stress, {segment.name} at {case.system.text(fibre.x, 'm', 5)}"
-        initial = fibre.at_rest or 0.0
-        extremes.append(StaticExtreme(what, "Pa", initial, stress, fibre.time, used))
-    extremes += _at_stations(boom, rests, case.system)
-    for name in rests[0].cylinders:
-        forces = [rest.cylinders[name] for rest in rests]
-        extremes.append(_extreme(name.replace("_", " "), "N", rests, forces))
-    return extremes
+    boom: Boom
+    lines: Sequence[Line]
+    positions: Array
+    rests: Sequence[StaticResult]
+
+    @classmethod
+    def of(cls, case: Case, boom: Boom) -> StaticBeam:
+        """Return the static states at t = 0 and under extreme loads.
+
+        Args:
+            case: a checked case.
+            boom: as its first model with play sees it, or without play if all models are.
+
+        Raises:
+            NumericsError: it has no rest at t = 0.
+        """
+        boom = replace(boom, joints=tuple(replace(joint, drive=None) for joint in boom.joints))
+        elements = Elements(boom, _ELEMENTS)
+        system = static_state(boom, elements).system
+        own = lines(boom, elements.segments)
+        # Springs of walls follow the coordinates of the segments.
+        basis = np.eye(own[0].rows["deflection"].shape[1], system.num_modes)
+        along = with_cylinders(boom, system, [line.on(basis) for line in own])
+        found = positions(system, instants(system, case.time.duration))
+        rests = [static_result(boom, system, along, *rest) for rest in found.items()]
+        return cls(boom, along, np.array([*found.values()]), rests)
+
+    def extremes(self, system: System) -> list[StaticExtreme]:
+        """Return the extremes of tip, stresses, pads, contacts and cylinders.
+
+        Args:
+            system: units of places in names.
+        """
+        boom, rests = self.boom, self.rests
+        extremes = [_extreme("tip", "tip", "m", rests, [rest.tip for rest in rests])]
+        if boom.spatial:
+            lateral = [rest.tip_lateral or 0.0 for rest in rests]
+            name = "tip to the side"
+            extremes.append(_extreme(name, name, "m", rests, lateral))
+        time = np.array([rest.time for rest in rests])
+        for number_of, (segment, line) in enumerate(zip(boom.segments, self.lines, strict=True)):
+            if (fibres := Fibres.of(segment, line)) is None:
+                continue
+            curves = section_forces(boom, number_of, line, self.positions, time)
+            still = {name: values[:1] for name, values in curves.items()}
+            fibre, _ = largest_stresses(segment, fibres, curves, still, time)
+            stress = abs(fibre.stress)
+            used = Utilisation("outer fibre", segment.name, fibre.x, stress, fibre.utilisation)
+            name = f"stress, {segment.name}"
+            what = f"{name} at {system.text(fibre.x, 'm', 5)}"
+            initial = fibre.at_rest or 0.0
+            extremes.append(StaticExtreme(name, what, "Pa", initial, stress, fibre.time, used))
+        extremes += self._at_stations(system)
+        for name in rests[0].cylinders:
+            values = [rest.cylinders[name] for rest in rests]
+            shown = name.replace("_", " ")
+            extremes.append(_extreme(shown, shown, "N", rests, values))
+        return extremes
+
+    def foot_extremes(self, system: System) -> Iterator[StaticExtreme]:
+        """Yield the extremes of the resultant force on each foot, across and along the boom."""
+        for number_of, (segment, line) in enumerate(
+            zip(self.boom.segments, self.lines, strict=True)
+        ):
+            if segment.foot is None or "shear" not in line.rows:
+                continue
+            x = segment.foot.x
+            parts = [
+                self.positions @ (line.beside(name, x, -1) - line.beside(name, x, 1))
+                for name in ("shear", "lateral_shear", "normal")
+                if name in line.rows
+            ]
+            thrust = foot_thrust(self.boom.segments, self.boom.joints, number_of)
+            along = parts.pop() if "normal" in line.rows else np.zeros(len(self.rests))
+            whole = np.linalg.norm([*parts, thrust + along], axis=0)
+            name = f"foot, {segment.name}"
+            what = f"foot force at {system.text(x, 'm', 5)}"
+            yield _extreme(name, what, "N", self.rests, whole.tolist())
+
+    def _at_stations(self, system: System) -> Iterator[StaticExtreme]:
+        boom, rests = self.boom, self.rests
+        stations = [
+            (joint.inner, number)
+            for joint in boom.joints
+            if not joint.tied
+            for number, _ in enumerate(joint.stations, start=1)
+        ]
+        for number_of, station in enumerate(rests[0].stations):
+            loads = [rest.stations[number_of] for rest in rests]
+            to_side = " to the side" if station.direction == "y" else ""
+            where = f"{system.text(station.x, 'm', 5)}{to_side}"
+            # Stops follow the stations of joints.
+            name, part = where, ""
+            if number_of < len(boom.directions) * len(stations):
+                inner, number = stations[number_of % len(stations)]
+                part = boom.segments[inner].name
+                name = f"{part}, station {number}{to_side}"
+            if station.pressure is None:
+                forces = [load.force for load in loads]
+                what = f"contact force at {where}"
+                yield _extreme(f"contact, {name}", what, "N", rests, forces)
+                continue
+            pressures = [load.pressure or 0.0 for load in loads]
+            used = [
+                Utilisation("pad", part, load.x, load.pressure or 0.0, load.utilisation)
+                for load in loads
+            ]
+            yield _extreme(f"pad, {name}", f"pad at {where}", "Pa", rests, pressures, used)
 
 
 def _extreme(
+    name: str,
     what: str,
     unit: str,
     rests: Sequence[StaticResult],
@@ -100,45 +183,24 @@ def _extreme(
 ) -> StaticExtreme:
     step = int(np.abs(values).argmax())
     largest = values[step], rests[step].time
-    return StaticExtreme(what, unit, values[0], *largest, used[step] if used else None)
-
-
-def _at_stations(
-    boom: Boom, rests: Sequence[StaticResult], system: System
-) -> Iterator[StaticExtreme]:
-    inner = {place: one.inner for one in boom.joints for place in one.stations}
-    for number_of, station in enumerate(rests[0].stations):
-        loads = [rest.stations[number_of] for rest in rests]
-        to_side = " to the side" if station.direction == "y" else ""
-        where = f"{system.text(station.x, 'm', 5)}{to_side}"
-        if station.pressure is None:
-            forces = [load.force for load in loads]
-            yield _extreme(f"contact force at {where}", "N", rests, forces)
-            continue
-        name = boom.segments[inner[station.x]].name
-        pressures = [load.pressure or 0.0 for load in loads]
-        used = [
-            Utilisation("pad", name, load.x, load.pressure or 0.0, load.utilisation)
-            for load in loads
-        ]
-        yield _extreme(f"pad at {where}", "Pa", rests, pressures, used)
+    return StaticExtreme(name, what, unit, values[0], *largest, used[step] if used else None)
 
 
 def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> Table:
     """Return the table of extremes at rest, in the units of the case.
 
     Args:
-        case, boom: those of :func:`static_extremes`.
-        extremes: its result.
+        case, boom: those of :meth:`StaticBeam.of`.
+        extremes: the extremes of that beam.
     """
     used = [one.utilisation.value if one.utilisation else None for one in extremes]
     vary = any(one.time > 0.0 for one in extremes)
     columns = [
         Column("", [one.what for one in extremes]),
-        Column("t = 0", [_in_units(one.initial, one.unit, case.system) for one in extremes]),
+        Column("t = 0", [in_units(one.initial, one.unit, case.system) for one in extremes]),
     ]
     if vary:
-        largest = [_in_units(one.largest, one.unit, case.system) for one in extremes]
+        largest = [in_units(one.largest, one.unit, case.system) for one in extremes]
         columns += [
             Column("largest", largest),
             Column("loads of\ns", [f"{one.time:.4g}" for one in extremes]),
@@ -158,7 +220,8 @@ def beam_note(boom: Boom) -> str:
     return f"Of the boom as {theory} beam elements{walls}; no model of the case."
 
 
-def _in_units(value: float, unit: str, system: System) -> str:
+def in_units(value: float, unit: str, system: System) -> str:
+    """Return a value in an SI unit as text in the units of a case."""
     if system.name == "SI":
         return amount(value, unit)
     return f"{number(system.of(value, unit), 3)} {system.label(unit)}"

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from geometry.fields import names_of
 from geometry.section import BoxSection
 from geometry.typography import choices
 from runs.case import reading as case_file
@@ -131,7 +132,8 @@ def plan(
 
 def tables_of(case: Case) -> Tables:
     """Return a case as plain tables, without those that have no effect on runs of a sweep."""
-    return case.model_dump(mode="json", by_alias=True, exclude_none=True, exclude={*UNUSED})
+    unused = {names_of(Case)[key] for key in UNUSED}
+    return case.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=unused)
 
 
 def make_points(

@@ -27,7 +27,8 @@ from runs.case.units import scaled
 Tables = dict[str, Any]
 
 # Tables that have no effect on runs of a sweep, with the reason.
-UNUSED = {"ensemble": "a sweep runs no ensembles", "limits": "no run depends on it"}
+_NO_RUN = dict.fromkeys(("limits", "load_case", "combination"), "no run depends on it")
+UNUSED = {"ensemble": "a sweep runs no ensembles", **_NO_RUN}
 
 # Maximum number of points, which take weeks.
 MOST_POINTS = 10_000

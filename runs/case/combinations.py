@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Load cases and combinations: cases at rest that follow from a case by replaced keys and factors.
+
+The case of a combination has the masses of its load case. Where a group has another factor than the
+dead weight, a force at the tip, across and along, makes up for the difference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from math import cos, radians, sin
+from typing import Any, NamedTuple, get_args
+
+from geometry.boom import BoomError
+from geometry.cylinder import Cylinder
+from geometry.typography import choices
+from runs.case.actions import STANDARD_GRAVITY, axial_force
+from runs.case.build import build_boom, check_names
+from runs.case.schema import (
+    AxialTable,
+    BaseTable,
+    Case,
+    CombinationTable,
+    GravityTable,
+    Group,
+    LoadCaseTable,
+    LoadTable,
+    PayloadTable,
+)
+
+# Factors of groups; those of all groups of a load case alone.
+Factors = Mapping[Group, float]
+UNIT: Factors = dict.fromkeys(get_args(Group), 1.0)
+
+# The load case of a case without load cases.
+_PLAIN = LoadCaseTable.model_validate({"name": "case"})
+
+
+class CombinedCase(NamedTuple):
+    """The case of a combination in a load case; names are empty where the case gives none."""
+
+    combination: str
+    load_case: str
+    case: Case
+
+    @property
+    def name(self) -> str:
+        """The names of combination and load case; ``case`` if the case gives none."""
+        return ", ".join(filter(None, (self.combination, self.load_case))) or "case"
+
+
+def combined_cases(case: Case) -> Iterator[CombinedCase]:
+    """Yield the case of each combination in each of its load cases."""
+    load_cases = case.load_cases or (None,)
+    if not case.combinations:
+        for one in load_cases:
+            yield CombinedCase("", one.name if one else "", combine(case, one))
+    for combination in case.combinations:
+        factors = {group: combination.factors.of(group) or 0.0 for group in UNIT}
+        for one in load_cases:
+            if one is None or combination.load_cases is None:
+                selected = True
+            else:
+                selected = one.name in combination.load_cases
+            if selected:
+                name = one.name if one else ""
+                yield CombinedCase(combination.name, name, combine(case, one, factors))
+
+
+def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) -> Case:
+    """Return the case with the keys of a load case and with factors on its loads.
+
+    Raises:
+        BoomError: an angle needs gravity, an extension has no joint, or the load of a hoist is not
+            given as payload.
+    """
+    table = table or _PLAIN
+    given: Mapping[str, Any] = {
+        key: getattr(case if getattr(table, key) is None else table, key)
+        for key in ("loads", "axial", "base")
+    }
+    plain = case.model_copy(
+        update={
+            **given,
+            "gravity": _gravity(case, table),
+            "payload": _payload(case, table),
+            "joints": _joints(case, table),
+            "cylinders": tuple(_turned(case, table)),
+            "hoist": None,
+            "load_cases": (),
+            "combinations": (),
+        }
+    )
+    if case.hoist is not None and table.payload is None:
+        raise BoomError("payload", "missing; give the mass in kg that hangs on the rope of [hoist]")
+    dead = factors["dead"]
+    segments = tuple(
+        one.model_copy(update={"load": dead * one.load, "lateral_load": dead * one.lateral_load})
+        for one in plain.segments
+    )
+    loads = [
+        one.model_copy(update={"magnitude": factors[one.group] * one.magnitude})
+        for one in plain.loads
+    ]
+    axial = [
+        AxialTable(
+            segment=one.segment,
+            x=one.x,
+            force=factors[one.group] * axial_force(f"axial[{number}]", one, plain),
+        )
+        for number, one in enumerate(plain.axial, start=1)
+    ]
+    base = [
+        one.model_copy(update={"acceleration": factors[one.group] * one.acceleration})
+        for one in plain.base
+    ]
+    gravity, payload = plain.gravity, plain.payload
+    # The factor with which a model weighs the mass at the tip without further forces.
+    own = 0.0
+    acceleration = STANDARD_GRAVITY
+    if gravity is not None:
+        own, acceleration = dead, gravity.acceleration
+        gravity = gravity.model_copy(update={"acceleration": dead * acceleration})
+    elif payload is not None:
+        acceleration = STANDARD_GRAVITY if payload.gravity is None else payload.gravity
+        payload = payload.model_copy(update={"gravity": 0.0})
+    masses: list[tuple[Group, float]] = [("payload", table.payload or 0.0)]
+    if case.payload is not None:
+        masses.append((case.payload.group, case.payload.mass))
+    missing = acceleration * sum((factors[group] - own) * mass for group, mass in masses)
+    if missing:
+        angle = radians(0.0 if gravity is None else gravity.angle)
+        last = plain.segments[-1].name
+        tip = {"segment": last, "x": "head", "magnitude": -missing * cos(angle)}
+        loads.append(LoadTable.model_validate(tip))
+        axial.append(AxialTable(force=missing * sin(angle)))
+    return plain.model_copy(
+        update={
+            "segments": segments,
+            "loads": tuple(loads),
+            "axial": tuple(axial),
+            "base": tuple(base),
+            "gravity": gravity,
+            "payload": payload,
+        }
+    )
+
+
+def _gravity(case: Case, table: LoadCaseTable) -> GravityTable | None:
+    if table.angle is None:
+        return case.gravity
+    if case.gravity is None:
+        raise BoomError("angle", "the case has no table gravity, whose angle it replaces")
+    return case.gravity.model_copy(update={"angle": table.angle})
+
+
+def _payload(case: Case, table: LoadCaseTable) -> PayloadTable | None:
+    if not table.payload:
+        return case.payload
+    own = case.payload or PayloadTable(mass=table.payload)
+    mass = table.payload + (case.payload.mass if case.payload else 0.0)
+    return own.model_copy(update={"mass": mass})
+
+
+def _joints(case: Case, table: LoadCaseTable) -> tuple[Any, ...]:
+    inner = [joint.inner for joint in case.joints]
+    for name in table.extension:
+        if name not in inner:
+            what = f"no joint has {name!r} as inner segment; give {choices(inner)}"
+            raise BoomError(f"extension.{name}", what)
+    return tuple(
+        replace(joint, extension=table.extension[joint.inner])
+        if joint.inner in table.extension
+        else joint
+        for joint in case.joints
+    )
+
+
+def _turned(case: Case, table: LoadCaseTable) -> Iterator[Cylinder]:
+    """Yield the cylinders, whose ground stays where it is while the boom luffs about its foot."""
+    turn = 0.0
+    if table.angle is not None and case.gravity is not None:
+        turn = radians(table.angle - case.gravity.angle)
+    boom = build_boom(case) if turn and case.cylinders else None
+    for number, one in enumerate(case.cylinders):
+        foot = boom.segments[boom.cylinders[number].segment].foot if boom else None
+        if foot is None:
+            yield one
+            continue
+        x, z = one.ground[0] - foot.x, one.ground[1] + foot.depth
+        ground = (
+            foot.x + x * cos(turn) + z * sin(turn),
+            -foot.depth - x * sin(turn) + z * cos(turn),
+        )
+        yield replace(one, ground=ground)
+
+
+def check_combinations(case: Case) -> None:
+    """Check load cases and combinations.
+
+    Raises:
+        BoomError: a name is given twice or unknown, a load case has no valid boom, or a combination
+            has no factor for a group of its load cases.
+    """
+    check_names("load_case", [one.name for one in case.load_cases])
+    check_names("combination", [one.name for one in case.combinations])
+    for number, one in enumerate(case.load_cases, start=1):
+        try:
+            build_boom(combine(case, one))
+        except BoomError as error:
+            raise BoomError(f"load_case[{number}].{error.where}", error.what) from None
+    names = [one.name for one in case.load_cases]
+    for number, combination in enumerate(case.combinations, start=1):
+        selected = names if combination.load_cases is None else combination.load_cases
+        for name in selected:
+            if name not in names:
+                what = (
+                    f"{name!r} is no load case; give {choices(names)}"
+                    if names
+                    else ("the case has no [[load_case]]; leave it out")
+                )
+                raise BoomError(f"combination[{number}].load_cases", what)
+        _check_factors(case, number, combination, selected)
+
+
+def _check_factors(
+    case: Case, number: int, combination: CombinationTable, selected: Sequence[str]
+) -> None:
+    tables = [one for one in case.load_cases if one.name in selected]
+    for table in tables or [_PLAIN]:
+        for group, what in _groups(case, table):
+            if combination.factors.of(group) is None:
+                raise BoomError(
+                    f"combination[{number}].factors.{group}",
+                    f"missing, and {what} is of this group; give its factor, 0 where it does not "
+                    "act",
+                )
+
+
+def _groups(case: Case, table: LoadCaseTable) -> Iterator[tuple[Group, str]]:
+    """Yield the group of each load of a load case, and the name of the load."""
+    if case.gravity is not None or any(one.load or one.lateral_load for one in case.segments):
+        yield "dead", "the weight of the boom"
+    if case.payload is not None:
+        yield case.payload.group, "the weight of the payload"
+    if table.payload:
+        yield "payload", f"the payload of {table.name!r}"
+    parts: dict[str, Sequence[LoadTable | AxialTable | BaseTable]] = {
+        "load": case.loads if table.loads is None else table.loads,
+        "axial": case.axial if table.axial is None else table.axial,
+        "base": case.base if table.base is None else table.base,
+    }
+    for key, several in parts.items():
+        for number, one in enumerate(several, start=1):
+            yield one.group, f"{key}[{number}]"

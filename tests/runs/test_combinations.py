@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Load cases and combinations of a case, their statics, and their tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import cos, hypot, radians, sin
+from pathlib import Path
+
+import pytest
+
+from runs.case.checked_case import CheckedCase
+from runs.case.conversion import in_si
+from runs.check import print_check
+from runs.pipeline.combinations import combination_states, combination_tables
+from runs.pipeline.largest_loads import StaticExtreme
+from tests.runs.case_texts import read_case, refusal
+from tests.runs.summaries import printed
+
+G = 9.80665
+# A stiff lift of two boxes, so that deflections hardly change lever arms.
+HEIGHT, WIDTH, WALL = 0.30, 0.22, 0.006
+CAGE, PEOPLE, WIND = 150.0, 230.0, 900.0
+LUG, DEPTH, GROUND = 2.4, 0.25, (0.7, -1.1)
+LIFT = f"""
+title = "A lift of two boxes"
+time = {{ duration = 1.0 }}
+gravity = {{ angle = 45.0 }}
+payload = {{ mass = {CAGE}, group = "dead" }}
+cylinder = [
+  {{ segment = "base", x = {LUG}, depth = {DEPTH}, ground = {list(GROUND)}, stiffness = 3e7 }},
+]
+material = {{ youngs_modulus = 9e11, poissons_ratio = 0.3, density = 7850.0 }}
+model = [{{ name = "beam", kind = "finite-element", theory = "timoshenko" }}]
+load = [{{ segment = "fly", x = "head", magnitude = -1595.0, ramp = 0.1 }}]
+
+[[segment]]
+name = "base"
+length = 6.0
+supports = [{{ x = 0.0, kind = "hinged" }}]
+section = {{ height = {HEIGHT}, width = {WIDTH}, flange = {WALL}, web = {WALL} }}
+
+[[segment]]
+name = "fly"
+length = 5.0
+section = {{ height = 0.25, width = 0.18, flange = {WALL}, web = {WALL} }}
+
+[[joint]]
+outer = "base"
+inner = "fly"
+extension = 4.0
+stations = ["tail", "head"]
+play = 0.003
+pad = {{ length = 0.1, width = 0.05, thickness = 0.012, bears = "corner" }}
+"""
+CASES = f"""
+[[load_case]]
+name = "raised"
+payload = {PEOPLE}
+load = []
+
+[[load_case]]
+name = "level"
+angle = 0.0
+extension = {{ fly = 2.0 }}
+payload = {PEOPLE}
+load = [{{ segment = "fly", x = "head", magnitude = -{WIND}, group = "wind" }}]
+"""
+FACTORS = """
+[[combination]]
+name = "A"
+factors = { dead = [1.2, 1.1], payload = 1.34, wind = 0.0 }
+
+[[combination]]
+name = "B"
+load_cases = ["level"]
+factors = { dead = 0.0, payload = 1.1, wind = 1.22 }
+"""
+
+
+def results(folder: Path, text: str) -> dict[str, Mapping[str, StaticExtreme]]:
+    return {
+        state.combined.name: {one.name: one for one in state.extremes}
+        for state in combination_states(read_case(folder, text))
+    }
+
+
+def by_hand(angle: float, extension: float, dead: float, people: float, wind: float) -> float:
+    """Return the force of the cylinder in N, from moments about the pin, in upright axes."""
+    turn = radians(angle)
+    moment = wind * (6.0 + extension)
+    for height, width, length, start in (
+        (HEIGHT, WIDTH, 6.0, 0.0), (0.25, 0.18, 5.0, 1.0 + extension),
+    ):  # fmt: skip
+        mass = 7850.0 * 2.0 * WALL * (height + width) * length
+        moment += dead * mass * G * (start + 0.5 * length) * cos(turn)
+    moment += (dead * CAGE + people * PEOPLE) * G * (6.0 + extension) * cos(turn)
+    # The ground end stays where it is at 45 degrees; the lug moves with the boom.
+    old = radians(45.0)
+    x0 = GROUND[0] * cos(old) - GROUND[1] * sin(old)
+    z0 = GROUND[0] * sin(old) + GROUND[1] * cos(old)
+    x1, z1 = LUG * cos(turn) + DEPTH * sin(turn), LUG * sin(turn) - DEPTH * cos(turn)
+    arm = (x1 * (z1 - z0) - z1 * (x1 - x0)) / hypot(x1 - x0, z1 - z0)
+    return moment / arm
+
+
+def test_the_cylinder_of_a_lift_in_all_combinations(tmp_path: Path) -> None:
+    """Reference: analytic, moments about the pin; wall areas are those of mid-lines."""
+    found = results(tmp_path, LIFT + CASES + FACTORS)
+    assert [*found] == ["A, raised", "A, level", "B, level"]
+    for name, numbers in (
+        ("A, raised", (45.0, 4.0, 1.32, 1.34, 0.0)),
+        ("A, level", (0.0, 2.0, 1.32, 1.34, 0.0)),
+        ("B, level", (0.0, 2.0, 0.0, 1.1, 1.22 * WIND)),
+    ):
+        # Deflections change lever arms at 45 degrees by less than 0.5 %.
+        force = found[name]["cylinder force"].largest
+        assert force == pytest.approx(by_hand(*numbers), rel=5e-3 if "raised" in name else 1e-4)
+
+
+def test_pads_and_foot_of_a_combination(tmp_path: Path) -> None:
+    """Reference: analytic, lever rule on the level fly between the middles of its pads."""
+    level = results(tmp_path, LIFT + CASES + FACTORS)["B, level"]
+    tip = 1.1 * PEOPLE * G + 1.22 * WIND
+    for station, lever in ((1, 2.05), (2, 4.95)):
+        # Two pads of 0.1 m x 0.05 m share the force of a side.
+        pressure = 0.5 * tip * lever / 2.9 / 0.005
+        assert level[f"pad, fly, station {station}"].largest == pytest.approx(pressure, rel=1e-4)
+    # The pin takes what the cylinder pushes, less the loads at the tip.
+    turn = radians(45.0)
+    x0 = GROUND[0] * cos(turn) - GROUND[1] * sin(turn)
+    z0 = GROUND[0] * sin(turn) + GROUND[1] * cos(turn)
+    length = hypot(LUG - x0, -DEPTH - z0)
+    force = by_hand(0.0, 2.0, 0.0, 1.1, 1.22 * WIND)
+    across, along = force * (-DEPTH - z0) / length - tip, force * (LUG - x0) / length
+    assert level["foot, base"].largest == pytest.approx(hypot(across, along), rel=1e-4)
+
+
+def test_load_cases_alone_have_unit_factors(tmp_path: Path) -> None:
+    """Reference: the same boom as a case of its own."""
+    found = results(tmp_path, LIFT + CASES)
+    assert [*found] == ["raised", "level"]
+    alone = LIFT.replace("magnitude = -1595.0", "magnitude = 0.0").replace(
+        f"mass = {CAGE}", f"mass = {CAGE + PEOPLE}"
+    )
+    other = results(tmp_path, alone + '[[load_case]]\nname = "same"\n')["same"]
+    for name, one in found["raised"].items():
+        assert one.largest == pytest.approx(other[name].largest, rel=1e-12)
+
+
+def test_without_gravity_the_payload_alone_weighs(tmp_path: Path) -> None:
+    """Reference: analytic, force at the tip."""
+    text = LIFT.replace("gravity = { angle = 45.0 }\n", "") + FACTORS.replace("0.0, p", "1.0, p")
+    text = text.replace('load_cases = ["level"]\n', "").replace('group = "dead"', 'group = "test"')
+    text = text.replace("wind = 1.22", "test = 3.0").replace("wind = 0.0", "test = 2.0")
+    found = results(tmp_path, text)
+    arm = LUG * (-DEPTH - GROUND[1]) + DEPTH * (LUG - GROUND[0])
+    arm /= hypot(LUG - GROUND[0], -DEPTH - GROUND[1])
+    for name, payload, test in (("A", 1.34, 2.0), ("B", 1.1, 3.0)):
+        force = 10.0 * (test * CAGE * G + payload * 1595.0) / arm
+        assert found[name]["cylinder force"].largest == pytest.approx(force, rel=1e-3)
+
+
+def test_load_cases_in_millimetres_and_from_files(tmp_path: Path) -> None:
+    """Reference: non-regression, the same case in SI units; a file repeats a constant load."""
+    (tmp_path / "wind.csv").write_text("0,1\n1,1\n", encoding="utf-8")
+    text = (LIFT + CASES).replace('group = "wind"', 'group = "wind", file = "wind.csv"')
+    plain = results(tmp_path, LIFT + CASES)["level"]
+    assert results(tmp_path, text)["level"]["tip"].largest == pytest.approx(
+        plain["tip"].largest, rel=1e-12
+    )
+    case = read_case(tmp_path, LIFT + CASES)
+    level = in_si(case.model_copy(update={"units": "mm-t-s"})).load_cases[1]
+    assert level.extension == {"fly": 0.002}
+    assert level.payload == 1.0e3 * PEOPLE
+
+
+def test_check_marks_the_governing_combination(tmp_path: Path) -> None:
+    case = read_case(tmp_path, LIFT + CASES + FACTORS)
+    states = combination_states(case)
+    first, envelope = combination_tables(states, case.system)
+    tips = [state.largest("tip").largest for state in states]  # type: ignore[union-attr]
+    marked = dict(zip(first.columns[0].cells, first.columns[1].text, strict=True))
+    governing = states[tips.index(min(tips))].combined.name
+    assert [name for name, tip in marked.items() if "*" in tip] == [governing]
+    cells = {row[0]: row[1:] for row in envelope.rows}
+    assert cells["tip"][2] == governing
+    text = printed(print_check, CheckedCase(case), width=80)
+    assert "Combinations at rest, the largest results" in text
+    assert max(map(len, text.splitlines())) <= 80
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("dead = 0.0, ", ""), "combination[2].factors.dead: missing, and the weight of the "
+         "boom is of this group; give its factor, 0 where it does not act"),
+        (("payload = 1.1, ", ""), "combination[2].factors.payload: missing, and the payload of "
+         "'level' is of this group; give its factor, 0 where it does not act"),
+        ((", wind = 1.22", ""), "combination[2].factors.wind: missing, and load[1] is of this "
+         "group; give its factor, 0 where it does not act"),
+        (("[1.2, 1.1]", "-1.0"), "combination[1].factors.dead[1]: must be a number not less "
+         "than 0, got -1.0"),
+        (("[1.2, 1.1]", "[]"), "combination[1].factors.dead: empty; give at least one"),
+        (("wind = 0.0", "snow = 0.0"), "combination[1].factors.snow: unknown key; known ones "
+         "are dead, payload, wind, dynamic, test"),
+        (('["level"]', '["low"]'), "combination[2].load_cases: 'low' is no load case; give "
+         "'raised' or 'level'"),
+        (('name = "B"', 'name = "A"'), "combination[2].name: 'A' is the name of "
+         "combination[1] already; give each its own"),
+        (("fly = 2.0", "mid = 2.0"), "load_case[2].extension.mid: no joint has 'mid' as inner "
+         "segment; give 'fly'"),
+        (("fly = 2.0", "fly = 9.0"), "load_case[2].joint[1].extension: must be at least 0 m and "
+         "below 5 m, so that 'fly' begins in 'base', got 9 m"),
+        (("gravity = { angle = 45.0 }\n", ""), "load_case[2].angle: the case has no table gravity, "
+         "whose angle it replaces"),
+        (('group = "wind"', 'group = "snow"'), "load_case[2].load[1].group: must be 'dead', "
+         "'payload', 'wind', 'dynamic' or 'test', got 'snow'"),
+    ],
+)  # fmt: skip
+def test_bad_combinations(tmp_path: Path, change: tuple[str, str], message: str) -> None:
+    text = (LIFT + CASES + FACTORS).replace(*change)
+    assert refusal(tmp_path, text) == message
