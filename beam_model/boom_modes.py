@@ -21,7 +21,7 @@ from dynamics.second_order import buckling_factor, soften_modes
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.cylinder import ground_lines
-from geometry.telescoping import places, sampled_extensions
+from geometry.telescoping import places, sample_extensions
 
 # Type of a component of one segment: index and motion.
 _Part = tuple[int, Motion]
@@ -131,7 +131,7 @@ def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
             continue
         if (group.modes().omega2 == 0.0).any():
             return None
-        for extensions in sampled_extensions(boom):
+        for extensions in sample_extensions(boom):
             moving = (
                 force.softening(extensions[number])
                 for number, forces in passing.items()

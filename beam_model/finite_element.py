@@ -18,7 +18,7 @@ from beam_model.component import Component, Motion, SegmentModel, products
 from beam_model.elements import Theory, element
 from geometry.arrays import Array
 from geometry.boom import SAME_PLACE, Boom, BoomError, Segment
-from geometry.contact_places import pressed_places
+from geometry.contact_places import load_places
 from geometry.segment import APART
 
 # Gauss rule that is exact for products of cubics.
@@ -38,7 +38,7 @@ def finite_element_segments(
     """
     return [
         finite_element_segment(
-            segment, element_length, pressed_places(boom, number), theory, rotary_inertia
+            segment, element_length, load_places(boom, number), theory, rotary_inertia
         )
         for number, segment in enumerate(boom.segments)
     ]

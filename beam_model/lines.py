@@ -22,7 +22,7 @@ from beam_model.component import SegmentModel
 from dynamics.line import Line, Quantity
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
-from geometry.contact_places import pressed_places
+from geometry.contact_places import load_places
 
 # Minimum number of pieces of a segment between two forces.
 _PIECES = 40
@@ -45,7 +45,7 @@ def lines(boom: Boom, models: Sequence[SegmentModel]) -> list[Line]:
 def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Line:
     segment = boom.segments[number]
     # The ends of the segment, and the places of forces on it.
-    acting = {*segment.ends, *pressed_places(boom, number), *segment.compression.places}
+    acting = {*segment.ends, *load_places(boom, number), *segment.compression.places}
     acting |= {held.x for held in segment.supports} | {mass.x for mass in segment.carried}
     # The ends of all pieces: those of the elements, or equal pieces between places.
     breaks = model.components["z"].breaks

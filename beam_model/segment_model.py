@@ -42,13 +42,15 @@ def gap_system(
     row.
     """
     modes = BoomModes(boom, models)
-    system = undriven_system(boom, modes, sides)
+    system = system_without_drives(boom, modes, sides)
     rows_at = partial(_rows, boom, modes, sides)
     members = [modes.member(number) for number in range(len(boom.segments))]
     return replace(system, travels=travels(boom, models, rows_at, members))
 
 
-def undriven_system(boom: Boom, modes: BoomModes, sides: Sequence[Side] = BOTH_SIDES) -> GapSystem:
+def system_without_drives(
+    boom: Boom, modes: BoomModes, sides: Sequence[Side] = BOTH_SIDES
+) -> GapSystem:
     """Return the gap system at the start, without drives.
 
     Args:

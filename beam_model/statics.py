@@ -20,7 +20,7 @@ from beam_model.boom_modes import BoomModes
 from beam_model.component import Component, SegmentModel
 from beam_model.elements import Theory
 from beam_model.finite_element import finite_element_segment, finite_element_segments
-from beam_model.segment_model import EACH_SIDE, gap_system, undriven_system
+from beam_model.segment_model import EACH_SIDE, gap_system, system_without_drives
 from beam_model.wall_compliance import with_wall_springs
 from dynamics.equilibrium import rest_at
 from dynamics.gap_system import GapSystem
@@ -127,7 +127,9 @@ def static_state(
     """
     elements = elements or Elements(boom)
     modes = BoomModes(boom, elements.segments)
-    system = with_wall_springs(undriven_system(boom, modes, EACH_SIDE), boom, walls).gather_loads()
+    system = with_wall_springs(
+        system_without_drives(boom, modes, EACH_SIDE), boom, walls
+    ).gather_loads()
     position = rest_at(system)
     reactions = [
         reaction

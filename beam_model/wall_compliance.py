@@ -119,7 +119,7 @@ def contact_compliance(boom: Boom) -> Array:
         at = [i for i, (pad, _) in enumerate(rows) if pad.station == station and pad.patch]
         joint, sides = rows[at[0]][0].joint, np.array([rows[i][1] for i in at])
         inner = boom.segments[joint.inner]
-        areas = [_pressed_area(*rows[i], inner) for i in at]
+        areas = [_pad_area(*rows[i], inner) for i in at]
         for segment in (inner, boom.segments[joint.outer]):
             # Rows read displacements along their direction, areas those along outward normals.
             outward = wall_compliance(segment, areas)
@@ -127,7 +127,7 @@ def contact_compliance(boom: Boom) -> Array:
     return found
 
 
-def _pressed_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
+def _pad_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
     """Return the area of a pad in space, or of a symmetric pair in a flat boom."""
     assert pad.patch is not None
     near, far = pad.patch.across(inner.section_at(pad.x).face(pad.direction, side))

@@ -249,7 +249,7 @@ class DryFriction:
         coefficient: μ, not negative.
         station: index in the system's stations.
         normal_force: prescribed part of N in N, not negative.
-        pressed_by: contact rows whose |F| contribute to N.
+        normal_rows: contact rows whose |F| contribute to N.
 
     Raises:
         ValueError: an argument is negative or not finite.
@@ -258,7 +258,7 @@ class DryFriction:
     coefficient: float
     station: int
     normal_force: float = 0.0
-    pressed_by: tuple[int, ...] = ()
+    normal_rows: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.coefficient < np.inf:

@@ -36,7 +36,7 @@ _BENT = 5.0e-3
 _ROUND_OFF = 1.0e-9
 
 
-def pressed_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
+def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
     """Return ω (num_shapes,) in rad/s, ascending, and shapes, with closed contacts.
 
     Shapes are (num_modes, num_shapes).
@@ -77,7 +77,7 @@ def add_damping(
         system: gap system of a boom.
         ratio: damping ratio as in :func:`with_ratio`.
         rayleigh: α in 1/s and β in s of α + β ω² in the modes of the segments.
-        rest: equilibrium as in :func:`pressed_modes`.
+        rest: equilibrium as in :func:`closed_contact_modes`.
     """
     mass, stiffness = rayleigh
     rates = system.damping + mass + stiffness * np.maximum(system.omega2, 0.0)
@@ -89,11 +89,12 @@ def with_ratio(system: GapSystem, ratio: float, rest: Array | None = None) -> Ga
     """Return the system with ζ = ``ratio`` added in the first modes with closed contacts.
 
     Their number is ``DAMPED_MODES``, or that of the bending motions if it is smaller; contacts are
-    closed as at ``rest``, see :func:`pressed_modes`. Rigid segments without contact are not damped.
+    closed as at ``rest``, see :func:`closed_contact_modes`. Rigid segments without contact are
+    not damped.
     """
     rigid = system.omega2 <= 0.0
     count = min(DAMPED_MODES, np.count_nonzero(~rigid))
-    omega, shapes = (part[..., :count] for part in pressed_modes(system, rest))
+    omega, shapes = (part[..., :count] for part in closed_contact_modes(system, rest))
     if not omega.size:
         return system
     own = np.where(rigid, 0.5 * omega[0], system.omega)
@@ -113,11 +114,11 @@ def with_ratio(system: GapSystem, ratio: float, rest: Array | None = None) -> Ga
     )
 
 
-def pressed_ratios(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
+def closed_contact_damping(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
     """Return frequencies in Hz and damping ratios Φ·CΦ/2ω (num_shapes,) with closed contacts.
 
-    Contacts are closed as at ``rest``, see :func:`pressed_modes`.
+    Contacts are closed as at ``rest``, see :func:`closed_contact_modes`.
     """
-    omega, shapes = pressed_modes(system, rest)
+    omega, shapes = closed_contact_modes(system, rest)
     rates = system.damping @ shapes**2 + np.square(system.dashpots @ shapes).sum(axis=0)
     return omega / (2.0 * np.pi), rates / (2.0 * omega)

@@ -115,8 +115,8 @@ class GapBuilder(Generic[R]):
         ``pressing`` where it is None. There is no row if μ is 0 or ``pressing`` is empty.
         """
         if coefficient > 0.0 and pressing:
-            pressed_by = pressing if normal_force is None else ()
-            law = DryFriction(coefficient, station, normal_force or 0.0, pressed_by)
+            normal_rows = pressing if normal_force is None else ()
+            law = DryFriction(coefficient, station, normal_force or 0.0, normal_rows)
             self.frictions.append(LawRow(slide, law, station))
 
     def add_dashpot(

@@ -143,8 +143,8 @@ class GapSystem:
                 raise ValueError(f"{name} must hold positions in stations")
         if any(not 0 <= friction.station < places for friction in self.frictions):
             raise ValueError("the station of a friction must be a position in stations")
-        if any(not 0 <= row < m for friction in self.frictions for row in friction.pressed_by):
-            raise ValueError("pressed_by must hold positions in rows")
+        if any(not 0 <= row < m for friction in self.frictions for row in friction.normal_rows):
+            raise ValueError("normal_rows must hold positions in rows")
         if len(self.station_directions) != places:
             raise ValueError(
                 f"station_directions must be one for each of {places} stations, "

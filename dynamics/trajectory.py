@@ -36,7 +36,7 @@ OF_STATIONS: Mapping[str, Mapping[str, str]] = {
 
 # Variables of each drive; the suffix of its travel follows each name.
 OF_DRIVES: Mapping[str, Mapping[str, str]] = {
-    "drawn_out": {"units": "m", "long_name": "extension since the start"},
+    "extension": {"units": "m", "long_name": "extension since the start"},
     "drive_friction": {"units": "N", "long_name": "drive force against friction, output means"},
     "drive_power": {"units": "W", "long_name": "power of the drive, axial loads included"},
 }

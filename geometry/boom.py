@@ -166,7 +166,7 @@ class Boom:
             for x in joint.stations
         ]
 
-    def telescoped_over(self, segment: int) -> tuple[float, ...]:
+    def moving_intervals(self, segment: int) -> tuple[float, ...]:
         """Return ascending x of a segment between which stations or axial forces move along it."""
         found = {
             place[joint.inner == segment]

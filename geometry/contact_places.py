@@ -269,7 +269,7 @@ def contact_centres(boom: Boom, joint: Joint) -> dict[float, tuple[float, ...]]:
     }
 
 
-def pressed_places(boom: Boom, number: int) -> tuple[float, ...]:
+def load_places(boom: Boom, number: int) -> tuple[float, ...]:
     """Return the x in m of all forces and masses on a segment, including middles of pads."""
     joints = (joint for joint in boom.joints if number in (joint.outer, joint.inner))
     middles = (x for joint in joints for at in contact_centres(boom, joint).values() for x in at)

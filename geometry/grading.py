@@ -61,7 +61,7 @@ def graded_mesh(
     along = _along(breaks, size, zones)
     mesh = _diagonals_first(mesh_segment(section, breaks, _ACROSS * size, closed, along))
     while (cut := _too_large(mesh, section.mirrors, zones)).any():
-        mesh = _bisected(mesh, cut)
+        mesh = _bisect(mesh, cut)
     return mesh
 
 
@@ -121,7 +121,7 @@ def _too_large(
     return np.asarray(sides - allowed[mesh.triangles].min(axis=1) > near)
 
 
-def _bisected(mesh: SegmentMesh, cut: Mask) -> SegmentMesh:
+def _bisect(mesh: SegmentMesh, cut: Mask) -> SegmentMesh:
     """Return the mesh with the marked triangles bisected, and others to avoid hanging nodes."""
     edges = np.sort(np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=2), axis=2)
     # One number per pair of points is sorted ten times as fast as pairs.

@@ -61,7 +61,7 @@ def check_held(boom: Boom) -> None:
         )
 
 
-def check_pressed(boom: Boom) -> None:
+def check_contacts_at_rest(boom: Boom) -> None:
     """Check that the loads at t = 0 press the one-way stops that the boom needs.
 
     Args:

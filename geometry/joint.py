@@ -126,8 +126,8 @@ class Drive:
     """Extension of the inner segment of a joint over time.
 
     >>> out = pt.Drive(pt.SCurve(travel=1.5, duration=3.0), carriers=("inner", "outer"))
-    >>> drawn = replace(boom, joints=(replace(boom.joints[0], drive=out),))
-    >>> drawn.joints[0].drive.reach
+    >>> telescoping = replace(boom, joints=(replace(boom.joints[0], drive=out),))
+    >>> telescoping.joints[0].drive.reach
     (0.0, 1.5)
 
     Args:

@@ -251,10 +251,10 @@ def _close(x: float, ring: _Ring, section: Section, size: float) -> list[int]:
     else:
         across = 0.5 * min(section.size("y"), section.size("z"))
         spokes = dict.fromkeys(range(len(ring.points)), _edges(across, size))
-    return _spanned(ring, middle, spokes)
+    return _mesh_between_spokes(ring, middle, spokes)
 
 
-def _spanned(ring: _Ring, middle: int, spokes: Mapping[int, int]) -> list[int]:
+def _mesh_between_spokes(ring: _Ring, middle: int, spokes: Mapping[int, int]) -> list[int]:
     """Build the patches between spokes.
 
     Args:

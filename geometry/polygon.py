@@ -164,7 +164,7 @@ class PolygonSection(Section):
     def _upwards(self) -> tuple[Array, Array]:
         """The corners (num_plates, 2) and thicknesses (num_plates,) in the order of the plates."""
         corners, thicknesses = np.array(self.corners), np.array(self.thicknesses)
-        if _twice_enclosed(corners) < 0.0:
+        if _double_enclosed_area(corners) < 0.0:
             corners, thicknesses = corners[::-1], np.roll(thicknesses[::-1], -1)
         near = _SAME * float(np.ptp(corners, axis=0).max())
         low = np.flatnonzero(corners[:, 1] < corners[:, 1].min() + near)
@@ -215,7 +215,7 @@ def _check(corners: Sequence[Offset], thicknesses: Sequence[float]) -> None:
                 f"thicknesses must be numbers of m above 0 and below {_LARGEST:g}, got {thickness}"
             )
     places = np.array(corners)
-    if _twice_enclosed(places) < 0.0:
+    if _double_enclosed_area(places) < 0.0:
         places = places * [-1.0, 1.0]
     sides = np.roll(places, -1, axis=0) - places
     lengths = np.linalg.norm(sides, axis=1)
@@ -277,7 +277,7 @@ def _names(corners: Array) -> list[str]:
     return names
 
 
-def _twice_enclosed(corners: Array) -> float:
+def _double_enclosed_area(corners: Array) -> float:
     """Return twice the area within corners (num_corners, 2), positive if anticlockwise."""
     after = np.roll(corners, -1, axis=0)
     return float(corners[:, 0] @ after[:, 1] - corners[:, 1] @ after[:, 0])

@@ -113,7 +113,7 @@ def farthest_travel(boom: Boom, segment: int) -> float:
     return sum(high or low for low, high in reaches)
 
 
-def sampled_extensions(boom: Boom) -> list[dict[int, float]]:
+def sample_extensions(boom: Boom) -> list[dict[int, float]]:
     """Return extensions in m by the index of the joint: initial, extreme and between."""
     drives = {n: joint.drive for n, joint in enumerate(boom.joints) if joint.drive is not None}
     times = np.unique(np.concatenate([np.zeros(1), *(drive.times for drive in drives.values())]))

@@ -14,7 +14,7 @@ import numpy as np
 from rich.console import Console
 
 from beam_model.statics import StaticState
-from dynamics.damping import pressed_modes, pressed_ratios
+from dynamics.damping import closed_contact_damping, closed_contact_modes
 from dynamics.failure import NUMERICS
 from dynamics.motion import rest_of
 from geometry.axial import carried, moving_force_places
@@ -327,7 +327,7 @@ def _ratios(preview: Preview, model: Model, beam: ModelTable) -> list[str]:
         with np.errstate(all="ignore"):
             motion = preview.motion(model, beam)
             rest = rest_of(motion.system, preview.declared.case.start.at_rest, motion.position)
-            found = pressed_ratios(motion.system, rest)
+            found = closed_contact_damping(motion.system, rest)
     except NUMERICS:
         return ["cannot be computed"]
     # Dashpots between open stations contribute only round-off.
@@ -379,7 +379,7 @@ def _static_lines(case: Case, boom: Boom, found: Statics | None) -> Iterator[str
         return
     state, bonded = found
     hertz, bonded_hertz = (
-        float(pressed_modes(one.system, one.position)[0][0]) / (2.0 * np.pi) for one in found
+        float(closed_contact_modes(one.system, one.position)[0][0]) / (2.0 * np.pi) for one in found
     )
     yield (
         f"Static tip deflection (t = 0), {_BEAMS}: {number(TO_MILLI * state.tip, 4)} mm; without "

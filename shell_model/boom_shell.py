@@ -214,7 +214,7 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
     seen = (place.x for place in boom.observations if place.segment == number)
     breaks |= {f"observed-{k}": x for k, x in enumerate(sorted(seen), start=1)}
     breaks |= {f"axial-{k}": x for k, x in enumerate(segment.compression.places, start=1)}
-    breaks |= {f"extension-{k}": x for k, x in enumerate(boom.telescoped_over(number), start=1)}
+    breaks |= {f"extension-{k}": x for k, x in enumerate(boom.moving_intervals(number), start=1)}
     breaks |= collar_breaks(segment) | diaphragm_breaks(segment)
     box = segment.widest, breaks, options.mesh_size
     closed = tuple(diaphragm_breaks(segment))

@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 
 from beam_model.section_fields import condense
-from dynamics.damping import pressed_modes
+from dynamics.damping import closed_contact_modes
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from runs.case.kinds.finite_element import BeamElements
@@ -98,7 +98,8 @@ class ModelComparison:
         # At rest without play all contacts are closed.
         point = self.points[0]._replace(play=0.0)
         pressed = [
-            pressed_modes(set_point(self.systems[one], point))[0][:count] for one in (SHELL, name)
+            closed_contact_modes(set_point(self.systems[one], point))[0][:count]
+            for one in (SHELL, name)
         ]
         return float(np.abs(pressed[1] / pressed[0] - 1.0).max())
 

@@ -10,7 +10,7 @@ from itertools import product
 import numpy as np
 from scipy.signal import find_peaks
 
-from dynamics.damping import pressed_modes, with_ratio
+from dynamics.damping import closed_contact_modes, with_ratio
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
@@ -61,7 +61,7 @@ class PressedBoom:
     def of(cls, system: GapSystem) -> PressedBoom:
         """Create a boom without stops under a load whose numbers are its masses."""
         system = replace(without_friction(system), load=-GRAVITY * system.load)
-        omega, shapes = pressed_modes(system)
+        omega, shapes = closed_contact_modes(system)
         rest = equilibrium(system, system.load)
         return cls(system, rest, omega[:MODES], shapes[:, :MODES])
 

@@ -174,11 +174,11 @@ class Rule:
         head = given.overlap - tail
         arm, weight = head - tail, inner.load * inner.length
 
-        def pressed_by(x: float) -> Array:
+        def normal_rows(x: float) -> Array:
             """Return the forces (2,) in N of a unit force at x in m, down at the tail."""
             return np.array([x - head, x - tail]) / arm
 
-        pressed = weight * pressed_by(0.5 * inner.length) * pressed_by(inner.length)
+        pressed = weight * normal_rows(0.5 * inner.length) * normal_rows(inner.length)
         assert tied[1] is not None
         return cls(
             bending=tips[0],

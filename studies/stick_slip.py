@@ -77,7 +77,7 @@ def _cycle() -> Iterator[Proof]:
     period = 2.0 * slack / SPEED + slipping
     time = np.linspace(0.0, first + 9.99 * period, 40_001)
     found = _follow_drive(ROPE, SPEED, time)
-    still = found.series["drawn_speed"] == 0.0
+    still = found.series["extension_speed"] == 0.0
     begins = time[1:][still[:-1] & ~still[1:]]
     told = found.results
     for what, value, reference, unit, allowed in (
@@ -124,7 +124,7 @@ def _one_way(stiffness: float) -> list[float]:
     plan = MotionPlan.of(build(case, boom, case.models[0]).system, case, case.models[0])
     asked = _move(plan)
     told, data = asked.data.attrs["stick_slip"]["drive_force"], asked.data
-    gone = PiecewiseLinear(tuple(asked.time), tuple((data["drawn_out"] - data["drive_lag"]).values))
+    gone = PiecewiseLinear(tuple(asked.time), tuple((data["extension"] - data["drive_lag"]).values))
     (travel,) = plan.motion.system.travels
     along = replace(plan.motion.system, travels=[replace(travel, history=gone, elastic=None)])
     felt = _move(replace(plan, motion=replace(plan.motion, system=along)))

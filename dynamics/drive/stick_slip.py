@@ -28,8 +28,8 @@ _PART = 0.1
 OF_ELASTIC_DRIVES = {
     "drive_force": {"units": "N", "long_name": "drive force, mean of the output interval"},
     "drive_lag": {"units": "m", "long_name": "lag of the segment behind its drive"},
-    "drawn_speed": {"units": "m/s", "long_name": "speed of the segment in the outer one"},
-    "drawn_acceleration": {"units": "m/s2", "long_name": "acceleration of the segment"},
+    "extension_speed": {"units": "m/s", "long_name": "speed of the segment in the outer one"},
+    "extension_acceleration": {"units": "m/s2", "long_name": "acceleration of the segment"},
 }
 
 

@@ -57,7 +57,7 @@ def one_compiles() -> Iterator[None]:
 
 
 @intrinsic
-def borrowed(typing_context: Any, arrays: Any) -> Any:
+def borrow(typing_context: Any, arrays: Any) -> Any:
     """Return the tuple of arrays without reference counts; its owner keeps the arrays alive.
 
     Counting is atomic, and costs a step of friction as much as its arithmetic.

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
-from dynamics.kernels.compiled import LOOP, SUMS, borrowed
+from dynamics.kernels.compiled import LOOP, SUMS, borrow
 from dynamics.kernels.modal_flow import Flow, compliance, finish_flow, free_flow, modal_energy
 from dynamics.kernels.row_forces import Laws, Problem, contact_response, solve_rows
 from dynamics.kernels.telescoping import AxialForces, MovingRows, add_axial_forces, move_rows
@@ -270,8 +270,8 @@ def march(
         problem: scratch for the row forces.
         output: is filled.
     """
-    laws, axial, moving = borrowed(system.laws), borrowed(system.axial), borrowed(system.moving)
-    state, flow, problem = borrowed(state), borrowed(flow), borrowed(problem)
+    laws, axial, moving = borrow(system.laws), borrow(system.axial), borrow(system.moving)
+    state, flow, problem = borrow(state), borrow(flow), borrow(problem)
     a, v, rows, y, force, softening = (
         state.a, state.v, state.rows, state.y, state.force, state.softening,
     )  # fmt: skip

@@ -80,7 +80,7 @@ def row_laws(system: GapSystem) -> Laws:
     friction = np.array([[f.coefficient, f.normal_force] for f in frictions]).reshape(-1, 2)
     pressing = np.zeros((len(frictions), len(system.laws)))
     for number, one in enumerate(frictions):
-        pressing[number, list(one.pressed_by)] = 1.0
+        pressing[number, list(one.normal_rows)] = 1.0
     return Laws(terms, contact_limits(system.laws), first, friction.T.copy(), pressing)
 
 

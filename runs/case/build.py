@@ -21,7 +21,7 @@ from geometry.boom import (
 )
 from geometry.boom_checks import check_order
 from geometry.fields import described, placed
-from geometry.holding import check_pressed
+from geometry.holding import check_contacts_at_rest
 from geometry.joint import BareJoint
 from geometry.section import Section, SectionError, infer_inner_section, infer_outer_section
 from geometry.taper import check_alike, half_way, mean_area
@@ -78,7 +78,7 @@ def build_boom(case: Case) -> Boom:
         case.observe,
         case.cylinders,
     )
-    check_pressed(boom)
+    check_contacts_at_rest(boom)
     check_elastic_drives(case, boom)
     check_hoist(case)
     return boom

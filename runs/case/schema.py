@@ -485,7 +485,7 @@ class Case(CaseKeys, CaseHeading):
     def _calibrators(self) -> Case:
         """Replace the names of calibrating shells by their tables."""
         by_name = {model.name: model for model in self.models}
-        resolved = tuple(model.calibrated_among(by_name) for model in self.models)
+        resolved = tuple(model.resolve_shell(by_name) for model in self.models)
         if any(new is not old for new, old in zip(resolved, self.models, strict=True)):
             object.__setattr__(self, "models", resolved)
         return self

@@ -24,7 +24,7 @@ from runs.case.limits import is_table
 from runs.case.messages import BadInput
 from runs.case.sanity import usual_ranges
 from runs.case.schema import Case
-from runs.sweep.points import hold_plates, inferred_plates
+from runs.sweep.points import hold_plates, infer_plates
 from runs.sweep.variation import Place, Tables, unit_of
 
 # Name of the page's beam, and number of elements of the longest segment.
@@ -100,7 +100,7 @@ class Draft:
             BadInput: the file cannot be read, or its content is invalid.
         """
         case = reading.select(reading.load(file), file, members=0)
-        return cls(file, hold_plates(case, inferred_plates(case)), build_boom(case))
+        return cls(file, hold_plates(case, infer_plates(case)), build_boom(case))
 
     @cached_property
     def _tables(self) -> Tables:

@@ -36,6 +36,6 @@ class CaseKeys(CaseTable):
     demand: Annotated[tuple[StatementId, ...], Few] = ()
     """the statements of the paper that the run must reproduce"""
 
-    def unjudged(self) -> Self:
+    def without_judgements(self) -> Self:
         """Return the case without these keys."""
         return self.model_copy(update={"statements": (), "demand": ()})

@@ -21,7 +21,7 @@ _RIGID = 1.0e-6
 
 
 def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, Array]:
-    """Return the bonded system and its shapes (num_modes, num_tied_modes).
+    """Return the bonded system and its shapes (num_modes, num_bonded_modes).
 
     The bonded system keeps only the stations on the ground.
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from dynamics.damping import pressed_modes
+from dynamics.damping import closed_contact_modes
 from dynamics.line import Line, Quantity
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
@@ -42,7 +42,7 @@ class ShellOutput:
 
     Args:
         fields: points, triangles, segment, modes and stresses of the mesh, ``state`` (time,
-            mode), and ``pressed_mode_shape`` (pressed_mode in Hz, mode) of the boom
+            mode), and ``contact_mode_shape`` (contact_mode in Hz, mode) of the boom
             with closed contacts.
         stresses: von Mises stresses near stations and supports over time.
         largest: maximum of these stresses, and the section forces of the walls at its time.
@@ -60,11 +60,11 @@ class ShellOutput:
     @property
     def modes(self) -> xr.Dataset | None:
         """The fields of the modes, by their frequencies in Hz; None without modes."""
-        if "pressed_mode" not in self.fields.dims:
+        if "contact_mode" not in self.fields.dims:
             return None
         return self.fields.drop_vars(["state", "time"]).assign(
-            state=(("time", "mode"), self.fields["pressed_mode_shape"].values),
-            time=("time", self.fields["pressed_mode"].values, {"units": "Hz"}),
+            state=(("time", "mode"), self.fields["contact_mode_shape"].values),
+            time=("time", self.fields["contact_mode"].values, {"units": "Hz"}),
         )
 
     @classmethod
@@ -169,11 +169,11 @@ def _modes(reduced: ReducedShell) -> dict[str, Any]:
     rest = positions(system)
     if not rest:
         return {}
-    omega, shapes = pressed_modes(system, rest[0.0])
+    omega, shapes = closed_contact_modes(system, rest[0.0])
     modes = shapes[:, :MODES].T
     moved = np.tensordot(modes, reduced.fields["modes"].values, axes=1)
     largest = np.sqrt((moved**2).sum(axis=2)).max(axis=1)
     return {
-        "pressed_mode": ("pressed_mode", omega[:MODES] / (2.0 * np.pi), {"units": "Hz"}),
-        "pressed_mode_shape": (("pressed_mode", "mode"), modes / largest[:, None]),
+        "contact_mode": ("contact_mode", omega[:MODES] / (2.0 * np.pi), {"units": "Hz"}),
+        "contact_mode_shape": (("contact_mode", "mode"), modes / largest[:, None]),
     }

@@ -115,7 +115,7 @@ def run_model(
     with members.rank_executor(comm if case.ensemble else None) as executor:
         if not context.first_rank:
             return None
-        alone = case.unjudged().model_copy(update={"models": (model,), "title": ""})
+        alone = case.without_judgements().model_copy(update={"models": (model,), "title": ""})
         system, store = built.system, context.motions
         content = toml.digest(alone), system.omega2, system.load, system.rows, cutoff
         name = key([*content])

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.damping import pressed_modes
+from dynamics.damping import closed_contact_modes
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line, Quantity
 from geometry.arrays import Array
@@ -103,7 +103,7 @@ def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> 
         lines: lines along the segments.
         rest: equilibrium (num_modes,).
     """
-    omega, shapes = pressed_modes(system, rest)
+    omega, shapes = closed_contact_modes(system, rest)
     motions: list[Quantity] = [name for name in _MOTIONS if name in lines[0].rows]
     even = [np.linspace(line.x[0], line.x[-1], _PLACES) for line in lines]
     found: list[Mode] = []

@@ -146,7 +146,7 @@ def _of_a_side(both: float, law: ContactLaw) -> float:
     return max(both, at_rest + 0.5 * both)
 
 
-def pressed_pads(
+def loaded_pads(
     joint: Joint, direction: Direction, sides: Sequence[float]
 ) -> list[tuple[PadSize, float]]:
     """Return each pad of a given size at a station, and the force in N on it.

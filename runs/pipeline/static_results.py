@@ -26,7 +26,7 @@ from geometry.contact_places import contact_centres
 from geometry.cylinder import forces
 from geometry.telescoping import places, travel
 from runs.case.drive import resolving_times
-from runs.pipeline.pads import SIGNS, pressed_pads, side_force
+from runs.pipeline.pads import SIGNS, loaded_pads, side_force
 from runs.pipeline.section_forces import rounded, section_forces
 
 # Distance from the largest extension, as a fraction of it, that counts as zero.
@@ -262,7 +262,7 @@ def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[St
         sides = [
             sum(side_force(system.laws[row], side, gaps[row]) for row in here) for side in SIGNS
         ]
-        pads = [] if joint is None else pressed_pads(joint, direction, sides)
+        pads = [] if joint is None else loaded_pads(joint, direction, sides)
         used = [
             force / pad.area / pad.allowable_pressure
             for pad, force in pads

@@ -182,7 +182,7 @@ def extremes(values: Array, stretches: int) -> np.ndarray[Any, np.dtype[np.intp]
     return np.array(sorted(kept | {0, values.size - 1}))
 
 
-def packed_charts(charts: Mapping[str, Chart]) -> str:
+def pack_charts(charts: Mapping[str, Chart]) -> str:
     """Return the charts of a page, by the names of their figures, as JSON escaped for HTML."""
     from plotly.io.json import to_json_plotly
 
@@ -190,7 +190,7 @@ def packed_charts(charts: Mapping[str, Chart]) -> str:
 
 
 @cache
-def packed_plotly() -> str:
+def pack_plotly() -> str:
     """Return plotly.js from its wheel, compressed, in base 64."""
     from plotly.offline import get_plotlyjs
 

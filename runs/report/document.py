@@ -10,7 +10,7 @@ from itertools import chain
 from runs.case import toml
 from runs.pipeline.results import Results
 from runs.report import theme
-from runs.report.charts import packed_charts, packed_plotly
+from runs.report.charts import pack_charts, pack_plotly
 from runs.report.figure_context import Figure
 from runs.report.formatting import number, percent
 from runs.report.limits import limit_table
@@ -81,8 +81,8 @@ def render(
         deviation=deviation_note(results),
         quality=[known.line for known in results.summary.design.quality_notes],
         viewer=viewer,
-        charts=packed_charts(charts) if charts else "",
-        plotly=packed_plotly() if charts else "",
+        charts=pack_charts(charts) if charts else "",
+        plotly=pack_plotly() if charts else "",
         skipped=results.summary.snapshots.skipped,
         versions={k: v for k, v in results.summary.versions.items() if v is not None},
         case_hash=results.summary.case_hash,

@@ -158,8 +158,8 @@ class FigureContext:
         # Segments that move together share one line.
         together: dict[tuple[float, ...], list[str]] = {}
         for suffix, inner in self.case.driven.items():
-            if f"drawn_out{suffix}" in self.data:
-                travel = self.of(self.models[0], f"drawn_out{suffix}")
+            if f"extension{suffix}" in self.data:
+                travel = self.of(self.models[0], f"extension{suffix}")
                 together.setdefault(tuple(travel.tolist()), []).append(inner)
         look: dict[str, Any] = {"color": theme.INK, "linewidth": 0.9, "alpha": 0.5}
         for axes in column if together else ():
@@ -178,7 +178,7 @@ class FigureContext:
         return tip_directions(self.data)
 
     @property
-    def stays_pressed(self) -> bool:
+    def stays_in_contact(self) -> bool:
         """True if no contact opens, so that no impact amplifies small differences."""
         touching = self.with_play if "contact_force" in self.data else ()
         forces = [self.of(name, "contact_force") for name in touching]

@@ -38,7 +38,7 @@ from runs.report.motion_figures import (
 from runs.report.rest_figures import at_rest, envelopes, mode_shapes
 
 FOLDER = "figures"
-DRAWN_OF = ".drawn-of"
+FIGURE_DIGEST = ".drawn-of"
 
 FIGURES: Sequence[Callable[[FigureContext], list[Figure]]] = (
     boom,
@@ -75,20 +75,20 @@ def draw(results: Results, folder: Path) -> list[Figure]:
 
 def draw_in(results: Results, folder: Path) -> list[Figure]:
     """Draw the figures into a run's folder; remove figures of other data."""
-    figures, known = folder / FOLDER, folder / DRAWN_OF
-    drawn_of = _drawn_of(results, folder)
+    figures, known = folder / FOLDER, folder / FIGURE_DIGEST
+    figure_digest = _figure_digest(results, folder)
     figures.mkdir(exist_ok=True)
-    if not known.is_file() or known.read_text(encoding="utf-8") != drawn_of:
+    if not known.is_file() or known.read_text(encoding="utf-8") != figure_digest:
         shutil.rmtree(figures)
         figures.mkdir()
     drawn = draw(results, figures)
     for earlier in set(figures.iterdir()) - {figure.path for figure in drawn}:
         earlier.unlink()
-    write_whole(known, drawn_of)
+    write_whole(known, figure_digest)
     return drawn
 
 
-def _drawn_of(results: Results, folder: Path) -> str:
+def _figure_digest(results: Results, folder: Path) -> str:
     """Return the SHA-256 of the data and of this program, which determine the figures."""
     bare = results.summary.model_copy(update={"snapshots": Snapshots(written=[], skipped=None)})
     digest = sha256(json.dumps([str(bare), program(), matplotlib.__version__]).encode())

@@ -55,7 +55,7 @@ def first_contacts(run: FigureContext) -> list[Figure]:
     title = f"Mean contact forces, first {end:g} s"
     caption = (
         f"Contact force at each station, mean over {TO_MILLI * FORCE_WINDOW:g} ms"
-        + ("" if run.stays_pressed else " of many short impacts")
+        + ("" if run.stays_in_contact else " of many short impacts")
         + ". Positive where the inner segment presses up."
         + of_start(run.case)
     )
@@ -179,7 +179,7 @@ def hoisting(run: FigureContext) -> list[Figure]:
 def _stick_slip(run: FigureContext, suffix: str, inner: str) -> Figure:
     shown = {
         "force of the drive (kN)": _of_models(run, f"drive_force{suffix}", TO_KILO),
-        "speed (m/s)": _of_models(run, f"drawn_speed{suffix}", 1.0),
+        "speed (m/s)": _of_models(run, f"extension_speed{suffix}", 1.0),
     }
     records = [
         of for own in run.summary.values() if (of := own.stick_slip.get(f"drive_force{suffix}"))

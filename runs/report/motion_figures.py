@@ -178,7 +178,7 @@ def _band(run: FigureContext, name: str, place: str) -> tuple[Array, Array] | No
 
 def _sampled(run: FigureContext, place: str) -> str:
     """Return a sentence on the accuracy of a curve and on the marks of its ensemble."""
-    if not run.with_play or run.stays_pressed:
+    if not run.with_play or run.stays_in_contact:
         return ""
     if run.ensembles is None or place not in run.ensembles:
         if run.regular or run.ensembles is not None:

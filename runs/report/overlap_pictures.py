@@ -337,7 +337,9 @@ def draw_stress(
     for instant in instants:
         sheet = Sheet(STRESS_PIXELS, floor=85)
         scale.add_bar(sheet)
-        values = smoothed(view.stress, scene.triangles, view.stress.at(instant.time).largest())
+        values = smooth_corners(
+            view.stress, scene.triangles, view.stress.at(instant.time).largest()
+        )
         places = whole.places(scene.displacement(instant.time), instant.time)
         with stage(BOOM_PIXELS) as plotter:
             plotter.add_mesh(_coloured(places, scene.triangles, values), **scale.look)
@@ -377,7 +379,7 @@ def _coloured(points: Array, triangles: Numbers, values: Array) -> Any:
     return found
 
 
-def smoothed(shell: ShellStress, triangles: Numbers, values: npt.ArrayLike) -> Array:
+def smooth_corners(shell: ShellStress, triangles: Numbers, values: npt.ArrayLike) -> Array:
     """Return corner values (num_triangles, 3): means over a wall's triangles around each point."""
     walls = int(shell.wall.max()) + 1
     of = (triangles.astype(np.int64) * walls + shell.wall[:, None]).ravel()

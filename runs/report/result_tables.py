@@ -68,7 +68,7 @@ def rest_tables(results: Results) -> list[Table]:
     as_extended = of_rests(results.case, rests.values())
     found = (
         _tilt_table(rests, as_extended),
-        _pressed_table(rests, as_extended),
+        _contact_table(rests, as_extended),
         _reaction_table(results),
     )
     return [table for table in found if table is not None]
@@ -89,7 +89,7 @@ def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table | Non
     return Table(title, columns, (note + as_extended,), "tilts")
 
 
-def _pressed_table(rests: dict[str, StaticResult], as_extended: str) -> Table | None:
+def _contact_table(rests: dict[str, StaticResult], as_extended: str) -> Table | None:
     places = dict.fromkeys(pressed.place for rest in rests.values() for pressed in rest.stations)
     if not places:
         return None
@@ -257,7 +257,7 @@ def _effort(results: Results, model: str, suffix: str) -> tuple[float, float, fl
     data = results.trajectories.sel(model=model)
     way, friction, power = (
         np.asarray(data[name + suffix].values, dtype=float)
-        for name in ("drawn_out", "drive_friction", "drive_power")
+        for name in ("extension", "drive_friction", "drive_power")
     )
     moving = np.diff(way, prepend=way[0]) != 0.0
     mean = float(np.abs(friction[moving]).mean()) if moving.any() else 0.0

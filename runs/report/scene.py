@@ -123,7 +123,7 @@ class Scene:
         Args:
             fields: dataset of ``shell_model.stress.fields``, with ``state`` (time, mode).
             motion: dims ``time``, ``station``: ``tip``, in space ``tip_lateral``, in m,
-                ``contact_force`` and ``contact_force_peak`` in N, of drives ``drawn_out`` in m.
+                ``contact_force`` and ``contact_force_peak`` in N, of drives ``extension`` in m.
             case: case of the run.
         """
         boom = build_boom(case)
@@ -235,7 +235,7 @@ class Scene:
     def travel(self, segment: int) -> Array:
         """Return the extension (num_times,) in m of a segment by drives, at the output times."""
         names = [
-            f"drawn_out-{n + 1}" if n else "drawn_out"
+            f"extension-{n + 1}" if n else "extension"
             for n in drives_below(self.boom.joints, segment)
         ]
         none = np.zeros(self.motion.sizes["time"])

@@ -172,7 +172,11 @@ def _when(motion: xr.Dataset, times: Times) -> dict[str, float]:
 
 def _instants(views: Sequence[Scene], when: Mapping[str, float]) -> list[Instant]:
     return [
-        Instant(t, TITLES.get(name, "") + (where_pressed(views, t) if name in AT_A_STATION else ""))
+        Instant(
+            t,
+            TITLES.get(name, "")
+            + (place_of_largest_force(views, t) if name in AT_A_STATION else ""),
+        )
         for name, t in when.items()
     ]
 
@@ -201,7 +205,7 @@ def characteristic_instants(motion: xr.Dataset) -> dict[str, float]:
     return instants
 
 
-def where_pressed(views: Sequence[Scene], time: float) -> str:
+def place_of_largest_force(views: Sequence[Scene], time: float) -> str:
     """Return text with the place of the maximum force at a time in s, if there are several."""
     scene = views[0]
     places = [

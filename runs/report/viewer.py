@@ -26,7 +26,7 @@ from runs.pipeline.model_output import frames
 from runs.pipeline.model_quality import leading
 from runs.pipeline.run import Run
 from runs.report import theme
-from runs.report.charts import compressed, packed_plotly
+from runs.report.charts import compressed, pack_plotly
 from runs.report.pages import page
 from runs.report.scene import SECTION_DRAWN, Scene, means_around
 
@@ -95,7 +95,7 @@ def viewer(run: Run) -> str | None:
         "viewer.html",
         title=case.title,
         view=content,
-        plotly=packed_plotly(),
+        plotly=pack_plotly(),
         content=compressed(json.dumps(content, default=_typed)),
     )
 
@@ -281,7 +281,7 @@ def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
         if joint.drive is None:
             continue
         moves = [number in drives_below(boom.joints, n) for n in range(len(boom.segments))]
-        way = scene.motion[f"drawn_out-{number + 1}" if number else "drawn_out"]
+        way = scene.motion[f"extension-{number + 1}" if number else "extension"]
         own = np.array(moves, dtype=float)[scene.owner]
         found[boom.segments[joint.inner].name] = own, way.sel(time=time, method="nearest").values
     return found

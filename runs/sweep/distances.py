@@ -73,7 +73,7 @@ class Features:
             tip[time <= until],
             np.nan if height is None else height,
             mean_period(time, tip),
-            held_force(time, np.asarray(data["contact_force"].values)),
+            sustained_force(time, np.asarray(data["contact_force"].values)),
             np.nan if stress is None else stress,
         )
 
@@ -90,7 +90,7 @@ class Features:
         return {name: part if np.isfinite(part) else None for name, part in found.items()}
 
 
-def held_force(time: Array, forces: Array) -> float:
+def sustained_force(time: Array, forces: Array) -> float:
     """Return the largest mean force over ``HELD`` in N; NaN if the run is too short.
 
     Args:

@@ -2,8 +2,8 @@
 """First natural frequencies of a boom over numbers of its case.
 
 A boom with play is nonlinear and has no natural frequencies. The table has those with the contacts
-that are closed at rest under the loads (:func:`dynamics.damping.pressed_modes`), and those with
-bonded joints.
+that are closed at rest under the loads (:func:`dynamics.damping.closed_contact_modes`), and those
+with bonded joints.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from dynamics.damping import pressed_modes
+from dynamics.damping import closed_contact_modes
 from dynamics.failure import NUMERICS
 from dynamics.motion import initial_state
 from geometry.arrays import Array
@@ -63,7 +63,7 @@ def first_frequencies(
         try:
             with np.errstate(all="ignore"):
                 system, _, _ = initial_state(model.build(booms, tools).system, case.start.at_rest)
-                omega = pressed_modes(system)[0][:MODES]
+                omega = closed_contact_modes(system)[0][:MODES]
         except NUMERICS:
             continue
         found[row, : omega.size] = omega / (2.0 * np.pi)

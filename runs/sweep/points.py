@@ -158,7 +158,7 @@ def make_points(
         shaping = tuple(setting for setting in settings if setting[0].shapes_sections)
         label = _label(settings)
         if shaping not in plates:
-            plates[shaping] = inferred_plates(_checked(file, label, chosen(shaping)))
+            plates[shaping] = infer_plates(_checked(file, label, chosen(shaping)))
         held = hold_plates(chosen(settings), plates[shaping])
         checked = _checked(file, label, held, any(plates[shaping]))
         values = tuple(value for _, value in settings)
@@ -194,7 +194,7 @@ def _checked(file: str, label: str, case: Case, held: bool = False) -> Case:
     return case
 
 
-def inferred_plates(case: Case) -> Plates:
+def infer_plates(case: Case) -> Plates:
     """Return the inferred plates of a checked case; None for each segment without inference."""
     sections = [segment.section for segment in build_boom(case).segments]
     return [

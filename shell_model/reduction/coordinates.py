@@ -59,7 +59,9 @@ class BoomCoordinates:
             tied = np.array([self.row(tie) for tie in ties]).reshape(-1, self.omega2.size)
             pulled = [np.sqrt(s.stiffness) * self.push(s.segment, s.push) for s in springs]
             pulls = np.array(pulled).reshape(-1, self.omega2.size)
-            self.omega2, self._combination = comm.bcast(_held_modes(self.omega2, tied, pulls))
+            self.omega2, self._combination = comm.bcast(
+                _constrained_modes(self.omega2, tied, pulls)
+            )
         self.critical_factor: float | None = np.inf
         geometric = block_diag(*(segment.geometric for segment in reduced))
         if geometric.any():
@@ -89,7 +91,7 @@ class BoomCoordinates:
         return np.asarray(apart @ self._combination.astype(apart.dtype, copy=False))
 
 
-def _held_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array, Array]:
+def _constrained_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array, Array]:
     """Return ω² and modes (num_modes, num_held_modes) under constraints and springs.
 
     Args:

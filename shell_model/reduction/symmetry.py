@@ -224,7 +224,7 @@ class SymmetryReduction:
         jobs = []
         for symmetry_class in symmetry_classes(self._mirrors):
             signs = symmetry_class.signs[:, self.cell.component]
-            forces, read, springs, masses = (_added_up(image, signs) for image in images)
+            forces, read, springs, masses = (_sum_of_class(image, signs) for image in images)
             if forces.any():
                 pulled = Attached(springs, shell.springs.factors)
                 carried = Attached(masses, shell.masses.factors)
@@ -375,7 +375,7 @@ _IMAGES: Mapping[Direction, Sequence[tuple[int, int]]] = {
 }
 
 
-def _added_up(images: Array, signs: Array) -> Array:
+def _sum_of_class(images: Array, signs: Array) -> Array:
     """Return the part (num_rows, num_columns) in a symmetry class; round-off is set to 0."""
     part = np.zeros(images.shape[1:])
     for image, sign in zip(images, signs, strict=True):

@@ -283,7 +283,7 @@ def _check(full: BoomShell) -> None:
         raise BoomError("axial", "the unreduced shell takes no axial forces")
     if full.lines:
         raise BoomError("cylinder", "the unreduced shell takes neither cylinders nor dashpots")
-    if any(friction.law.pressed_by for friction in full.rows.frictions):
+    if any(friction.law.normal_rows for friction in full.rows.frictions):
         raise BoomError("joint", "the unreduced shell takes friction under normal_forces alone")
 
 

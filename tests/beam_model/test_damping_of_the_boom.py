@@ -13,7 +13,7 @@ from scipy.signal import find_peaks
 from beam_model.component import SegmentModel
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
-from dynamics.damping import pressed_modes, pressed_ratios, with_ratio
+from dynamics.damping import closed_contact_damping, closed_contact_modes, with_ratio
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep
@@ -35,11 +35,11 @@ def heavy(paper_boom: Boom, series: Callable[..., list[SegmentModel]]) -> GapSys
 def test_pressed_modes_have_the_ratio(heavy: GapSystem, ratio: float) -> None:
     """Reference: analytic, Φᵀ C Φ = 2ζω, and a matrix that takes energy only."""
     damped = with_ratio(heavy, ratio)
-    omega, shapes = pressed_modes(heavy)
+    omega, shapes = closed_contact_modes(heavy)
     found = shapes[:, :8].T @ damped.damping_matrix @ shapes[:, :8]
     np.testing.assert_allclose(found, np.diag(2.0 * ratio * omega[:8]), atol=1e-9 * omega[7])
     assert np.linalg.eigvalsh(damped.damping_matrix)[0] > 0.0
-    hertz, ratios = pressed_ratios(damped)
+    hertz, ratios = closed_contact_damping(damped)
     np.testing.assert_allclose(ratios[:8], ratio, rtol=1e-9)
     np.testing.assert_allclose(hertz, omega / (2.0 * np.pi))
 
@@ -47,7 +47,7 @@ def test_pressed_modes_have_the_ratio(heavy: GapSystem, ratio: float) -> None:
 def test_rigid_motions_lose_speed_no_faster_than_the_first_mode(heavy: GapSystem) -> None:
     """Reference: analytic, an oscillator of the ratio ζ loses its amplitude at the rate ζω."""
     damped = with_ratio(heavy, 0.02)
-    first = pressed_modes(heavy)[0][0]
+    first = closed_contact_modes(heavy)[0][0]
     rigid = heavy.omega2 == 0.0
     assert rigid.sum() == 2
     expected = np.zeros((2, heavy.num_modes))
@@ -59,7 +59,7 @@ def test_rigid_motions_lose_speed_no_faster_than_the_first_mode(heavy: GapSystem
 @pytest.mark.parametrize("mode", [0, 1, 2])
 def test_a_pressed_boom_swings_with_the_ratio(heavy: GapSystem, mode: int, ratio: float) -> None:
     """Reference: analytic, the logarithmic decrement 2πζ/√(1 − ζ²)."""
-    omega, shapes = pressed_modes(heavy)
+    omega, shapes = closed_contact_modes(heavy)
     rest = equilibrium(heavy, heavy.load)
     run = AdaptiveStep()(
         Motion(
@@ -80,7 +80,7 @@ def test_a_segment_that_flies_slows_down_at_the_ratio_of_the_first_mode(heavy: G
     """Reference: analytic, exp(−ζω₁t)."""
     wide = replace(heavy, load=0.0 * heavy.load, laws=[LINEAR.law.behind(10.0)] * len(heavy.laws))
     damped = with_ratio(wide, 0.05)
-    tied = pressed_modes(wide)[0][0]
+    tied = closed_contact_modes(wide)[0][0]
     thrown = np.where(np.arange(wide.num_modes) == np.flatnonzero(wide.omega2 == 0.0)[0], 1.0, 0.0)
     run = AdaptiveStep()(Motion(damped, 1.0, 0.1, velocity=thrown))
     way = (1.0 - np.exp(-0.05 * tied * run.time)) / (0.05 * tied)
@@ -100,7 +100,7 @@ def test_the_error_is_of_second_order_in_the_step(heavy: GapSystem) -> None:
     """Reference: the same motion at a sixteenth of the finest step."""
     damped = with_ratio(heavy, 0.05)
     rest = equilibrium(heavy, heavy.load)
-    _, shapes = pressed_modes(heavy)
+    _, shapes = closed_contact_modes(heavy)
     start = rest + 1e-3 * shapes[:, :3].sum(axis=1)
 
     def states(step: float) -> np.ndarray:

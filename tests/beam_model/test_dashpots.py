@@ -17,7 +17,7 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.rigid import rigid_segment
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
-from dynamics.damping import pressed_ratios
+from dynamics.damping import closed_contact_damping
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
@@ -92,7 +92,7 @@ def test_a_rigid_segment_on_its_hinge_loses_its_swing(
     found = decrements(system, np.ones(1), 12.5 * 2.0 * np.pi / omega, "tip")
     assert found.size > 8
     assert found == pytest.approx(2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2), rel=2e-4)
-    hertz, ratios = pressed_ratios(system)
+    hertz, ratios = closed_contact_damping(system)
     assert (hertz, ratios) == (pytest.approx([omega / (2.0 * np.pi)]), pytest.approx([ratio]))
 
 

@@ -272,7 +272,7 @@ def test_friction_rows_rub_across_what_presses(spatial_boom: Boom) -> None:
     system = gap_system(touching(boom, LAW, LATERAL_LAW), beams(boom))
     up, aside = rigid_motion(system, ""), rigid_motion(system, "_lateral")
     for row, friction in zip(system.friction_rows, system.frictions, strict=True):
-        (contact,) = friction.pressed_by
+        (contact,) = friction.normal_rows
         assert (friction.coefficient, friction.normal_force) == (0.3, 0.0)
         assert friction.station == system.station_of_row[contact]
         presses_up = system.rows[contact] @ up
@@ -291,7 +291,9 @@ def test_flat_friction_rubs_in_its_plane(paper_boom: Boom) -> None:
     boom = replace(paper_boom, joints=(joint,))
     system = gap_system(touching(boom, LAW), beams(boom))
     np.testing.assert_array_equal(system.friction_rows, system.rows)
-    assert [(f.coefficient, f.station, f.normal_force, f.pressed_by) for f in system.frictions] == [
+    assert [
+        (f.coefficient, f.station, f.normal_force, f.normal_rows) for f in system.frictions
+    ] == [
         (0.2, 0, 4500.0, ()),
         (0.2, 1, 5000.0, ()),
     ]

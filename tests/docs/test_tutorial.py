@@ -12,7 +12,7 @@ import pytest
 
 import protractile as pt
 from beam_model.statics import StaticState, static_state
-from dynamics.damping import pressed_modes
+from dynamics.damping import closed_contact_modes
 from runs.case.build import build_boom
 from runs.pipeline.proportions import proportion_cautions
 from runs.pipeline.static_results import tilts
@@ -62,7 +62,7 @@ def checked(case: pt.Case) -> StaticState:
 
 def first_frequency(state: StaticState) -> float:
     """Return the first frequency in Hz with the joints in contact."""
-    return float(pressed_modes(state.system, state.position)[0][0]) / (2.0 * np.pi)
+    return float(closed_contact_modes(state.system, state.position)[0][0]) / (2.0 * np.pi)
 
 
 def test_the_boom_alone_is_that_of_the_first_check(tmp_path: Path) -> None:

@@ -70,7 +70,7 @@ def runge_kutta(motion: Motion, max_step: float = 1.0e-3) -> Array:
             law.force(y) * max(0.0, 1.0 + law.damping * np.sign(y) * u)
             for law, y, u in zip(system.laws, rows["rows"] @ a, closing, strict=True)
         ])  # fmt: skip
-        normal = [f.normal_force + np.abs(pressed[list(f.pressed_by)]).sum()
+        normal = [f.normal_force + np.abs(pressed[list(f.normal_rows)]).sum()
                   for f in system.frictions]  # fmt: skip
         limits = np.array([f.coefficient for f in system.frictions]) * normal
         forces = np.concatenate([pressed, limits * np.sign(sliding), dragged])

@@ -15,7 +15,7 @@ from dynamics.excitation import Excitation, PiecewiseLinear, Step
 from dynamics.gap_system import GapSystem, Observer
 
 LAW = PowerContact(stiffness=1.0e6, exponent=1.0).behind(1.0e-3)
-RUB = DryFriction(0.2, station=1, normal_force=10.0, pressed_by=(0, 1))
+RUB = DryFriction(0.2, station=1, normal_force=10.0, normal_rows=(0, 1))
 
 
 def parts() -> dict[str, Any]:
@@ -121,8 +121,8 @@ def test_refuses_what_does_not_agree(name: str, value: object, message: str) -> 
     [
         (replace(RUB, station=2), "the station of a friction must be a position in stations"),
         (replace(RUB, station=-1), "the station of a friction must be a position in stations"),
-        (replace(RUB, pressed_by=(0, 2)), "pressed_by must hold positions in rows"),
-        (replace(RUB, pressed_by=(-1,)), "pressed_by must hold positions in rows"),
+        (replace(RUB, normal_rows=(0, 2)), "normal_rows must hold positions in rows"),
+        (replace(RUB, normal_rows=(-1,)), "normal_rows must hold positions in rows"),
     ],
 )
 def test_refuses_friction_in_no_place(friction: DryFriction, message: str) -> None:

@@ -80,7 +80,7 @@ def violations(
     found = [*contacts]
     for friction, own, asked in zip(system.frictions, rubbed, slip_force[m:], strict=False):
         bound = friction.coefficient * (
-            friction.normal_force + np.abs(pressed[list(friction.pressed_by)]).sum()
+            friction.normal_force + np.abs(pressed[list(friction.normal_rows)]).sum()
         )
         # Coulomb's law as a projection: f = P(f + s/C) onto what the bound allows.
         found.append(own - np.clip(own + asked, -bound, bound))

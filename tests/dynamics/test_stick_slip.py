@@ -43,7 +43,7 @@ def test_cycles_of_sticking_and_slipping(speed: float) -> None:
     found = drawn(ROPE, speed, first + 9.99 * period, 21_000)
     time = np.linspace(0.0, first + 9.99 * period, 21_001)
     begins = time[1:][
-        (found.series["drawn_speed"][:-1] == 0.0) & (found.series["drawn_speed"][1:] > 0.0)
+        (found.series["extension_speed"][:-1] == 0.0) & (found.series["extension_speed"][1:] > 0.0)
     ]
     assert begins[0] == pytest.approx(first, abs=2.0 * time[1])
     assert (begins[9] - begins[0]) / 9.0 == pytest.approx(period, rel=3e-4)

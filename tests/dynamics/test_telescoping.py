@@ -176,10 +176,10 @@ def test_the_drive_against_friction() -> None:
     system = lossy(Stroke(-1.0, 5.0, ramp=0.05, start=0.1))
     run = FixedStep(1.0e-4)(Motion(system, 0.5, 1.0e-3))
     force = np.abs(run.data["contact_force"].values[:, 0])
-    moving = np.sign(np.diff(run.data["drawn_out"].values, prepend=0.0))
+    moving = np.sign(np.diff(run.data["extension"].values, prepend=0.0))
     assert run.data["drive_friction"].values == pytest.approx(moving * 0.3 * (force + 400.0))
     assert moving[[50, 200, 450]].tolist() == [0.0, -1.0, 0.0]
-    ways = np.diff(run.data["drawn_out"].values, prepend=0.0)
+    ways = np.diff(run.data["extension"].values, prepend=0.0)
     work = run.data["drive_work"].values[-1] + (run.data["drive_friction"].values * ways).sum()
     assert 1.0e-3 * run.data["drive_power"].values.sum() == pytest.approx(work)
 

@@ -12,7 +12,7 @@ import pytest
 from dynamics.contact import PowerContact
 from dynamics.excitation import Ramp, ReleasedLoad, Step
 from geometry.boom import Boom, BoomError, Collar, Cylinder, Load, Material, Segment, Stop, Support
-from geometry.holding import check_pressed
+from geometry.holding import check_contacts_at_rest
 from geometry.observation import Observation
 from geometry.section import BoxSection
 from tests.space import in_space
@@ -60,7 +60,7 @@ HELD: Mapping[str, Mapping[str, Any]] = {
 @pytest.mark.parametrize("case", HELD.values(), ids=HELD.keys())
 def test_a_boom_is_held(paper_boom: Boom, case: Mapping[str, Any]) -> None:
     others = {key: value for key, value in case.items() if key != "supports"}
-    check_pressed(held(paper_boom, *case["supports"], **others))
+    check_contacts_at_rest(held(paper_boom, *case["supports"], **others))
 
 
 LIFTED = (
@@ -80,7 +80,7 @@ def test_a_stop_that_no_load_presses_holds_nothing(
 ) -> None:
     lifted = held(paper_boom, HINGE, stops=(BELOW,), loads=loads)
     with pytest.raises(BoomError) as caught:
-        check_pressed(lifted)
+        check_contacts_at_rest(lifted)
     assert (caught.value.where, caught.value.what) == ("segments[0]", LIFTED)
 
 
@@ -93,11 +93,11 @@ def test_a_collar_presses_a_stop_by_its_weight(steel: Material) -> None:
     arm = Segment.of_section("arm", 0.0, 10.0, steel, box, supports=(Support(4.0),))
     weight = Load(0, "z", -9.81 * arm.mass_per_length, None, Step(), inertial=True)
     rest = replace(BELOW, x=0.0)
-    check_pressed(
+    check_contacts_at_rest(
         Boom((replace(arm, collars=(Collar((0.0, 1.0), 0.03),)),), (), (weight,), (rest,))
     )
     with pytest.raises(BoomError, match="the loads of t = 0 lift 'arm'"):
-        check_pressed(Boom((arm,), (), (weight,), (rest,)))
+        check_contacts_at_rest(Boom((arm,), (), (weight,), (rest,)))
 
 
 UNHELD: Mapping[str, tuple[str, str, Mapping[str, Any]]] = {

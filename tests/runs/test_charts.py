@@ -13,7 +13,7 @@ import pytest
 from runs import CASES
 from runs.case.reading import load
 from runs.pipeline.model_quality import leading
-from runs.report.charts import MOST, Chart, Curve, extremes, packed_charts, packed_plotly
+from runs.report.charts import MOST, Chart, Curve, extremes, pack_charts, pack_plotly
 
 
 def unpacked(packed: dict[str, str]) -> np.ndarray:
@@ -24,7 +24,7 @@ def test_numbers_come_as_they_are() -> None:
     """Reference: the values themselves, to the 24 bits of a 32-bit float; a name cannot end the
     script."""
     time, values = np.linspace(0.0, 1.0, 7), np.array([0.0, 1.5, -2.25, 3.1, 1e-9, 7.0, 8.0])
-    text = packed_charts({"tip": Chart(time, "mm", [Curve("</script>", values, "#000000")])})
+    text = pack_charts({"tip": Chart(time, "mm", [Curve("</script>", values, "#000000")])})
     assert "<" not in text
     chart = json.loads(text)["tip"]
     (curve,) = chart["data"]
@@ -72,7 +72,7 @@ def test_long_runs_are_thinned_to_their_own_samples() -> None:
 def test_the_library_comes_whole() -> None:
     """Reference: what the wheel has."""
     library = pytest.importorskip("plotly.offline").get_plotlyjs()
-    assert gzip.decompress(base64.b64decode(packed_plotly())).decode() == library
+    assert gzip.decompress(base64.b64decode(pack_plotly())).decode() == library
 
 
 @pytest.mark.parametrize(

@@ -79,4 +79,4 @@ def test_figures_name_their_counterparts(case: str, numbers: tuple[int, int]) ->
     remarks = addition(found, []).remarks
     for place, number in zip(("tip", "head"), numbers, strict=True):
         assert f"counterpart of Fig. {number} of the paper" in remarks[f"figure-{place}"]
-    assert addition(found.unjudged(), []).remarks == {}
+    assert addition(found.without_judgements(), []).remarks == {}

@@ -29,7 +29,7 @@ from runs.sweep.distances import (
     Features,
     Measured,
     comparable_until,
-    held_force,
+    sustained_force,
 )
 from runs.sweep.points import Plan, plan
 from runs.sweep.run import Outcome, run_point
@@ -70,8 +70,8 @@ def test_a_pad_force_is_held() -> None:
     forces = np.zeros((TIME.size, 2))
     forces[700, 0] = -4000.0
     forces[1000:, 1] = 150.0
-    assert held_force(TIME, forces) == pytest.approx(4000.0 * 1e-3 / HELD)
-    assert np.isnan(held_force(TIME, np.full((TIME.size, 2), np.nan)))
+    assert sustained_force(TIME, forces) == pytest.approx(4000.0 * 1e-3 / HELD)
+    assert np.isnan(sustained_force(TIME, np.full((TIME.size, 2), np.nan)))
 
 
 @pytest.fixture

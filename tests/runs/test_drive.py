@@ -199,7 +199,7 @@ def test_slips_in_a_drive(tmp_path: Path, before: str, after: str, message: str)
     assert str(caught.value).removeprefix(f"{tmp_path}/case.toml: ") == message
 
 
-@pytest.mark.parametrize("name", ["drawn_out", "drive_power-2", "drive_lag-3"])
+@pytest.mark.parametrize("name", ["extension", "drive_power-2", "drive_lag-3"])
 def test_outputs_of_drives_are_no_one_elses(tmp_path: Path, name: str) -> None:
     """Reference: the line that a user reads."""
     path = tmp_path / "case.toml"
@@ -238,9 +238,9 @@ def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
     path_of.write_text(text, encoding="utf-8")
     results = run_case(load(path), models=["kantorovich-5"])
     data = results.trajectories.sel(model="kantorovich-5")
-    assert float(data["drawn_out"][-1]) == pytest.approx(4.0)
+    assert float(data["extension"][-1]) == pytest.approx(4.0)
     force = 0.2 * np.abs(data["contact_force"]).sum("station")
-    moving = np.diff(data["drawn_out"], prepend=0.0) > 0.0
+    moving = np.diff(data["extension"], prepend=0.0) > 0.0
     assert data["drive_friction"].values == pytest.approx(np.where(moving, force, 0.0))
     assert float(data["drive_friction"].max()) > 100.0
     assert results.summary.models["kantorovich-5"].energy_residual < 1.0e-4

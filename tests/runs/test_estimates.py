@@ -154,7 +154,7 @@ def test_dofs_of_a_graded_mesh_are_estimated(name: str, mesh_size: float, tolera
     boom = build_boom(case)
     meshes = [segment_mesh(boom, i, shell.options()) for i in range(len(boom.segments))]
     dofs = sum(21 * len(mesh.points) for mesh in meshes)
-    assert 0.9 * dofs <= shell.estimated_dofs(boom) <= 2.0 * dofs
+    assert 0.9 * dofs <= shell.estimate_dofs(boom) <= 2.0 * dofs
 
 
 @pytest.mark.parametrize(

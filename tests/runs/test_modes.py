@@ -15,7 +15,7 @@ from beam_model.lines import lines
 from beam_model.rigid import rigid_segment
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
-from dynamics.damping import pressed_modes
+from dynamics.damping import closed_contact_modes
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, Material, Segment, Support
 from geometry.section import BoxSection
@@ -101,5 +101,5 @@ def test_what_nothing_bends_has_modes_of_its_contacts() -> None:
     law = PowerContact(1e6, 1.0).lower()
     one = np.ones(1)
     ball = GapSystem(0.0 * one, -9.81 * one, one[None], [law], np.array([0]), [0.0], {})
-    omega, _ = pressed_modes(ball)
+    omega, _ = closed_contact_modes(ball)
     np.testing.assert_allclose(omega, [1e3])

@@ -20,9 +20,9 @@ from runs import CASES
 from runs.case.build import build_boom
 from runs.case.reading import load
 from runs.pipeline.model_output import BeamOutput, SegmentMotion
-from runs.report.overlap_pictures import smoothed
+from runs.report.overlap_pictures import smooth_corners
 from runs.report.scene import Scene, round_scale
-from runs.report.snapshots import where_pressed
+from runs.report.snapshots import place_of_largest_force
 from studies.gallery import change_of_shape
 from tests.runs.moving_segments import (
     BOOM,
@@ -61,7 +61,7 @@ def test_segments_move_along_as_drives_extend_them(shell: Scene) -> None:
     assert not shell.slides(shell.overlaps[0])
     out = Drive(SCurve(travel=-4.0, duration=2.0), carriers=("inner", "outer"))
     boom = replace(BOOM, joints=(replace(BOOM.joints[0], drive=out),))
-    extended = replace(shell, boom=boom, motion=moving_scene(drawn_out=-2.0 * TIME).motion)
+    extended = replace(shell, boom=boom, motion=moving_scene(extension=-2.0 * TIME).motion)
     assert extended.slides(extended.overlaps[0])
     np.testing.assert_allclose(extended.along(0.5), np.where(shell.owner == 1, -1.0, 0.0))
     assert extended.reach([0.5]) == pytest.approx((0.0, BOOM.tip))
@@ -148,11 +148,11 @@ def test_of_several_joints_the_pressed_one_is_named(
     peak = xr.zeros_like(side.motion["contact_force_peak"])
     peak[200, station] = (-1.0) ** (station // 2) * 3.0e4
     side = replace(side, motion=side.motion.assign(contact_force_peak=peak))
-    assert where_pressed([side, above], float(TIME[200])) == place
+    assert place_of_largest_force([side, above], float(TIME[200])) == place
 
 
 def test_the_only_joint_is_not_named(shell: Scene) -> None:
-    assert where_pressed([shell], 0.5) == ""
+    assert place_of_largest_force([shell], 0.5) == ""
 
 
 def test_from_above_y_points_up(shell: Scene) -> None:
@@ -202,9 +202,9 @@ def test_smoothed_stresses_keep_to_their_walls(shell: Scene) -> None:
     stress = shell.stress
     assert stress is not None
     walls = stress.wall.astype(float) + 10.0 * shell.segment
-    smooth = smoothed(stress, shell.triangles, walls)
+    smooth = smooth_corners(stress, shell.triangles, walls)
     np.testing.assert_allclose(smooth, np.repeat(walls[:, None], 3, axis=1))
-    corners = smoothed(stress, shell.triangles, stress.centroids[:, 0])
+    corners = smooth_corners(stress, shell.triangles, stress.centroids[:, 0])
     places = shell.points[shell.triangles, 0]
     inside = np.abs(places - 5.0) < 3.0
     assert np.abs(corners - places)[inside].max() < 0.15  # half an edge

@@ -172,9 +172,9 @@ def test_a_run_tells_how_it_sticks_and_slips(tmp_path: Path) -> None:
     assert own.sticks >= 1
     assert own.peak >= float(np.abs(data["drive_force"]).max())
     assert own.peak == pytest.approx(float(np.abs(data["drive_force"]).max()), rel=0.02)
-    assert own.speed == pytest.approx(float(np.abs(data["drawn_speed"]).max()), rel=0.01)
+    assert own.speed == pytest.approx(float(np.abs(data["extension_speed"]).max()), rel=0.01)
     assert own.behind == float(data["drive_lag"][-1])
-    moving = np.diff(data["drawn_out"], prepend=0.0) != 0.0
+    moving = np.diff(data["extension"], prepend=0.0) != 0.0
     assert own.mean == pytest.approx(float(np.abs(data["drive_force"])[moving].mean()))
     _check_shown(results, tmp_path)
     stiff = run_case(drawn_by(tmp_path, "least_overlap = 1.0 }", **short), models=["kantorovich-5"])
@@ -223,16 +223,16 @@ def test_a_stiff_rope_pulls_as_a_stiff_drive(tmp_path: Path) -> None:
 
 
 def _check_motion(data: xr.Dataset) -> None:
-    time, speed = data["time"].values, data["drawn_speed"].values
+    time, speed = data["time"].values, data["extension_speed"].values
     assert 300 < _checked_slips(data) < 1250
-    come = (data["drawn_out"] - data["drive_lag"]).values
+    come = (data["extension"] - data["drive_lag"]).values
     summed = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
     assert come == pytest.approx(summed, abs=1e-4)
 
 
 def _checked_slips(data: xr.Dataset) -> int:
     """In how many outputs it slips: there 550.7 kg speed up by what friction leaves of the pull."""
-    time, speed = data["time"].values, data["drawn_speed"].values
+    time, speed = data["time"].values, data["extension_speed"].values
     friction = 0.2 * np.abs(data["contact_force"].values).sum(axis=1)
     slips = np.minimum(speed[1:], speed[:-1]) > 0.0
     left = (data["drive_force"].values - friction)[1:] - 550.7 * np.diff(speed) / np.diff(time)

@@ -46,7 +46,7 @@ def test_segments_move_along_as_drives_extend_them(shown: View) -> None:
     not; both bend as they do without a drive."""
     out = Drive(SCurve(travel=-4.0, duration=2.0), carriers=("inner", "outer"))
     boom = replace(BOOM, joints=(replace(BOOM.joints[0], drive=out),))
-    motion = moving_scene(drawn_out=-2.0 * TIME).motion
+    motion = moving_scene(extension=-2.0 * TIME).motion
     driven = shown._replace(scene=replace(shown.scene, boom=boom, motion=motion))
     page, before = packed(driven, 0.0), packed(shown, 0.0)
     assert before["drawn"] == {}

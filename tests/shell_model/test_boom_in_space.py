@@ -140,7 +140,7 @@ def test_each_pad_rubs_where_it_presses() -> None:
     for row, (friction, station) in enumerate(
         zip(system.frictions, system.station_of_row, strict=True)
     ):
-        assert friction.pressed_by == (row,)
+        assert friction.normal_rows == (row,)
         assert friction.normal_force == 0.0
         assert friction.station == station
     assert list(system.station_directions) == ["z", "z", "y", "y"]

@@ -14,7 +14,7 @@ from mpi4py import MPI
 from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
-from dynamics.damping import pressed_ratios
+from dynamics.damping import closed_contact_damping
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Step
 from dynamics.gap_system import GapSystem
@@ -103,7 +103,7 @@ def test_axial_forces_turn_a_shell_about_its_lowered_pin(
 def test_a_luffed_shell_swings_as_its_beam() -> None:
     """Reference: other code, Timoshenko elements: frequencies and ratios of its dashpot."""
     (found, ratios), (expected, of_beam) = (
-        pressed_ratios(system) for system in (shell(luffed()), beam(luffed()))
+        closed_contact_damping(system) for system in (shell(luffed()), beam(luffed()))
     )
     assert found[:2] == pytest.approx(expected[:2], rel=1e-2)
     assert of_beam[0] > 0.005

@@ -170,7 +170,7 @@ def test_in_space_each_point_presses_one_corner() -> None:
     roll is met by ∫ k_A y² dA = k_A L b³/12 on each flange.
     """
     system = _system(boom_in_space(friction=0.2))
-    pressing = sorted(row for friction in system.frictions for row in friction.pressed_by)
+    pressing = sorted(row for friction in system.frictions for row in friction.normal_rows)
     assert pressing == list(range(len(system.laws))) == list(range(4 * 16))
     assert len(system.frictions) == 16
     along_z = np.array(system.station_directions)[system.station_of_row] == "z"

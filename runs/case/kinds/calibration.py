@@ -67,7 +67,7 @@ class CalibratedTable(BeamTable):
             return self
         return self.model_copy(update={"calibrated_by": self.calibrated_by.with_shells(update)})
 
-    def calibrated_among(self, models: Mapping[str, ModelTable]) -> Self:
+    def resolve_shell(self, models: Mapping[str, ModelTable]) -> Self:
         """Return the model with the table of its shell in place of the shell's name."""
         shell = models.get(self.calibrated_by) if isinstance(self.calibrated_by, str) else None
         if not isinstance(shell, Shell):

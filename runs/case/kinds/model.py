@@ -187,7 +187,7 @@ class ModelTable(CaseTable):
         """Return the model with an update of its shell, or of the shell that calibrates it."""
         return self.model_copy(update=update) if self.meshed else self
 
-    def calibrated_among(self, models: Mapping[str, ModelTable]) -> Self:
+    def resolve_shell(self, models: Mapping[str, ModelTable]) -> Self:
         """Return the model with the table of its calibrating shell in place of the name.
 
         Args:

@@ -126,7 +126,7 @@ class Shell(ModelTable):
         assert workshop is not None
         boom, options = standard_boom(joined.boom), self.options()
         # Imported here, since the libraries take a second or two to load.
-        helper = workshop.helper if self.estimated_dofs(boom) > _SMALL else None
+        helper = workshop.helper if self.estimate_dofs(boom) > _SMALL else None
         made = workshop.remember(
             (boom, options),
             partial(reduce_boom, boom, options, workshop.comm, workshop.progress, helper),
@@ -167,7 +167,7 @@ class Shell(ModelTable):
         return self.stand_in(joined.boom).beam.critical_factor(joined)
 
     def stand_in(self, boom: Boom) -> StandIn:
-        dofs = self.estimated_dofs(boom)
+        dofs = self.estimate_dofs(boom)
         coordinates = (_SPATIAL if boom.spatial else _FLAT) * len(boom.segments)
         if isinstance(self.modes, int):
             coordinates = min(coordinates, self.modes * len(boom.segments))
@@ -180,7 +180,7 @@ class Shell(ModelTable):
         memory = dofs * (_OF_DOF + _OF_DOF_AND_COORDINATE * coordinates)
         return StandIn(beam, coordinates, memory, _REDUCTION * dofs)
 
-    def estimated_dofs(self, boom: Boom) -> float:
+    def estimate_dofs(self, boom: Boom) -> float:
         """Return the approximate total number of dofs, without meshing."""
         squares = _surface(boom) / self.mesh_size**2
         if self.contact_tolerance == "any" or self.contact_line == "surface":
