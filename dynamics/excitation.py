@@ -35,6 +35,13 @@ class History(Protocol):
         """Return the value at each time in s, any shape."""
 
 
+class MotionLaw(History, Protocol):
+    """Length or angle over time, with its time derivatives."""
+
+    def rate(self, time: Array, order: int) -> Array:
+        """Return the first or second time derivative at each time in s, any shape."""
+
+
 @dataclass(frozen=True, slots=True)
 class Step:
     """Constant 1 from t = 0 on.
@@ -150,6 +157,62 @@ class PiecewiseLinear:
     def __call__(self, time: Array) -> Array:
         return np.asarray(np.interp(time, self.times, self.values))
 
+    def rate(self, time: Array, order: int) -> Array:
+        """Return the first or second derivative; jumps of the slope have none."""
+        slopes = np.concatenate([[0.0], np.diff(self.values) / np.diff(self.times), [0.0]])
+        return np.asarray((2 - order) * slopes[np.searchsorted(self.times, time)])
+
+
+@dataclass(frozen=True, slots=True)
+class Spline:
+    """Cubic spline between points, at rest at the first and the last one and constant beyond.
+
+    >>> pt.Spline(times=[0.0, 1.0, 2.0], values=[0.0, 5.0, 10.0])(np.array([0.5, 1.0, 9.0]))
+    array([ 1.5625,  5.    , 10.    ])
+
+    Args:
+        times: times in s, ascending, two at least.
+        values: value at each time.
+
+    Raises:
+        ValueError: the points are invalid.
+    """
+
+    times: Sequence[float]
+    values: Sequence[float]
+
+    def __post_init__(self) -> None:
+        PiecewiseLinear(self.times, self.values)
+
+    @property
+    def kinks(self) -> Sequence[float]:
+        """The times of the points in s."""
+        return self.times
+
+    @property
+    def peak(self) -> float:
+        """The largest |value|."""
+        fine = np.linspace(self.times[0], self.times[-1], 16 * len(self.times))
+        return float(np.abs(self(fine)).max())
+
+    @property
+    def fastest(self) -> float:
+        """The reciprocal of the shortest interval, in rad/s."""
+        return 1.0 / float(np.diff(self.times).min())
+
+    def __call__(self, time: Array) -> Array:
+        return self.rate(time, 0)
+
+    def rate(self, time: Array, order: int) -> Array:
+        """Return the value or its first or second derivative."""
+        from scipy.interpolate import CubicSpline
+
+        curve = CubicSpline(self.times, self.values, bc_type="clamped")
+        time = np.asarray(time)
+        inside = (time > self.times[0]) & (time <= self.times[-1])
+        values = curve(np.clip(time, self.times[0], self.times[-1]), order)
+        return np.asarray(values * inside if order else values)
+
 
 @dataclass(frozen=True, slots=True)
 class SCurve:
@@ -192,6 +255,12 @@ class SCurve:
         part = np.clip((np.asarray(time) - self.start) / self.duration, 0.0, 1.0)
         return np.asarray(self.travel * (part - np.sin(2.0 * np.pi * part) / (2.0 * np.pi)))
 
+    def rate(self, time: Array, order: int) -> Array:
+        """Return the first or second derivative."""
+        phase = 2.0 * np.pi * np.clip((np.asarray(time) - self.start) / self.duration, 0.0, 1.0)
+        shape = 1.0 - np.cos(phase) if order == 1 else self.fastest * np.sin(phase)
+        return np.asarray(self.travel / self.duration * shape)
+
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
@@ -221,8 +290,8 @@ class Stroke:
             raise ValueError(f"ramp must be finite and not negative, got {self.ramp} s")
         if self.speed * self.ramp > abs(self.travel):
             raise ValueError(
-                f"within a travel of {abs(self.travel):g} m a ramp of {self.ramp:g} s does not "
-                f"come to {self.speed:g} m/s; the ramp must be at most "
+                f"within a travel of {abs(self.travel):g} a ramp of {self.ramp:g} s does not "
+                f"come to a speed of {self.speed:g}; the ramp must be at most "
                 f"{abs(self.travel) / self.speed:g} s"
             )
 
@@ -253,6 +322,20 @@ class Stroke:
         ramps = self._integrate_ramp(after), self._integrate_ramp(after - self.duration + self.ramp)
         return np.asarray(np.sign(self.travel) * self.speed * (ramps[0] - ramps[1]))
 
+    def rate(self, time: Array, order: int) -> Array:
+        """Return the first or second derivative, before a jump its earlier value.
+
+        The second derivative needs a ramp.
+        """
+        after = np.asarray(time) - self.start
+        since = np.array([after, after - self.duration + self.ramp])
+        begun, done = since > 0.0, since > self.ramp
+        if order == 1:
+            rise = np.where(done, 1.0, since / self.ramp * begun) if self.ramp else 1.0 * begun
+        else:
+            rise = (begun & ~done) / self.ramp
+        return np.asarray(np.sign(self.travel) * self.speed * (rise[0] - rise[1]))
+
     def _integrate_ramp(self, after: Array) -> Array:
         """Return ∫ v dt in s of a ramp v from 0 to 1, which then stays constant."""
         if self.ramp == 0.0:
@@ -265,7 +348,7 @@ class Stroke:
 class HistorySum:
     """Sum of several histories, for example of all joints between a segment and the ground."""
 
-    parts: tuple[History, ...]
+    parts: tuple[MotionLaw, ...]
 
     @property
     def kinks(self) -> tuple[float, ...]:
@@ -277,10 +360,14 @@ class HistorySum:
 
     @property
     def fastest(self) -> float:
-        return max(part.fastest for part in self.parts)
+        return max((part.fastest for part in self.parts), default=0.0)
 
     def __call__(self, time: Array) -> Array:
-        return np.asarray(sum(part(time) for part in self.parts))
+        return sum((part(time) for part in self.parts), np.zeros(np.shape(time)))
+
+    def rate(self, time: Array, order: int) -> Array:
+        """Return the first or second derivative, if the parts have one."""
+        return sum((part.rate(time, order) for part in self.parts), np.zeros(np.shape(time)))
 
 
 @dataclass(frozen=True, slots=True)

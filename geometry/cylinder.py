@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import field
-from math import hypot
+from dataclasses import field, replace
+from math import cos, hypot, sin
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
@@ -71,6 +71,13 @@ class Cylinder:
         """Return the lever arm of the cylinder about the pin of a foot in m."""
         along, up = self.direction
         return (self.x - foot.x) * up + (self.depth - foot.depth) * along
+
+    def luffed(self, turn: float, foot: Support) -> Cylinder:
+        """Return the cylinder, as seen from the boom, after it luffs by a turn in rad."""
+        along, up = self.ground[0] - foot.x, self.ground[1] + foot.depth
+        cosine, sine = cos(turn), sin(turn)
+        ground = (foot.x + along * cosine + up * sine, up * cosine - along * sine - foot.depth)
+        return replace(self, ground=ground)
 
     def pull(self, x: Array, foot: Support | None) -> Array:
         """Return the normal force (num_places,) in N at x in m for 1 N of compression.

@@ -55,6 +55,7 @@ from runs.pipeline.statics import (
     cylinder_force,
     statics,
 )
+from runs.pipeline.turning import turning_lines
 from runs.report.formatting import number
 from runs.report.tables import Cell, Column, Table
 
@@ -98,6 +99,7 @@ def print_check(declared: CheckedCase, console: Console) -> None:
             table.show(console)
     drives = list(stick_slip_estimates(case, boom))
     lines = [*drive_lines(boom, case.system), *stick_slip_lines(drives, case.system)]
+    lines += turning_lines(case)
     lines += [*_static_lines(case, boom, found)]
     if boom.compressed:
         for model in case.models:

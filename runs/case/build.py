@@ -32,6 +32,7 @@ from runs.case.elastic_drive import check_elastic_drives
 from runs.case.hoist import check_hoist, hoist_thrust
 from runs.case.schema import Case
 from runs.case.segment import SegmentTable
+from runs.case.turning import check_turning, frame_motion, turning_loads
 
 # Quantities in the trajectories of every boom.
 _TAKEN = {
@@ -70,10 +71,15 @@ def build_boom(case: Case) -> Boom:
         case, len(segments) - 1, segments[-1].end
     )
     segments = with_compression(segments, joints, thrusts, along)
+    check_turning(case, _in_space(case))
+    frame = frame_motion(case, segments)
     boom = Boom(
         segments,
         joints,
-        actions.loads(case, segments),
+        (
+            *actions.loads(case, segments),
+            *(() if frame is None else turning_loads(frame, segments, joints)),
+        ),
         actions.stops(case),
         case.observe,
         case.cylinders,

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field
 
 from dynamics.arrays import Array
-from dynamics.excitation import History, PiecewiseLinear, SCurve, Stroke
+from dynamics.excitation import History, MotionLaw, PiecewiseLinear, SCurve, Spline, Stroke
 from geometry.boom import BoomError
 from geometry.fields import Distance, In, NotNegative, Number, Positive, described
 from geometry.joint import Carrier, Drive
@@ -55,7 +55,11 @@ class TravelTable(CaseTable):
     """the names of the columns of times and lengths in the heading of the file; not needed if the
     file has only two columns"""
 
-    def history(self, where: str) -> History:
+    # Unit of the travel, and history through the points of a table.
+    unit: ClassVar[str] = "m"
+    interpolation: ClassVar[type[PiecewiseLinear] | type[Spline]] = PiecewiseLinear
+
+    def history(self, where: str) -> MotionLaw:
         """Return the history of the extension in m.
 
         Args:
@@ -67,7 +71,8 @@ class TravelTable(CaseTable):
         given = [key for key in _WAYS if getattr(self, key) is not None]
         if not given:
             raise BoomError(
-                f"{where}.time", f"missing; it is {_said('time')}, or give speed, table or file"
+                f"{where}.time",
+                f"missing; it is {self.meaning('time')}, or give speed, table or file",
             )
         if len(given) > 1:
             raise BoomError(f"{where}.{given[1]}", f"{given[0]} is given; leave one of them out")
@@ -80,35 +85,42 @@ class TravelTable(CaseTable):
         if self.table is not None:
             return self._tabled(where)
         if self.travel is None:
-            raise BoomError(f"{where}.travel", f"missing; it is {_said('travel')}")
+            raise BoomError(f"{where}.travel", f"missing; it is {self.meaning('travel')}")
         if self.time is not None:
             return SCurve(self.travel, self.time, self.start)
         assert self.speed is not None
         if not np.isfinite(abs(self.travel) / self.speed):
             raise BoomError(
-                f"{where}.speed", f"never comes to {self.travel:g} m; give a larger one"
+                f"{where}.speed",
+                f"never comes to {self.travel:g} {self.unit}; give a larger one",
             )
         try:
             return Stroke(self.travel, self.speed, self.ramp, self.start)
         except ValueError as error:
             raise BoomError(f"{where}.ramp", str(error)) from None
 
-    def _tabled(self, where: str) -> History:
+    def _tabled(self, where: str) -> MotionLaw:
         for key in ("travel", "start"):
             if getattr(self, key):
                 raise BoomError(f"{where}.{key}", "table is given; leave one of them out")
         assert self.table is not None
         try:
-            history = PiecewiseLinear(*zip(*self.table, strict=True))
+            history = self.interpolation(*zip(*self.table, strict=True))
         except ValueError as error:
             raise BoomError(f"{where}.table", str(error)) from None
         start = float(history(np.zeros(())))
         if start != 0.0:
             raise BoomError(
                 f"{where}.table",
-                f"must be 0 m at t = 0, where the boom is as it is given, got {start:g} m",
+                f"must be 0 {self.unit} at t = 0, where the boom is as it is given, got "
+                f"{start:g} {self.unit}",
             )
         return history
+
+    @classmethod
+    def meaning(cls, key: str) -> str:
+        """Return the description of a key."""
+        return described(cls.model_fields[key])
 
 
 class DriveTable(TravelTable):
@@ -177,10 +189,6 @@ def resolving_times(histories: Sequence[History], duration: float) -> Array:
     nearest = np.clip(np.rint(kinks / even[1]), 1, number - 2).astype(np.int64)
     same = np.abs(even[nearest] - kinks) <= _SAME_TIME * duration
     return np.union1d(np.delete(even, nearest[same]), kinks)
-
-
-def _said(key: str) -> str:
-    return described(TravelTable.model_fields[key])
 
 
 def _carrier(place: float | Distance, where: str, what: str, inner: str) -> Carrier:

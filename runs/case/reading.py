@@ -245,6 +245,8 @@ def _read_tables(case: Case, path: str) -> Case:
             "loads": standing("load", case.loads),
             "base": standing("base", case.base),
             "hoist": case.hoist and _travel(path, "hoist", case.hoist, system),
+            "slew": case.slew and _travel(path, "slew", case.slew, system),
+            "luff": case.luff and _travel(path, "luff", case.luff, system),
         }
     )
 
@@ -267,12 +269,13 @@ def _history(path: str, key: str, table: History, system: System) -> History:
 
 
 def _travel(path: str, key: str, travel: Travel, system: System) -> Travel:
-    """Return a drive or a winch with the pairs of its CSV file, if it has one."""
+    """Return a drive, winch or turn with the pairs of its CSV file, if it has one."""
     _check_columns(path, f"{key}.columns", travel.columns, travel.file)
     if travel.file is None:
         return travel
     _check_file_alone(path, key, travel.table)
-    wanted = Column("time", system.unit("s")), Column("length", system.unit("m"))
+    _, unit = units_of(travel, "table")
+    wanted = Column("time", system.unit("s")), Column("length", system.unit(unit))
     read = read_pairs(path, f"{key}.file", travel.file, travel.columns, wanted).values
     return travel.model_copy(update={"file": None, "columns": None, "table": read})
 

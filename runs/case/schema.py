@@ -52,6 +52,7 @@ from runs.case.limits import (
     errors_in,
 )
 from runs.case.segment import SegmentTable
+from runs.case.turning import LuffTable, SlewTable
 from runs.case.units import System, SystemName
 from runs.paper.statements import CaseKeys
 
@@ -446,6 +447,10 @@ class Case(CaseKeys, CaseHeading):
     payload has weight"""
     hoist: HoistTable | None = None
     """the table of a load on a rope below the tip"""
+    slew: SlewTable | None = None
+    """the table of the slewing of the boom"""
+    luff: LuffTable | None = None
+    """the table of the luffing of the boom"""
     base: Annotated[tuple[BaseTable, ...], Few] = ()
     """the accelerations of the ground"""
     observe: Annotated[tuple[ObserveTable, ...], Few] = ()

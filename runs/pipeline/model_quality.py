@@ -29,6 +29,7 @@ from runs.pipeline.proportions import (
     tip_cautions,
 )
 from runs.pipeline.summary import Comparisons, Summary, Whole
+from runs.pipeline.turning import turning_cautions
 
 # Difference of members, as a fraction of the tip's range, beyond which their motions diverge.
 _PARTED = 0.2
@@ -244,6 +245,7 @@ def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
     slowest = min(((mode.frequency, name) for name, one in found for mode in one.modes), default=())
     if slowest:
         yield from period_cautions(f"in {slowest[1]}", slowest[0], case)
+        yield from turning_cautions(f"in {slowest[1]}", slowest[0], case)
 
 
 def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:

@@ -7,7 +7,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from geometry.cylinder import force_name
 from runs.case.hoist import hanging_load
+from runs.case.turning import frame_motion
 from runs.pipeline.design_results import ModelDesignResults, PlayDifference
 from runs.pipeline.metrics import records
 from runs.pipeline.motion_results import Peak
@@ -33,6 +35,7 @@ def result_tables(results: Results) -> list[Table]:
         peak_table(results),
         drive_table(results),
         hoist_table(results),
+        luffing_table(results),
         stick_slip_table(results),
         *record_tables(results),
         pad_table(results),
@@ -250,6 +253,38 @@ def hoist_table(results: Results) -> Table | None:
         "force over this weight.",
     )
     return Table("Hoisting", columns, notes, "hoist")
+
+
+def luffing_table(results: Results) -> Table | None:
+    """Return length and force of the cylinders of every model; None if nothing luffs."""
+    boom, data = results.boom, results.trajectories
+    frame = frame_motion(results.case, boom.segments)
+    if frame is None or results.case.luff is None or not boom.cylinders:
+        return None
+    time, rows = data["time"].values, []
+    turns = frame.luffed(time) - frame.luffed(time[0])
+    for position, cylinder in enumerate(boom.cylinders, start=1):
+        foot = boom.segments[cylinder.segment].foot
+        assert foot is not None
+        luffed = [cylinder.luffed(turn, foot) for turn in turns.tolist()]
+        lengths = np.array([one.length for one in luffed])
+        arms = cylinder.arm(foot) / np.array([one.arm(foot) for one in luffed])
+        for model in data["model"].values:
+            force = arms * data[force_name(position)].sel(model=model).values
+            ends = lengths[0], lengths[-1], np.ptp(lengths)
+            rows.append((str(model), position, *ends, force.min(), force.max()))
+    models, numbers, first, last, strokes, least, most = zip(*rows, strict=True)
+    columns = (
+        Column("model", models),
+        Column("cylinder", numbers),
+        Column("length at\nthe start", first, ".4g", "m"),
+        Column("at the end", last, ".4g", "m"),
+        Column("stroke", strokes, ".4g", "m"),
+        Column("least force", least, ".4g", "kN"),
+        Column("largest force", most, ".4g", "kN"),
+    )
+    notes = ("Compression is positive. Forces refer to the lever arm at the current angle.",)
+    return Table("Luffing", columns, notes, "luffing")
 
 
 def _effort(results: Results, model: str, suffix: str) -> tuple[float, float, float, float]:

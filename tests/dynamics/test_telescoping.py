@@ -252,7 +252,7 @@ _TABLE = RowTable(np.array([0.0, 1.0]), np.zeros((1, 4, 1, 1)))
         (lambda: Stroke(1.0, 1.0, -1.0), "ramp must be finite and not negative, got -1.0 s"),
         (
             lambda: Stroke(1.0, 2.0, 1.0),
-            "within a travel of 1 m a ramp of 1 s does not come to 2 m/s; the ramp must be at "
+            "within a travel of 1 a ramp of 1 s does not come to a speed of 2; the ramp must be at "
             "most 0.5 s",
         ),
         (

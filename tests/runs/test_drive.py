@@ -136,8 +136,8 @@ theory = "euler-bernoulli"
         (DRIVE, "drive = { travel = 4.0, time = 5.0, ramp = 1.0 }\n",
          "joint[1].drive.ramp: time is given; only a speed has a ramp"),
         (DRIVE, "drive = { travel = 4.0, speed = 4.0, ramp = 2.0 }\n",
-         "joint[1].drive.ramp: within a travel of 4 m a ramp of 2 s does not come to 4 m/s; the "
-         "ramp must be at most 1 s"),
+         "joint[1].drive.ramp: within a travel of 4 a ramp of 2 s does not come to a speed of "
+         "4; the ramp must be at most 1 s"),
         (DRIVE, "drive = { travel = 4.0, time = 1e-9 }\n",
          "joint[1].drive.time: must be at least 1e-06 s, got 1e-09 s"),
         (DRIVE, "drive = { travel = 1e308, speed = 1e-300 }\n",

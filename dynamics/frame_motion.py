@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Slewing and luffing: the inertia forces in the frame that turns with the boom.
+
+The frame turns by ψ(t) about the vertical and by the luffing angle α(t) about the foot of the boom.
+With the distance σ = x − x_foot + s along the boom, s the extension, and the distance
+ρ = r + σ cos α from the axis of slewing, its points have the accelerations
+
+    a_x = s̈ − σ α̇² − ψ̇² ρ cos α,    a_y = ρ ψ̈ + 2 ψ̇ ρ̇,    a_z = σ α̈ + 2 ṡ α̇ + ψ̇² ρ sin α
+
+along the boom, sideways and across it (Goldstein 1980). Masses push the boom by −m a. Deflections
+are so small that they change no acceleration.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from dynamics.arrays import Array
+from dynamics.excitation import HistorySum, MotionLaw
+
+# Number of times at which the peak of an acceleration is sought, beside the kinks.
+_SAMPLES = 2001
+
+_RESTING = HistorySum(())
+
+
+@dataclass(frozen=True, slots=True)
+class FrameMotion:
+    """Slewing and luffing of a boom.
+
+    Args:
+        slew: angle ψ in degrees over time, positive towards +y.
+        luff: change of the luffing angle in degrees over time.
+        angle: luffing angle at t = 0 in degrees.
+        foot: x of the foot in m.
+        radius: horizontal distance r in m of the foot from the axis of slewing, positive outwards.
+        gravity: acceleration of gravity in m/s²; 0 if nothing weighs.
+    """
+
+    slew: MotionLaw = _RESTING
+    luff: MotionLaw = _RESTING
+    angle: float = 0.0
+    foot: float = 0.0
+    radius: float = 0.0
+    gravity: float = 0.0
+
+    def slewed(self, time: Array, order: int = 0) -> Array:
+        """Return ψ in rad, or its first or second derivative, at times in s."""
+        return _angle(self.slew, time, order)
+
+    def luffed(self, time: Array, order: int = 0) -> Array:
+        """Return α in rad, or its first or second derivative, at times in s."""
+        change = _angle(self.luff, time, order)
+        return change if order else np.deg2rad(self.angle) + change
+
+    def place(self, time: Array, x: float, extension: MotionLaw) -> tuple[Array, Array]:
+        """Return distance from the axis and height above the foot in m of a point of the boom."""
+        along, luffed = x - self.foot + extension(time), self.luffed(time)
+        return self.radius + along * np.cos(luffed), along * np.sin(luffed)
+
+    def accelerations(self, time: Array, x: float, extension: MotionLaw) -> Array:
+        """Return a_x, a_y and a_z (3, ...) in m/s² of a point of the boom at times (...) in s.
+
+        Args:
+            time: times.
+            x: initial place of the point in m.
+            extension: travel in m of its segment.
+        """
+        along, speed = x - self.foot + extension(time), extension.rate(time, 1)
+        luffed, turn, faster = (self.luffed(time, order) for order in range(3))
+        cosine, sine = np.cos(luffed), np.sin(luffed)
+        radius, slew = self.radius + along * cosine, self.slewed(time, 1)
+        out = speed * cosine - along * sine * turn
+        return np.array(
+            [
+                extension.rate(time, 2) - along * turn**2 - slew**2 * radius * cosine,
+                radius * self.slewed(time, 2) + 2.0 * slew * out,
+                along * faster + 2.0 * speed * turn + slew**2 * radius * sine,
+            ]
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class FrameAcceleration:
+    """Acceleration of a place of the boom by slewing and luffing, as a history of inertia loads.
+
+    Along z it includes the change of gravity across the boom, g (cos α − cos α₀), and along x that
+    of gravity along it.
+
+    Args:
+        frame: slewing and luffing of the boom.
+        direction: component of the acceleration.
+        x: place in m; None for the growth of the acceleration per m of x.
+        extension: travel of its segment.
+    """
+
+    frame: FrameMotion
+    direction: Literal["x", "y", "z"]
+    x: float | None = None
+    extension: MotionLaw = _RESTING
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """The times in s at which an angle or the extension has a kink."""
+        laws = (self.frame.slew, self.frame.luff, self.extension)
+        return tuple(sorted({time for law in laws for time in law.kinks}))
+
+    @property
+    def fastest(self) -> float:
+        """Twice the sum of those of angles and extension in rad/s, since these are multiplied."""
+        laws = (self.frame.slew, self.frame.luff, self.extension)
+        return 2.0 * sum(law.fastest for law in laws)
+
+    @property
+    def peak(self) -> float:
+        """The largest |acceleration| in m/s², at sampled times."""
+        kinks = np.array(self.kinks)
+        times = np.linspace(kinks.min(), kinks.max(), _SAMPLES)
+        return float(np.abs(self(np.concatenate([times, kinks]))).max())
+
+    def __call__(self, time: Array) -> Array:
+        frame, component = self.frame, "xyz".index(self.direction)
+        if self.x is None:
+            one, other = (
+                frame.accelerations(time, x, self.extension)[component] for x in (1.0, 0.0)
+            )
+            return np.asarray(one - other)
+        luffed, start = frame.luffed(time), np.deg2rad(frame.angle)
+        weight = {
+            "x": np.sin(luffed) - np.sin(start),
+            "y": 0.0,
+            "z": np.cos(luffed) - np.cos(start),
+        }
+        own = frame.accelerations(time, self.x, self.extension)[component]
+        return np.asarray(own + frame.gravity * weight[self.direction])
+
+
+def _angle(law: MotionLaw, time: Array, order: int) -> Array:
+    return np.deg2rad(law.rate(time, order) if order else law(time))

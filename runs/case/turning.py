@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Slewing and luffing of a boom, in a case file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from pydantic import Field
+
+from dynamics.excitation import HistorySum, PiecewiseLinear, Spline
+from dynamics.frame_motion import FrameAcceleration, FrameMotion
+from geometry.boom import BoomError, Direction, Segment
+from geometry.fields import In, Number, Positive
+from geometry.joint import Joint
+from geometry.load import Load, Turn
+from geometry.telescoping import drives_of
+from runs.case.drive import TravelTable
+from runs.case.limits import MOST_TIMES
+
+if TYPE_CHECKING:
+    from runs.case.schema import Case
+
+Angles = Annotated[
+    tuple[tuple[Number, Number], ...], In("s", "deg"), Field(min_length=2, max_length=MOST_TIMES)
+]
+
+
+class LuffTable(TravelTable):
+    """Luffing of the boom about its foot."""
+
+    travel: Annotated[Number, In("deg")] | None = None
+    """the angle in degrees by which the boom turns, positive where the tip rises"""
+    speed: Annotated[Positive, In("deg/s")] | None = None
+    """the speed in deg/s, instead of the duration"""
+    table: Angles | None = None
+    """pairs of a time in s and the angle in degrees since the start, on a cubic spline that is at
+    rest at both ends, instead of a travel"""
+
+    unit: ClassVar[str] = "degrees"
+    interpolation: ClassVar[type[PiecewiseLinear] | type[Spline]] = Spline
+
+
+class SlewTable(LuffTable):
+    """Slewing of the boom about the vertical."""
+
+    travel: Annotated[Number, In("deg")] | None = None
+    """the angle in degrees by which the boom turns, positive towards +y"""
+    radius: Annotated[Number, In("m")] = 0.0
+    """the horizontal distance in m of the boom's foot from the axis of slewing, negative where it
+    is behind the axis"""
+
+
+def check_turning(case: Case, spatial: bool) -> None:
+    """Check the data of slewing and luffing.
+
+    Raises:
+        BoomError: a key is missing or contradicts another one, or the boom cannot turn so.
+    """
+    for key, table in (("slew", case.slew), ("luff", case.luff)):
+        if table is None:
+            continue
+        if table.speed is not None and not table.ramp:
+            raise BoomError(
+                f"{key}.ramp",
+                f"missing; a speed reached at once takes an endless force; it is "
+                f"{table.meaning('ramp')}",
+            )
+        table.history(key)
+        if case.hoist is not None and not case.hoist.hanging:
+            raise BoomError(
+                f"{key}", "the load of hoist lies on the ground; give hoist.hanging = true"
+            )
+    if case.slew is not None and not spatial:
+        raise BoomError(
+            "slew", "the boom is flat, and nothing moves along 'y'; give the joints lateral_play"
+        )
+    if case.luff is not None:
+        if case.gravity is None:
+            raise BoomError(
+                "luff", "the table gravity, which has the luffing angle at t = 0, is missing"
+            )
+        farthest = case.gravity.angle + (case.luff.travel or 0.0)
+        if abs(farthest) > 90.0:
+            raise BoomError(
+                "luff.travel", f"leads to {farthest:g} degrees; the angle must stay within ± 90"
+            )
+
+
+def frame_motion(case: Case, segments: Sequence[Segment]) -> FrameMotion | None:
+    """Return slewing and luffing of a checked case; None if the frame stands still."""
+    if case.slew is None and case.luff is None:
+        return None
+    histories = {
+        key: table.history(key)
+        for key, table in (("slew", case.slew), ("luff", case.luff))
+        if table is not None
+    }
+    foot = segments[0].foot
+    return FrameMotion(
+        **histories,
+        angle=0.0 if case.gravity is None else case.gravity.angle,
+        foot=segments[0].start if foot is None else foot.x,
+        radius=0.0 if case.slew is None else case.slew.radius,
+        gravity=0.0 if case.gravity is None else case.gravity.acceleration,
+    )
+
+
+def turning_loads(
+    frame: FrameMotion, segments: Sequence[Segment], joints: Sequence[Joint]
+) -> Iterator[Load]:
+    """Yield the inertia loads across the boom by slewing and luffing, and changes of its weight."""
+    directions: tuple[Direction, ...] = ("z", "y")
+    for number, segment in enumerate(segments):
+        extension = HistorySum(tuple(drive.history for drive in drives_of(joints, number)))
+        for direction in directions:
+            mass = segment.mass_per_length
+            even, growing, *points = (
+                FrameAcceleration(frame, direction, x, extension)
+                for x in (0.0, None, *(point.x for point in segment.masses))
+            )
+            if growing.peak or even.peak:
+                yield Load(number, direction, -mass, None, even, inertial=True)
+                yield Turn(number, direction, -1.0, None, growing)
+                for point, history in zip(segment.masses, points, strict=True):
+                    yield Load(number, direction, -point.mass, point.x, history)

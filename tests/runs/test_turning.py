@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Slewing and luffing of a case: loads, results, messages for bad input."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dynamics.equilibrium import rest_at
+from dynamics.excitation import SCurve, Stroke
+from dynamics.frame_motion import FrameMotion
+from dynamics.integrator import FixedStep
+from dynamics.motion import build_motion
+from geometry.boom import Boom, Material, Segment
+from geometry.cylinder import Cylinder
+from geometry.joint import Drive
+from geometry.support import Support
+from protractile.cases import change, run_case
+from runs import CASES
+from runs.case.build import build_boom
+from runs.case.kinds.finite_element import BeamElements
+from runs.case.messages import BadInput
+from runs.case.reading import load
+from runs.case.schema import Case
+from runs.case.turning import LuffTable, turning_loads
+from runs.pipeline.models import build
+from runs.pipeline.turning import turning_cautions, turning_lines
+from runs.report.result_tables import luffing_table
+
+ARM = (CASES / "inspection-arm.toml").read_text(encoding="utf-8")
+CRANE = (CASES / "crane.toml").read_text(encoding="utf-8")
+SLEW = "[slew]\ntravel = 60.0\nspeed = 15.0\nramp = 1.0\n"
+LUFF = "[luff]\ntravel = 10.0\ntime = 3.0\n"
+
+
+def test_bar_turned_with_a_constant_acceleration() -> None:
+    """Reference: analytic, an Euler-Bernoulli cantilever turned about its foot.
+
+    The load −m̄ x α̈ bends its tip by w(t) = −4 α̈ Σ (−1)ⁿ⁺¹ L (1 − cos ω t)/(λ ω)², about the
+    static −11 m̄ α̈ L⁵/(120 E I).
+    """
+    length, mass, bending = 6.0, 40.0, 2.1e11 * 8.0e-6
+    beam = Segment(
+        "beam", 0.0, length, Material(2.1e11, 0.3, 7850.0), mass, 8.0e-6, rotary_inertia=0.0,
+        supports=(Support(0.0, "clamped"),),
+    )  # fmt: skip
+    law = Stroke(60.0, 20.0, 0.8)
+    frame = FrameMotion(luff=law)
+    boom = Boom((beam,), ())
+    boom = replace(boom, loads=tuple(turning_loads(frame, boom.segments, ())))
+    model = BeamElements(boom, element_length=0.25, theory="euler-bernoulli", rotary_inertia=False)
+    motion = FixedStep(1.0e-3)(build_motion(model.system(), 0.8, 1.0e-3, at_rest=True))
+    roots = np.array([1.8751040687, 4.6940911330, 7.8547574382, 10.9955407349, 14.1371683910])
+    omega = roots**2 * np.sqrt(bending / mass) / length**2
+    signs = (-1.0) ** np.arange(5)
+    turn = np.deg2rad(20.0) / 0.8
+    time = motion.time[:, None]
+    series = 4.0 * turn * length * signs * (1.0 - np.cos(omega * time)) / (roots * omega) ** 2
+    static = 11.0 * mass * turn * length**5 / (120.0 * bending)
+    assert (4.0 * turn * length * signs / (roots * omega) ** 2).sum() == pytest.approx(
+        static, rel=1e-5
+    )
+    assert motion.tip.values == pytest.approx(-series.sum(axis=1), abs=2e-4 * static)
+    assert motion.energy_residual < 1e-12
+
+
+def slewing_arm(tmp_path: Path, *tables: str, arm: str = ARM) -> Case:
+    """Return the arm without its gust, with further tables, as beam elements."""
+    gust, models = arm.index("[[load]]"), arm.index("[[model]]")
+    path = tmp_path / "arm.toml"
+    path.write_text(arm[:gust] + "\n".join(tables) + "\n" + arm[models:], encoding="utf-8")
+    case = load(str(path))
+    return case.model_copy(update={"models": case.models[1:2]})
+
+
+def static_tip(case: Case, time: float) -> float:
+    system = build(case, build_boom(case), case.models[0]).system.gather_loads()
+    return float(system.observers["tip"].row @ rest_at(system, time))
+
+
+def test_arm_that_has_luffed(tmp_path: Path) -> None:
+    """Reference: the arm that is built at the angle to which the other one luffs.
+
+    Its weight along the boom bends it by 1.3 % more.
+    """
+    luffed = slewing_arm(tmp_path, LUFF.replace("10.0", "50.0"))
+    there = slewing_arm(tmp_path, arm=ARM.replace("angle = 0.0", "angle = 50.0"))
+    assert static_tip(luffed, 3.0) == pytest.approx(static_tip(there, 0.0), rel=2e-2)
+    assert static_tip(luffed, 3.0) > 0.8 * static_tip(luffed, 0.0)
+
+
+def test_loads_of_a_segment_that_extends_while_the_boom_turns() -> None:
+    """Reference: by hand, −m a of a mass at the current place, less that at its first place."""
+    frame = FrameMotion(slew=SCurve(90.0, 2.0), radius=1.0)
+    drive = Drive(SCurve(3.0, 2.0), ("inner", "outer"))
+    segments = build_boom(load(str(CASES / "inspection-arm.toml"))).segments
+    joint = replace(build_boom(load(str(CASES / "inspection-arm.toml"))).joints[1], drive=drive)
+    *_, mass = turning_loads(frame, segments, (joint,))
+    time = np.array([0.7])
+    place, speed = 1.0 + segments[2].end + drive.history(time), drive.history.rate(time, 1)
+    turn, faster = (np.deg2rad(frame.slew.rate(time, order)) for order in (1, 2))
+    push = mass.magnitude * mass.history(time)
+    assert (mass.direction, mass.x) == ("y", segments[2].end)
+    assert push == pytest.approx(-280.0 * (place * faster + 2.0 * turn * speed))
+
+
+def test_results_of_slewing_and_luffing(tmp_path: Path) -> None:
+    """Reference: the energy balance, and the quasi-static sway beside that of the motion."""
+    case = slewing_arm(tmp_path, SLEW, LUFF, "[damping]\nmodal = 0.02")
+    results = run_case(change(case, **{"time.duration": 1.0, "time.step": 2e-4}))
+    (summary,) = results.summary.models.values()
+    assert summary.energy_residual < 1e-11
+    sway = results.trajectories["tip_lateral"].sel(model="timoshenko").values
+    assert -0.4 < sway.min() < -0.15
+    lines = list(turning_lines(case))
+    assert lines == [
+        "Slews by 60 degrees from 0 to 5 s, at 15 degrees/s at most.",
+        "Luffs by 10 degrees from 0 to 3 s, at 6.667 degrees/s at most.",
+    ]
+    # Luffing stays below 5 %.
+    (slew,) = turning_cautions("in beam", 0.5, case)
+    assert slew.startswith("caution: slew: the boom turns with 8.33 % of its first circular freq")
+
+
+def test_cylinder_that_luffs() -> None:
+    """Reference: by hand, a right angle at the pin between a lug and a ground 3 m and 4 m away."""
+    jack = Cylinder(0, 3.0, ground=(0.0, -4.0), stiffness=1.0)
+    foot = Support(0.0, "hinged")
+    assert (jack.length, jack.arm(foot)) == pytest.approx((5.0, 12.0 / 5.0))
+    raised = jack.luffed(np.deg2rad(90.0), foot)
+    assert (raised.length, raised.arm(foot)) == pytest.approx((7.0, 0.0), abs=1e-12)
+    deep = replace(jack, depth=0.5, ground=(0.0, -4.5)).luffed(0.3, replace(foot, depth=0.5))
+    assert deep.length == pytest.approx(jack.luffed(0.3, foot).length)
+
+
+def test_table_of_luffing() -> None:
+    """Reference: the change of the cylinder's length by the cosine rule."""
+    path = CASES / "crane.toml"
+    case = load(str(path))
+    case = case.model_copy(
+        update={"luff": LuffTable(travel=-5.0, time=1.0), "models": case.models[:1]}
+    )
+    table = luffing_table(run_case(change(case, **{"time.duration": 0.2})))
+    assert table is not None
+    cells = {column.title: column.cells[0] for column in table.columns}
+    lug, ground = np.hypot(4.2, 0.55), np.hypot(1.6, 1.7)
+    opening = np.arctan2(1.7, 1.6) - np.arctan2(0.55, 4.2)
+    turned = opening + np.deg2rad(float(LuffTable(travel=-5.0, time=1.0).history("")(0.2)))
+    length = np.sqrt(lug**2 + ground**2 - 2.0 * lug * ground * np.cos(turned))
+    assert cells["at the end"] == pytest.approx(length)
+    assert cells["largest force"] > cells["least force"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("tables", "message"),
+    [
+        (
+            "[slew]\ntravel = 60.0\nspeed = 15.0\n",
+            "slew.ramp: missing; a speed reached at once takes an endless force; it is the time in "
+            "s in which the drive reaches this speed, and in which it stops; at once unless given",
+        ),
+        (
+            "[slew]\ntime = 3.0\n",
+            "slew.travel: missing; it is the angle in degrees by which the boom turns, positive "
+            "towards +y",
+        ),
+        (
+            LUFF.replace("10.0", "95.0"),
+            "luff.travel: leads to 95 degrees; the angle must stay within ± 90",
+        ),
+        (
+            "[slew]\ntable = [[0.0, 1.0], [1.0, 2.0]]\n",
+            "slew.table: must be 0 degrees at t = 0, where the boom is as it is given, got 1 "
+            "degrees",
+        ),
+        (
+            SLEW + "[hoist]\nmass = 100.0\nstiffness = 1e6\ntravel = 1.0\ntime = 1.0\n",
+            "slew: the load of hoist lies on the ground; give hoist.hanging = true",
+        ),
+    ],
+)
+def test_bad_input(tmp_path: Path, tables: str, message: str) -> None:
+    with pytest.raises(BadInput) as error:
+        slewing_arm(tmp_path, tables)
+    assert str(error.value).endswith(f"arm.toml: {message}")
+
+
+def test_flat_boom_does_not_slew(tmp_path: Path) -> None:
+    path = tmp_path / "crane.toml"
+    path.write_text(CRANE.replace("[payload]", SLEW + "[payload]"), encoding="utf-8")
+    with pytest.raises(BadInput, match="slew: the boom is flat, and nothing moves along 'y'; give"):
+        load(str(path))
