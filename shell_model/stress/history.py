@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from geometry.arrays import Array, Indices
-from shell_model.stress.stresses import Face, ShellStress, WallForces, wall_forces
+from shell_model.stress.stresses import Face, Modes, ShellStress, Stress, WallForces, wall_forces
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +91,13 @@ BAND = 0.25
 # Number of intervals in the history of a summary.
 PARTS = 80
 
+# Faces of a wall, whose larger stress counts.
+_FACES: tuple[Face, ...] = ("outer", "inner")
+
+# Number of output times of an interval for bounds of stresses, the fraction of the largest motion
+# above which motions are principal, the round-off of bounds, and a stress in Pa that is zero.
+_INTERVAL, _REST, _ROUND_OFF, _TINY = 24, 1.0e-6, 1.0e-3, 1.0e-30
+
 # Number of instants for stresses outside the bands, which follow the slow motion.
 INSTANTS = 400
 
@@ -125,8 +132,7 @@ def stress_near_places(
             band = shell.near(number, x, BAND)
             if band.size == 0:
                 continue
-            for part, stress in shell.over_time(band):
-                largest[part, number, i] = stress.largest().max(axis=1)
+            largest[:, number, i], _ = _peaks(shell, band)
             patches = _patches(shell, band)
             for part, stress in shell.over_time(band, means=patches):
                 patched[part, number, i] = stress.largest().max(axis=1)
@@ -161,8 +167,7 @@ def summarise(shell: ShellStress, history: xr.Dataset) -> StressSummary:
     number = int(shell.segment[worst.triangle])
     time = float(shell.time[worst.step])
     stress = shell.at(time)
-    faces: tuple[Face, ...] = ("outer", "inner")
-    face = max(faces, key=lambda f: float(stress.von_mises(f)[worst.triangle]))
+    face = max(_FACES, key=lambda f: float(stress.von_mises(f)[worst.triangle]))
     x, y, z = (float(c) for c in shell.centroids[worst.triangle])
     patch = None
     patched = history["von_mises_patch"].values
@@ -201,13 +206,13 @@ def _summed_history(history: xr.Dataset) -> StressHistory:
     time = history["time"].values
     parts = np.array_split(np.arange(time.size), min(PARTS, time.size))
     rows = []
-    for name in history["segment"].values:
-        for place in history["place"].values:
-            here = history.sel(segment=name, place=place)
-            if not here["von_mises"].isnull().any():
+    histories = [history[kind].values for kind in ("von_mises", "von_mises_patch")]
+    for k, name in enumerate(history["segment"].values):
+        for i, place in enumerate(history["place"].values):
+            here = [values[:, k, i] for values in histories]
+            if not np.isnan(here[0]).any():
                 largest = (
-                    [float(f"{here[kind].values[part].max():.4g}") for part in parts]
-                    for kind in ("von_mises", "von_mises_patch")
+                    [float(f"{values[part].max():.4g}") for part in parts] for values in here
                 )
                 rows.append(PlaceHistory(str(name), float(place), *largest))
     return StressHistory([float(time[part].mean()) for part in parts], rows)
@@ -230,14 +235,43 @@ def _largest(shell: ShellStress, history: xr.Dataset) -> Largest:
 
 def _search(shell: ShellStress, triangles: Indices, first: int, stride: int) -> Largest:
     """Return the largest stress of some triangles at every n-th output time from a first one on."""
-    worst = Largest(-1.0, 0, 0)
-    for part, stress in shell.over_time(triangles, slice(first, None, stride)):
-        values = stress.largest()
-        step, triangle = np.unravel_index(values.argmax(), values.shape)
-        time = first + stride * (part.start + int(step))
-        here = Largest(float(values[step, triangle]), time, int(triangles[triangle]))
-        worst = max(worst, here)
-    return worst
+    values, at = _peaks(shell, triangles, slice(first, None, stride))
+    step = int(values.argmax())
+    return Largest(float(values[step]), first + stride * step, int(at[step]))
+
+
+def _peaks(
+    shell: ShellStress, triangles: Indices, steps: slice = slice(None)
+) -> tuple[Modes, Indices]:
+    """Return the largest stress (num_steps,) of triangles of a segment in Pa, and its triangle.
+
+    Only triangles are evaluated whose upper bound in some interval of time exceeds a stress there.
+    The von Mises stress is a norm. So it is at most the sum of the norms of its parts: of the axial
+    forces, of the principal motions, and of the rest of the motion.
+    """
+    number = int(shell.segment[triangles[0]])
+    modes = shell.modes[number].take(triangles - np.searchsorted(shell.segment, number), axis=1)
+    # No stress of a coordinate exceeds its weight: (σ_x, σ_s, τ_xs) of a face has at most twice the
+    # squares of both parts, and the von Mises stress at most three times its own.
+    weights = np.sqrt(6.0 * np.einsum("mtc,mtc->m", modes, modes, dtype=float)) + _TINY
+    states = shell.states[number][steps] * weights
+    _, sizes, motions = np.linalg.svd(states, full_matrices=False)
+    motions = motions[sizes > _REST * sizes[0]]
+    parts = states @ motions.T
+    rest = np.abs(states - parts @ motions).sum(axis=1, keepdims=True)
+    principal = np.tensordot((motions / weights).astype(np.float32), modes, axes=1)
+    axial = shell.axial[triangles, None] * np.eye(1, modes.shape[2], dtype=np.float32)
+    stress = Stress(*np.split(np.concatenate([axial[None], principal]), 2, axis=2))
+    norms = np.stack([stress.von_mises(face) for face in _FACES], axis=1)
+    begins = np.arange(0, len(states), _INTERVAL)
+    highest = np.maximum.reduceat(np.abs(np.hstack([rest, parts])), begins)
+    bounds = norms[0] + np.tensordot(highest[:, 1:], norms[1:], axes=1)
+    bounds = highest[:, :1] + bounds.max(axis=1)
+    stressed = shell.largest(triangles[np.unique(bounds.argmax(axis=1))], steps).max(axis=1)
+    least = np.minimum.reduceat(stressed, begins)[:, None]
+    kept = triangles[(bounds >= (1.0 - _ROUND_OFF) * least).any(axis=0)]
+    found = shell.largest(kept, steps)
+    return found.max(axis=1), kept[found.argmax(axis=1)]
 
 
 def _patches(shell: ShellStress, band: Indices) -> Array:

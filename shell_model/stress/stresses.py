@@ -205,6 +205,10 @@ class ShellStress:
             values[:, 0] += axial
             yield part, _stress(values.transpose(0, 2, 1))
 
+    def largest(self, triangles: Indices, steps: slice = slice(None)) -> npt.NDArray[np.float32]:
+        """Return the larger von Mises stress (num_times, num_triangles) of both faces over time."""
+        return np.concatenate([s.largest() for _, s in self.over_time(triangles, steps)])
+
     def holds(self, segment: int, x: float) -> bool:
         """Return whether a segment contains x in m."""
         spans = self.spans[self.segment == segment]
@@ -263,13 +267,15 @@ def triangle_areas(points: Array, triangles: Indices) -> Array:
 
 def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[str, WallForces]:
     """Return the forces of each wall at t in s, as means over the row of triangles at x in m."""
-    stress, row = shell.at(t), shell.row(segment, x)
+    row, step = shell.row(segment, x), int(np.abs(shell.time - t).argmin())
+    ((_, found),) = shell.over_time(row, slice(step, step + 1))
     length = shell.spans[row, 1].max() - shell.spans[row, 0].min()
     forces = {}
     for number, name in enumerate(shell.plates[segment]):
-        part = row[shell.wall[row] == number]
+        mine = shell.wall[row] == number
+        part = row[mine]
         width = shell.areas[part] / length
-        membrane, bending = stress.membrane[part], stress.bending[part]
+        membrane, bending = found.membrane[0, mine], found.bending[0, mine]
         strength = shell.thickness[part] * width
         z, sigma = shell.centroids[part, 2], membrane[:, 0]
         _, across, up = shell.outward[part].mean(axis=0).round(12)

@@ -351,6 +351,22 @@ def test_bands_see_the_spot_and_patches_its_mean(shell: ShellStress) -> None:
     assert history["von_mises"].sel(place=9.0).isnull().all()
 
 
+@pytest.mark.parametrize("noise", [0.0, 1.0e-4, 1.0])
+def test_triangles_without_the_largest_stress_alone_are_left_out(
+    shell: ShellStress, noise: float
+) -> None:
+    """Reference: all triangles at every time, for two slow motions, noise and axial forces."""
+    rng = np.random.default_rng(5)
+    slow = np.sin(np.outer(TIME, [7.0, 11.0, 0.0, 0.0, 0.0]) + 0.5 * np.eye(1, 5))
+    states = slow + noise * rng.standard_normal(slow.shape)
+    modes = rng.standard_normal((5, shell.segment.size, 6)).astype(np.float32)
+    axial = rng.standard_normal(shell.segment.size).astype(np.float32)
+    moving = replace(shell, modes=[modes], states=[states.astype(np.float32)], axial=axial)
+    found = stress_near_places(moving, [1.0], ["box"])["von_mises"].values[:, 0, 0]
+    every = moving.largest(moving.near(0, 1.0, 0.25)).max(axis=1)
+    np.testing.assert_allclose(found, every, rtol=1e-5)
+
+
 @pytest.mark.parametrize("places", [[1.0, 3.0], []])
 def test_the_largest_is_found(shell: ShellStress, places: list[float]) -> None:
     """With a band it is the spot; without, what all triangles have at some instants."""
