@@ -11,6 +11,7 @@ segment, the moment is also linear, and the curvature follows from the local fle
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -124,7 +125,7 @@ class PlainElement:
         return bending + shear_stiffness * products(self.slope(xi) - self.rotation(xi), weights)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class TaperedElement:
     """Element with a varying section.
 
@@ -142,38 +143,40 @@ class TaperedElement:
     shear: Polynomial
 
     def deflection(self, xi: Array) -> Array:
-        return self._shapes((1.0, self.h * xi), self._of_moments()[2], xi)
+        return self._shapes((1.0, self.h * xi), self._of_moments[2], xi)
 
     def slope(self, xi: Array) -> Array:
-        return self._shapes((0.0, 1.0), self._of_moments()[1], xi)
+        return self._shapes((0.0, 1.0), self._of_moments[1], xi)
 
     def rotation(self, xi: Array) -> Array:
-        return self._shapes((0.0, 1.0), self._of_moments()[0], xi)
+        return self._shapes((0.0, 1.0), self._of_moments[0], xi)
 
     def curvature(self, xi: Array) -> Array:
-        return np.asarray(self._moments().T @ (self.bending(xi) * np.array([np.ones_like(xi), xi])))
+        return np.asarray(self._moments.T @ (self.bending(xi) * np.array([np.ones_like(xi), xi])))
 
     def stiffness(self, xi: Array, weights: Array) -> Array:
         moments = np.array([np.ones_like(xi), xi])
         sheared = np.array([[0.0, 0.0], [0.0, (self.shear(xi) / self.h**2) @ weights]])
         flexibility = products(moments, self.bending(xi) * weights) + sheared
-        moved = self._moments()
+        moved = self._moments
         return np.asarray(moved.T @ flexibility @ moved)
 
     def _shapes(self, rigid: tuple[float | Array, ...], bent: _Pair, xi: Array) -> Array:
         """Return shape functions (4, num_points): rigid motion of the first node plus bending."""
         moved = np.array([np.broadcast_to(one, xi.shape) for one in (*rigid, 0.0, 0.0)])
-        return np.asarray(moved + self._moments().T @ np.array([one(xi) for one in bent]))
+        return np.asarray(moved + self._moments.T @ np.array([one(xi) for one in bent]))
 
+    @cached_property
     def _of_moments(self) -> tuple[_Pair, _Pair, _Pair]:
         """Return rotation, slope and deflection under the moments 1 and ξ, clamped at ξ = 0."""
         first, second = (self.h * (self.bending * m).integ() for m in (_ONE, _XI))
         slopes = first, second - self.shear / self.h
         return (first, second), slopes, (self.h * slopes[0].integ(), self.h * slopes[1].integ())
 
+    @cached_property
     def _moments(self) -> Array:
         """Return the factors (2, 4) of the moments 1 and ξ for unit displacements of the nodes."""
-        rotations, _, deflections = self._of_moments()
+        rotations, _, deflections = self._of_moments
         ends = np.array([[p(1.0) for p in pair] for pair in (rotations, deflections)])
         moved = np.array([[0.0, -1.0, 0.0, 1.0], [-1.0, -self.h, 1.0, 0.0]])
         return np.asarray(np.linalg.solve(ends, moved))

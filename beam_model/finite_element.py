@@ -85,10 +85,11 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
     stiffness, mass, damping, geometric = (np.zeros((num_dofs, num_dofs)) for _ in range(4))
     unit_load, turning, inertia_load = np.zeros((3, num_dofs))
     points, weights = _GAUSS
-    for k, h in enumerate(np.diff(nodes)):
+    lengths = np.diff(nodes).tolist()
+    elements = [element(segment, theory, *one) for one in zip(nodes, lengths, strict=False)]
+    for k, (here, h) in enumerate(zip(elements, lengths, strict=True)):
         dofs = slice(2 * k, 2 * k + 4)
         xi, weight = 0.5 * (points + 1.0), 0.5 * h * weights
-        here = element(segment, theory, nodes[k], h)
         w, slope = here.deflection(xi), here.slope(xi)
         x = nodes[k] + h * xi
         heavy, turned = (weight * segment.relative(number, x) for number in (_MASS, _ROTARY))
@@ -127,8 +128,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
     def read(shapes: str, x: float) -> Array:
         k, h = _element(nodes, x)
         row = np.zeros(num_dofs)
-        here = element(segment, theory, nodes[k], h)
-        row[2 * k : 2 * k + 4] = getattr(here, shapes)(np.array((x - nodes[k]) / h))
+        row[2 * k : 2 * k + 4] = getattr(elements[k], shapes)(np.array((x - nodes[k]) / h))
         return np.asarray(row[free])
 
     block = np.ix_(free, free)
