@@ -87,6 +87,7 @@ def memory(*arguments: str) -> int:
          ("--models", "shell"),
          None),
         ((
+             ("duration = 0.6", "duration = 0.3"),
              ("output_step = 1e-3", "output_step = 0.3\nstep = 1e-7"),
              (
                  "[[model]]",

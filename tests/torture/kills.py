@@ -35,7 +35,7 @@ _RANKS = "mpirun", "-n", "2", "--oversubscribe", *_COMMAND
 # Models and what is varied of each command.
 _COLD_SHELL = (
     *(sys.executable, "-c", f"{ONE_BLANK_FIGURE}\nfrom protractile.__main__ import main\nmain()\n"),
-    *("run", "case.toml", "--models", "shell", "--mesh-size", "0.1"),
+    *("run", "case.toml", "--models", "shell"),
 )
 _BEAMS = "kantorovich-4,beam-fe-tied"
 COMMANDS: Sequence[tuple[str, Sequence[str]]] = (
@@ -98,24 +98,26 @@ def killed(
         yield f"{name}, killed", tries, breaches, "what was there, then what an undisturbed leaves"
 
 
-def terminated(place: Path, tries: int) -> Row:
+def terminated(place: Path, tries: int, options: Sequence[str] = ("--mesh-size", "0.1")) -> Row:
     """SIGTERM to runs that mesh and reduce a shell; a breach leaves something, or says other words.
 
     Args:
         place: an empty folder.
         tries: number of runs.
+        options: of each run.
     """
+    command = *_COLD_SHELL, *options
     random = np.random.default_rng(_SEED)
     _write_case(place, 0.1)
     # The first one compiles besides.
-    assert _start(place, _COLD_SHELL).wait() == 0
-    process, begin = _cold_shell(place), time.monotonic()
+    assert _start(place, command).wait() == 0
+    process, begin = _cold_shell(place, command), time.monotonic()
     assert process.communicate()
     assert process.returncode == 0
     lasts = time.monotonic() - begin
     breaches = 0
     for moment in random.uniform(0.0, lasts, tries):
-        process = _cold_shell(place)
+        process = _cold_shell(place, command)
         time.sleep(moment)
         process.terminate()
         lines = process.communicate()[1].decode().splitlines()
@@ -131,11 +133,11 @@ def terminated(place: Path, tries: int) -> Row:
     return "a cold shell run, SIGTERM", tries, breaches, "one line, exit 143, nothing left"
 
 
-def _cold_shell(place: Path) -> subprocess.Popen[bytes]:
+def _cold_shell(place: Path, command: Sequence[str]) -> subprocess.Popen[bytes]:
     """Start a run of an uncached shell; return it when it listens to SIGTERM."""
     for name in ("out", "cache"):
         shutil.rmtree(place / name, ignore_errors=True)
-    process = _start(place, _COLD_SHELL, subprocess.PIPE)
+    process = _start(place, command, subprocess.PIPE)
     while process.poll() is None and not listens(process):
         time.sleep(0.005)
     return process
