@@ -63,13 +63,13 @@ def test_a_pad_on_the_corners_bends_no_wall() -> None:
     """
 
     def local(boom: Boom) -> float:
-        return float(reduced(boom, 0.1, contact_tolerance=0.02).local_compliance.max())
+        return float(reduced(boom, 0.1, contact_tolerance=0.05).local_compliance.max())
 
     boom = short_boom(PadSize(0.1, 0.06, bears="corner"))
     stations = replace(boom.joints[0], stations=(9.05, 9.95), pad=None, contact_length=0.1)
     on_corners = local(boom)
     assert on_corners == pytest.approx(local(replace(boom, joints=(stations,))), rel=1.0e-6)
-    wide, narrow = (local(short_boom(PadSize(0.1, width))) for width in (0.06, 0.005))
+    wide, narrow = (local(short_boom(PadSize(0.1, width))) for width in (0.06, 0.01))
     assert on_corners < narrow < wide
     assert on_corners < 0.1 * wide
     assert not contact_compliance(boom).any()
