@@ -54,8 +54,13 @@ from runs.case.kinds.shell import Shell as Shell
 
 # Case files, and what their runs leave
 from protractile.cases import change as change
+from protractile.cases import check as check
+from protractile.cases import frequencies as frequencies
 from protractile.cases import load_case as load_case
+from protractile.cases import report as report
 from protractile.cases import run_case as run_case
+from protractile.cases import sweep as sweep
+from protractile.cases import tables as tables
 from runs import CASES as CASES
 from runs.case.schema import Case as Case
 from runs.pipeline.results import Results as Results

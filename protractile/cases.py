@@ -3,27 +3,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
 
+import xarray as xr
 from pydantic import ValidationError
 
 from runs.case import reading
+from runs.case.checked_case import CheckedCase
 from runs.case.messages import BadInput
 from runs.case.schema import Case
+from runs.client import judge
 from runs.folder.cache import Cache
-from runs.pipeline.context import RunContext
-from runs.pipeline.results import Results
+from runs.folder.files import whole_folder
+from runs.pipeline.context import RunContext, silent
+from runs.pipeline.results import Results, prepare
 from runs.pipeline.run import run_case as run_models
+from runs.process import workers
+from runs.sweep import points
 from runs.sweep.variation import Unplaced, find
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from mpi4py import MPI
+
+    from runs.check import Check
+    from runs.sweep.points import Plan
+    from runs.sweep.run import Outcome
 
 # Name of a case without a file in messages.
 _CASE = "case"
 
 
-def load_case(path: str | Path) -> Case:
-    """Read and check a case file.
+def load_case(source: str | Path | Mapping[str, Any]) -> Case:
+    """Read and check a case file, or its tables as a dictionary.
 
     >>> import protractile as pt
     >>> case = pt.load_case(pt.CASES / "paper.toml")
@@ -31,12 +46,30 @@ def load_case(path: str | Path) -> Case:
     ['outer', 'inner']
 
     Args:
-        path: path of the file; those in ``CASES`` come with the program.
+        source: path of the file; those in ``CASES`` come with the program. Or its tables by their
+            keys; CSV files that they name are looked for in the current folder.
 
     Raises:
         BadInput: the file cannot be read, or its content is invalid.
     """
-    return reading.load(str(path))
+    if isinstance(source, Mapping):
+        return reading.check_tables(source, _CASE).case
+    return reading.load(str(source))
+
+
+def check(case: Case) -> Check:
+    """Return what ``protractile check`` prints: tables, static state, stresses, cautions.
+
+    A notebook shows its tables, ``print`` its text; ``frames`` are its tables for pandas.
+
+    >>> import protractile as pt
+    >>> found = pt.check(pt.load_case(pt.CASES / "paper.toml"))
+    >>> [round(mass) for mass in found.frames["Masses"]["own mass, kg"]]
+    [832, 551, 1382]
+    """
+    from runs.check import check_case
+
+    return check_case(CheckedCase(case))
 
 
 def change(case: Case, **values: Any) -> Case:
@@ -71,8 +104,10 @@ def change(case: Case, **values: Any) -> Case:
     return changed
 
 
-def run_case(case: Case, models: Sequence[str] | None = None) -> Results:
-    """Run the models of a case in this process; write only to the user's cache of shells.
+def run_case(
+    case: Case, models: Sequence[str] | None = None, folder: str | Path | None = None
+) -> Results:
+    """Run the models of a case in this process.
 
     >>> import protractile as pt
     >>> case = pt.load_case(pt.CASES / "coarse.toml")
@@ -83,22 +118,151 @@ def run_case(case: Case, models: Sequence[str] | None = None) -> Results:
     Args:
         case: case from :func:`load_case` or :func:`change`.
         models: names of the models; all unless given.
+        folder: folder for all files of the run, as ``protractile run`` writes them; without one,
+            only the user's cache of shells is written.
 
     Returns:
         The results. ``results.trajectories["tip"].plot.line(x="time")`` draws the tips; a model
         that cannot be computed is in ``summary.failures``, with the reason.
 
     Raises:
-        BadInput: the case has no model with a given name.
+        BadInput: the case has no model with a given name, or the folder contains other files.
         NumericsError: no model can be computed.
     """
     chosen = reading.select(case, _CASE, models)
-    comm = None
-    if any(model.needs_shell for model in chosen.models):
-        from mpi4py import MPI
-
-        comm = MPI.COMM_SELF
-    run = run_models(chosen, _CASE, RunContext(comm, cache=Cache.of_user()))
+    path = None if folder is None else prepare(str(folder), _CASE)
+    run = run_models(chosen, _CASE, RunContext(_alone(chosen), cache=Cache.of_user()))
     assert run is not None
     run.evaluate()
+    if path is not None:
+        from runs.report.output import write
+
+        with whole_folder(path) as part:
+            write(run, judge(run.results), part)
     return run.results
+
+
+def report(folder: str | Path, *, excel: bool = False) -> Results:
+    """Render the report of a run again from its data, as ``protractile report``.
+
+    Args:
+        folder: folder of a run, or of :meth:`Results.save`; gets ``report.html`` and figures.
+        excel: whether it also gets ``results.xlsx``, a workbook of the design results.
+
+    Returns:
+        The results of the run.
+
+    Raises:
+        BadInput: it is not the folder of a run, or openpyxl is missing for the workbook.
+    """
+    from runs.report.output import rendered_again
+
+    with rendered_again(str(folder), "excel" if excel else None) as (results, _, _):
+        return results
+
+
+def tables(results: Results) -> dict[str, pd.DataFrame]:
+    """Return the tables of a report by their names, with numbers in displayed units.
+
+    :attr:`Results.quantities` has the main numbers in SI units.
+    """
+    from runs.report.document import tables_by_part
+
+    of_parts = tables_by_part(results).values()
+    return {table.name: table.flat_frame for several in of_parts for table in several}
+
+
+def sweep(
+    case: Case,
+    vary: Mapping[str, Sequence[float]],
+    models: Sequence[str] | None = None,
+    *,
+    against: str | None = None,
+    until: str | None = None,
+    folder: str | Path | None = None,
+) -> xr.Dataset:
+    """Run a case over values of its numbers, on all cores, as ``protractile sweep``.
+
+    In a script, call it below ``if __name__ == "__main__":``, since other processes import the
+    script.
+
+    Args:
+        case: case from :func:`load_case` or :func:`change`.
+        vary: values by key, in the units of the case; all combinations are run.
+        models: names of the models; all unless given.
+        against: name of the model with which the others are compared.
+        until: bound of a quantity, ``"tip<0.9"``, to which the values of the one key are bisected.
+        folder: folder for the files of the sweep, whose finished points are not run again.
+
+    Returns:
+        Dims: the keys and ``model``; the quantities of :attr:`Results.quantities` in SI units.
+        ``failed`` is 1 where a model could not be computed.
+
+    Raises:
+        BadInput: a key, a value, a model or the bound is invalid.
+    """
+    from runs.sweep import output, search
+    from runs.sweep.run import prepare as prepare_sweep
+    from runs.sweep.run import run_points
+
+    def plan_of(texts: Sequence[str]) -> Plan:
+        return points.plan_case(case, _CASE, texts, models, None, against)
+
+    plan = plan_of(_options(vary))
+    bound = None if until is None else search.parse_bound(until, plan)
+    with TemporaryDirectory() as temporary, workers.workers(None) as pool:
+        path = Path(folder or temporary)
+        prepare_sweep(path, _CASE)
+
+        def run_plan(plan: Plan) -> list[Outcome]:
+            return run_points(plan, path, pool, silent, Cache.of_user())
+
+        plan, outcomes = search.run_until(plan, bound, plan_of, run_plan)
+        return output.write(plan, outcomes, path) if folder else output.gather(plan, outcomes)
+
+
+def frequencies(
+    case: Case,
+    vary: Mapping[str, Sequence[float]] | None = None,
+    models: Sequence[str] | None = None,
+) -> xr.Dataset:
+    """Return first frequencies, over values of a case's numbers if there are any.
+
+    >>> import protractile as pt
+    >>> case = pt.load_case(pt.CASES / "paper.toml")
+    >>> data = pt.frequencies(case, models=["kantorovich-5"])
+    >>> data["frequency"].sel(joints="tied", mode=1).values.round(3)
+    array([2.361])
+
+    Args:
+        case, vary, models: as in :func:`sweep`.
+
+    Returns:
+        ``frequency`` in Hz; dims: the keys, ``model``, ``joints`` (``"pressed"``, ``"tied"``),
+        ``mode``; NaN where a model has none.
+
+    Raises:
+        BadInput: a key, a value or a model is invalid.
+    """
+    from runs.sweep import frequencies
+
+    plan = points.plan_case(case, _CASE, _options(vary or {}), models, None)
+    cases = [point.case for point in plan.points]
+    found = frequencies.measure(cases, _alone(cases[0]), Cache.of_user())
+    return frequencies.gather(plan, found)
+
+
+def _options(vary: Mapping[str, Sequence[float]]) -> list[str]:
+    """Return variations as options of the command line, without loss of digits."""
+    return [
+        f"{key}={','.join(repr(float(value)) for value in values)}" for key, values in vary.items()
+    ]
+
+
+def _alone(case: Case) -> MPI.Intracomm | None:
+    """Return the communicator of this process, which a shell needs; None for beams."""
+    if not any(model.needs_shell for model in case.models):
+        return None
+    from mpi4py import MPI
+
+    return MPI.COMM_SELF

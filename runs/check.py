@@ -7,8 +7,12 @@ Beams stand for shells, which are not computed here.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
+from html import escape
+from io import StringIO
 from itertools import zip_longest
+from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Console
@@ -57,7 +61,10 @@ from runs.pipeline.statics import (
 )
 from runs.pipeline.turning import turning_lines
 from runs.report.formatting import number
-from runs.report.tables import Cell, Column, Table
+from runs.report.tables import WIDE, Cell, Column, Table
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 # Number of modes in the table of damping.
 SHOWN_MODES = 3
@@ -71,13 +78,56 @@ _ROUND_OFF, _NO_MOMENT = 1.0e-12, 1.0e-3
 _BEAMS = "as beam elements"
 
 
+@dataclass(frozen=True, slots=True, repr=False)
+class Check:
+    """Tables of a checked case, and sentences on its static state.
+
+    Args:
+        title: title of the case.
+        tables: tables with at least one row.
+        lines: sentences, cautions among them.
+    """
+
+    title: str
+    tables: Sequence[Table]
+    lines: Sequence[str]
+
+    @property
+    def frames(self) -> dict[str, pd.DataFrame]:
+        """The tables by their titles, with numbers in displayed units."""
+        return {table.title: table.flat_frame for table in self.tables}
+
+    def show(self, console: Console) -> None:
+        """Print the tables, then the sentences."""
+        print_lines = partial(console.print, markup=False, highlight=False)
+        print_lines(self.title)
+        for table in self.tables:
+            table.show(console)
+        for line in self.lines:
+            print_lines(line)
+
+    def __repr__(self) -> str:
+        text = StringIO()
+        self.show(Console(file=text, width=WIDE))
+        return text.getvalue()
+
+    def _repr_html_(self) -> str:
+        lines = "".join(f"<li>{escape(line)}</li>" for line in self.lines)
+        tables = "".join(table._repr_html_() for table in self.tables)
+        return f"<h3>{escape(self.title)}</h3>{tables}<ul>{lines}</ul>"
+
+
 def print_check(declared: CheckedCase, console: Console) -> None:
-    """Print the tables of a checked case, then sentences on its static state."""
+    """Print what :func:`check_case` finds."""
+    check_case(declared).show(console)
+
+
+def check_case(declared: CheckedCase) -> Check:
+    """Return the tables and sentences that ``check`` prints."""
     case, boom, preview = declared.case, declared.boom, Preview(declared)
     found = statics(case, boom)
     shown = boom if found is None else found.with_play.boom
     extremes = [] if found is None else StaticBeam.of(case, shown).extremes(case.system)
-    print_lines = partial(console.print, markup=False, highlight=False)
     tables = [
         _segments(case, boom),
         _stiffeners(boom, case.system),
@@ -93,10 +143,6 @@ def print_check(declared: CheckedCase, console: Console) -> None:
         static_table(case, shown, extremes),
         *combination_tables(combination_states(case), case.system),
     ]
-    print_lines(case.title)
-    for table in tables:
-        if table.rows:
-            table.show(console)
     drives = list(stick_slip_estimates(case, boom))
     lines = [*drive_lines(boom, case.system), *stick_slip_lines(drives, case.system)]
     lines += turning_lines(case)
@@ -110,8 +156,8 @@ def print_check(declared: CheckedCase, console: Console) -> None:
         *overload_cautions(extremes),
         *stick_slip_cautions(drives, case.system),
     ]
-    for line in (*lines, f"A run may take {preview_cost(preview)}."):
-        print_lines(line)
+    lines.append(f"A run may take {preview_cost(preview)}.")
+    return Check(case.title, [table for table in tables if table.rows], lines)
 
 
 def _of(system: System, title: str, si: str, values: Sequence[float], form: str = ".4g") -> Column:

@@ -10,8 +10,8 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -23,8 +23,6 @@ from runs.process import ending, progress, ranks, terminal
 from runs.process.terminal import Terminal, printable
 
 if TYPE_CHECKING:
-    from runs.pipeline.results import Results
-    from runs.report.pages import Addition
     from runs.sweep.points import Plan
     from runs.sweep.run import Outcome
 
@@ -114,6 +112,7 @@ def run(
     from runs.folder.files import whole_folder
     from runs.pipeline import estimates
     from runs.pipeline.context import RunContext
+    from runs.pipeline.results import prepare
     from runs.pipeline.run import run_case
     from runs.process import workers
     from runs.report import opengl, output
@@ -130,7 +129,7 @@ def run(
             if comm is not None:
                 run_case(effective, case, RunContext(comm, cache=cache))
             return 0
-        folder = output.prepare(out or f"runs/out/{Path(case).stem}", case)
+        folder = prepare(out or f"runs/out/{Path(case).stem}", case)
         with (
             whole_folder(folder) as part,
             progress.display([model.name for model in effective.models]) as report_progress,
@@ -155,13 +154,18 @@ def run(
 @app.command()
 def report(
     folders: Annotated[list[str], typer.Argument(metavar="DIR...", help="The folders of runs.")],
+    excel: Annotated[
+        bool,
+        typer.Option("--excel", help="Also write results.xlsx, a workbook of design results."),
+    ] = False,
 ) -> int:
     """Render the reports of runs again from their data, and print their tables."""
+    from runs.report.output import rendered_again
     from runs.report.terminal_tables import print_runs
 
     runs, judged = {}, {}
     for folder in folders:
-        with _rendered_again(folder) as (results, addition, _):
+        with rendered_again(folder, "--excel" if excel else None) as (results, addition, _):
             runs[folder], judged[folder] = results, addition
     return print_runs(runs, judged)
 
@@ -178,8 +182,9 @@ def snapshot(
     from runs.pipeline.results import TRAJECTORIES
     from runs.report import snapshots
     from runs.report.opengl import RenderingUnavailable
+    from runs.report.output import rendered_again
 
-    with _rendered_again(folder) as (results, _, part):
+    with rendered_again(folder) as (results, _, part):
         last = results.case.time.duration
         for t in time or []:
             if not 0.0 <= t <= last:
@@ -273,10 +278,7 @@ def sweep(
                 def run_plan(plan: Plan) -> list[Outcome]:
                     return sweep_runs.run_points(plan, folder, pool, report_progress, cache)
 
-                if bound is None:
-                    outcomes = run_plan(plan)
-                else:
-                    plan, outcomes = search.bisect(plan, bound, plan_of, run_plan)
+                plan, outcomes = search.run_until(plan, bound, plan_of, run_plan)
         if sensitivity:
             table = changes.changes(plan, outcomes)
             changes.write(table, folder)
@@ -407,28 +409,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
             raise
         ending.fail(*known, None)
     sys.exit(status or 0)
-
-
-@contextmanager
-def _rendered_again(folder: str) -> Iterator[tuple[Results, Addition, Path]]:
-    """Yield a run, the client's evaluation, and a copy of its folder to change.
-
-    At the end, the report of the copy is rendered, and the copy replaces the folder.
-    """
-    from runs.case.user_files import check_left
-    from runs.client import judge
-    from runs.folder.files import changed_folder, exclusive
-    from runs.pipeline.results import Results
-    from runs.report import output
-
-    path = Path(folder)
-    with exclusive(path):
-        results = Results.load(path)
-        check_left(path, folder, "folder")
-        judged = judge(results)
-        with changed_folder(path) as part:
-            yield results, judged, part
-            output.write_report(results, judged, part)
 
 
 def _names(models: str | None) -> list[str] | None:

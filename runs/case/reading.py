@@ -58,8 +58,17 @@ def load(path: str) -> Case:
 
 def load_checked(path: str) -> CheckedCase:
     """Return the boom and models of a case file; raise the errors of :func:`load`."""
+    return check_tables(_read(path), path)
+
+
+def check_tables(tables: Mapping[str, object], path: str) -> CheckedCase:
+    """Return the boom and models of the tables of a case file, whose path messages name.
+
+    Raises:
+        BadInput: the content is invalid.
+    """
     try:
-        case = in_si(_read_tables(Case.model_validate(_read(path)), path))
+        case = in_si(_read_tables(Case.model_validate(tables), path))
     except ValidationError as error:
         raise BadInput.from_validation(path, error) from None
     except OverflowError:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from math import log, pi
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,8 +12,10 @@ from geometry.arrays import Array
 from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
 from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.metrics import Metric, metrics, records
-from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary
+
+if TYPE_CHECKING:
+    from runs.pipeline.results import Results
 
 # Type of quantities by name in SI units; None if a model has no value.
 Measured = dict[str, float | None]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -23,8 +23,8 @@ from runs.case import toml
 from runs.case.build import build_boom
 from runs.case.messages import BadInput, first_error
 from runs.case.schema import Case, Model
-from runs.case.user_files import check_regular
-from runs.folder.files import MANIFEST, damaged, write_whole
+from runs.case.user_files import check_left, check_regular
+from runs.folder.files import MANIFEST, damaged, real, scratch_folder, whole_folder, write_whole
 from runs.pipeline.design_results import PlayEffect
 from runs.pipeline.model_quality import cautions, leading, reference_of
 from runs.pipeline.motion_results import MotionResult
@@ -38,11 +38,14 @@ CASE = "case.toml"
 FIELDS = "fields.nc"
 ENSEMBLES = "ensembles.nc"
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 # Attributes of the conventions for climate and forecast data (CF) that apply to a boom.
 CONVENTIONS = "CF-1.8"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Results:
     """Results of one run.
 
@@ -113,9 +116,16 @@ class Results:
         summary.cautions = cautions(case, boom, data, summary)
 
     def save(self, folder: Path | str) -> None:
-        """Write a folder that :meth:`load` can read; create it if it is missing."""
-        folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
+        """Write a folder that :meth:`load` and ``report`` can read; it replaces an earlier run's.
+
+        Raises:
+            BadInput: the folder cannot be written, contains other files, or is the current one.
+        """
+        with whole_folder(prepare(str(folder), self.case.title)) as part:
+            self.write(part)
+
+    def write(self, folder: Path) -> None:
+        """Write the files of :meth:`save` into an empty folder."""
         # netCDF 3 has no empty dimensions: without joints the stations are left out.
         empty = [name for name, size in self.trajectories.sizes.items() if size == 0]
         self.trajectories.drop_dims(empty).to_netcdf(folder / TRAJECTORIES, engine="scipy")
@@ -153,6 +163,36 @@ class Results:
         return sorted(first, key=lambda name: (name != self.reference, names.index(name)))
 
     @property
+    def quantities(self) -> pd.DataFrame:
+        """The quantities of sweeps: a row for each, with its SI unit and a column per model."""
+        import pandas as pd
+
+        from runs.pipeline.quantities import QUANTITIES, measure
+
+        columns: dict[str, list[Any]] = {"unit": [one.unit for one in QUANTITIES]}
+        for name in self.summary.models:
+            found = measure(self, name)
+            columns[name] = [found.get(one.name) for one in QUANTITIES]
+        frame = pd.DataFrame(columns, index=[one.name for one in QUANTITIES])
+        return frame.dropna(how="all", subset=[*self.summary.models])
+
+    def __repr__(self) -> str:
+        return f"Results of {self.case.title!r}: {', '.join(self.summary.models)}"
+
+    def _repr_html_(self) -> str:
+        from runs.pipeline.quantities import QUANTITIES
+        from runs.report.tables import Column, Table
+
+        frame = self.quantities
+        shown = [one for one in QUANTITIES if one.name in frame.index]
+        columns = [Column("", [f"{one.title}, {one.shown_unit}" for one in shown])]
+        for name in self.summary.models:
+            values = frame[name].astype(float)
+            cells = [one.factor * values[one.name] for one in shown]
+            columns.append(Column(name, [x if x == x else None for x in cells], ".4g"))
+        return Table(self.case.title, columns)._repr_html_()
+
+    @property
     def motions(self) -> dict[str, MotionResult]:
         """The extreme values of the motions of the most important models."""
         own = self.summary.design.models
@@ -161,6 +201,40 @@ class Results:
             for name in self.leading_models
             if name in own and (moved := own[name].motion) is not None
         }
+
+
+def prepare(out: str, file: str) -> Path:
+    """Return the folder of a run, which may contain an earlier run.
+
+    Args:
+        out: folder as the user gave it.
+        file: the case file, for messages.
+
+    Raises:
+        BadInput: the folder cannot be created or replaced, contains other files, or is the current
+            directory.
+    """
+    folder = Path(out)
+    key = f"--out {out}"
+    if folder.exists() and not folder.is_dir():
+        raise BadInput(file, key, "is a file; give a folder")
+    if real(folder).is_mount():
+        raise BadInput(
+            file, key, "is where a disk begins, and cannot be replaced; give a folder in it"
+        )
+    try:
+        with scratch_folder(folder):
+            names = {path.name for path in folder.glob("*")}
+    except OSError as error:
+        raise BadInput(
+            file, key, f"cannot be written ({error.strerror}); give a folder that can"
+        ) from None
+    if names and not {MANIFEST, TRAJECTORIES} <= names:
+        raise BadInput(
+            file, key, "holds files that are not a run's; give a new folder or an earlier run's"
+        )
+    check_left(folder, file, key)
+    return folder
 
 
 def read_fields(path: Path) -> xr.Dataset:

@@ -48,15 +48,7 @@ def render(
         snapshots: snapshots on the disk.
         viewer: file of the interactive viewer beside the report.
     """
-    first_screen = [summary_table(results), limit_table(results)]
-    tables: dict[str, list[Table]] = {
-        "summary": [table for table in first_screen if table],
-        "results": result_tables(results),
-        "predictability": predictability_tables(results),
-        "compared": comparison_tables(results),
-        "models": model_tables(results),
-    }
-    texts = {part: [table for table in several if table.rows] for part, several in tables.items()}
+    texts = tables_by_part(results)
     pictures = {part: [figure for figure in figures if figure.part == part] for part in PARTS}
     pictures |= {"snapshots": [*snapshots]}
     shown = [
@@ -92,6 +84,19 @@ def render(
         **pictures,
         **addition.content,
     )
+
+
+def tables_by_part(results: Results) -> dict[str, list[Table]]:
+    """Return the tables of a report that have rows, by its parts, in its order."""
+    first_screen = [summary_table(results), limit_table(results)]
+    tables: dict[str, list[Table]] = {
+        "summary": [table for table in first_screen if table],
+        "results": result_tables(results),
+        "predictability": predictability_tables(results),
+        "compared": comparison_tables(results),
+        "models": model_tables(results),
+    }
+    return {part: [table for table in several if table.rows] for part, several in tables.items()}
 
 
 def _numbered(kind: str, things: Iterable[Table | Figure]) -> list[tuple[Table | Figure, str]]:

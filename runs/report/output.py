@@ -4,17 +4,18 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
+from contextlib import contextmanager
 from io import StringIO
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
-from runs.case.messages import BadInput
 from runs.case.user_files import check_left
-from runs.folder.files import MANIFEST, real, scratch_folder, write_whole
+from runs.client import judge
+from runs.folder.files import changed_folder, exclusive, write_whole
 from runs.pipeline.results import FIELDS, SUMMARY, TRAJECTORIES, Results
 from runs.pipeline.run import Run
 from runs.pipeline.summary import Snapshots
@@ -26,44 +27,35 @@ from runs.report.opengl import RenderingUnavailable
 from runs.report.pages import Addition
 from runs.report.tables import as_json
 from runs.report.viewer import VIEWER, viewer
+from runs.report.workbook import write_workbook
 
 REPORT = "report.html"
 CALIBRATION = "calibration.json"
 LATER = "not requested; protractile snapshot draws them"
 
 
-def prepare(out: str, file: str) -> Path:
-    """Return the folder of a run, which may contain an earlier run.
+@contextmanager
+def rendered_again(
+    folder: str, excel: str | None = None
+) -> Iterator[tuple[Results, Addition, Path]]:
+    """Yield a run, the client's evaluation, and a copy of its folder to change.
+
+    At the end, the report of the copy is rendered, and the copy replaces the folder.
 
     Args:
-        out: folder as the user gave it.
-        file: the case file, for messages.
-
-    Raises:
-        BadInput: the folder cannot be created or replaced, contains other files, or is the current
-            directory.
+        folder: folder of a run.
+        excel: name of the option in messages, if a workbook is to be written, too.
     """
-    folder = Path(out)
-    key = f"--out {out}"
-    if folder.exists() and not folder.is_dir():
-        raise BadInput(file, key, "is a file; give a folder")
-    if real(folder).is_mount():
-        raise BadInput(
-            file, key, "is where a disk begins, and cannot be replaced; give a folder in it"
-        )
-    try:
-        with scratch_folder(folder):
-            names = {path.name for path in folder.glob("*")}
-    except OSError as error:
-        raise BadInput(
-            file, key, f"cannot be written ({error.strerror}); give a folder that can"
-        ) from None
-    if names and not {MANIFEST, TRAJECTORIES} <= names:
-        raise BadInput(
-            file, key, "holds files that are not a run's; give a new folder or an earlier run's"
-        )
-    check_left(folder, file, key)
-    return folder
+    path = Path(folder)
+    with exclusive(path):
+        results = Results.load(path)
+        check_left(path, folder, "folder")
+        judged = judge(results)
+        with changed_folder(path) as part:
+            yield results, judged, part
+            write_report(results, judged, part)
+            if excel is not None:
+                write_workbook(results, part, folder, excel)
 
 
 def write(
@@ -83,7 +75,7 @@ def write(
         helper: process that draws them; a new one unless given.
     """
     results = run.results
-    results.save(folder)
+    results.write(folder)
     several = sum(model.meshed for model in results.case.models) > 1
     files = {name: folder / f"{f'{name}-' if several else ''}{FIELDS}" for name in run.shells}
     for name, path in files.items():

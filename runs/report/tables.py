@@ -7,6 +7,7 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from html import escape
 from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -181,6 +182,11 @@ class Table:
         return frame.where(frame.notna(), None)
 
     @property
+    def flat_frame(self) -> pd.DataFrame:
+        """The :attr:`frame` with headings of one line."""
+        return self.frame.rename(columns=lambda heading: heading.replace("\n", ", "))
+
+    @property
     def data(self) -> list[dict[str, Plain]]:
         """The rows of :attr:`frame` as JSON values."""
         return [
@@ -227,6 +233,13 @@ class Table:
         console.print(grid)
         for note in self.notes:
             console.print(Text(note))
+
+    def _repr_html_(self) -> str:
+        import pandas as pd
+
+        grid = pd.DataFrame(self.rows, columns=self.headings).to_html(index=False, border=0)
+        notes = "".join(f"<br>{escape(note)}" for note in self.notes)
+        return f"<p><b>{escape(self.title)}</b>{notes}</p>{grid}"
 
     def markdown(self) -> str:
         """Return heading, table and notes as Markdown."""

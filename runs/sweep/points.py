@@ -93,7 +93,18 @@ def plan(
     Raises:
         BadInput: the case, a key, a value, a point or the reference is invalid.
     """
-    whole = case_file.load(file)
+    return plan_case(case_file.load(file), file, texts, models, mesh_size, reference)
+
+
+def plan_case(
+    whole: Case,
+    file: str,
+    texts: Sequence[str],
+    models: Sequence[str] | None,
+    mesh_size: float | None,
+    reference: str | None = None,
+) -> Plan:
+    """Return :func:`plan` of a checked case, whose name in messages is ``file``."""
     case_file.select(whole, file, models, mesh_size, 0)
     tables = tables_of(whole)
     variations = parse(texts, tables, file)

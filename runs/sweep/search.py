@@ -55,17 +55,17 @@ def parse_bound(text: str, plan: Plan) -> Limit:
     return Limit(quantity, si, least=found[2] == ">")
 
 
-def bisect(
+def run_until(
     plan: Plan,
-    bound: Limit,
+    bound: Limit | None,
     plan_of: Callable[[Sequence[str]], Plan],
     run: Callable[[Plan], list[Outcome]],
 ) -> tuple[Plan, list[Outcome]]:
-    """Return the plan and outcomes of all values of the key, with a bracket of the bound.
+    """Run a plan, and bisect until it has a bracket of the bound; return plan and outcomes.
 
     Args:
         plan: plan of the first values.
-        bound: bound of one quantity, which the first values enclose.
+        bound: bound of one quantity, which the first values enclose; without one, they are all.
         plan_of: function that returns the plan of other variations KEY=VALUES.
         run: function that returns the outcomes of a plan.
 
@@ -74,6 +74,8 @@ def bisect(
     """
     while True:
         outcomes = run(plan)
+        if bound is None:
+            return plan, outcomes
         low, high = _bracket(plan, outcomes, bound)
         values = plan.variations[0].values
         if values[high] - values[low] <= CLOSE * max(abs(values[low]), abs(values[high])):

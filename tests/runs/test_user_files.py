@@ -13,7 +13,7 @@ from runs.case.messages import BadInput
 from runs.case.reading import load
 from runs.case.user_files import LARGEST, check_left
 from runs.folder.files import MANIFEST
-from runs.report import output
+from runs.pipeline.results import prepare
 from tests.runs.coarse_case import COARSE
 
 GUST = '[[base]]\nacceleration = 1.0\nfile = "gust.csv"\n\n[[model]]'
@@ -91,7 +91,7 @@ def test_nobody_s_folder_is_replaced_around_them(
     for other in (folder / "other", tmp_path / "other", tmp_path / "ou"):
         check_left(other, "case.toml", "--out other")
     with pytest.raises(BadInput) as refused:
-        output.prepare(str(folder), "case.toml")
+        prepare(str(folder), "case.toml")
     assert str(refused.value) == (
         f"case.toml: --out {folder}: is where you are, and will be replaced; start from another "
         "folder"

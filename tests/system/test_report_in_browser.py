@@ -15,7 +15,7 @@ from runs.case import reading as case_file
 from runs.case.schema import EnsembleTable
 from runs.client import judge
 from runs.pipeline.context import RunContext
-from runs.pipeline.results import read_netcdf
+from runs.pipeline.results import prepare, read_netcdf
 from runs.pipeline.run import run_case
 from runs.report import output
 from tests.system.browser import Page, blank_page, find_browser
@@ -63,7 +63,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "step_change": None,
         "limits": ["step", "physics"],
     }
-    out = output.prepare(str(tmp_path_factory.mktemp("run") / "out"), "")
+    out = prepare(str(tmp_path_factory.mktemp("run") / "out"), "")
     out.mkdir()
     output.write(finished, judge(finished.results), out)
     return out

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Cases from Python beside the command line."""
+
+from __future__ import annotations
+
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import openpyxl
+import pytest
+import xarray as xr
+
+import protractile as pt
+from runs.report import workbook
+from tests.system.run_folder import COARSE, files, protractile
+
+BEAM = ["beam-fe-tied"]
+TABLES = tomllib.loads(Path(COARSE).read_text("utf-8"))
+SHORT = TABLES | {"time": TABLES["time"] | {"duration": 0.02}}
+
+
+@pytest.fixture(scope="module")
+def results() -> pt.Results:
+    return pt.run_case(pt.load_case(SHORT), BEAM)
+
+
+def test_tables_of_python_are_those_of_a_file() -> None:
+    assert pt.load_case(TABLES) == pt.load_case(COARSE)
+    with pytest.raises(
+        pt.BadInput, match=r"^case: time.duration: must be a number greater than 0, got -1.0$"
+    ):
+        pt.load_case(TABLES | {"time": {"duration": -1.0}})
+
+
+def test_check_says_what_the_command_prints(capsys: pytest.CaptureFixture[str]) -> None:
+    """Reference: other code path."""
+    assert protractile("check", COARSE) == 0
+    printed = capsys.readouterr().out
+    lines, words = printed.splitlines(), " ".join(printed.split())
+    found = pt.check(pt.load_case(COARSE))
+    # The last one is the estimate of the computing time.
+    assert all(line in words for line in found.lines[:-1])
+    assert repr(found).splitlines()[0] == lines[0]
+    assert {*found.frames} <= {*map(str.strip, lines)}
+    page = found._repr_html_()
+    assert all(f"<b>{title}</b>" in page for title in found.frames)
+
+
+def test_a_sweep_writes_the_files_of_the_command(tmp_path: Path) -> None:
+    """Reference: other code path, to the bit."""
+    case = tmp_path / "short.toml"
+    text = Path(COARSE).read_text("utf-8").replace("duration = 0.6", "duration = 0.02")
+    case.write_text(text, "utf-8")
+    command, python = tmp_path / "command", tmp_path / "python"
+    vary = ["--vary", "joint.play=0.007,0.014", "--models", "kantorovich-4", "--out", command]
+    assert protractile("sweep", case, *vary) == 0
+    values = {"joint.play": [0.007, 0.014]}
+    data = pt.sweep(pt.load_case(case), values, ["kantorovich-4"], folder=python)
+    assert files(python) == files(command)
+    xr.testing.assert_identical(xr.load_dataset(python / "sweep.nc"), data)
+    assert (python / "sweep.csv").read_bytes() == (command / "sweep.csv").read_bytes()
+
+
+def test_frequencies_of_one_case_and_of_several() -> None:
+    """Reference: analytic, (ω₁/ω₂)² = E₁/E₂; without variations there is the case alone."""
+    case = pt.load_case(COARSE)
+    vary = {"material.youngs_modulus": [1.0e11, 4.0e11]}
+    found = pt.frequencies(case, vary, BEAM)["frequency"].sel(joints="tied", model=BEAM[0])
+    np.testing.assert_allclose(found[1], 2.0 * found[0], rtol=1e-9)
+    alone = pt.frequencies(case, models=BEAM)["frequency"]
+    assert alone.dims == ("model", "joints", "mode")
+    with pytest.raises(pt.BadInput, match=r"^case: --vary joint.ply: "):
+        pt.frequencies(case, {"joint.ply": [0.0, 1.0]}, BEAM)
+
+
+def test_results_are_saved_reported_and_put_into_a_workbook(
+    results: pt.Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: the DataFrames, and the results of the run."""
+    folder = tmp_path / "kept"
+    for _ in range(2):  # the second time it replaces the first one
+        results.save(folder)
+    again = pt.report(folder, excel=True)
+    assert again.summary.models.keys() == {*BEAM}
+    assert (folder / "report.html").is_file()
+    book = openpyxl.load_workbook(folder / workbook.WORKBOOK)
+    tables = pt.tables(again)
+    assert book.sheetnames == ["quantities", *tables]
+    rows = {row[0]: row for row in book["quantities"].iter_rows(min_row=4, values_only=True)}
+    tip = again.quantities.loc["tip"]
+    assert rows["tip"] == ("tip", "m", pytest.approx(tip[BEAM[0]], rel=1e-12))
+    assert tip[BEAM[0]] == float(np.abs(again.trajectories["tip"]).max())
+    headings = [cell.value for cell in book["models"][1 + workbook.ABOVE]]
+    assert headings == [*tables["models"].columns]
+    assert "<b>The paper's boom" in results._repr_html_().replace("&#x27;", "'")
+    (folder / "mine.txt").touch()
+    (folder / "trajectories.nc").unlink()
+    with pytest.raises(pt.BadInput, match="holds files that are not a run's"):
+        results.save(folder)
+
+
+def test_without_openpyxl_one_line_says_so(
+    results: pt.Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    results.save(tmp_path / "kept")
+    monkeypatch.setitem(sys.modules, "openpyxl.workbook", None)
+    assert protractile("report", tmp_path / "kept", "--excel") == 2
+    assert capsys.readouterr().err == (
+        f"protractile: {tmp_path / 'kept'}: --excel: openpyxl is missing, which writes workbooks; "
+        "install it with pip\n"
+    )
+    assert not (tmp_path / "kept" / "report.html").exists()
+
+
+def test_a_run_in_python_writes_the_folder_of_the_command(tmp_path: Path) -> None:
+    """Reference: other code path."""
+    case = tmp_path / "short.toml"
+    text = Path(COARSE).read_text("utf-8").replace("duration = 0.6", "duration = 0.02")
+    case.write_text(text, "utf-8")
+    assert protractile("run", case, "--models", BEAM[0], "--out", tmp_path / "command") == 0
+    pt.run_case(pt.load_case(case), BEAM, folder=tmp_path / "python")
+    assert files(tmp_path / "python") == files(tmp_path / "command")
