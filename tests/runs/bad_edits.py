@@ -10,4 +10,4 @@ from tests.runs.bad_forms import FORMS
 from tests.runs.bad_stiffeners import STIFFENERS
 from tests.runs.bad_supports import SUPPORTS
 
-BAD_EDITS = FORMS | NUMBERS | CALIBRATIONS | CONTACTS | STIFFENERS | SUPPORTS
+BAD_EDITS = [*FORMS, *NUMBERS, *CALIBRATIONS, *CONTACTS, *STIFFENERS, *SUPPORTS]

@@ -3,9 +3,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from runs import CASES
 
 COARSE = (CASES / "coarse.toml").read_text(encoding="utf-8")
 CONTACT = next(line for line in COARSE.splitlines() if line.startswith("contact = "))
 # From the law of its joint on, for slips in several lines of it.
 FROM_EXPONENT = COARSE[COARSE.index("exponent = 2.0") :]
+
+# What stands in the case, what replaces it, and the line that this slip earns.
+Slip = tuple[str, str, str]
+
+
+def replacing(text: str, slips: Mapping[str, str]) -> list[Slip]:
+    """Return the slips of a text of the case, each with its line by what replaces the text."""
+    return [(text, slip, line) for slip, line in slips.items()]
+
+
+def adding(text: str, slips: Mapping[str, str]) -> list[Slip]:
+    """Return slips below a text of the case, each with its line by what is added."""
+    return replacing(text, {f"{text}\n{slip}": line for slip, line in slips.items()})

@@ -191,9 +191,10 @@ def test_every_key_is_described_and_no_other_is_allowed() -> None:
             assert rule.get("description"), f"{table['title']}.{key}"
 
 
-@pytest.mark.parametrize("edit", BAD_EDITS.values(), ids=list(BAD_EDITS))
-def test_refuses_a_bad_case_with_one_exact_line(folder: Path, edit: tuple[str, ...]) -> None:
-    good, bad, line = edit
+@pytest.mark.parametrize(("good", "bad", "line"), BAD_EDITS, ids=[line for *_, line in BAD_EDITS])
+def test_refuses_a_bad_case_with_one_exact_line(
+    folder: Path, good: str, bad: str, line: str
+) -> None:
     assert good in COARSE
     assert complaint(folder, COARSE.replace(good, bad, 1)) == f"case.toml: {line}"
 
