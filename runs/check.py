@@ -24,6 +24,7 @@ from dynamics.motion import rest_of
 from geometry.axial import carried, moving_force_places
 from geometry.boom import Boom, Direction, Joint
 from geometry.fit import room
+from geometry.section import Section
 from geometry.typography import TO_MILLI
 from runs.case import actions
 from runs.case.checked_case import CheckedCase
@@ -75,7 +76,7 @@ _BESIDE = 1.0e-9
 # Damping ratio, and moment in N·m, below which values count as zero.
 _ROUND_OFF, _NO_MOMENT = 1.0e-12, 1.0e-3
 
-_BEAMS = "as beam elements"
+_BEAMS = "in the beam estimate"
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -171,15 +172,15 @@ def _spans(system: System, ends: Sequence[tuple[float, float]]) -> Column:
 
 
 def _beam_name(model: Model) -> str:
-    return f"{model.name}, {_BEAMS}" if model.needs_shell else model.name
+    return f"{model.name} (beam estimate)" if model.needs_shell else model.name
 
 
 def _segments(case: Case, boom: Boom) -> Table:
     column, segments, boxes = partial(_of, case.system), boom.segments, []
     for given, segment in zip(case.segments, segments, strict=True):
-        box = "unknown" if segment.section is None else str(segment.section)
+        box = "unknown" if segment.section is None else _size(segment.section)
         if segment.head_section is not None:
-            box += f" to {segment.head_section}"
+            box += f" to\n{_size(segment.head_section)}"
         inferred = given.section is None and segment.section is not None
         boxes.append(f"{box}, inferred" if inferred else box)
     columns = [
@@ -187,10 +188,16 @@ def _segments(case: Case, boom: Boom) -> Table:
         _spans(case.system, [one.ends for one in segments]),
         column("mass", "kg/m", [one.mass_per_length for one in segments]),
         column("I_y", "m^4", [one.second_moment_of_area for one in segments]),
-        column("rotary inertia", "kg m", [one.rotary_inertia for one in segments], ".3g"),
-        Column("section\nmm", boxes),
+        column("rotary\ninertia", "kg m", [one.rotary_inertia for one in segments], ".3g"),
+        Column("section h x b,\nplates t, mm", boxes),
     ]
     return Table("Segments", columns)
+
+
+def _size(section: Section) -> str:
+    """Return the dimensions of a section in two lines: height and width, plate thicknesses."""
+    size, plates = str(section).rsplit(" x ", 1)
+    return f"{size}\nt {plates}"
 
 
 def _stiffeners(boom: Boom, system: System) -> Table:
@@ -235,7 +242,7 @@ def _joints(case: Case, boom: Boom) -> Table:
             _friction(joint),
         )
         rows.append(row)
-    headings = ("joint", *lengths, "clearance\nmm", "free space\nmm", "friction")
+    headings = ("joint", *lengths, "clearance\nmm", "free gap\nmm", "friction")
     return Table.of_rows("", "Joints", headings, rows)
 
 
@@ -303,9 +310,9 @@ def axial_forces(boom: Boom, found: Statics | None) -> Table:
     columns = [
         Column("segment", [one.name for one in boom.segments]),
         Column("axial force", [force for force, _ in extremes], ".4g", "kN"),
-        Column("over the area", [stress for _, stress in extremes], ".4g", "MPa"),
+        Column("axial stress", [stress for _, stress in extremes], ".4g", "MPa"),
     ]
-    note = "At any extension; cylinders push as at rest under the loads of t = 0."
+    note = "Values cover all extensions; forces of cylinders are those at t = 0."
     notes = [note] if boom.cylinders else []
     return Table("Extreme axial forces, compression positive", columns, notes)
 
@@ -348,7 +355,7 @@ def _buckling(declared: CheckedCase) -> Table:
     columns = [
         Column("model", [_beam_name(model) for model in models]),
         Column("buckling factor", factors, ".4g"),
-        Column("part of the critical forces", [f and 1.0 / f for f in factors], ".3g", "%"),
+        Column("axial force over\ncritical force", [f and 1.0 / f for f in factors], ".3g", "%"),
     ]
     return Table("Buckling under the axial forces, joints in contact", columns)
 
@@ -397,7 +404,7 @@ def _reactions(state: StaticState, system: System) -> Table:
         Column("force", [one.force for one in held], ".4g", "kN"),
         *([Column("axial force", along, ".4g", "kN")] if any(along) else []),
         Column("moment", moments, ".4g", "kN m"),
-        Column("compression", depths, ".3g", "mm"),
+        Column("contact\npenetration", depths, ".3g", "mm"),
     ]
     title = "Reactions of supports and contacts at rest, t = 0"
     return Table(title, columns, [beam_note(state.boom)])
@@ -430,7 +437,7 @@ def _static_lines(case: Case, boom: Boom, found: Statics | None) -> Iterator[str
         float(closed_contact_modes(one.system, one.position)[0][0]) / (2.0 * np.pi) for one in found
     )
     yield (
-        f"Static tip deflection (t = 0), {_BEAMS}: {number(TO_MILLI * state.tip, 4)} mm; without "
+        f"Static tip deflection (t = 0) {_BEAMS}: {number(TO_MILLI * state.tip, 4)} mm; without "
         f"play {number(TO_MILLI * bonded.tip, 4)} mm."
     )
     yield (

@@ -202,14 +202,14 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
     if vary:
         largest = [in_units(one.largest, one.unit, case.system) for one in extremes]
         columns += [
-            Column("largest", largest),
-            Column("loads of\ns", [f"{one.time:.4g}" for one in extremes]),
+            Column("maximum", largest),
+            Column("time of\nmaximum, s", [f"{one.time:.4g}" for one in extremes]),
         ]
     if any(used):
         columns.append(Column("utilisation", used, ".3g", "%"))
     more = ["Drives stay where they are at t = 0."] if boom.driven else []
-    title = "Rest under the loads of t = 0" + (" and under the largest loads" if vary else "")
-    kinds = "Stresses of outer fibres; pressures of pads."
+    title = "Static results at t = 0" + (" and under the maximum loads" if vary else "")
+    kinds = "Stresses are outer-fibre stresses. Contact forces act upwards where positive."
     return Table(title, columns, [beam_note(boom), kinds, *more])
 
 
@@ -217,7 +217,7 @@ def beam_note(boom: Boom) -> str:
     """Return a sentence that names the model of the statics of a boom."""
     theory = "Timoshenko" if static_theory(boom) == "timoshenko" else "Euler-Bernoulli"
     walls = ", on walls that bend under pads" if any(one.padded for one in boom.joints) else ""
-    return f"Of the boom as {theory} beam elements{walls}; no model of the case."
+    return f"`check` computes these values with its own {theory} beam{walls}."
 
 
 def in_units(value: float, unit: str, system: System) -> str:

@@ -47,8 +47,8 @@ def load_table(case: Case, boom: Boom) -> Table:
         Column("on", [row.place for row in rows]),
         Column("direction", [row.direction for row in rows]),
         Column("history", [row.history for row in rows]),
-        Column("largest", [_in_units(row.largest, row.unit, system) for row in rows]),
-        Column("at\ns", ["" if row.time is None else f"{row.time:.4g}" for row in rows]),
+        Column("maximum", [_in_units(row.largest, row.unit, system) for row in rows]),
+        Column("maximum\nat s", ["" if row.time is None else f"{row.time:.4g}" for row in rows]),
     ]
     return Table("Loads", columns)
 

@@ -16,7 +16,7 @@ import xarray as xr
 from dynamics.trajectory import Pointwise
 from geometry.axial import moving_force
 from geometry.boom import Boom
-from geometry.typography import TO_MILLI, TO_PERCENT, listed
+from geometry.typography import TO_MILLI, TO_PERCENT, listed, signed
 from runs.case.actions import series_notes
 from runs.case.schema import Case, Model
 from runs.pipeline.comparison import Distributions, PeakDifferences, compare
@@ -143,27 +143,31 @@ def quality_notes(
         if (error := model.reduction_errors.get("contact_compliance")) is not None:
             yield QualityNote(
                 "reduction",
-                f"{name}: its {model.modes} coordinates have the full shell's local compliance at "
-                f"contacts within {error:.1g}.",
+                f"{name}: the reduced shell of {model.modes} coordinates reproduces the local "
+                f"contact compliance within {error:.1g}.",
             )
     for name, model in models.items():
         if model.mesh_error is not None:
             yield QualityNote(
                 "mesh",
-                f"{name}: at contacts its local compliance is within "
-                f"{_percent(model.mesh_error)} of the value of an infinitely fine mesh.",
+                f"{name}: the mesh changes the local contact compliance by "
+                f"{_percent(model.mesh_error)}, by extrapolation to an infinitely fine mesh.",
             )
     name, worst = max(models.items(), key=lambda moving_force: moving_force[1].energy_residual)
     yield QualityNote(
         "energy",
         f"The energy balance holds within {worst.energy_residual:.1g} of the work in every "
-        f"model; the largest error has {name}.",
+        f"model; {name} has the largest error.",
     )
 
 
 def _percent(part: float) -> str:
     """Return a percentage with two decimals, or more up to the first digit that is not 0."""
     return f"{TO_PERCENT * part:.2g} %"
+
+
+def _signed_percent(part: float) -> str:
+    return f"{signed(f'{TO_PERCENT * part:+.2g}')} %"
 
 
 def _agreement(design: DesignResults) -> Iterator[str]:
@@ -175,14 +179,14 @@ def _agreement(design: DesignResults) -> Iterator[str]:
     for name, matches in design.modes.matches.items():
         other, parts = design.models[name], []
         if (off := off_at_rest(own, other)) is not None:
-            parts.append(f"{_percent(abs(off))} in the tip at rest")
+            parts.append(f"{_signed_percent(off)} in the static tip deflection")
         if (first := matches[0]) is not None:
-            parts.append(f"{_percent(abs(first.off))} in the first frequency")
+            parts.append(f"{_signed_percent(first.off)} in the first frequency")
         if own.motion is not None and other.motion is not None and own.motion.peaks[0].largest:
             ratio = other.motion.peaks[0].largest / own.motion.peaks[0].largest
-            parts.append(f"{_percent(abs(ratio - 1.0))} in the largest deflection of the tip")
+            parts.append(f"{_signed_percent(ratio - 1.0)} in the maximum tip deflection")
         if parts:
-            yield f"{name} is off {reference} by {listed(parts)}."
+            yield f"{name} differs from {reference} by {listed(parts)}."
 
 
 def off_at_rest(own: ModelDesignResults, other: ModelDesignResults) -> float | None:
@@ -204,9 +208,9 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
     if parted:
         which = listed([f"{name} {time:.2f} s" for name, time in parted.items()])
         yield (
-            "The motion is chaotic: runs with unmeasurably small differences of data are "
-            f"{_percent(_PARTED)} of the tip's range apart from these times on: {which}. Later "
-            f"curves are samples; heights and times of slow peaks are predictable for longer."
+            "The motion is chaotic: runs whose data differ immeasurably are "
+            f"{_percent(_PARTED)} of the tip's range apart after these times: {which}. A later "
+            "curve is one of many possible motions; slow peaks are predictable for longer."
         )
     regular = [name for name, time in times.items() if time is None]
     if regular:

@@ -18,6 +18,8 @@ Progress = Callable[[str, str, float], None]
 
 # Shortest time in s between two lines; shorter stages print nothing.
 EVERY = 5.0
+# Completed part of a stage from which its remaining time is estimated.
+LEAST_PART = 0.05
 
 
 @contextmanager
@@ -73,10 +75,12 @@ class Lines:
         state = f"{stage} begins"
         if part >= 1.0:
             # Some stages report only their end.
-            state = f"{stage} took {passed:.0f} s" if passed else f"{stage} is done"
+            state = f"{stage} took {passed:.0f} s" if passed >= 1.0 else f"{stage} is done"
         elif part > 0.0:
-            left = passed * (1.0 - part) / part
-            state = f"{stage} {100.0 * part:.0f} %, {left:.0f} s left"
+            state = f"{stage} {100.0 * part:.0f} %"
+            # An earlier estimate is worth nothing.
+            if part >= LEAST_PART:
+                state += f", {passed * (1.0 - part) / part:.0f} s left"
         place = ""
         if model in self._models:
             place = f" ({self._models.index(model) + 1} of {len(self._models)})"

@@ -86,10 +86,9 @@ def contact_peaks(run: FigureContext) -> list[Figure]:
     title = "Peak contact forces" + (f": up to {max(known) * TO_KILO:.0f} kN" if known else "")
     caption = (
         f"Largest contact force at each station in every {run.time[-1] / len(bins):.2g} s, "
-        f"upwards or downwards, on a logarithmic scale; without a mark below "
-        f"{LEAST_FORCE * TO_KILO:g} kN."
-        " A peak lasts microseconds; the mean contact force sizes pads and walls."
-        + of_start(run.case)
+        "upwards or downwards, on a logarithmic scale. Forces below "
+        f"{LEAST_FORCE * TO_KILO:g} kN are not plotted. Use the mean contact force to size pads "
+        "and walls." + of_start(run.case)
     )
     return [run.finish(sheet, panels[0], "contact-peaks", title, caption)]
 

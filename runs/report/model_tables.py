@@ -49,11 +49,11 @@ def model_table(results: Results) -> Table:
         Column("model", [*summary.models, *(model.name for model in failed)]),
         Column("kind", [*(model.kind for model in models), *(model.kind for model in failed)]),
         Column("degrees of freedom", [*freedom, *("failed" for _ in failed)]),
-        Column("modes", [str(model.modes) for model in models]),
+        Column("coordinates", [str(model.modes) for model in models]),
         Column("shortest step", [model.step for model in models], ".3g", "µs"),
         *([Column("first contact", contacts, ".4f", "s")] if not touching else []),
         Column("first tip peak", [time for time, _ in peaks], ".3f", "s"),
-        Column("", [height for _, height in peaks], ".1f", "mm"),
+        Column("first tip peak", [height for _, height in peaks], ".1f", "mm"),
         *(horizon_column(models, share, duration) for share in shares),
         Column("peak contact force", [_peak_force(model) for model in models], ".3g", "kN"),
         *metric_columns(ModelSummary, models),
@@ -64,16 +64,15 @@ def model_table(results: Results) -> Table:
             "Horizon: time at which the members of a model's ensemble differ by this fraction of "
             "the tip's range; beyond it a single run is a sample."
         )
-    if resolving := [model.resolving_step for model in models if model.resolving_step]:
+    if resolving := [model.resolving_step for model in models if _is_unresolved(model)]:
         notes.append(
-            "≥: the impact is shorter than six steps, so that the force is the largest mean over "
-            "a step; "
-            f"time.step = {min(resolving):.1e} would resolve it."
+            "≥: the impact is shorter than six steps; the force is the largest mean over a step. "
+            f"time.step = {min(filter(None, resolving)):.1e} would resolve it."
         )
-    if any(model.peak_contact_force for model in models):
+    if any(model.peak_contact_force and model.contact_changes for model in models):
         notes.append(
-            "Peak contact force: of a single impact of microseconds. The means over output steps "
-            "in the design results size pads and walls."
+            "Peak contact force: maximum of a single impact, which lasts microseconds. Use the "
+            "means over output steps in the design results to size pads and walls."
         )
     return Table("Models: results and numerics", columns, notes, "models")
 
@@ -87,9 +86,14 @@ def metric_columns(kind: type, rows: Sequence[object]) -> list[Column]:
     ]
 
 
+def _is_unresolved(model: ModelSummary) -> bool:
+    """Return whether the motion has impacts that the step does not resolve."""
+    return bool(model.resolving_step and model.contact_changes)
+
+
 def _peak_force(model: ModelSummary) -> Cell:
     """Return the peak contact force, with a mark if the step does not resolve the impact."""
-    if model.resolving_step is None or model.peak_contact_force is None:
+    if model.peak_contact_force is None or not _is_unresolved(model):
         return model.peak_contact_force
     return f"≥ {number(TO_KILO * model.peak_contact_force)}"
 
@@ -117,12 +121,12 @@ def step_table(results: Results) -> Table:
         Column("model", list(results.summary.models)),
         Column("shortest step", [model.step for model in models], ".3g", "µs"),
         Column("steps", [model.steps for model in models]),
-        Column("openings and closings", [model.contact_changes for model in models]),
+        Column("contact changes", [model.contact_changes for model in models]),
     ]
     notes = [
-        "The step error is the sum, over windows of the motion, of the differences of "
-        "deflections between the step and twice the step. In chaotic motion no step keeps a "
-        "tolerance."
+        "Step error: differences of deflections between the step and twice the step, summed over "
+        "windows of the motion. In chaotic motion no step keeps a tolerance. Contact changes: "
+        "openings and closings."
     ]
     tried = [model.steps_for_peaks for model in models]
     within = next((found for found in tried if found), None)
@@ -203,8 +207,8 @@ def buckling_table(results: Results) -> Table | None:
     columns = (
         Column("model", list(models)),
         Column("buckling factor", factors, ".4g"),
-        Column("of the critical", [f and 1.0 / f for f in factors], ".3g", "%"),
-        Column("static tip, constant loads", tips, ".4g", "mm"),
+        Column("axial force over\ncritical force", [f and 1.0 / f for f in factors], ".3g", "%"),
+        Column("static tip deflection,\nt = 0", tips, ".4g", "mm"),
     )
     notes = (
         "Buckling factor: multiple of the axial forces at which the boom with closed joints "
@@ -256,7 +260,7 @@ def wall_table(results: Results) -> Table | None:
 def _largest(case: Case, stress: StressSummary) -> str:
     """Return the design stress, which is a mean over a patch, and the stress at the instant."""
     triangle = (
-        f"single triangle, which grows with mesh refinement beside a line of contact: "
+        f"single element, which grows with mesh refinement beside a line of contact: "
         f"{number(TO_MEGA * stress.von_mises, 3)} MPa{_of_yield(case, stress)} at "
         f"x = {stress.x:.2f} m in {stress.segment!r}, {stress.face} face of the wall "
         f"{stress.wall!r}, at {stress.time:.3f} s, the instant of this table."

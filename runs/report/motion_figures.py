@@ -120,7 +120,7 @@ def _head(run: FigureContext, place: str) -> Figure:
         f"Deflection of the head of the segment {which!r}, model by model.{dashed}"
         f"{_sampled(run, place)}"
     )
-    title = f"{place.replace('-', ' ').capitalize()}: {_reach(run, place)}"
+    title = f"Head of {which!r}: {_reach(run, place)}"
     return run.finish(sheet, panels[0], place, title, caption, chart=_chart(run, place))
 
 
@@ -184,7 +184,7 @@ def _sampled(run: FigureContext, place: str) -> str:
         if run.regular or run.ensembles is not None:
             return ""
         return (
-            " After the first contacts a curve with play may be one sample of a chaotic motion; an "
+            " After the first contacts a curve with play may be one of many possible motions; an "
             "ensemble shows whether it is."
         )
     low, high = BAND
@@ -196,7 +196,7 @@ def _sampled(run: FigureContext, place: str) -> str:
     if not any(time is not None for found in sampled for time in found.horizons.values()):
         return f"{band} They do not diverge."
     first, last = (f"{100.0 * share:g} %" for share in SHARES)
-    beyond = "" if run.regular else ", beyond which a curve is one sample of a chaotic motion"
+    beyond = "" if run.regular else "; a later curve is one of many possible motions"
     return (
         f"{band} Vertical lines: from when its members are {first} (dotted) and {last} (dashed) "
         f"of the tip's range apart{beyond}."
@@ -279,7 +279,7 @@ def energies(run: FigureContext) -> list[Figure]:
     columns = dict(zip(DRIVEN_ENERGIES, _energies(run, name).T, strict=False))
     drawn = columns.pop("drive_work", None)
     work = columns.pop("work") + (0.0 if drawn is None else drawn)
-    of = "work of the load" if drawn is None else "work of load and drive"
+    of = "work of loads" if drawn is None else "work of loads and drives"
     held = {energy: columns.pop(energy) for energy in HELD}
     lost = {energy: values for energy, values in columns.items() if values.any()}
     parts = held | lost
@@ -298,15 +298,15 @@ def energies(run: FigureContext) -> list[Figure]:
         # The colour of losses is independent of the model's colour.
         area.set(hatch="///", edgecolor="white")
     start = float(sum(values[0] for values in parts.values()))
-    total = f"start and {of}" if start else of
+    total = f"initial energy + {of}" if start else of
     axes.plot(run.time, start + work, color=theme.INK, linewidth=1.3, label=total)
     axes.set_ylabel("energy (J)")
     losses = " and ".join(_named(energy) for energy in lost)
     hatched = f"; hatched: {losses}" if lost else ""
-    more = " and the energy at the start" if start else ""
+    more = " and the initial energy" if start else ""
     caption = (
         f"Strain, kinetic and contact energy of {name} on top of one another{hatched}. Their sum "
-        f"is the {of}{more}, up to the residual of the next figure."
+        f"equals the {of}{more}, up to the residual of the next figure."
     )
     title = f"{name}: work of the loads, stored and dissipated energy"
     return [run.finish(sheet, axes, "energies", title, caption, part="numerics")]
@@ -321,7 +321,7 @@ def residuals(run: FigureContext) -> list[Figure]:
         worst.append(float(so_far[-1]))
         run.line(axes, name, run.time, np.maximum(so_far, ROUND_OFF))
     axes.set_yscale("log")
-    axes.set(xlabel="time (s)", ylabel="part of the work (–)", xlim=(0.0, run.time[-1]))
+    axes.set(xlabel="time (s)", ylabel="residual / maximum work (–)", xlim=(0.0, run.time[-1]))
     caption = (
         "Kinetic, strain and contact energy, plus losses, less the work of the loads, over the "
         "largest work: running maximum. Without contact the motion is exact to round-off."

@@ -238,8 +238,7 @@ class OverlapView:
             return "no contact here"
         interval = float(np.diff(self.motion["time"].values[:2])[0])
         return (
-            f"forces: mean of the last {1.0e3 * interval:.3g} ms; peak: of an impact in it, "
-            "for microseconds"
+            f"forces: mean of the last {1.0e3 * interval:.3g} ms; peak: maximum of a short impact"
         )
 
 
@@ -323,7 +322,7 @@ class StressScale:
             # A scale without stresses has no end.
             labels = {0.0: "0"}
         bar.set_ticks(list(labels), labels=list(labels.values()))
-        bar.set_label("von Mises stress (MPa),\nthe larger of both faces", fontsize=18)
+        bar.set_label("von Mises stress (MPa),\nlarger of both faces", fontsize=18)
 
 
 def draw_stress(
@@ -394,8 +393,8 @@ def _largest(view: OverlapView, time: float) -> str:
     triangle = int(np.where(np.isin(segment, view.numbers), stress, 0.0).argmax())
     x, _, _ = view.stress.centroids[triangle]
     return (
-        f"single triangles: {digits(TO_MEGA * float(stress[triangle]))} MPa at x = {x:.2f} m "
-        f"({view.scene.boom.segments[int(segment[triangle])].name}, "
+        f"maximum of a single element: {digits(TO_MEGA * float(stress[triangle]))} MPa at "
+        f"x = {x:.2f} m ({view.scene.boom.segments[int(segment[triangle])].name}, "
         f"{view.stress.wall_name(triangle)} wall)"
     )
 
@@ -410,7 +409,8 @@ def _ring_largest(sheet: Sheet, view: OverlapView, places: Array, values: Array)
     largest = f"{digits(TO_MEGA * float(values[triangle, corner]))} MPa"
     sheet.ring(float(x), float(y), largest)
     segment = scene.boom.segments[int(scene.segment[triangle])]
-    return f"ring: {largest} at x = {view.stress.centroids[triangle][0]:.2f} m ({segment.name})"
+    place = f"x = {view.stress.centroids[triangle][0]:.2f} m ({segment.name})"
+    return f"circle: smoothed maximum {largest} at {place}"
 
 
 def _coarse(view: OverlapView) -> str:

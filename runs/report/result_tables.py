@@ -85,7 +85,7 @@ def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table | Non
         Column("model", [name for name, _ in tilts]),
         Column("joint", [f"{tilt.inner} in {tilt.outer}" for _, tilt in tilts]),
         Column("rotation", [tilt.rotation for _, tilt in tilts], ".3g", "mrad"),
-        Column("tip deflection by it", [tilt.tip for _, tilt in tilts], ".1f", "mm"),
+        Column("resulting tip deflection", [tilt.tip for _, tilt in tilts], ".1f", "mm"),
     )
     note = "By play and contact compliance, in a shell also by the compliance of its walls."
     title = "Static under the maximum load: rotation of joints by play and local compliance"
@@ -115,14 +115,14 @@ def _reaction_table(results: Results) -> Table | None:
     beside = [tied.get((one.segment, one.x)) for one in found]
     columns = (
         Column("support", [f"{one.segment} at {one.x:g} m" for one in found]),
-        Column("force", [one.force for one in found], ".4g", "kN"),
-        *_unless_none("along the boom", [one.along for one in found], ".4g", "kN"),
+        Column("transverse force", [one.force for one in found], ".4g", "kN"),
+        *_unless_none("axial force", [one.along for one in found], ".4g", "kN"),
         *_unless_none("moment", [one.moment for one in found], ".3g", "kN m"),
-        Column("force, bonded joints", beside, ".4g", "kN"),
+        Column("transverse force,\nbonded joints", beside, ".4g", "kN"),
     )
     notes = (
-        "Beam elements under the loads at t = 0. Positive upwards; along the boom, positive "
-        "towards the tip.",
+        "Beam elements under the loads at t = 0. Transverse forces are positive towards the upper "
+        "side of the boom, axial forces towards the tip.",
     )
     return Table("Static at t = 0: support reactions", columns, notes, "reactions")
 
@@ -153,7 +153,7 @@ def mode_table(results: Results) -> Table | None:
     columns += [
         Column(name, [found.get(way) for way in rows], ".4g", "Hz") for name, found in of.items()
     ]
-    notes = ("In the static state at t = 0, with the contacts that are closed there.",)
+    notes = ("Contacts stay as at rest at t = 0, closed or open.",)
     return Table("Modes in the static state at t = 0", columns, notes, "modes")
 
 
@@ -193,6 +193,8 @@ def times(peak: Peak) -> str:
 def _named(what: str, where: str) -> str:
     if what == "contact force":
         return f"{what}, x = {where} m"
+    if what == "deflection":
+        return f"maximum dynamic {where} deflection"
     if what == "deflection at rest":
         return "static tip deflection, maximum load"
     if what == "cylinder force":
@@ -352,13 +354,13 @@ def pad_table(results: Results) -> Table | None:
         Column("joint", [f"{pad.inner} in {pad.outer}" for pad in pads]),
         Column("at", [f"{pad.x:g}" for pad in pads], unit="m"),
         Column("side", [pad.side for pad in pads]),
-        Column("peak force", [pad.force for pad in pads], ".3g", "kN"),
+        Column("maximum force", [pad.force for pad in pads], ".3g", "kN"),
         Column("pressure", [pad.pressure for pad in pads], ".3g", "MPa"),
         Column("utilisation", [pad.utilisation for pad in pads], ".0f", "%"),
     )
     note = (
-        "Values for one pad. Pads of one side of a station share its force in proportion to "
-        "their stiffness, pads of a pair evenly; the pressure is uniform."
+        "Largest force of one pad during the motion. Pads of one side of a station share its force "
+        "in proportion to their stiffness, pads of a pair evenly; the pressure is uniform."
     )
     return Table("Slide pads", columns, (note,), "pads")
 
@@ -372,8 +374,8 @@ def stress_table(results: Results) -> Table | None:
     if not rows:
         return None
     patches = [wall.patch if wall else None for *_, wall in rows]
-    parts = [(fibre.utilisation, wall.utilisation if wall else None) for _, fibre, wall in rows]
-    used = [max(filter(None, both), default=None) for both in parts]
+    fibres_used = [fibre.utilisation for _, fibre, _ in rows]
+    plates_used = [wall.utilisation if wall else None for *_, wall in rows]
     columns = [
         Column("model", [name for name, *_ in rows]),
         Column("segment", [fibre.segment for _, fibre, _ in rows]),
@@ -381,13 +383,16 @@ def stress_table(results: Results) -> Table | None:
         Column("at x", [fibre.x for _, fibre, _ in rows], ".4g", "m"),
         Column("at", [fibre.time for _, fibre, _ in rows], ".3f", "s"),
     ]
+    if any(fibres_used):
+        columns.append(Column("utilisation", fibres_used, ".3g", "%"))
     if any(wall for *_, wall in rows):
-        columns.append(Column("wall, over a patch", patches, ".4g", "MPa"))
-    if any(used):
-        columns.append(Column("of the yield strength", used, ".3g", "%"))
+        columns.append(Column("plate, patch mean", patches, ".4g", "MPa"))
+    if any(plates_used):
+        columns.append(Column("utilisation", plates_used, ".3g", "%"))
     notes = (
-        "Outer fibre: axial stress from section forces. Wall: von Mises, mean over a patch of "
-        "half a wall near stations and supports, including plate bending.",
+        "Outer fibre: axial stress from section forces. Plate: von Mises stress with plate "
+        "bending, mean over a patch of half a wall near stations and supports. Utilisation: part "
+        "of the yield strength.",
     )
     return Table("Stress", columns, notes, "stress")
 
@@ -425,9 +430,10 @@ def buckling_table(results: Results) -> Table | None:
         if any(cell is not None for cell in cells)
     ]
     notes = (
-        "Static under the maximum load: factor of all loads at which a wall buckles, elastic and "
-        "flat. Shell: pads included; extrapolated from two meshes, of which the finer one is off "
-        "by the mesh error. Panel formulas: long walls on simple supports, without pads.",
+        "Factor of all loads at which a wall buckles, in the static state under the maximum load; "
+        "walls are elastic and flat. Shell: pads included; extrapolated from two meshes, of which "
+        "the finer one has the mesh error. Panel formulas: long, simply supported walls without "
+        "pads.",
     )
     return Table("Buckling of walls", columns, notes, "buckling")
 
@@ -450,7 +456,7 @@ def life_table(results: Results) -> Table | None:
         Column("at x", [life.x for life in lives], ".4g", "m"),
         Column("cycles", [life.cycles for life in lives], ".3g"),
         Column("largest range", [life.largest for life in lives], ".4g", "MPa"),
-        Column("equivalent range", [life.equivalent for life in lives], ".4g", "MPa"),
+        Column("damage-equivalent\nrange", [life.equivalent for life in lives], ".4g", "MPa"),
     ]
     damages = [life.damage for life in lives]
     if any(damage is not None for damage in damages):
@@ -458,10 +464,11 @@ def life_table(results: Results) -> Table | None:
         columns.append(Column("damage of a run", damages, ".3g"))
         columns.append(Column("runs to failure", runs, ".3g"))
     if any(life.life_damage is not None for life in lives):
-        columns.append(Column("of its life", [life.life_damage for life in lives], ".3g"))
-    notes = (
-        "Rainflow ranges of the outer fibre's stress where it varies most. Equivalent: single "
-        "range per run with the same damage for the slope 3. Runs to failure: number of runs "
-        "until the damage is 1; empty without damage.",
-    )
-    return Table("Life", columns, notes, "life")
+        columns.append(Column("damage of the life", [one.life_damage for one in lives], ".3g"))
+    notes = [
+        "Rainflow ranges of the outer fibre's stress where it varies most. Damage-equivalent "
+        "range: one cycle per run with the same damage for the slope 3."
+    ]
+    if len(columns) > 6:
+        notes.append("Runs to failure: number of runs until the damage is 1; empty without damage.")
+    return Table("Fatigue", columns, notes, "life")

@@ -360,7 +360,7 @@ def describe_one(results: Results, path: Path) -> Figure:
             f"Stress at the overlap{which}",
             f"Von Mises stresses of {state}. Above: the whole boom; below: the "
             f"overlap{which}, cut open. The larger value of both faces, averaged over the "
-            f"triangles of a wall around each point; values beyond the end of the scale have its "
+            f"elements of a wall around each point; values beyond the end of the scale have its "
             f"darkest colour. Beside a line of contact they grow with mesh refinement; "
             f"utilisations use means over a patch of half a wall, which converge and are in the "
             f"tables. "
@@ -370,8 +370,7 @@ def describe_one(results: Results, path: Path) -> Figure:
             f"Overlap{which}",
             f"The overlap{which} of {state}, cut open. Blue: outer segment; orange: inner one; "
             "arrows: forces of the inner one on the outer one. Play, and displacements relative "
-            "to the outer segment, are magnified by the factor above the picture; a peak is that "
-            "of an impact of microseconds.",
+            "to the outer segment, are magnified by the factor above the picture.",
         ),
     }[seen["view"]]
     if lines[model] == "surface" and seen["view"] != "boom":

@@ -142,7 +142,7 @@ def utilisation_verdict(results: Results, model: str | None = None) -> str:
         return ""
     known.sort(key=lambda one: one.value or 0.0, reverse=True)
     used = "; ".join(map(str, known))
-    return f"Utilisation {used}; without a safety factor.{_not_given(results, model)}"
+    return f"Utilisation {used}. No safety factor is included.{_not_given(results, model)}"
 
 
 def _not_given(results: Results, model: str) -> str:
@@ -228,18 +228,21 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
         )
     if "Contact force, maximum, kN" in rows:
         yield (
-            "Contact force: mean over an output step, which sizes pads and walls. Peaks of "
-            "impacts in the table of models last microseconds and do not."
+            "Contact force: maximum of the means over an output step; use it to size pads and "
+            "walls. The peaks of impacts in the table of models last microseconds."
         )
     if "Period of the motion (measured), s" in rows:
         yield "Period: mean time between the main peaks of the tip, with the effect of play."
     if "Decay time to 10 %, s" in rows:
         ratio = percent(results.case.damping.modal)
-        yield f"Decay time: of the amplitude, by the case's damping ratio of {ratio} alone."
+        yield f"Decay time: the damping ratio {ratio} reduces the amplitude to 10 %."
     if "Governing pad: force, pressure, utilisation" in rows:
         pads = [pad for joint in results.case.joints for pad in (joint.pad, *joint.pads) if pad]
         bears = _span(pad.allowable_pressure for pad in pads)
-        yield f"Pad: one of a pair, at its peak{bears and f'; %: of the allowable {bears}'}."
+        yield (
+            "Pad: one of a pair, under its largest force during the motion"
+            f"{bears and f'; %: of the allowable {bears}'}."
+        )
     strengths = _span(one.material.yield_strength for one in results.boom.segments)
     if strengths:
         yield f"Stresses: % of the yield strength, {strengths}."
@@ -247,8 +250,8 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     if shells:
         most = [f"{amount(one.von_mises, 'Pa')} in {name}" for name, one in shells.items()]
         yield (
-            f"Single elements beside lines of contact have larger stresses ({listed(most)}), "
-            f"which grow with mesh refinement; the table of wall forces has their places."
+            f"Single elements beside contact lines have larger stresses ({listed(most)}). They "
+            "grow with mesh refinement; the table of wall forces gives their places."
         )
 
 

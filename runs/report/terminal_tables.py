@@ -31,7 +31,7 @@ SHOWN = {
     "degrees of freedom": "dofs",
     "first contact\ns": "first contact\ns",
     "first tip peak\ns": "first tip peak\ns",
-    "mm": "mm",
+    "first tip peak\nmm": "first tip peak\nmm",
     "energy residual\nof the work": "energy\nresidual",
     "wall time\ns": "wall time\ns",
 }

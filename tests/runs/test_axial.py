@@ -154,7 +154,7 @@ def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | 
         assert not any(line.startswith("caution") for line in checked)
     else:
         # With play the tip rests lower by what the fly tilts.
-        start, _, _ = caution.format("as beam elements").partition("1.79")
+        start, _, _ = caution.format("in the beam estimate").partition("1.79")
         assert any(line.startswith(start) for line in checked)
         assert caution.format("in tied") in told
 

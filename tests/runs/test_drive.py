@@ -330,7 +330,7 @@ def _check_figures(figures: Sequence[Figure]) -> None:
     assert drawn["at-rest"].title == "Static deflection under the maximum load: the tip at 140.4 mm"
     assert "Extension as at 0.2 s." in drawn["at-rest"].caption
     assert drawn["drive"].title.startswith("Drive of inner: up to ")
-    assert "work of load and drive" in drawn["energies"].caption
+    assert "work of loads and drives" in drawn["energies"].caption
     residual = drawn["energy-residual"].title
     assert residual.startswith("Energy residual: up to ")
     assert " × 10⁻¹" in residual

@@ -114,7 +114,7 @@ def test_draws_each_figure_as_png(everything: Everything) -> None:
     ]  # fmt: skip
     assert sorted(figures[0].path.parent.iterdir()) == sorted(f.path for f in figures)
     # Of motions without friction under given normal forces a curve is a sample.
-    assert sum("chaotic" in figure.caption for figure in figures) == 2
+    assert sum("possible motions" in figure.caption for figure in figures) == 2
     for figure in figures:
         pixels = image.imread(figure.path)
         assert pixels.shape[1] == round(theme.WIDTH * SMALL)
@@ -286,7 +286,7 @@ def test_energies_start_where_the_boom_does(results: Results, drawn: Drawn) -> N
         (figure,) = drawn(energies, run)
         (work,) = drawn.sheets["energies"].axes[0].get_lines()
         line[name] = np.asarray(work.get_ydata(), dtype=float)
-        assert ("the energy at the start" in figure.caption) == (name == "loaded")
+        assert ("the initial energy" in figure.caption) == (name == "loaded")
     np.testing.assert_allclose(line["loaded"] - line["from zero"], 5.0, rtol=1e-9)
 
 

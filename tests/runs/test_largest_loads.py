@@ -165,9 +165,9 @@ def test_statics_name_their_model_and_fit_a_terminal(tmp_path: Path) -> None:
     text = boom_of(RAMP + SINE)
     shown = printed(print_check, CheckedCase(read_case(tmp_path, text)), width=80)
     assert max(map(len, shown.splitlines())) <= 80
-    assert "loads of   utilisation" in shown
-    assert "Rest under the loads of t = 0 and under the largest loads" in shown
+    assert "time of   utilisation" in shown
+    assert "Static results at t = 0 and under the maximum loads" in shown
     assert (
-        "Of the boom as Timoshenko beam elements, on walls that bend under pads; no model\n"
-        "of the case.\nStresses of outer fibres; pressures of pads."
+        "`check` computes these values with its own Timoshenko beam, on walls that bend \n"
+        "under pads.\nStresses are outer-fibre stresses. Contact forces act upwards where positive."
     ) in shown

@@ -133,7 +133,7 @@ def test_the_first_look_has_the_pad_that_presses_most(tmp_path: Path) -> None:
     assert pads is not None
     columns = {column.heading: column for column in pads.columns}
     most = int(np.argmax([float(p) for p in columns["pressure\nMPa"].cells]))
-    force, pressure = (columns[name].text[most] for name in ("peak force\nkN", "pressure\nMPa"))
+    force, pressure = (columns[name].text[most] for name in ("maximum force\nkN", "pressure\nMPa"))
     lines = told["Governing pad: force, pressure, utilisation"].split("\n")
     assert lines[0] == f"{force} kN"
     assert lines[1].startswith(f"{pressure} MPa, ")
@@ -246,7 +246,7 @@ def test_shimmed_pads_tell_the_force_of_their_side(tmp_path: Path) -> None:
     rest = 2.0 * found.boom.joints[0].pads[0].stiffness * (0.1 - 0.007)
     table = pad_table(found)
     assert table is not None
-    forces = {column.heading: column.cells for column in table.columns}["peak force\nkN"]
+    forces = {column.heading: column.cells for column in table.columns}["maximum force\nkN"]
     for station, own in enumerate(peaks.T):
         # The harder side presses with the peak, the other with 2 k s less the peak.
         above = np.where(own > 0.0, own, 2.0 * rest + own).max()

@@ -86,9 +86,10 @@ def test_models_agree_within_what_is_said(answers: DesignResults) -> None:
     """Reference: other numbers of the same run, the tips of both models at rest."""
     agreement = [known.line for known in answers.quality_notes if known.what == "agreement"]
     series, beam = (answers.models[name].static[0].tip for name in ("kantorovich-5", "beam-fe"))
-    off = 100.0 * abs(series / beam - 1.0)
+    off = f"{100.0 * (series / beam - 1.0):+.2g}".replace("-", "−")
     (line,) = agreement
-    assert line.startswith(f"kantorovich-5 is off beam-fe by {off:.2g} % in the tip at rest, ")
+    start = f"kantorovich-5 differs from beam-fe by {off} % in the static tip deflection, "
+    assert line.startswith(start)
 
 
 def test_chaos_is_told_of_what_is_chaotic_alone() -> None:
@@ -105,11 +106,11 @@ def test_chaos_is_told_of_what_is_chaotic_alone() -> None:
     )
     chaotic, regular, energy = quality_notes(summary, DesignResults({}), 10.0)
     assert [one.what for one in (chaotic, regular, energy)] == ["horizon", "horizon", "energy"]
-    assert "from these times on: wild 3.20 s." in chaotic.line
+    assert "after these times: wild 3.20 s." in chaotic.line
     assert regular.line == "The motion of calm can be predicted over the whole 10 s."
     assert energy.line == (
-        "The energy balance holds within 0.0002 of the work in every model; the largest error has "
-        "calm."
+        "The energy balance holds within 0.0002 of the work in every model; calm has the largest "
+        "error."
     )
     none = summary_of({"plain": model_summary()})
     assert [one.what for one in quality_notes(none, DesignResults({}), 10.0)] == ["energy"]

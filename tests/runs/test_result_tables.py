@@ -163,8 +163,8 @@ def test_the_verdict_names_the_governing_utilisation_first(results: Results) -> 
     assert utilisation_verdict(results) == ""
     assert utilisation_verdict(with_stress(results, 340e6)) == (
         "Utilisation 1.05 at plate, outer segment, x = 10 m: exceeds yield; 0.958 at outer fibre, "
-        "outer segment, x = 2 m: below yield; without a safety factor. No yield strength is given "
-        "of outer and inner."
+        "outer segment, x = 2 m: below yield. No safety factor is included. No yield strength is "
+        "given of outer and inner."
     )
 
 
@@ -177,11 +177,11 @@ def test_the_verdict_names_pads_of_unknown_strength(results: Results) -> None:
     unpressed, known = replace(pad, force=0.0, pressure=0.0), replace(pad, utilisation=1.35)
     for one, start, end in (
         (pad, "Utilisation 0.93 at plate", "No allowable pressure is given of pads of inner."),
-        (unpressed, "Utilisation 0.93 at plate", "without a safety factor."),
+        (unpressed, "Utilisation 0.93 at plate", "No safety factor is included."),
         (
             known,
             "Utilisation 1.35 at pad, inner segment, x = 10 m: exceeds the allowable pressure",
-            "without a safety factor.",
+            "No safety factor is included.",
         ),
     ):
         found = replace(told, summary=told.summary.model_copy(update={"pads": [one]}))
@@ -194,8 +194,8 @@ def test_a_fatigue_life_that_is_used_up_exceeds_it(results: Results) -> None:
     life = Life("inner", 10.0, 0.0, 0.2, 4.0, 9e7, 8e7, [9e7], [4.0], 1.6e-4, 3.2)
     told = answering(results, own={"life": [life]})
     assert utilisation_verdict(told) == (
-        "Utilisation 3.2 at detail, inner segment, x = 10 m: exceeds the fatigue life; without a "
-        "safety factor. No yield strength is given of outer and inner."
+        "Utilisation 3.2 at detail, inner segment, x = 10 m: exceeds the fatigue life. No "
+        "safety factor is included. No yield strength is given of outer and inner."
     )
     terminal = printed(print_results, told, width=250).splitlines()
     assert terminal[-1].startswith(f"{PLAYED}: utilisation 3.2 at detail, inner segment")

@@ -190,12 +190,12 @@ def test_a_run_shorter_than_a_swing_is_told(
     declared = case_file.load_checked(written(tmp_path, "duration = 3.0", "duration = 0.2"))
     print_check(declared, Console(file=shown, width=200))
     line = (
-        "caution: time.duration: the run of 0.2 s is shorter than one period as beam elements, "
+        "caution: time.duration: the run of 0.2 s is shorter than one period in the beam estimate, "
         "0.605 s; usual are three periods at least"
     )
     assert line in shown.getvalue().splitlines()
     (frequency,) = re.findall(
-        r"joints in contact, as beam elements: ([0-9.]+) Hz", shown.getvalue()
+        r"joints in contact, in the beam estimate: ([0-9.]+) Hz", shown.getvalue()
     )
     assert 1.0 / float(frequency) == pytest.approx(0.605, rel=1e-3)
 

@@ -42,7 +42,7 @@ def test_masses_forces_and_tips_are_those_of_hand() -> None:
     }.items():
         assert [float(value) for value in rows[place]] == pytest.approx(expected, rel=1e-3)
     # 15 and 17 µm of contact turn the segment, too.
-    tips = "Static tip deflection (t = 0), as beam elements: 143.2 mm; without play 9.916 mm."
+    tips = "Static tip deflection (t = 0) in the beam estimate: 143.2 mm; without play 9.916 mm."
     assert tips in lines
     # What 2.2 and 2.8 kN press contacts of 1e13 N/m² in is in it.
     tilt = "Play rotates 'inner' by 14.03 mrad in 'outer', which moves the tip by 133.3 mm."
