@@ -56,7 +56,7 @@ class BoomModes:
         first = 0
         for group in _groups(boom, models):
             modes = group.modes()
-            geometric = group.softening
+            geometric = group.geometric_stiffness
             if geometric.any():
                 taken = modes.shapes.T @ geometric @ modes.shapes
                 softer, combination = soften_modes(modes.omega2, taken)
@@ -125,7 +125,7 @@ def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
     drives = [number for number, joint in enumerate(boom.joints) if joint.drive is not None]
     smallest = np.inf
     for group in _groups(boom.bonded, models):
-        first = group.softening
+        first = group.geometric_stiffness
         passing = {n: moving_axial_forces(boom, models, group.members, n) for n in drives}
         if not (first.any() or any(passing.values())):
             continue
@@ -133,7 +133,7 @@ def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
             return None
         for extensions in sample_extensions(boom):
             moving = (
-                force.softening(extensions[number])
+                force.geometric_stiffness(extensions[number])
                 for number, forces in passing.items()
                 for force in forces
             )
@@ -176,7 +176,7 @@ class _Group:
         parts, components: segment and motion of each component, and the component.
         members: each segment that takes loads, in these components; rows of other motions are 0.
         springs: cylinders that act on the components.
-        softening: geometric stiffness K_G (num_dofs, num_dofs).
+        geometric_stiffness: geometric stiffness K_G (num_dofs, num_dofs).
     """
 
     def __init__(self, boom: Boom, models: Sequence[SegmentModel], parts: Sequence[_Part]) -> None:
@@ -185,7 +185,9 @@ class _Group:
         self.members = [self._member(number) for number in range(len(boom.segments))]
         lines = ground_lines(boom, self.members)
         self.springs = [line for line in lines if line.stiffness > 0.0 and line.push.any()]
-        self.softening = block_diag(*(component.softening for component in self.components))
+        self.geometric_stiffness = block_diag(
+            *(component.geometric_stiffness for component in self.components)
+        )
 
     def _member(self, segment: int) -> BeamMember:
         def read(motion: Motion, rule: Rule) -> Array:

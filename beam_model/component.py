@@ -60,7 +60,7 @@ class Component:
     inertia_load: Array | None = None
 
     @property
-    def softening(self) -> Array:
+    def geometric_stiffness(self) -> Array:
         """The geometric stiffness K_G (num_dofs, num_dofs)."""
         return np.zeros_like(self.stiffness) if self.geometric is None else self.geometric
 

@@ -22,7 +22,7 @@ from beam_model.elements import Theory
 from beam_model.finite_element import finite_element_segment, finite_element_segments
 from beam_model.segment_model import EACH_SIDE, gap_system, system_without_drives
 from beam_model.wall_compliance import with_wall_springs
-from dynamics.equilibrium import rest_at
+from dynamics.equilibrium import equilibrium_at
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom
@@ -130,7 +130,7 @@ def static_state(
     system = with_wall_springs(
         system_without_drives(boom, modes, EACH_SIDE), boom, walls
     ).gather_loads()
-    position = rest_at(system)
+    position = equilibrium_at(system)
     reactions = [
         reaction
         for number, component in enumerate(elements.unsupported)
@@ -190,7 +190,7 @@ def _reactions(
         # A load that ends before t = 0 has no value.
         if given.segment == number and given.direction == "z" and callable(given.history):
             load += given.history(np.zeros(1))[0] * given.push(component.member)
-    stiffness = component.stiffness - component.softening
+    stiffness = component.stiffness - component.geometric_stiffness
     left = (stiffness @ np.array(bent) - load).reshape(-1, 2)
     return [
         Reaction(number, x, *map(float, left[np.abs(nodes - x).argmin()]))

@@ -55,7 +55,7 @@ def moving_axial_forces(
 
     nodes = np.concatenate([models[segment].components[plane].breaks for plane in boom.directions])
     breaks = _between(boom, drive.reach, [direction * (nodes - start)])
-    return [MovingAxialForce(found.force, RowTable.of(rows, breaks))]
+    return [MovingAxialForce(found.force, RowTable.interpolate(rows, breaks))]
 
 
 def _travel(
@@ -65,12 +65,12 @@ def _travel(
     members: Sequence[BeamMember],
     group: MovedStations,
 ) -> Travel:
-    moving = rows_at({}).moving(group.stations)
+    moving = rows_at({}).rows_at(group.stations)
 
     def rows(extension: float) -> Array:
-        return rows_at(group.extensions(extension)).some_rows(moving, lambda row: row)
+        return rows_at(group.extensions(extension)).evaluate_rows(moving, lambda row: row)
 
-    table = RowTable.of(rows, _breaks(boom, models, group))
+    table = RowTable.interpolate(rows, _breaks(boom, models, group))
     alone = len(group.joints) == 1
     pressing = moving_axial_forces(boom, models, members, group.joints[0]) if alone else []
     history = HistorySum(tuple(drive.history for drive in group.drives))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Forces between two touching segments: contact laws as sums of one-sided powers, dry friction."""
+"""Contact laws, which are sums of one-sided powers of a penetration, and dry friction."""
 
 from __future__ import annotations
 
@@ -22,20 +22,18 @@ from dynamics.contact_term import (
     slope_of,
 )
 
-# A negligible force in N, and the range of logarithms of penetrations.
+# A negligible force in N, and natural logarithms of penetrations in m for interpolation.
 _LEAST, _LOG_DEPTHS = 1.0e-300, np.linspace(-300.0, 300.0, 6001)
 
 
 class ContactLaw(ABC):
     """Contact force between two bodies by their relative displacement y = u − w.
 
-    A user-defined law derives from this class, is a frozen dataclass, and defines 1. ``terms``,
+    A user-defined law is a frozen dataclass that derives from this class and defines 1. ``terms``,
     whose sum is the elastic force: never attractive, and zero at y = 0, where contact begins unless
     the law is :meth:`behind` a clearance; 2. ``damping``, d in s/m of Hunt and Crossley (1975): the
     force is F (1 + d ṗ) at the rate ṗ of the penetration, and never adhesive; 3. ``str(law)``, a
     short description for tables.
-
-    Force, energy, parts of the law and the compiled loops follow from these.
     """
 
     __slots__ = ()
@@ -45,21 +43,21 @@ class ContactLaw(ABC):
     @property
     @abstractmethod
     def terms(self) -> tuple[Term, ...]:
-        """The one-sided powers whose sum is the force, on each side in ascending order of onset."""
+        """The one-sided powers whose sum is the force, in ascending order of onset on each side."""
 
     def one_sided(self, side: int) -> Gap | None:
-        """Return the law on the side of this sign only; None if it has no contact there."""
+        """Return the law on one side, 1 or −1, only; None without contact on this side."""
         part = self.behind(0.0)
         part = replace(part, sides=tuple(one for one in part.sides if one == side))
         return part if part.terms else None
 
     def shared(self, weight: float) -> Gap:
-        """Return the law multiplied by ``weight``, for one of several points that share it."""
+        """Return the law times ``weight``, for one of several points that share its force."""
         part = self.behind(0.0)
         return replace(part, weight=weight * part.weight)
 
     def behind(self, above: float, below: float | None = None) -> Gap:
-        """Return the law behind a clearance in m, with another clearance below if given."""
+        """Return the law with a clearance in m for y > 0, and the same or another for y < 0."""
         return Gap(self, above, above if below is None else below)
 
     def scaled(self, factor: float) -> ContactLaw:
@@ -67,11 +65,11 @@ class ContactLaw(ABC):
         return self
 
     def onset(self, side: float) -> float:
-        """Return the gap in m at which contact begins on a side; infinite without contact."""
+        """Return the |y| in m at which contact begins on a side; infinite without contact."""
         return min((term.onset for term in self.terms if term.side == side), default=np.inf)
 
     def force(self, y: Array) -> Array:
-        """Return the elastic force in N on the outer segment; the inner one has the opposite.
+        """Return the elastic force in N on the outer segment, opposite to that on the inner one.
 
         Args:
             y: relative displacement u − w in m, any shape.
@@ -87,14 +85,14 @@ class ContactLaw(ABC):
         return self._sum(slope_of, y)
 
     def depth(self, y: float) -> float:
-        """Return the penetration in m at a gap in m; 0 if it is open."""
+        """Return the penetration in m at the relative displacement y in m; 0 without contact."""
         return max(0.0, *(term.side * y - term.onset for term in self.terms))
 
     def slope_at(self, force: float) -> float:
-        """Return dF/dy in N/m at a contact force in N, on the law's stiffer side."""
-        # A power law is linear in logarithms.
+        """Return dF/dy in N/m at a contact force in N, on the stiffer side of the law."""
+        # Interpolation in logarithms, in which a power law is linear.
         depths, slopes = np.exp(_LOG_DEPTHS), []
-        # Overflow occurs only far beyond the force, where values have no effect.
+        # Overflow occurs only at penetrations far beyond the given force.
         with np.errstate(over="ignore"):
             for side in {term.side for term in self.terms}:
                 forces = np.log(np.maximum(np.abs(self.force(side * depths)), _LEAST))
@@ -109,7 +107,7 @@ class ContactLaw(ABC):
 
 @dataclass(frozen=True, slots=True)
 class Gap(ContactLaw):
-    """Contact law across a gap, or a part of it: the law of a row.
+    """Contact law with clearances, a factor, and contact on both sides or on one.
 
     >>> law = pt.PowerContact(1e6, exponent=1.0).behind(0.004, 0.010)
     >>> law.force(np.array([0.005, -0.005]))
@@ -161,7 +159,7 @@ class Gap(ContactLaw):
         return replace(self, above=factor * self.above, below=factor * self.below)
 
     def slope_at(self, force: float) -> float:
-        # Otherwise a small penetration would be lost to round-off, compared with a clearance.
+        # With its clearances, a small penetration would be lost to round-off.
         return ContactLaw.slope_at(replace(self, above=0.0, below=0.0), force)
 
     def __str__(self) -> str:
@@ -181,7 +179,7 @@ class PowerContact(ContactLaw):
 
     Args:
         stiffness: k₂ in N/mⁿ.
-        exponent: n, at least 1; below 1 the slope would be infinite at the beginning of contact.
+        exponent: n, at least 1, so that the slope is finite at the beginning of contact.
         stiffness_below: k₁ in N/mⁿ; the same as ``stiffness`` unless given.
         damping: d in s/m of Hunt and Crossley (1975), F = k pⁿ (1 + d ṗ) at the penetration p, but
             never adhesive; not negative.
@@ -247,7 +245,7 @@ class DryFriction:
 
     Args:
         coefficient: μ, not negative.
-        station: index in the system's stations.
+        station: index in the stations of the system.
         normal_force: prescribed part of N in N, not negative.
         normal_rows: contact rows whose |F| contribute to N.
 
@@ -270,12 +268,12 @@ class DryFriction:
 
 
 def contact_terms(laws: Sequence[ContactLaw]) -> Terms:
-    """Return the terms of the laws of rows, by row, for compiled loops."""
+    """Return the terms of all contact laws, in the order of rows, for compiled loops."""
     return np.array([(row, *term) for row, law in enumerate(laws) for term in law.terms], TERM)
 
 
 def contact_limits(laws: Sequence[ContactLaw]) -> Limits:
-    """Return the gaps at which contact begins, for compiled loops; infinite without contact."""
+    """Return the open range of y and the damping of each contact law, for compiled loops."""
     return np.array([(-law.onset(-1.0), law.onset(1.0), law.damping) for law in laws], LIMITS)
 
 
@@ -302,7 +300,7 @@ def restitution_damping(restitution: float, speed: float) -> float:
         raise ValueError(f"restitution must be above 0 and at most 1, got {e}")
     if not 0.0 < speed < np.inf:
         raise ValueError(f"speed must be finite and positive, got {speed} m/s")
-    # The root of the third-order series in d v, with a relative error of the order of its square.
+    # The root of the third-order series in d v, whose relative error is of the order of (d v)².
     first = 1.5 * (1.0 - e**2) / (1.0 + e**3)
     if first < 1.0e-4:
         return first / speed

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Contact law from a table of measured forces, with linear interpolation."""
+"""Contact law that interpolates a table of measured forces linearly."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from dynamics.contact_term import Term
 
 @dataclass(frozen=True, slots=True)
 class TableContact(ContactLaw):
-    """Contact law with a force that is interpolated in a table, and extrapolated beyond it.
+    """Contact law with linear interpolation in a table of forces, and extrapolation beyond it.
 
-    Each change of slope is a linear spring that begins there, so that the law is a sum of springs.
+    The law is a sum of linear springs: one begins at each change of slope.
 
     >>> pad = pt.TableContact(depths=(0.001, 0.002), forces=(1e3, 4e3))
     >>> round(float(pad.force(np.array(0.0015))), 6)
@@ -28,7 +28,8 @@ class TableContact(ContactLaw):
         damping: as in :class:`ContactLaw`, in s/m.
 
     Raises:
-        ValueError: there are no forces, or a force is not positive in the table or beyond it.
+        ValueError: the table is empty or its depths do not ascend, or a force is not positive in
+            the table or beyond it.
     """
 
     depths: tuple[float, ...]

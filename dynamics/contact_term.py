@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Terms of contact laws: one-sided powers of a penetration.
 
-Python and the compiled loops share these formulas. They include the potential, since the energy
-balance of every trajectory is the first check of a contact simulation.
+Python and the compiled loops share these formulas. The potential serves the energy balance, which
+checks every trajectory.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ LIMITS = np.dtype([("low", np.float64), ("high", np.float64), ("damping", np.flo
 
 
 class Term(NamedTuple):
-    """F = side · k max(side · y − onset, 0)ⁿ.
+    """One-sided power law F = side · k max(side · y − onset, 0)ⁿ.
 
     >>> pt.PowerContact(1e6, 1.0).lower().behind(0.01).terms
     (Term(side=-1.0, stiffness=1000000.0, onset=0.01, exponent=1.0),)

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Modal damping of a boom with its joints in contact.
 
-The modes of separate segments describe a boom with play. Modal damping of the segments does not
-affect their rigid motions, which contribute much to the vibration. So damping is specified for the
+The coordinates of a boom with play are modes of separate segments. Damping of these modes does not
+affect the rigid motions, which contribute much to the vibration. So damping is specified for the
 modes with closed contacts: Φ (num_modes, r), Φᵀ Φ = 1, of frequencies ω. With ρ and ε the rigid and
 elastic coordinates of Φ, Ω the frequencies of the segments, and ε⁺ the pseudo-inverse,
 
     C = 2ζ [½ ω₁ on rigid coordinates + s Ω on elastic ones + ε⁺ᵀ (ω − ½ ω₁ ρᵀρ − s εᵀ Ω ε) ε⁺]
 
-gives Φᵀ C Φ = 2ζ ω, and reduces the speed of a segment without contact at the rate ζ ω₁. C is
+gives Φᵀ C Φ = 2ζ ω. The speed of a segment without contact decays at the rate ζ ω₁. C is
 positive semidefinite at least for s ≤ ½, since εᵀ Ω ε ≤ (εᵀ Ω² ε)^½ ≤ ω (Hansen 1980); s is the
 largest permitted value up to 1.
 """
@@ -25,11 +25,10 @@ from dynamics.equilibrium import equilibrium
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 
-# Number of modes with the given damping ratio: in space, three of each direction and two of twist.
+# Number of modes with the given damping ratio: in 3D, three per direction and two of twist.
 DAMPED_MODES = 8
 
-# Relative bending of segments below which a mode counts as rigid motion, whose damping is that of
-# the rigid segments.
+# Relative bending of segments below which a mode has the damping of rigid motion.
 _BENT = 5.0e-3
 
 # Fraction of the largest dashpot rate below which a rate is round-off.
@@ -37,16 +36,14 @@ _ROUND_OFF = 1.0e-9
 
 
 def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
-    """Return ω (num_shapes,) in rad/s, ascending, and shapes, with closed contacts.
+    """Return ω (num_shapes,) in rad/s, ascending, and shapes (num_modes, num_shapes).
 
-    Shapes are (num_modes, num_shapes).
-
-    Rows that press at rest have the stiffness F'(y) there. If no row presses at a station between
-    segments, all its rows are bonded.
+    Contacts that press at rest have their stiffness F'(y) at rest. If no contact presses at a
+    station between segments, all its rows are bonded.
 
     Args:
         system: gap system of a boom.
-        rest: equilibrium (num_modes,) in √kg·m; that under the constant loads unless given.
+        rest: equilibrium (num_modes,) in √kg·m; equilibrium under constant loads unless given.
     """
     try:
         rest = equilibrium(system, system.load) if rest is None else rest
@@ -62,7 +59,7 @@ def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[
     omega2, combination = eigh(
         free.T @ (system.omega2[:, None] * free) + (rows.T * stiffness) @ rows
     )
-    # Rigid segments have no frequencies that distinguish motions from round-off.
+    # Without elastic modes, the scale of round-off is the largest ω² with closed contacts.
     least = min(system.omega2[system.omega2 > 0.0], default=_ROUND_OFF * omega2.max(initial=0.0))
     moving = omega2 > 1.0e-6 * least
     return np.sqrt(omega2[moving]), free @ combination[:, moving]
@@ -75,22 +72,21 @@ def add_damping(
 
     Args:
         system: gap system of a boom.
-        ratio: damping ratio as in :func:`with_ratio`.
+        ratio: damping ratio as in :func:`with_modal_damping`.
         rayleigh: α in 1/s and β in s of α + β ω² in the modes of the segments.
         rest: equilibrium as in :func:`closed_contact_modes`.
     """
     mass, stiffness = rayleigh
     rates = system.damping + mass + stiffness * np.maximum(system.omega2, 0.0)
     system = replace(system, damping=rates)
-    return system if ratio == 0.0 else with_ratio(system, ratio, rest)
+    return system if ratio == 0.0 else with_modal_damping(system, ratio, rest)
 
 
-def with_ratio(system: GapSystem, ratio: float, rest: Array | None = None) -> GapSystem:
-    """Return the system with ζ = ``ratio`` added in the first modes with closed contacts.
+def with_modal_damping(system: GapSystem, ratio: float, rest: Array | None = None) -> GapSystem:
+    """Return the system with the damping ratio ``ratio`` added to the first closed-contact modes.
 
-    Their number is ``DAMPED_MODES``, or that of the bending motions if it is smaller; contacts are
-    closed as at ``rest``, see :func:`closed_contact_modes`. Rigid segments without contact are
-    not damped.
+    It applies to the first eight modes of :func:`closed_contact_modes`, or fewer if the segments
+    have fewer elastic modes. A system of rigid segments is not damped.
     """
     rigid = system.omega2 <= 0.0
     count = min(DAMPED_MODES, np.count_nonzero(~rigid))
@@ -117,7 +113,7 @@ def with_ratio(system: GapSystem, ratio: float, rest: Array | None = None) -> Ga
 def closed_contact_damping(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
     """Return frequencies in Hz and damping ratios Φ·CΦ/2ω (num_shapes,) with closed contacts.
 
-    Contacts are closed as at ``rest``, see :func:`closed_contact_modes`.
+    ``rest`` is the equilibrium, as in :func:`closed_contact_modes`.
     """
     omega, shapes = closed_contact_modes(system, rest)
     rates = system.damping @ shapes**2 + np.square(system.dashpots @ shapes).sum(axis=0)

@@ -23,18 +23,18 @@ ENERGIES = (
     "contact_loss",
 )
 
-# With drives, their work is included.
+# Energies of a system with drives.
 DRIVEN_ENERGIES = (*ENERGIES, "drive_work")
 
 
-def energy_residual(energies: Array, least: float = 0.0) -> Array:
+def energy_residual(energies: Array, energy_floor: float = 0.0) -> Array:
     """Return the error (num_times,) of the energy balance as a fraction of the input energy.
 
     Args:
         energies: columns of ``ENERGIES`` or ``DRIVEN_ENERGIES`` in J, (num_times, 7) or (num_times,
             8).
-        least: input energy in J below which it is round-off, for example if friction prevents
-            motion.
+        energy_floor: input energy in J below which it is round-off, for example if friction
+            prevents motion.
     """
     work = energies[:, 3]
     signs = np.ones(energies.shape[1])
@@ -42,25 +42,27 @@ def energy_residual(energies: Array, least: float = 0.0) -> Array:
     initial = float(energies[0, :3].sum())
     # BLAS is not used, since its last bits depend on addresses in memory.
     missing = (energies * signs).sum(axis=1) - initial
-    # The strain energy may be negative, since axial forces do work as a segment tips over.
-    put_in = max(float(np.abs(work).max()), abs(initial), -float(energies[:, 1].min()), least)
+    # The strain energy may be negative, since axial forces do work on an unstable segment.
+    put_in = max(
+        float(np.abs(work).max()), abs(initial), -float(energies[:, 1].min()), energy_floor
+    )
     return np.asarray(missing / put_in if put_in > 0.0 else missing)
 
 
-def check_energy(energies: Array, bound: float = ENERGY_BOUND, least: float = 0.0) -> None:
+def check_energy(energies: Array, bound: float = ENERGY_BOUND, energy_floor: float = 0.0) -> None:
     """Check the energies of a motion.
 
     Args:
         energies: as in :func:`energy_residual`.
         bound: largest permitted energy residual.
-        least: as in :func:`energy_residual`.
+        energy_floor: as in :func:`energy_residual`.
 
     Raises:
         NumericsError: an energy is not finite, or the residual exceeds the bound.
     """
     if not np.isfinite(energies).all():
         raise NumericsError("the motion is not finite; check the loads and the stiffnesses")
-    worst = float(np.abs(energy_residual(energies, least)).max())
+    worst = float(np.abs(energy_residual(energies, energy_floor)).max())
     if worst > bound:
         raise NumericsError(
             f"the energy residual is {worst:.3g} of the work done, above the bound of {bound:.3g}"

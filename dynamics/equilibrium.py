@@ -2,8 +2,8 @@
 """Static equilibrium of a gap system under a constant load.
 
 Strain and contact energies are convex, so that the equilibrium is the minimum of the potential
-energy. Under axial forces, which tip a segment within its play, it is a near minimum. Dry friction
-would allow a range of equilibria; this one is without friction.
+energy. If axial forces make a segment unstable within its play, it is a local minimum. Friction,
+which would allow a range of equilibria, is ignored.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     -9.81 µm
 
     Args:
-        system: gap system, whose contacts may replace missing supports.
+        system: gap system; contacts may support it.
         load: constant modal load (num_modes,) in N/√kg.
 
     Raises:
@@ -53,22 +53,22 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
         raise NumericsError(
             "nothing holds the boom, or axial forces buckle it: it has no static equilibrium"
         ) from None
-    if not (system.laws or system.softening.size):
+    if not (system.laws or system.geometric_stiffness.size):
         return np.asarray(load / system.omega2)
     scaled_load = solve_triangular(factor, load, lower=True)
     scaled_push = solve_triangular(factor, pushed, lower=True)
     unit = max(float(np.linalg.norm(scaled_load)), float(np.linalg.norm(scaled_push)))
     scaled_load /= unit
-    # In scaled unknowns, strain and springs sum to the unit matrix. So all iterates are in the span
-    # of load and rows, which has far fewer unknowns than a shell.
+    # In scaled unknowns, the stiffness with springs is the unit matrix. So all iterates are in the
+    # span of load and rows, which has far fewer unknowns than a shell.
     pushes = np.column_stack([scaled_load, solve_triangular(factor, system.rows.T, lower=True)])
     span, _ = np.linalg.qr(pushes)
     scaled_load = span.T @ scaled_load
     unscaled = solve_triangular(factor, span, lower=True, trans=1)
     rows = system.rows @ unscaled
     stiffness = (unscaled.T * system.omega2) @ unscaled
-    if system.softening.size:
-        stiffness -= unscaled.T @ system.softening @ unscaled
+    if system.geometric_stiffness.size:
+        stiffness -= unscaled.T @ system.geometric_stiffness @ unscaled
 
     def sum_terms(of_term: OfTerm, x: Array) -> Array:
         """Return the sums (num_rows,) of terms; a compiled loop would take longer to load."""
@@ -104,7 +104,7 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     return np.asarray(unit * unscaled @ found.x)
 
 
-def rest_at(system: GapSystem, time: float = 0.0) -> Array:
+def equilibrium_at(system: GapSystem, time: float = 0.0) -> Array:
     """Return the equilibrium (num_modes,) in √kg·m under the extension and loads at a time in s.
 
     Raises:

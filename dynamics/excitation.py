@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Loads that change with time: a modal load times a history.
 
-A history has kinks, a peak and a highest frequency, which time steps must resolve.
+Kinks, peak and highest frequency of a history serve the choice of the time step.
 """
 
 from __future__ import annotations
@@ -346,7 +346,7 @@ class Stroke:
 
 @dataclass(frozen=True, slots=True)
 class HistorySum:
-    """Sum of several histories, for example of all joints between a segment and the ground."""
+    """Sum of histories, for example of the extensions of all joints below a segment."""
 
     parts: tuple[MotionLaw, ...]
 
@@ -377,7 +377,7 @@ class ReleasedLoad:
 
 @dataclass(frozen=True, slots=True)
 class InitialImpulse:
-    """Marker in place of a history: an impulse at t = 0, equal to that of the load in 1 s."""
+    """Marker in place of a history: an impulse at t = 0, the load times 1 s."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,4 +11,4 @@ class NumericsError(RuntimeError):
 
 
 # Errors that extreme data may cause anywhere in a computation.
-NUMERICS = NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError
+NUMERICAL_ERRORS = NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Construction of gap systems from contacts, friction and observations, for beams and shells.
 
-A beam evaluates readings by its modes immediately. A shell collects readings, is reduced for them,
-and evaluates them by its remaining modes. The rules of contact and friction are the same for both.
+A reading denotes a displacement of a model, from which a row over its modes follows. A beam adds
+rows as readings. A shell is first reduced for its readings, and rows follow in the reduced modes.
+The rules of contact and friction are the same for both.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 
 from dynamics.arrays import Array
 from dynamics.contact import ContactLaw, DryFriction
-from dynamics.drive.travel import Kind
+from dynamics.drive.travel import RowKind
 from dynamics.excitation import Excitation, History, InitialImpulse, ReleasedLoad
 from dynamics.gap_system import GapSystem, Observer
 
@@ -24,7 +25,7 @@ L = TypeVar("L")
 
 
 class LawRow(NamedTuple, Generic[R, L]):
-    """Contact or friction row: reading of a displacement, law and station."""
+    """Contact or friction row: reading of its displacement, law, and index of its station."""
 
     reading: R
     law: L
@@ -36,7 +37,7 @@ class LawRow(NamedTuple, Generic[R, L]):
 
 
 class Dashpot(NamedTuple, Generic[R]):
-    """Dashpot across a station: coefficient in N·s/m, weights and readings."""
+    """Dashpot at a station: coefficient in N·s/m, and (weight, reading) of each point."""
 
     coefficient: float
     station: int
@@ -48,8 +49,8 @@ class Dashpot(NamedTuple, Generic[R]):
         return np.asarray(np.sqrt(self.coefficient) * total)
 
 
-class Observed(NamedTuple, Generic[R]):
-    """Output, as :class:`dynamics.gap_system.Observer`, of a reading."""
+class ObservedReading(NamedTuple, Generic[R]):
+    """Output as in :class:`dynamics.gap_system.Observer`, with a reading in place of its row."""
 
     reading: R
     unit: str = "m"
@@ -61,9 +62,9 @@ class GapBuilder(Generic[R]):
     """Contact rows, friction rows and dashpots, in the order in which they are added.
 
     Args:
-        contacts, frictions: rows with readings of type R.
-        dashpots: dashpots by station.
-        grounded: stations with stops on the ground.
+        contacts, frictions: contact rows, and friction rows.
+        dashpots: dashpots by index of their station.
+        grounded: indices of stations with stops on the ground.
     """
 
     contacts: list[LawRow[R, ContactLaw]] = field(default_factory=list)
@@ -76,13 +77,13 @@ class GapBuilder(Generic[R]):
         station: int,
         law: ContactLaw,
         points: Iterable[tuple[int, float, R]],
-        raised: float = 0.0,
+        shim: float = 0.0,
     ) -> tuple[int, ...]:
-        """Add contact rows of points, each with side, weight of the law, and approach.
+        """Add a contact row for each point (side, weight, reading of the displacement).
 
-        Side 1 is contact at positive approach, −1 at negative approach, 0 both by the whole law. A
-        side without contact in the law has no row. Points that are ``raised`` by a length in m
-        touch earlier by this length.
+        Side 1 is contact at positive displacement, −1 at negative displacement, each with the
+        weight as factor of the law; side 0 is the whole law. A side without contact in the law has
+        no row. A shim of ``shim`` in m closes the contact earlier by this length.
 
         Returns:
             The indices of the rows.
@@ -92,14 +93,14 @@ class GapBuilder(Generic[R]):
             there = law if side == 0 else law.one_sided(side)
             if there is not None:
                 part = there.shared(weight) if side else there
-                part = part.behind(-raised) if raised else part
+                part = part.behind(-shim) if shim else part
                 self.contacts.append(LawRow(reading, part, station))
         return tuple(range(first, len(self.contacts)))
 
     def add_stop(
         self, station: int, law: ContactLaw, points: Iterable[tuple[int, float, R]]
     ) -> None:
-        """Add contact with the ground, like :meth:`add_contact` between segments."""
+        """Add contact with the ground; arguments as in :meth:`add_contact`."""
         self.grounded.append(station)
         self.add_contact(station, law, points)
 
@@ -111,8 +112,14 @@ class GapBuilder(Generic[R]):
         normal_force: float | None,
         pressing: tuple[int, ...],
     ) -> None:
-        """Add friction μ with the prescribed normal force in N, or with that of the contact rows at
-        ``pressing`` where it is None. There is no row if μ is 0 or ``pressing`` is empty.
+        """Add a friction row, unless μ is 0 or there are no contact rows.
+
+        Args:
+            station: index of the station.
+            coefficient: μ.
+            slide: reading of the sliding displacement.
+            normal_force: prescribed normal force in N; None for the force of the contact rows.
+            pressing: indices of the contact rows.
         """
         if coefficient > 0.0 and pressing:
             normal_rows = pressing if normal_force is None else ()
@@ -122,21 +129,21 @@ class GapBuilder(Generic[R]):
     def add_dashpot(
         self, station: int, coefficient: float, points: Iterable[tuple[int, float, R]]
     ) -> None:
-        """Add a dashpot in N·s/m against the mean speed of points, see :meth:`add_contact`."""
+        """Add a dashpot in N·s/m against the mean speed of points as in :meth:`add_contact`."""
         if coefficient > 0.0:
             dashpot = self.dashpots.setdefault(station, Dashpot(coefficient, station, []))
-            # The weights of each of two sides sum to one.
+            # The weights on each of both sides sum to one.
             parts = ((0.5 * part if side else part, reading) for side, part, reading in points)
             dashpot.parts.extend(parts)
 
     @property
-    def rows(self) -> dict[Kind, Sequence[LawRow[R, Any] | Dashpot[R]]]:
+    def rows(self) -> dict[RowKind, Sequence[LawRow[R, Any] | Dashpot[R]]]:
         """All rows by kind, in the order of a gap system."""
         dashpots = list(self.dashpots.values())
         return {"rows": self.contacts, "friction_rows": self.frictions, "dashpots": dashpots}
 
-    def moving(self, stations: Sequence[int]) -> list[tuple[Kind, int]]:
-        """Return kinds and indices of the rows at some stations, in the order of a gap system."""
+    def rows_at(self, stations: Sequence[int]) -> list[tuple[RowKind, int]]:
+        """Return (kind, index) of the rows at some stations, in the order of a gap system."""
         return [
             (kind, position)
             for kind, of_kind in self.rows.items()
@@ -144,8 +151,10 @@ class GapBuilder(Generic[R]):
             if one.station in stations
         ]
 
-    def some_rows(self, moving: Sequence[tuple[Kind, int]], read: Callable[[R], Array]) -> Array:
-        """Return the rows (num_moving, num_modes) of :meth:`moving`, each from its reading."""
+    def evaluate_rows(
+        self, moving: Sequence[tuple[RowKind, int]], read: Callable[[R], Array]
+    ) -> Array:
+        """Return the rows (num_selected, num_modes) with the given kinds and indices."""
         rows = self.rows
         return np.array([rows[kind][position].row(read) for kind, position in moving])
 
@@ -155,7 +164,7 @@ class GapBuilder(Generic[R]):
         omega2: Array,
         load: Array,
         places: Sequence[tuple[float, str]],
-        observed: Mapping[str, Observed[R]],
+        observed: Mapping[str, ObservedReading[R]],
         loads: Sequence[tuple[Array, History | ReleasedLoad | InitialImpulse]],
         lines: Sequence[tuple[str, Array, float, float]] = (),
         damping: Array | None = None,
@@ -168,9 +177,9 @@ class GapBuilder(Generic[R]):
             places: x in m and direction of each station.
             observed: outputs of a trajectory, by name.
             loads: further load vectors (num_modes,) with their histories.
-            lines: lines to the ground: name of the spring force in a trajectory (positive in
-                compression) or None; row (num_modes,) that reads the length; stiffness in N/m,
-                which the modes already include; dashpot in N·s/m.
+            lines: springs to the ground that the modes already include, each (name of its force
+                in a trajectory or None, row (num_modes,) of its elongation, stiffness in N/m,
+                dashpot in N·s/m). The force is positive in compression.
             damping: damping (num_modes,) in 1/s; zero unless given.
         """
 

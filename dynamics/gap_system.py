@@ -4,11 +4,11 @@
     ä_i + Σ_k C_ik ȧ_k + ω_i² a_i = Q_i + Σ_e Q_ei g_e(t) − Σ_j B_ji F_j(y_j) + Σ_l D_li R_l(ṡ_l)
     y_j = Σ_i B_ji a_i,    s_l = Σ_i D_li a_i,    C = diag(c) + Gᵀ G
 
-in mass-normalised modal coordinates a. The coordinates of segments that only contact couples are
-stacked in a. A contact row B_j reads the relative displacement u − w of one place, a friction row
-D_l a relative displacement along which two places slide, a dashpot G_d a speed that it resists.
-If a boom telescopes, its travels change the rows from those at t = 0. At a fixed extension, the
-stiffness may be K = diag(ω²) − S until ``in_own_modes`` transforms the system.
+in mass-normalised modal coordinates a of all segments, which only contacts couple. A contact row
+B_j gives the relative displacement u − w of two segments at one position, a friction row D_l their
+sliding displacement, and a dashpot row G_d the displacement whose rate the dashpot resists.
+If a boom telescopes, its travels change the rows over time. At a fixed extension, the stiffness
+may be K = diag(ω²) − K_G until ``in_own_modes`` transforms the system.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ import numpy as np
 
 from dynamics.arrays import Array, Indices
 from dynamics.contact import ContactLaw, DryFriction
-from dynamics.drive.travel import KINDS, Travel
+from dynamics.drive.travel import ROW_KINDS, Travel
 from dynamics.excitation import Excitation, is_constant
 from dynamics.second_order import soften_modes
 
 
 class Observer(NamedTuple):
-    """Output of a trajectory: a row over the modal coordinates, and a unit.
+    """Output of a trajectory: a linear function of the modal coordinates.
 
     >>> Observer(np.ones(1)).unit
     'm'
 
     Args:
-        row: row (num_modes,) over the modal coordinates.
+        row: coefficients (num_modes,) of the modal coordinates.
         unit: unit of the quantity.
         derivative: 0 for coordinates, 1 for velocities, 2 for mean accelerations over the output
             interval that ends at the time.
@@ -63,20 +63,20 @@ class GapSystem:
     (1, array([1.]))
 
     Args:
-        omega2: (num_modes,) ω² in rad²/s²; rigid modes exactly 0, negative if a segment tips over
-            under an axial force.
+        omega2: (num_modes,) ω² in rad²/s²; exactly 0 for rigid modes, negative if an axial force
+            makes a segment unstable.
         load: modal load (num_modes,) in N/√kg, constant from t = 0 on.
         rows: (num_rows, num_modes) contact rows B in 1/√kg.
-        laws: (num_rows) the contact law of each row.
+        laws: contact law of each row.
         station_of_row: (num_rows,) index in ``stations`` of each row.
         stations: x of the stations in m.
         observers: outputs of a trajectory, by name.
         damping: (num_modes,) c = 2ζω in 1/s; zero unless given.
         dashpots: (num_dashpots, num_modes) rows G in 1/√s; none unless given.
         friction_rows: (num_frictions, num_modes) sliding rows D in 1/√kg; none unless given.
-        frictions: (num_frictions) the friction of each row.
+        frictions: friction law of each friction row.
         excitations: loads that change with time.
-        station_directions: the direction of each station's relative displacement; "z" for all
+        station_directions: direction of the relative displacement at each station; "z" for all
             unless given.
         released_load: modal load (num_modes,) in N/√kg that acts before t = 0 and is then removed;
             zero unless given.
@@ -84,9 +84,9 @@ class GapSystem:
             a motion; zero unless given.
         grounded: indices in ``stations`` of stops on the ground.
         travels: extensions of segments over time, and the rows that they change.
-        softening: further reduction (num_modes, num_modes) of the stiffness by axial forces, for a
-            boom at a given extension. A system with it needs :meth:`in_own_modes` before it can
-            move.
+        geometric_stiffness: K_G (num_modes, num_modes) of axial forces that ``omega2`` does not
+            include, at a fixed extension. Before time integration, :meth:`in_own_modes` includes
+            it.
 
     Raises:
         ValueError: shapes do not agree, or a number is not finite or out of range.
@@ -109,7 +109,7 @@ class GapSystem:
     released_load: Array = field(default_factory=lambda: np.zeros(0))
     initial_impulse: Array = field(default_factory=lambda: np.zeros(0))
     travels: Sequence[Travel] = ()
-    softening: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    geometric_stiffness: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __post_init__(self) -> None:
         n, m = self.omega2.size, len(self.laws)
@@ -125,7 +125,10 @@ class GapSystem:
             "load": (self.load, (n,)),
             **{name: (getattr(self, name), shape) for name, shape in of_modes.items()},
             "dashpots": (self.dashpots, (len(self.dashpots), n)),
-            "softening": (self.softening, (n, n) if self.softening.size else (0, 0)),
+            "geometric_stiffness": (
+                self.geometric_stiffness,
+                (n, n) if self.geometric_stiffness.size else (0, 0),
+            ),
             "rows": (self.rows, (m, n)),
             "station_of_row": (self.station_of_row, (m,)),
             "friction_rows": (self.friction_rows, (len(self.frictions), n)),
@@ -156,7 +159,7 @@ class GapSystem:
             tables = [travel.table, *(force.table for force in travel.axial_forces)]
             if any(table.coefficients.shape[3] != n for table in tables):
                 raise ValueError(f"the rows of travel {number} must have {n} modes")
-            if any(not 0 <= row < len(getattr(self, kind)) for kind, row in travel.moving):
+            if any(not 0 <= row < len(getattr(self, kind)) for kind, row in travel.moved_rows):
                 raise ValueError(f"travel {number} must move rows of the system")
 
     @property
@@ -167,13 +170,13 @@ class GapSystem:
     @property
     def all_rows(self) -> Array:
         """All rows (num_rows, num_modes): contacts, friction rows, dashpots."""
-        return np.concatenate([getattr(self, kind) for kind in KINDS])
+        return np.concatenate([getattr(self, kind) for kind in ROW_KINDS])
 
     @property
     def stiffness(self) -> Array:
         """The stiffness (num_modes, num_modes) in 1/s²."""
         own = np.diag(self.omega2)
-        return own - self.softening if self.softening.size else own
+        return own - self.geometric_stiffness if self.geometric_stiffness.size else own
 
     @property
     def damping_matrix(self) -> Array:
@@ -217,30 +220,36 @@ class GapSystem:
         return replace(self, load=load, excitations=changing, travels=moving)
 
     def at_time(self, time: float) -> GapSystem:
-        """Return the system at the constant extension of a time in s."""
-        rows_at = {kind: getattr(self, kind).copy() for kind in KINDS}
+        """Return the system with its extensions fixed at a time in s."""
+        rows_at = {kind: getattr(self, kind).copy() for kind in ROW_KINDS}
         laws = list(self.laws)
-        softening = self.softening if self.softening.size else np.zeros((self.num_modes,) * 2)
+        geometric_stiffness = (
+            self.geometric_stiffness
+            if self.geometric_stiffness.size
+            else np.zeros((self.num_modes,) * 2)
+        )
         for travel in self.travels:
             extension = float(travel.history(np.array(time)))
             rows = travel.table(extension)
             for force in travel.axial_forces:
-                softening = softening + force.softening(extension)
-            for (kind, position), row in zip(travel.moving, rows, strict=True):
+                geometric_stiffness = geometric_stiffness + force.geometric_stiffness(extension)
+            for (kind, position), row in zip(travel.moved_rows, rows, strict=True):
                 rows_at[kind][position] = row
-            for (_, position), shift in zip(travel.moving, travel.shifts, strict=False):
+            for (_, position), shift in zip(travel.moved_rows, travel.shifts, strict=False):
                 laws[position] = laws[position].behind(-shift * extension, shift * extension)
-        softening = softening if softening.any() else np.zeros((0, 0))
-        return replace(self, **rows_at, laws=laws, travels=(), softening=softening)
+        geometric_stiffness = geometric_stiffness if geometric_stiffness.any() else np.zeros((0, 0))
+        return replace(
+            self, **rows_at, laws=laws, travels=(), geometric_stiffness=geometric_stiffness
+        )
 
     def in_own_modes(self) -> GapSystem:
-        """Return the system in the modes of the softened stiffness."""
-        if not self.softening.size:
+        """Return the system in the modes of its stiffness, geometric stiffness included."""
+        if not self.geometric_stiffness.size:
             return self
-        return self.transform(*soften_modes(self.omega2, self.softening))
+        return self.transform(*soften_modes(self.omega2, self.geometric_stiffness))
 
     def transform(self, omega2: Array, shapes: Array) -> GapSystem:
-        """Return the system in other coordinates b of a = Φ b, without travels and softening.
+        """Return the system in other coordinates b of a = Φ b, without travels.
 
         Args:
             omega2: ω² (num_shapes,) of the new coordinates in rad²/s².
@@ -261,7 +270,7 @@ class GapSystem:
             released_load=self.released_load @ shapes,
             initial_impulse=self.initial_impulse @ shapes,
             travels=(),
-            softening=np.zeros((0, 0)),
+            geometric_stiffness=np.zeros((0, 0)),
         )
 
     def static_response(self, force: Array) -> Array:
@@ -275,6 +284,6 @@ class GapSystem:
         """
         if (self.omega2 <= 0.0).any():
             raise ValueError("a system with rigid modes has no static response")
-        if self.softening.size:
+        if self.geometric_stiffness.size:
             return np.asarray(np.linalg.solve(self.stiffness, force))
         return force / self.omega2

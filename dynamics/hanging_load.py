@@ -6,10 +6,9 @@ tension,
 
     T = k max(w cos α − z + h(t) − s, 0),
 
-with the deflection w of the tip across the boom, the luffing angle α, the length h that the winch
-has wound up since t = 0, and the slack s. The ground carries the load while it lies there. Rope and
-ground are contact rows. A travel moves the row of the rope, so that the energy balance includes the
-work of the winch.
+with the deflection w of the tip across the boom, the luffing angle α, the hoisted length h since
+t = 0, and the slack s. Until lift-off the ground carries the load. Rope and ground are contact
+rows. The winch is a travel of the rope's row, so that the energy balance includes its work.
 """
 
 from __future__ import annotations
@@ -38,10 +37,9 @@ class HangingLoad:
         mass: m in kg.
         stiffness: k of the rope in N/m.
         gravity: acceleration in m/s².
-        hoist: length in m that the winch winds up, over time; None for a rope of constant length.
+        hoist: hoisted length in m over time; None for a rope of constant length.
         cosine: cos α of the luffing angle.
-        slack: s in m at w = 0 of a load that lies on the ground at t = 0; None for a load that
-            hangs.
+        slack: s in m at w = 0 of a load on the ground at t = 0; None for a load that hangs.
 
     Raises:
         ValueError: mass, stiffness or gravity is not finite and positive.
@@ -64,11 +62,11 @@ class HangingLoad:
         """The weight m g in N."""
         return self.mass * self.gravity
 
-    def hang(self, system: GapSystem, tip: Array, x: float) -> GapSystem:
-        """Return a boom's system with the load at its tip.
+    def attach(self, system: GapSystem, tip: Array, x: float) -> GapSystem:
+        """Return the system of a boom with the load at its tip.
 
-        The load has the last coordinate. The stations of rope and ground follow those of the boom,
-        with one contact row each.
+        The load adds the last coordinate, and a station with one contact row each for rope and
+        ground.
 
         Args:
             system: gap system of the boom without the load.
@@ -98,8 +96,8 @@ class HangingLoad:
             constant = np.pad(rope[None, None, None], [(0, 0), (0, 3), (0, 0), (0, 0)])
             table = RowTable(np.array([0.0, 1.0]), constant)
             travels.append(Travel(self.hoist, table, (("rows", rows),), shifts=(1.0,)))
-        pulling = PowerContact(self.stiffness, 1.0).upper().behind(self.slack or 0.0)
-        contacts = [(rope, pulling)]
+        tension = PowerContact(self.stiffness, 1.0).upper().behind(self.slack or 0.0)
+        contacts = [(rope, tension)]
         if self.slack is not None:
             ground = PowerContact(_GROUND * self.stiffness, 1.0).lower()
             contacts.append((height, ground.behind(0.0, -self.weight / ground.below)))
@@ -128,14 +126,16 @@ class HangingLoad:
             released_load=widen(system.released_load),
             initial_impulse=widen(system.initial_impulse),
             travels=travels,
-            softening=np.pad(system.softening, (0, 1 if system.softening.size else 0)),
+            geometric_stiffness=np.pad(
+                system.geometric_stiffness, (0, 1 if system.geometric_stiffness.size else 0)
+            ),
         )
 
-    def separate(self, motion: Trajectory) -> Trajectory:
-        """Return the motion with the rope force separate from the forces at the boom's stations.
+    def separate_rope(self, motion: Trajectory) -> Trajectory:
+        """Return the motion without the stations of the load, and with the variables of the rope.
 
-        ``rope_force`` and ``rope_force_peak`` in N, the mean and the maximum of the output interval
-        that ends at the time, are positive in tension; their attribute ``weight`` is m g.
+        ``rope_force`` and ``rope_force_peak`` in N are the mean and the maximum of the output
+        interval that ends at the time, positive in tension. Their attribute ``weight`` is m g.
         """
         own = motion.data.sizes["station"] - (1 if self.slack is None else 2)
         data = motion.data.isel(station=slice(own))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Integrators with a time step by a tolerance, a fixed step, or the steps of another run."""
+"""Integrators with adaptive steps, a constant step, or the steps of another run."""
 
 from __future__ import annotations
 
@@ -17,30 +17,30 @@ from dynamics.motion import MOST_STEPS, Motion
 from dynamics.time_step import Integration
 from dynamics.trajectory import Output, Trajectory
 
-# Default permitted error by the time step, as a fraction of the range of observed deflections.
+# Default permitted error of the time step, as a fraction of the range of observed deflections.
 TOLERANCE = 1.0e-3
 
-# Initial and minimum number of steps per output interval: with two, mean forces do not alternate.
+# Initial and minimum number of steps per output interval. With one, mean forces alternate.
 _FIRST, _FEWEST = 8, 2
 
 # Number of output intervals and steps per call of the time loop, between which a run can be
 # interrupted.
 _CALL, _STEPS_OF_CALL = 1000, 2**16
 
-# Maximum number of output intervals of a window, and ω in rad/s if no mode has a frequency.
-_LONGEST, _WITHOUT_FREQUENCY = 128, 100.0
+# Maximum number of output intervals of a window, and ω in rad/s if all modes are rigid.
+_LONGEST, _DEFAULT_OMEGA = 128, 100.0
 
-# Times, in periods, at which the difference of two step sizes is evaluated in free motion.
-_FOLLOWED = np.linspace(0.0, 0.25, 9)
+# Times, in periods, at which two step sizes are compared in the free motion after a window.
+_FREE_TIMES = np.linspace(0.0, 0.25, 9)
 
-# Largest product of the step and the highest circular frequency of a history.
+# Maximum product of the step and the highest circular frequency of a history.
 _HISTORY_PHASE = 0.5
 
 # Minimum range as a fraction of the largest deflection.
 _LEAST_RANGE = 1.0e-3
 
 # Fraction of the tolerance below which the next window has half as many steps.
-_EASY = 0.125
+_COARSEN_BELOW = 0.125
 
 Progress = Callable[[float], None]
 
@@ -49,11 +49,11 @@ class Integrator(Protocol):
     """Interface of integrators; a user-defined integrator needs these three methods."""
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
-        """Return the trajectory; ``progress`` receives the completed fraction, 0 to 1."""
+        """Return the trajectory. ``progress`` receives the completed fraction, 0 to 1."""
         ...
 
     def like(self, trajectory: Trajectory) -> Integrator:
-        """Return an integrator with the steps of one of its trajectories."""
+        """Return an integrator with the steps of a trajectory of this one."""
         ...
 
     def finer(self) -> Integrator:
@@ -63,11 +63,11 @@ class Integrator(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class StepSchedule:
-    """Integrator with prescribed numbers of steps, one for each window of the motion.
+    """Integrator with a prescribed number of steps in each window of the motion.
 
     Args:
-        substeps: number of steps per output interval in each window; the last number holds to the
-            end.
+        substeps: number of steps per output interval in each window; the last number applies to
+            all further windows.
         window: number of output intervals of a window.
     """
 
@@ -75,7 +75,7 @@ class StepSchedule:
     window: int
 
     @classmethod
-    def of(cls, trajectory: Trajectory) -> StepSchedule:
+    def from_trajectory(cls, trajectory: Trajectory) -> StepSchedule:
         """Return the integrator with the steps of a trajectory."""
         attributes = trajectory.data.attrs
         return cls(tuple(np.atleast_1d(attributes["substeps"]).tolist()), attributes["window"])
@@ -107,7 +107,7 @@ class FixedStep:
     True
 
     Args:
-        step: step in s, reduced to fit the output step.
+        step: step in s; it is reduced so that the output step is a multiple.
     """
 
     step: float
@@ -132,17 +132,17 @@ class AdaptiveStep:
 
     Each window of the motion is computed with a step and with twice that step from the same state.
     The error of the window is the difference of observed deflections within the window, and in free
-    motion over the following quarter period of the slowest mode. The sum of these errors may reach
-    the tolerance. A window is about a period of that mode, long enough to average over impacts. The
-    trajectory has the sum of the errors as the attribute ``step_error``. No step keeps a tolerance
-    in chaotic motion, so that there is a minimum step.
+    motion over the next quarter period of the slowest mode. The tolerance limits the sum of these
+    errors, which is the attribute ``step_error`` of the trajectory. A window is about a period of
+    that mode, long enough to average over impacts. The step has a lower limit, since no step meets
+    a tolerance in chaotic motion.
 
     >>> motion = AdaptiveStep()(Motion(ball, duration=1.0, position=[0.5]))
     >>> motion.data.attrs["step_error"] < 1e-3
     True
 
     Args:
-        tolerance: permitted error by the time step, as a fraction of the largest range of observed
+        tolerance: permitted error of the time step, as a fraction of the largest range of observed
             deflections.
 
     Raises:
@@ -156,16 +156,16 @@ class AdaptiveStep:
             raise ValueError(f"tolerance must be between 0 and 1, got {self.tolerance}")
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
-        run, error = Integration.begin(motion), _WindowError.of(motion.system)
+        run, error = Integration.begin(motion), _WindowError.from_system(motion.system)
         outputs, output_step = motion.outputs, motion.output_step
-        window = _whole_power(error.period / output_step, 1, _LONGEST)
+        window = _power_of_two(error.period / output_step, 1, _LONGEST)
         histories = [x.history for x in run.motion.system.excitations]
         histories += [travel.history for travel in run.motion.system.travels]
         fastest = max((history.fastest for history in histories), default=0.0)
-        fewest = _whole_power(2.0 * output_step * fastest / _HISTORY_PHASE, _FEWEST, MOST_STEPS)
+        fewest = _power_of_two(2.0 * output_step * fastest / _HISTORY_PHASE, _FEWEST, MOST_STEPS)
         affordable = MOST_STEPS * np.sqrt(TOLERANCE / self.tolerance) / outputs
-        most = _whole_power(affordable, fewest, MOST_STEPS)
-        # A few long steps determine the range.
+        most = _power_of_two(affordable, fewest, MOST_STEPS)
+        # A pilot run with long steps gives the range.
         pilot = Integration.begin(motion)
         pilot.advance(0, outputs, fewest, pilot.state, pilot.part(0, outputs))
         scale = error.scale(pilot.output.states)
@@ -186,15 +186,15 @@ class AdaptiveStep:
                 kept[...] = reached
             made.append(substeps)
             total += found
-            if found < _EASY * limit:
+            if found < _COARSEN_BELOW * limit:
                 substeps = max(fewest, substeps // 2)
             if progress is not None:
                 progress(last / outputs)
         return run.trajectory(tuple(made), window, total / scale if scale > 0.0 else 0.0)
 
     def like(self, trajectory: Trajectory) -> StepSchedule:
-        """Return the steps of the trajectory, so that runs differ only by their data."""
-        return StepSchedule.of(trajectory)
+        """Return the integrator with the steps of a trajectory, so that only data differ."""
+        return StepSchedule.from_trajectory(trajectory)
 
     def finer(self) -> AdaptiveStep:
         """Return the integrator with a quarter of the tolerance, and about half the step."""
@@ -208,8 +208,8 @@ class _WindowError:
     Args:
         rows: rows (num_observed, num_modes) of the deflections.
         period: period of the slowest elastic mode in s.
-        places, speeds: responses (num_followed, num_observed, num_modes) of the deflections to
-            changes of coordinates and of velocities, at times of the following quarter period.
+        places, speeds: free response (num_times, num_observed, num_modes) of the deflections to
+            unit coordinates and unit velocities, over a quarter period.
     """
 
     rows: Array
@@ -218,12 +218,12 @@ class _WindowError:
     speeds: Array
 
     @classmethod
-    def of(cls, system: GapSystem) -> _WindowError:
+    def from_system(cls, system: GapSystem) -> _WindowError:
         seen = [x.row for x in system.observers.values() if (x.unit, x.derivative) == ("m", 0)]
         rows = np.array(seen or system.rows).reshape(-1, system.num_modes)
         omega = system.omega
-        period = 2.0 * np.pi / min(omega[omega > 0.0], default=_WITHOUT_FREQUENCY)
-        times = _FOLLOWED[:, None] * period
+        period = 2.0 * np.pi / min(omega[omega > 0.0], default=_DEFAULT_OMEGA)
+        times = _FREE_TIMES[:, None] * period
         sines = np.divide(np.sin(omega * times), omega, out=times + 0.0 * omega, where=omega > 0.0)
         return cls(rows, period, rows * np.cos(omega * times)[:, None], rows * sines[:, None])
 
@@ -251,8 +251,8 @@ def _windows(motion: Motion, length: int) -> Iterator[tuple[int, int]]:
         yield first, min(first + length, motion.outputs)
 
 
-def _whole_power(number: float, least: int, most: int) -> int:
-    """Return the power of two nearest to a number, within limits."""
+def _power_of_two(number: float, least: int, most: int) -> int:
+    """Return the power of two nearest to a number on a logarithmic scale, within limits."""
     power: int = 2 ** round(float(np.log2(max(number, 1.0))))
     return min(max(power, least), most)
 

@@ -11,10 +11,10 @@ import numpy as np
 
 from dynamics.arrays import Array
 
-# Quantities along a segment in m, rad, N and N·m. Section forces act from the part beyond the
-# section on the part before it, along and across the straight axis. A positive normal force is
-# tension; a positive moment causes tension at larger z, a lateral one at larger y. So the slope of
-# a moment is the shear force less the normal force times the slope of the deflection.
+# Quantities along a segment in m, rad, N and N·m. Section forces act on the part of smaller x,
+# along and across the straight axis. A positive normal force is tension; a positive moment causes
+# tension at larger z, a lateral one at larger y. So the slope of a moment is the shear force less
+# the normal force times the slope of the deflection.
 Quantity = Literal[
     "deflection",
     "normal",
@@ -33,9 +33,9 @@ class Line:
     """Rows that read quantities along one segment.
 
     Args:
-        x: (num_places,) in m, ascending; a place with a possible jump occurs twice.
+        x: positions (num_places,) in m, ascending; a position with a possible jump occurs twice.
         rows: rows (num_places, num_modes) of each available quantity.
-        paired: whether places are the two ends of each piece, and not the middles of pieces.
+        paired: True if positions are both ends of each element, False if they are midpoints.
     """
 
     x: Array
@@ -45,21 +45,21 @@ class Line:
     def read(self, states: Array) -> dict[Quantity, Array]:
         """Return each quantity (..., num_places) for modal coordinates (..., num_modes).
 
-        Coordinates of a load on a rope may follow those of the boom.
+        Further coordinates, such as that of a load on a rope, are ignored.
         """
         return {name: states[..., : row.shape[1]] @ row.T for name, row in self.rows.items()}
 
-    def on(self, basis: Array) -> Line:
+    def transform(self, basis: Array) -> Line:
         """Return the line in other coordinates b of a = Φ b, with Φ (num_modes, num_others)."""
         return replace(self, rows={name: row @ basis for name, row in self.rows.items()})
 
-    def beside(self, name: Quantity, x: float, side: int) -> Array:
-        """Return the row (num_modes,) of a quantity beside x in m; 0 off the segment.
+    def one_sided_row(self, name: Quantity, x: float, side: int) -> Array:
+        """Return the row (num_modes,) of a quantity at x from one side; 0 outside the segment.
 
         Args:
             name: name of the quantity.
-            x: place with a jump.
-            side: −1 before it, 1 behind it.
+            x: position of a jump in m.
+            side: −1 for the limit from smaller x, 1 for the limit from larger x.
         """
         places, rows = self.x, self.rows[name]
         if self.paired:

@@ -12,7 +12,7 @@ from dynamics.damping import add_damping
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
 
-# Maximum number of steps at the default tolerance, which no step keeps in chaotic motion.
+# Maximum number of steps at the default tolerance. In chaotic motion, no step meets a tolerance.
 MOST_STEPS = 250_000
 
 
@@ -46,8 +46,10 @@ class Motion:
         for name in ("duration", "output_step"):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise ValueError(f"{name} must be finite and positive, got {getattr(self, name)} s")
-        if self.system.softening.size:
-            raise ValueError("a system with softening must be transformed by in_own_modes")
+        if self.system.geometric_stiffness.size:
+            raise ValueError(
+                "a system with geometric_stiffness must be transformed by in_own_modes"
+            )
         n = self.system.num_modes
         for name in ("position", "velocity"):
             state = np.asarray(getattr(self, name), dtype=np.float64)
@@ -82,8 +84,8 @@ def build_motion(
     Args:
         system: system of the boom with all loads, including those that end at t = 0.
         duration, output_step: duration and output step of the motion in s.
-        at_rest: whether the boom starts at rest under the loads at t = 0, or else straight and
-            unloaded.
+        at_rest: True if the boom starts at rest under the loads at t = 0, False if it starts
+            straight and unloaded.
         damping_ratio: damping ratio of the boom's modes with closed contacts.
         rayleigh: mass-proportional factor in 1/s, and stiffness-proportional factor in s.
 
@@ -91,7 +93,7 @@ def build_motion(
         NumericsError: there is no static equilibrium to start from.
     """
     system, position, velocity = initial_state(system, at_rest)
-    rest = rest_of(system, at_rest, position)
+    rest = constant_load_equilibrium(system, at_rest, position)
     moving = add_damping(system, damping_ratio, rayleigh, rest)
     return Motion(moving, duration, output_step, position, velocity)
 
@@ -102,18 +104,20 @@ def initial_state(system: GapSystem, at_rest: bool) -> tuple[GapSystem, Array, A
     Arguments and errors are those of :func:`build_motion`.
     """
     system = system.gather_loads()
-    held = _held(system, at_rest)
-    # The boom is straight, although shims may press.
+    held = _load_before_start(system, at_rest)
+    # The boom starts straight even if shims press.
     straight = not at_rest and not held.any()
     position = np.zeros(system.num_modes) if straight else equilibrium(system, held)
     return system, position, system.initial_impulse
 
 
-def rest_of(system: GapSystem, at_rest: bool, position: Array) -> Array | None:
+def constant_load_equilibrium(system: GapSystem, at_rest: bool, position: Array) -> Array | None:
     """Return the initial a (num_modes,) if it is the equilibrium under constant loads."""
-    return position if at_rest and (_held(system, at_rest) == system.load).all() else None
+    return (
+        position if at_rest and (_load_before_start(system, at_rest) == system.load).all() else None
+    )
 
 
-def _held(system: GapSystem, at_rest: bool) -> Array:
+def _load_before_start(system: GapSystem, at_rest: bool) -> Array:
     """Return the load (num_modes,) in N/√kg that acts before t = 0."""
     return system.released_load + system.load_at(0.0) if at_rest else system.released_load

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Gap systems with fewer or with additional coordinates."""
+"""Reduction and extension of the coordinates of a gap system."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ def reduce_modes(
 
     Args:
         omega2: ω² (num_modes,) in rad²/s², positive for the modes ``rest``.
-        pushes: forces (num_pushes, num_modes) that excite the motions of the reduced modes.
-        kept, rest: indices of kept modes and of modes to be reduced.
-        moments: number of matched derivatives at rest.
+        pushes: forces (num_pushes, num_modes) that excite the modes.
+        kept, rest: indices of the modes to keep, and of the modes to reduce.
+        moments: number of moments of the response that match at zero frequency.
     """
     elastic = omega2[rest, None]
     blocks = [independent_columns(pushes[:, rest].T)]
@@ -39,7 +39,7 @@ def reduce_modes(
 
 
 def independent_columns(block: Array) -> Array:
-    """Return an orthonormal basis (num_modes, rank) of the columns, after scaling to equal size."""
+    """Return an orthonormal basis (num_modes, rank) of the columns, scaled to unit length."""
     sizes = np.linalg.norm(block, axis=0)
     kept = sizes > _DEPENDENT**2 * sizes.max(initial=0.0)
     basis, values, _ = np.linalg.svd(block[:, kept] / sizes[kept], full_matrices=False)
@@ -52,9 +52,9 @@ def with_coordinates(system: GapSystem, omega2: Array, rows: Array) -> GapSystem
     Args:
         system: gap system without travels.
         omega2: ω² (num_added,) in rad²/s².
-        rows: rows (num_rows, num_added) in 1/√kg, of dashpots in 1/√s.
+        rows: entries (num_rows, num_added) of all rows, in 1/√kg; those of dashpots in 1/√s.
     """
-    touching, rubbing, dragged = np.split(
+    contacts, frictions, dashpots = np.split(
         rows, np.cumsum([len(system.laws), len(system.frictions)])
     )
     wider = system.transform(
@@ -63,7 +63,7 @@ def with_coordinates(system: GapSystem, omega2: Array, rows: Array) -> GapSystem
     )
     return replace(
         wider,
-        rows=np.hstack([system.rows, touching]),
-        friction_rows=np.hstack([system.friction_rows, rubbing]),
-        dashpots=np.hstack([system.dashpots, dragged]),
+        rows=np.hstack([system.rows, contacts]),
+        friction_rows=np.hstack([system.friction_rows, frictions]),
+        dashpots=np.hstack([system.dashpots, dashpots]),
     )

@@ -2,7 +2,7 @@
 """Second-order theory: modes under constant axial forces, and buckling loads.
 
 In the modes of the unloaded boom the stiffness is diag(ω²) − G, with G = Φᵀ K_G Φ of the geometric
-stiffness (Timoshenko and Gere 1961). A segment that only contacts support may tip over: its
+stiffness (Timoshenko and Gere 1961). A segment that only contacts support may be unstable: its
 rotation has a negative ω².
 """
 
@@ -18,22 +18,23 @@ _ROUND_OFF = 1.0e-9
 
 
 def soften_modes(omega2: Array, geometric: Array) -> tuple[Array, Array]:
-    """Return ascending ω² (num_modes,) and the new modes (num_modes, num_modes) in the old ones.
+    """Return ω² (num_modes,), ascending, and modes (num_modes, num_modes) under axial forces.
 
-    ``omega2`` is ω² without axial forces, exactly 0 for rigid motions; ``geometric`` is G.
+    ``omega2`` is ω² without axial forces, exactly 0 for rigid motions; ``geometric`` is G. Columns
+    of the modes are coefficients of the modes without axial forces.
     """
     # The upper triangle preserves the digits of low modes, see ``natural_modes`` of beams.
     found, combination = eigh(np.diag(omega2) - geometric, lower=False)
     # Translations keep ω = 0 exactly.
     rigid = omega2 == 0.0
-    lost = np.abs(np.linalg.eigvalsh(geometric[np.ix_(rigid, rigid)]))
-    kept = np.count_nonzero(lost <= _ROUND_OFF * lost.max(initial=0.0))
-    found[np.argsort(np.abs(found))[:kept]] = 0.0
+    changes = np.abs(np.linalg.eigvalsh(geometric[np.ix_(rigid, rigid)]))
+    unchanged = np.count_nonzero(changes <= _ROUND_OFF * changes.max(initial=0.0))
+    found[np.argsort(np.abs(found))[:unchanged]] = 0.0
     return found, combination
 
 
 def buckling_factor(stiffness: Array, geometric: Array) -> float:
-    """Return the factor λ of the axial forces at which a boom first buckles, det(K − λ K_G) = 0.
+    """Return the lowest buckling factor λ > 0 of the axial forces, det(K − λ K_G) = 0.
 
     It is infinite if the boom does not buckle. The boom must be supported; coordinates are
     arbitrary.

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Motion of a gap system by one time step for all models, contact laws and losses.
+"""Time integration of a gap system, the same for all models, contact laws and losses.
 
-Within a step of length h all row forces are constant and every mode moves exactly. Contact forces
-are discrete gradients of their energy (Gonzalez 1996), friction obeys its set-valued law for the
-displacement in the step (Moreau 1988), and dashpots resist the mean rate. The energy balance holds
-to round-off for every h. The step has second order, with stick-slip first order, and is reversible
-without losses. The time loop is :func:`dynamics.kernels.march.march`.
+Within a step of length h, contact and friction forces are constant and the solution of each mode is
+exact. Contact forces are discrete gradients of their energy (Gonzalez 1996), friction obeys its
+set-valued law for the displacement in the step (Moreau 1988), and dashpots resist the mean rate.
+The energy balance holds to round-off for every h. The scheme has second order (first order with
+stick-slip), and is reversible without losses. The time loop is
+:func:`dynamics.kernels.march.march`.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy as np
 
 from dynamics.arrays import Array
 from dynamics.contact import contact_limits
-from dynamics.drive.stick_slip import OF_ELASTIC_DRIVES, move_segment
+from dynamics.drive.stick_slip import ELASTIC_DRIVE_VARIABLES, move_segment
 from dynamics.drive.travel import Travel
 from dynamics.energy import DRIVEN_ENERGIES, ENERGIES, check_energy
 from dynamics.excitation import History
@@ -37,7 +38,7 @@ from dynamics.kernels.modal_flow import Flow, compliance, modal_flow
 from dynamics.kernels.row_forces import row_laws, row_problem
 from dynamics.kernels.telescoping import add_axial_forces, moving_axial_forces, moving_rows
 from dynamics.motion import Motion
-from dynamics.trajectory import OF_DRIVES, Output, Trajectory
+from dynamics.trajectory import DRIVE_VARIABLES, Output, Trajectory
 
 # Maximum number of halvings of a step whose forces do not converge.
 _HALVINGS = 10
@@ -53,7 +54,7 @@ class Integration:
 
     Args:
         motion: motion with all constant loads in the ``load`` of its system.
-        output: output of all times; the first one is the initial state.
+        output: output at all times, beginning with the initial state.
         state: state after the last computed output.
     """
 
@@ -69,16 +70,16 @@ class Integration:
         system, laws = motion.system, motion.system.laws
         n, m, f = system.num_modes, len(laws), len(system.frictions)
         a, v, rows = motion.position.copy(), motion.velocity.copy(), system.all_rows
-        y, axial, softening = (rows * a).sum(axis=1), moving_axial_forces(system), np.zeros(n)
+        y, axial, axial_push = (rows * a).sum(axis=1), moving_axial_forces(system), np.zeros(n)
         extensions, stored, driven = np.zeros((3, len(system.travels)))
-        add_axial_forces(extensions, axial, a, 1.0, softening, stored)
+        add_axial_forces(extensions, axial, a, 1.0, axial_push, stored)
         forces = [float(law.force(gap)) for law, gap in zip(laws, y, strict=False)]
         tally = np.zeros(TALLY)
         limits, gaps = contact_limits(laws), y[:m]
         touching = (gaps > limits["high"]) | (gaps < limits["low"])
         tally[FIRST_CONTACT] = 0.0 if touching.any() else np.nan
         state = State(
-            a, v, rows, y, np.zeros(y.size), softening, tally, driven, np.zeros(m),
+            a, v, rows, y, np.zeros(y.size), axial_push, tally, driven, np.zeros(m),
             np.full(m, np.inf),
         )  # fmt: skip
         kinds = DRIVEN_ENERGIES if driven.size else ENERGIES
@@ -102,8 +103,8 @@ class Integration:
         return LoopSystem(load, loads, row_laws(system), moving, axial)
 
     @property
-    def _flies(self) -> bool:
-        """Return whether the system has only constant loads while all contacts are open."""
+    def _has_free_flight(self) -> bool:
+        """True if only constant loads act while all contacts are open."""
         system = self.motion.system
         others = len(system.excitations), len(system.travels), len(system.dashpots)
         rubbed = any(friction.normal_force for friction in system.frictions)
@@ -112,24 +113,24 @@ class Integration:
     def advance(
         self, first: int, last: int, substeps: int, state: State, output: Output | None = None
     ) -> Output:
-        """Advance a state through output intervals, and return its records at their ends.
+        """Advance a state through output intervals, and return the output at their ends.
 
         Args:
             first, last: indices of the outputs at start and end.
             substeps: number of steps of each interval.
-            state: state at the start, which is changed.
+            state: state at the start; it is changed to the state at the end.
             output: output to fill in; a new one unless given.
 
         Raises:
-            NumericsError: the state is not finite, or row forces do not converge.
+            NumericsError: the state is not finite, or contact and friction forces do not converge.
         """
         system, step = self.motion.system, self.motion.output_step / substeps
-        joined = (substeps & -substeps).bit_length() - 1 if self._flies else 0
+        joined = (substeps & -substeps).bit_length() - 1 if self._has_free_flight else 0
         stretches = substeps >> joined
         if substeps not in self._tables:
             lengths = step * 2.0**joined * 0.5 ** np.arange(joined + _HALVINGS + 1)
             flow = modal_flow(system, lengths)
-            matrices = [compliance(state.rows, state.rows, rise) for rise in flow.rise]
+            matrices = [compliance(state.rows, state.rows, gain) for gain in flow.gain]
             self._tables[substeps] = flow, np.array(matrices)
         if output is None:
             output = Output(*(np.zeros((last - first, x.shape[1])) for x in self.output))
@@ -148,23 +149,22 @@ class Integration:
         return output
 
     def part(self, first: int, last: int) -> Output:
-        """Return the part of the output after ``first`` up to ``last``, to be filled in."""
+        """Return a view of the output after index ``first`` up to ``last``."""
         return Output(*(array[1 + first : 1 + last] for array in self.output))
 
     def trajectory(
         self, substeps: tuple[int, ...], window: int, step_error: float = np.nan
     ) -> Trajectory:
-        """Return the motion.
+        """Return the trajectory.
 
         For each travel with a suffix it includes the extension in m, the force of the drive against
-        friction in N, and its power in W; for an elastic drive also the variables of
-        ``OF_ELASTIC_DRIVES``, and its ``StickSlip`` in the attribute ``stick_slip``.
+        friction in N, and its power in W. For an elastic drive it also includes its force, lag,
+        speed and acceleration, and its ``StickSlip`` in the attribute ``stick_slip``.
 
         Args:
-            substeps, window: substeps and window of the :class:`dynamics.integrator.StepSchedule`
-                that was used.
-            step_error: error of observed deflections by the time step, as a fraction of their
-                range; NaN if it is not measured.
+            substeps, window: as in :class:`dynamics.integrator.StepSchedule`.
+            step_error: error of the observed deflections due to the time step, as a fraction of
+                their range; NaN if unknown.
 
         Raises:
             NumericsError: the energy residual exceeds its bound.
@@ -173,8 +173,8 @@ class Integration:
         step = motion.output_step / max(substeps)
         # The work of the loads within one output interval is the scale of round-off.
         load = motion.system.largest_load
-        least = 0.5 * step**2 * float((load * load).sum())
-        check_energy(output.energies, least=least)
+        energy_floor = 0.5 * step**2 * float((load * load).sum())
+        check_energy(output.energies, energy_floor=energy_floor)
         found = Trajectory.record(
             motion.system,
             motion.output_step * np.arange(motion.outputs + 1),
@@ -189,12 +189,12 @@ class Integration:
                 "step_error": step_error,
                 "resolving_step": float(self.state.resolving.min(initial=np.inf)),
             },
-            least,
+            energy_floor,
         )
         return self._with_drives(found) if motion.system.travels else found
 
     def _with_drives(self, found: Trajectory) -> Trajectory:
-        """Add the results of drives to a trajectory."""
+        """Return the trajectory with the results of drives."""
         system, added, stick_slip = self.motion.system, {}, {}
         for travel, work in zip(system.travels, self.output.drives.T, strict=True):
             if travel.suffix is None:
@@ -206,20 +206,20 @@ class Integration:
             power = np.diff(work + np.cumsum((resisting + travel.axial_load) * moved), prepend=0.0)
             power[1:] /= np.diff(found.time)
             values = extension, resisting, power
-            for (name, of), value in zip(OF_DRIVES.items(), values, strict=True):
+            for (name, of), value in zip(DRIVE_VARIABLES.items(), values, strict=True):
                 added[f"{name}{travel.suffix}"] = ("time", value, of)
             if travel.elastic is not None:
                 moved_by = move_segment(travel.elastic, travel.history, found.time, friction)
                 stick_slip[f"drive_force{travel.suffix}"] = moved_by.results
                 for name, value in moved_by.series.items():
-                    added[f"{name}{travel.suffix}"] = ("time", value, OF_ELASTIC_DRIVES[name])
+                    added[f"{name}{travel.suffix}"] = ("time", value, ELASTIC_DRIVE_VARIABLES[name])
         data = found.data.assign(added)
         data.attrs |= {"stick_slip": stick_slip} if stick_slip else {}
         return Trajectory(data, found.states)
 
 
 def step_schedule(system: GapSystem, times: Array) -> Schedule:
-    """Return loads and extensions in the steps between times (num_steps + 1,) in s."""
+    """Return loads and extensions of the steps between times (num_steps + 1,) in s."""
     lines = [line_within(x.history, times) for x in system.excitations]
     mean, change = np.array(lines).reshape(-1, 2, times.size - 1).transpose(1, 2, 0)
     extensions = np.array([travel.history(times) for travel in system.travels])
@@ -227,10 +227,10 @@ def step_schedule(system: GapSystem, times: Array) -> Schedule:
 
 
 def line_within(history: History, times: Array) -> tuple[Array, Array]:
-    """Return mean and change (num_steps,) of the straight line that replaces a history in a step.
+    """Return mean and change (num_steps,) of the straight line that replaces a history in steps.
 
-    The line has the integral and the first moment of the history, so that steps need not end at
-    kinks: the error of a mode's response is at most (ωh)⁴/720 of the kink's effect.
+    The line has the integral and the first moment of the history. So steps need not end at kinks:
+    the error of the response of a mode is at most (ωh)⁴/720 of the effect of a kink.
 
     Args:
         history: history of a load.
@@ -261,7 +261,7 @@ def axial_friction(system: GapSystem, travel: Travel, forces: Array) -> Array:
     """
     coefficients = {friction.station: friction.coefficient for friction in system.frictions}
     total = np.zeros(len(forces))
-    for kind, row in travel.moving:
+    for kind, row in travel.moved_rows:
         if kind == "rows":
             coefficient = coefficients.get(int(system.station_of_row[row]), 0.0)
             total += coefficient * np.abs(forces[:, row])

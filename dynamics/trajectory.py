@@ -18,7 +18,7 @@ from dynamics.arrays import Array
 from dynamics.energy import DRIVEN_ENERGIES, ENERGIES, energy_residual
 from dynamics.gap_system import GapSystem, Observer
 
-# xarray is imported only where data are made or read, which saves a second in other uses.
+# xarray is imported only where it is needed, since the import takes a second.
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -27,7 +27,7 @@ Dims = str | tuple[str, str]
 
 # Variables of each station.
 _INTERVAL = "the output interval that ends then"
-OF_STATIONS: Mapping[str, Mapping[str, str]] = {
+STATION_VARIABLES: Mapping[str, Mapping[str, str]] = {
     "contact_force": {"units": "N", "long_name": f"contact force, mean of {_INTERVAL}"},
     "contact_force_peak": {"units": "N", "long_name": f"largest contact force of {_INTERVAL}"},
     "friction_force": {"units": "N", "long_name": f"friction force, mean of {_INTERVAL}"},
@@ -35,23 +35,23 @@ OF_STATIONS: Mapping[str, Mapping[str, str]] = {
 }
 
 # Variables of each drive; the suffix of its travel follows each name.
-OF_DRIVES: Mapping[str, Mapping[str, str]] = {
+DRIVE_VARIABLES: Mapping[str, Mapping[str, str]] = {
     "extension": {"units": "m", "long_name": "extension since the start"},
     "drive_friction": {"units": "N", "long_name": "drive force against friction, output means"},
     "drive_power": {"units": "W", "long_name": "power of the drive, axial loads included"},
 }
 
-# Fraction of the deflection below which a peak is round-off.
-STILL = 1.0e-6
+# Fraction of the largest deflection below which a peak is round-off.
+_ROUND_OFF = 1.0e-6
 
 
 class Output(NamedTuple):
-    """Records (num_outputs, …) at the end of each output interval.
+    """Results (num_outputs, …) at the end of each output interval.
 
     Args:
         states, velocities: modal coordinates and velocities; velocities may have no columns.
         energies: energies in J, as in ``dynamics.energy.ENERGIES``.
-        gaps: gaps of the contacts in m.
+        gaps: relative displacements y of the contacts in m.
         means, peaks: means and peaks of contact forces within the interval in N.
         frictions: mean friction forces in N.
         drives: cumulative work of the drive of each travel in J.
@@ -68,7 +68,7 @@ class Output(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Pointwise:
+class PointwiseDifferences:
     """Pointwise differences of two motions while both are predictable.
 
     Args:
@@ -88,7 +88,9 @@ class Pointwise:
     rms: float
 
     @classmethod
-    def of(cls, one: Array, other: Array, time: Array, until: float) -> Pointwise:
+    def from_curves(
+        cls, one: Array, other: Array, time: Array, until: float
+    ) -> PointwiseDifferences:
         """Compare two curves (num_times,) of one quantity, up to ``until``; times in s."""
         before = time <= until
         apart = np.abs(one - other)[before]
@@ -110,11 +112,11 @@ class Trajectory:
             positive if the inner segment presses upwards, the mean over the output interval that
             ends at the time (so that sums are impulses), and the initial value at t = 0;
             ``contact_force_peak``, the maximum in the interval; ``friction_force`` in N, also a
-            mean, positive if it pushes the inner segment along its row; ``gap`` in m, the mean of u
-            − w over a station's rows; the energies in J. Coordinate ``direction`` (station).
-            Attributes: ``step`` in s, ``steps`` (joined ones count as one), ``first_contact`` in s
-            (NaN if none), ``contact_changes``, the number of times that rows opened or closed,
-            ``energy_residual``.
+            mean, positive if it acts on the inner segment in the positive sliding direction;
+            ``gap`` in m, the mean of u − w over the rows of a station; the energies in J.
+            Coordinate ``direction`` (station). Attributes: ``step`` in s, ``steps`` (joined steps
+            count as one), ``first_contact`` in s (NaN if none), ``contact_changes``, the number of
+            times that contacts open or close, ``energy_residual``.
         states: modal coordinates (num_times, num_modes).
     """
 
@@ -128,23 +130,23 @@ class Trajectory:
         time: Array,
         output: Output,
         attributes: Mapping[str, object],
-        least_energy: float = 0.0,
+        energy_floor: float = 0.0,
     ) -> Trajectory:
-        """Label the output of an integrator; rows are gathered by station.
+        """Return the trajectory of an integrator's output. Forces are sums over each station.
 
         Args:
             system: system of the motion.
             time: (num_times,) in s.
             output: output at these times.
-            attributes: attributes of the data, ``step``, ``steps``, ``first_contact`` and
-                ``contact_changes`` among them.
-            least_energy: input energy in J below which it is round-off.
+            attributes: attributes of the data, which include ``step``, ``steps``,
+                ``first_contact`` and ``contact_changes``.
+            energy_floor: input energy in J below which it is round-off.
         """
         stations = np.arange(len(system.stations))
         belongs = np.equal.outer(system.station_of_row, stations)
         rubs = np.equal.outer([friction.station for friction in system.frictions], stations)
         rows_at = np.maximum(belongs.sum(axis=0), 1)
-        # Rows of one side press at the same time, those of the other side at other times.
+        # Peaks of rows on the same side coincide, peaks on opposite sides do not.
         up, down = np.maximum(output.peaks, 0.0) @ belongs, np.minimum(output.peaks, 0.0) @ belongs
 
         def read(seen: Observer) -> Array:
@@ -164,7 +166,7 @@ class Trajectory:
             "gap": output.gaps @ belongs / rows_at,
         }
         variables |= {
-            name: (("time", "station"), values, {**OF_STATIONS[name]})
+            name: (("time", "station"), values, {**STATION_VARIABLES[name]})
             for name, values in by_station.items()
         }
         variables |= {
@@ -186,15 +188,15 @@ class Trajectory:
             },
             attrs=dict(attributes),
         )
-        residual = energy_residual(output.energies, least_energy)
+        residual = energy_residual(output.energies, energy_floor)
         data.attrs["energy_residual"] = float(np.abs(residual).max())
         return cls(data, output.states)
 
     @classmethod
-    def of_states(
+    def from_states(
         cls, system: GapSystem, time: Array, states: Array, velocities: Array
     ) -> Trajectory:
-        """Return the trajectory of a user-defined integrator, for a system without losses.
+        """Return the trajectory from the states of a user-defined integrator, without losses.
 
         Forces are instantaneous at output times; the first contact is accurate to an output step.
 
@@ -244,19 +246,18 @@ class Trajectory:
 
     @property
     def first_contact(self) -> float:
-        """The time in s at which a row first closes; NaN without contact."""
+        """The time of the first contact in s; NaN without contact."""
         return float(self.data.attrs["first_contact"])
 
     def first_peak(self, observer: str = "tip") -> tuple[float, float]:
-        """Return time in s and height in m of the first peak of the slow motion.
+        """Return time in s and value in m of the first prominent peak in the initial direction.
 
-        Peaks are on the side of the initial motion, and heights have its sign. The prominence of a
-        peak must be a fifth of the whole range, which excludes the ripple of micro-impacts. Both
-        values are NaN without a peak.
+        The prominence of a peak is at least a fifth of the whole range, which excludes the ripple
+        of micro-impacts. Both values are NaN without a peak.
         """
         deflection = np.asarray(self.data[observer].values)
         outstanding = 0.2 * np.ptp(deflection)
-        if outstanding < STILL * np.abs(deflection).max():
+        if outstanding < _ROUND_OFF * np.abs(deflection).max():
             return float("nan"), float("nan")
         off = deflection - deflection[0]
         side = np.sign(off[np.argmax(np.abs(off) > outstanding)])
@@ -265,8 +266,10 @@ class Trajectory:
             return float("nan"), float("nan")
         return float(self.time[peak]), float(deflection[peak])
 
-    def compare(self, other: Trajectory, name: str = "tip", until: float = np.inf) -> Pointwise:
-        """Return the differences from another motion.
+    def compare(
+        self, other: Trajectory, name: str = "tip", until: float = np.inf
+    ) -> PointwiseDifferences:
+        """Return the pointwise difference from another motion.
 
         >>> fine, coarse = (pt.BeamElements(boom, element_length=l) for l in (0.5, 1.0))
         >>> print(f"{100.0 * fine.simulate(0.1).compare(coarse.simulate(0.1)).largest:.1f} %")
@@ -283,13 +286,15 @@ class Trajectory:
         if not np.array_equal(self.time, other.time):
             raise ValueError("the motions must have the same times")
         one, two = (np.asarray(motion.data[name].values) for motion in (self, other))
-        return Pointwise.of(one, two, self.time, min(until, float(self.time[-1])))
+        return PointwiseDifferences.from_curves(
+            one, two, self.time, min(until, float(self.time[-1]))
+        )
 
 
 def _first_prominent(values: Array, prominence: float) -> int | None:
-    """Return the index of the first peak with a prominence, or None.
+    """Return the index of the first peak of at least a prominence, or None.
 
-    It is the first peak of ``scipy.signal.find_peaks``, whose import takes half a second.
+    It equals the first of ``scipy.signal.find_peaks``, whose import takes half a second.
     """
     risen = values - np.minimum.accumulate(values) >= prominence
     if prominence == 0.0 or not risen.any():

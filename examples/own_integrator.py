@@ -31,7 +31,7 @@ class RungeKutta:
         time = motion.output_step * np.arange(motion.outputs + 1)
         start, fine = np.concatenate([motion.position, motion.velocity]), self.tolerance
         run = solve_ivp(rates, time[[0, -1]], start, "DOP853", time, rtol=fine, atol=fine)
-        return pt.Trajectory.of_states(system, time, run.y[:n].T, run.y[n:].T)
+        return pt.Trajectory.from_states(system, time, run.y[:n].T, run.y[n:].T)
 
     def like(self, trajectory: pt.Trajectory) -> "RungeKutta":
         return self

@@ -19,8 +19,8 @@ from rich.console import Console
 
 from beam_model.statics import StaticState
 from dynamics.damping import closed_contact_damping, closed_contact_modes
-from dynamics.failure import NUMERICS
-from dynamics.motion import rest_of
+from dynamics.failure import NUMERICAL_ERRORS
+from dynamics.motion import constant_load_equilibrium
 from geometry.axial import carried, moving_force_places
 from geometry.boom import Boom, Direction, Joint
 from geometry.fit import room
@@ -381,9 +381,11 @@ def _ratios(preview: Preview, model: Model, beam: ModelTable) -> list[str]:
     try:
         with np.errstate(all="ignore"):
             motion = preview.motion(model, beam)
-            rest = rest_of(motion.system, preview.declared.case.start.at_rest, motion.position)
+            rest = constant_load_equilibrium(
+                motion.system, preview.declared.case.start.at_rest, motion.position
+            )
             found = closed_contact_damping(motion.system, rest)
-    except NUMERICS:
+    except NUMERICAL_ERRORS:
         return ["cannot be computed"]
     # Dashpots between open stations contribute only round-off.
     both = (

@@ -11,7 +11,7 @@ from functools import cached_property, partial
 import numpy as np
 from mpi4py import MPI
 
-from dynamics.gap_builder import GapBuilder, Observed
+from dynamics.gap_builder import GapBuilder, ObservedReading
 from geometry.arrays import Array
 from geometry.axial import pin_moments
 from geometry.boom import Boom, BoomError, Direction
@@ -98,7 +98,7 @@ class BoomShell:
     ties: Sequence[Reading]
     own_loads: Sequence[Array]
     loads: Sequence[tuple[Load, Array]]
-    observed: Mapping[str, Observed[Reading]]
+    observed: Mapping[str, ObservedReading[Reading]]
     lines: Sequence[GroundLine] = ()
     pin_moments: Sequence[tuple[int, Array]] = ()
     helper: Executor | None = None
@@ -228,7 +228,7 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
     return built if segment.head_section is None else tapered_mesh(segment, built)
 
 
-def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, Observed[Reading]]:
+def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, ObservedReading[Reading]]:
     """Return the readings of the boom's ends and of all other observers. Collective."""
     ends: tuple[Quantity, ...] = ("deflection", "rotation", "distortion")
     if boom.spatial:
@@ -241,7 +241,9 @@ def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, Observed[
             outlines[at] = shells[place.segment].outline(place.x)
         kind = place.kind
         row = _READ[kind.read](outlines[at])
-        observed[place.name] = Observed(Reading({place.segment: row}), kind.unit, kind.derivative)
+        observed[place.name] = ObservedReading(
+            Reading({place.segment: row}), kind.unit, kind.derivative
+        )
     return observed
 
 

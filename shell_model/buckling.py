@@ -92,9 +92,9 @@ def buckling_modes(shell: Shell, forces: Array, count: int) -> BucklingModes:
         raise NumericsError("the shell has a rigid motion, and cannot buckle; add a support")
     if not _compressed(forces):
         return BucklingModes(np.zeros(0), np.zeros((shell.free.size, 0)))
-    softening = _softening(shell, forces)
+    geometric_stiffness = _geometric_stiffness(shell, forces)
     solver = SLEPc.EPS().create(shell.comm)
-    solver.setOperators(softening, shell.stiffness)
+    solver.setOperators(geometric_stiffness, shell.stiffness)
     solver.setProblemType(SLEPc.EPS.ProblemType.GHEP)
     solver.setWhichEigenpairs(SLEPc.EPS.Which.LARGEST_REAL)
     solver.setDimensions(count, min(_VECTORS * count + _BESIDES, shell.num_dofs))
@@ -114,7 +114,7 @@ def buckling_modes(shell: Shell, forces: Array, count: int) -> BucklingModes:
     for i in range(count):
         solver.getEigenvector(i, vector)
         shapes[:, i] = vector.array
-    for thing in (vector, solver, softening):
+    for thing in (vector, solver, geometric_stiffness):
         thing.destroy()
     first, _ = shell.owned
     lengths = np.linalg.norm(shapes[shell.node_dofs - first], axis=1)
@@ -141,7 +141,7 @@ def with_springs(springs: Attached, rows: Array, stiffness: Array) -> Attached:
     return Attached(np.hstack([springs.rows, rows]), np.append(springs.factors, stiffness))
 
 
-def _softening(shell: Shell, forces: Array) -> PETSc.Mat:
+def _geometric_stiffness(shell: Shell, forces: Array) -> PETSc.Mat:
     """Assemble −K_G (num_dofs, num_dofs) of membrane forces (num_triangles, 3). Collective."""
     domain = shell.space.mesh
     along, around, _ = wall_frame(domain)

@@ -20,7 +20,7 @@ import numpy as np
 from mpi4py import MPI
 
 from dynamics.drive.row_table import MovingAxialForce, RowTable
-from dynamics.drive.travel import KINDS, Kind, Travel
+from dynamics.drive.travel import ROW_KINDS, RowKind, Travel
 from dynamics.excitation import HistorySum
 from dynamics.gap_builder import GapBuilder
 from dynamics.gap_system import GapSystem
@@ -62,7 +62,7 @@ class _SampledRows:
     """
 
     group: MovedStations | None
-    moving: Sequence[tuple[Kind, int]]
+    moving: Sequence[tuple[RowKind, int]]
     extensions: Array
     touching: Sequence[GapBuilder[Reading]]
 
@@ -83,7 +83,7 @@ class _SampledRows:
         def read(reading: Reading) -> Array:
             return shell.row(reading[number]) if number in reading else nothing
 
-        rows = [one.some_rows(self.moving, read) for one in self.touching[::step]]
+        rows = [one.evaluate_rows(self.moving, read) for one in self.touching[::step]]
         return np.asarray(np.concatenate(rows).T)
 
     def moving_and_staying(self, comm: MPI.Comm, columns: Array) -> tuple[Mask, Mask]:
@@ -100,7 +100,7 @@ class _SampledRows:
 
     def rows(self, coordinates: BoomCoordinates) -> Array:
         """Return the rows (num_extensions, num_moving, num_modes)."""
-        return np.array([one.some_rows(self.moving, coordinates.row) for one in self.touching])
+        return np.array([one.evaluate_rows(self.moving, coordinates.row) for one in self.touching])
 
 
 def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]:
@@ -111,14 +111,16 @@ def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]
             np.linspace(start, end, max(round((end - start) / size), _FEWEST) + 1)
             for start, end in pairwise(sorted({*group.reach, 0.0}))
         ]
-        moving, extensions = full.rows.moving(group.stations), np.unique(np.concatenate(pieces))
+        moving, extensions = full.rows.rows_at(group.stations), np.unique(np.concatenate(pieces))
         touching = [
             full.touching.rows(group.extensions(extension)) for extension in extensions.tolist()
         ]
         found.append(_SampledRows(group, moving, extensions, touching))
     moved = {row for sampled in found for row in sampled.moving}
     counts = len(full.rows.contacts), len(full.rows.frictions), len(full.rows.dashpots)
-    every = [(kind, row) for kind, count in zip(KINDS, counts, strict=True) for row in range(count)]
+    every = [
+        (kind, row) for kind, count in zip(ROW_KINDS, counts, strict=True) for row in range(count)
+    ]
     still = [row for row in every if row not in moved]
     return [*found, _SampledRows(None, still, np.zeros(1), [full.rows])] if still else found
 
@@ -178,7 +180,7 @@ class TelescopingShell:
     def with_springs(self, system: GapSystem, coordinates: BoomCoordinates) -> GapSystem:
         """Return a gap system in the coordinates of the boom, with springs and travels."""
         first_of, stacked = {}, 0
-        for kind in KINDS:
+        for kind in ROW_KINDS:
             first_of[kind] = stacked
             stacked += len(getattr(system, kind))
         behind = np.cumsum([0, *(omega2.size for omega2, _ in self._springs)])
@@ -192,7 +194,7 @@ class TelescopingShell:
                 rows = np.concatenate([coordinates.of_rows(self._rows[k]), beside], axis=2)
                 travel = Travel(
                     HistorySum(tuple(drive.history for drive in sampled.group.drives)),
-                    RowTable.through(sampled.extensions, rows),
+                    RowTable.spline(sampled.extensions, rows),
                     sampled.moving,
                     sampled.group.suffix,
                     _moving_axial_forces(
@@ -311,5 +313,5 @@ def _moving_axial_forces(
         readings = [Reading({found.segment: outline.mean_deflection(d)}) for d in boom.directions]
         rows.append([coordinates.row(reading) for reading in readings])
     beside = np.zeros((len(rows), len(boom.directions), behind))
-    table = RowTable.through(extensions, np.concatenate([np.array(rows), beside], axis=2))
+    table = RowTable.spline(extensions, np.concatenate([np.array(rows), beside], axis=2))
     return [MovingAxialForce(found.force, table)]

@@ -10,7 +10,7 @@ from itertools import product
 import numpy as np
 from scipy.signal import find_peaks
 
-from dynamics.damping import closed_contact_modes, with_ratio
+from dynamics.damping import closed_contact_modes, with_modal_damping
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
@@ -75,7 +75,7 @@ class PressedBoom:
         reach = np.abs(self.system.rows @ shape)
         run = FixedStep(period / STEPS)(
             Motion(
-                with_ratio(self.system, ratio),
+                with_modal_damping(self.system, ratio),
                 PERIODS * period,
                 period / 200.0,
                 position=self.rest + shape * SWING * (deep / reach)[pressed].min(),

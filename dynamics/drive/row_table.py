@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rows and axial forces that change with an extension, as piecewise cubics.
 
-For elements with cubic shape functions and knots at the passages of nodes, the cubics are exact.
+With cubic shape functions and a knot where the contact passes a node, the cubics are exact.
 Otherwise pieces are halved until the error of the cubics is within a tolerance.
 
-An axial force that moves along a segment compresses it between the initial and the current place.
-It reduces the stiffness by K_G(s) = N ∫₀ˢ w′ᵀ w′ dσ of the slopes w′ at the place (second-order
+An axial force that moves along a segment compresses it between its initial and current position.
+It reduces the stiffness by K_G(s) = N ∫₀ˢ w′ᵀ w′ dσ with the slope w′ at the position (second-order
 theory, Timoshenko and Gere 1961). For rows that are cubic in s this is exact.
 """
 
@@ -26,16 +26,16 @@ TOLERANCE = 1.0e-9
 # Maximum number of halvings of a piece.
 _MOST_HALVINGS = 16
 
-# Interpolation points of a cubic in a piece, the matrix of its coefficients (Lagrange), and test
-# points.
-_MET = np.array([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0])
+# Interpolation points of a cubic in a piece, the matrix of its coefficients (Lagrange), and points
+# at which its error is tested.
+_POINTS = np.array([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0])
 _COEFFICIENTS = 0.5 * np.array(
     [[2.0, 0.0, 0.0, 0.0], [-11.0, 18.0, -9.0, 2.0], [18.0, -45.0, 36.0, -9.0],
      [-9.0, 27.0, -27.0, 9.0]]
 )  # fmt: skip
-_TESTED = np.array([0.15, 0.5, 0.85])
+_TEST_POINTS = np.array([0.15, 0.5, 0.85])
 
-# i + j + 1 for the powers in slopes: ∫₀¹ uⁱ uʲ du is its reciprocal.
+# i + j + 1, the reciprocals of ∫₀¹ uⁱ uʲ du for the powers in slopes.
 _POWERS = 1.0 + np.add.outer(np.arange(3), np.arange(3))
 
 
@@ -43,7 +43,7 @@ _POWERS = 1.0 + np.add.outer(np.arange(3), np.arange(3))
 class RowTable:
     """Rows over an extension s.
 
-    >>> table = RowTable.of(lambda s: np.array([[1.0, s**3]]), [0.0, 1.0, 2.0])
+    >>> table = RowTable.interpolate(lambda s: np.array([[1.0, s**3]]), [0.0, 1.0, 2.0])
     >>> table(1.5)
     array([[1.   , 3.375]])
 
@@ -72,8 +72,11 @@ class RowTable:
             raise ValueError("knots and coefficients must be finite")
 
     @classmethod
-    def of(cls, rows: Callable[[float], Array], breaks: Sequence[float]) -> RowTable:
-        """Return the table of rows (num_rows, num_modes) that are smooth between breaks in m."""
+    def interpolate(cls, rows: Callable[[float], Array], breaks: Sequence[float]) -> RowTable:
+        """Return the table of rows (num_rows, num_modes) that are smooth between breaks in m.
+
+        ``rows`` returns the rows at an extension in m.
+        """
         # Rows are cached, since pieces share ends, and halves share points with the whole piece.
         rows = cache(rows)
         scale = max(float(np.abs(rows(s)).max(initial=0.0)) for s in breaks)
@@ -86,7 +89,7 @@ class RowTable:
         return cls(knots, np.array([cubic for _, cubic in pieces]))
 
     @classmethod
-    def through(cls, knots: Array, rows: Array) -> RowTable:
+    def spline(cls, knots: Array, rows: Array) -> RowTable:
         """Return the cubic spline through rows (num_knots, num_rows, num_modes).
 
         Its third derivative is continuous at the first and the last inner knot.
@@ -100,10 +103,10 @@ class RowTable:
 
     def __call__(self, s: float) -> Array:
         """Return the rows (num_rows, num_modes) at s in m."""
-        piece, part, _ = self.place(s)
+        piece, part, _ = self.locate(s)
         return _combined(part ** np.arange(4), self.coefficients[piece])
 
-    def place(self, s: float) -> tuple[int, float, float]:
+    def locate(self, s: float) -> tuple[int, float, float]:
         """Return the piece at s in m, the relative position in it, and its length in m."""
         last = len(self.knots) - 2
         piece = min(max(int(np.searchsorted(self.knots, s, side="right")) - 1, 0), last)
@@ -113,16 +116,15 @@ class RowTable:
 
 @dataclass(frozen=True)
 class MovingAxialForce:
-    """Axial force that moves with a travel and reduces the stiffness of the segment behind it.
+    """Axial force that moves along a segment with a travel and reduces its bending stiffness.
 
-    >>> force = MovingAxialForce(2.0, RowTable.of(lambda s: np.array([[3.0 * s]]), [0.0, 1.0]))
-    >>> force.softening(0.5)
+    >>> table = RowTable.interpolate(lambda s: np.array([[3.0 * s]]), [0.0, 1.0])
+    >>> MovingAxialForce(2.0, table).geometric_stiffness(0.5)
     array([[9.]])
 
     Args:
-        force: N in N, positive if it compresses the passed length with increasing s.
-        table: rows (num_planes, num_modes) of the deflections at the place of the force, over s in
-            m.
+        force: N in N, positive if the length between 0 and a positive s is in compression.
+        table: rows (num_planes, num_modes) of the deflections at the force, over s in m.
     """
 
     force: float
@@ -140,18 +142,18 @@ class MovingAxialForce:
         lengths = np.diff(self.table.knots)[:, None, None, None]
         return np.asarray(factors * self.table.coefficients[:, 1:] / lengths)
 
-    def passed(self, plane: int) -> Array:
-        """Return ∫ w′ᵀ w′ ds (num_pieces, num_modes, num_modes) from s = 0 to each piece."""
+    def slope_products(self, plane: int) -> Array:
+        """Return ∫ w′ᵀ w′ ds (num_pieces, num_modes, num_modes) from 0 to the start of pieces."""
         slopes, lengths = self.slopes[:, :, plane], np.diff(self.table.knots)
         within = np.einsum("p,ij,pik,pjl->pkl", lengths, 1 / _POWERS, slopes, slopes, optimize=True)
         upto = np.concatenate([np.zeros_like(within[:1]), within.cumsum(axis=0)])
-        piece, part, length = self.table.place(0.0)
+        piece, part, length = self.table.locate(0.0)
         products = length * part**_POWERS / _POWERS
         return np.asarray(upto[:-1] - upto[piece] - slopes[piece].T @ products @ slopes[piece])
 
-    def softening(self, s: float) -> Array:
-        """Return K_G (num_modes, num_modes) at s in m, less that at 0."""
-        (first, start, _), (last, end, _) = (self.table.place(x) for x in sorted((0.0, s)))
+    def geometric_stiffness(self, s: float) -> Array:
+        """Return the increase of K_G (num_modes, num_modes) from 0 to s in m."""
+        (first, start, _), (last, end, _) = (self.table.locate(x) for x in sorted((0.0, s)))
         slopes, lengths = self.slopes[first : last + 1], np.diff(self.table.knots)[first : last + 1]
         begins, ends = np.zeros((lengths.size, 1, 1)), np.ones((lengths.size, 1, 1))
         begins[0], ends[-1] = start, end
@@ -163,7 +165,7 @@ class MovingAxialForce:
 
 
 def _combined(weights: Array, arrays: Array) -> Array:
-    """Return a weighted sum without BLAS, whose last bits depend on addresses in memory."""
+    """Return a weighted sum. It avoids BLAS so that results are bitwise reproducible."""
     return np.asarray((weights[:, None, None] * arrays).sum(axis=0))
 
 
@@ -171,11 +173,11 @@ def _pieces(
     rows: Callable[[float], Array], a: float, b: float, bound: float, halvings: int
 ) -> Iterator[tuple[float, Array]]:
     """Yield the start in m and the coefficients (4, num_rows, num_modes) of each piece."""
-    met = np.array([rows(a + part * (b - a)) for part in _MET])
+    met = np.array([rows(a + part * (b - a)) for part in _POINTS])
     cubic = np.array([_combined(weights, met) for weights in _COEFFICIENTS])
     missed = [
         float(np.abs(_combined(part ** np.arange(4), cubic) - rows(a + part * (b - a))).max())
-        for part in _TESTED
+        for part in _TEST_POINTS
     ]
     if halvings == 0 or max(missed) <= bound:
         yield a, cubic

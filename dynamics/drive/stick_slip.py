@@ -5,9 +5,9 @@ The extension s(t) lags behind the command s_c(t) of the drive:
 
     m s̈ + c (ṡ − ṡ_c) + k (s − s_c) = p − R sign(ṡ),   |k (s_c − s) + c ṡ_c + p| ≤ R_s where ṡ = 0
 
-R = μ Σ|N| is the friction of the pads, R_s the static friction, and p the force of other drives
-that accelerate. The boom follows the command s_c: the lag has no effect on it. R follows from the
-mean N of each output interval, so that faster chatter of pads reduces the number of sticks.
+R = μ Σ|N| is the friction of the pads, R_s the static friction, and p the inertia force that other
+drives cause. The boom moves with the command s_c; the lag does not affect it. R uses the mean N of
+each output interval, which smooths the faster chatter of pads.
 """
 
 from __future__ import annotations
@@ -20,12 +20,11 @@ import numpy as np
 from dynamics.arrays import Array
 from dynamics.excitation import History
 
-# Largest step as a phase angle in rad of the mass on its spring, or as a fraction of its decay
-# time.
+# Largest step, as a phase angle in rad of the mass on its spring or a fraction of its decay time.
 _PART = 0.1
 
-# Variables of a trajectory; the suffix of the travel follows each name.
-OF_ELASTIC_DRIVES = {
+# Variables of a trajectory for each elastic drive; the suffix of its travel follows each name.
+ELASTIC_DRIVE_VARIABLES = {
     "drive_force": {"units": "N", "long_name": "drive force, mean of the output interval"},
     "drive_lag": {"units": "m", "long_name": "lag of the segment behind its drive"},
     "extension_speed": {"units": "m/s", "long_name": "speed of the segment in the outer one"},
@@ -45,9 +44,9 @@ class ElasticDrive:
         mass: mass of all moved segments in kg.
         stiffness: k of rope, chain or cylinder in N/m.
         dashpot: c in parallel in N·s/m.
-        sticking: static over sliding friction, at least 1.
+        sticking: ratio of static to sliding friction, at least 1.
         thrust: axial load towards the base in N, such as weight.
-        beside: for each other drive, the common mass in kg that both move, and its history.
+        coupled_drives: (mass in kg that both drives move, history) of each other drive.
 
     Raises:
         ValueError: a number is out of range.
@@ -58,7 +57,7 @@ class ElasticDrive:
     dashpot: float = 0.0
     sticking: float = 1.0
     thrust: float = 0.0
-    beside: tuple[tuple[float, History], ...] = ()
+    coupled_drives: tuple[tuple[float, History], ...] = ()
 
     def __post_init__(self) -> None:
         limits = {"mass": 0.0, "stiffness": 0.0, "dashpot": 0.0, "sticking": 1.0}
@@ -89,7 +88,7 @@ class StickSlip:
         sticks: number of times that the segment sticks while the drive moves.
         slip: longest slip in m.
         speed, acceleration: largest speed in m/s and acceleration in m/s² of the segment.
-        behind: lag at the end of the run in m, negative where the segment is ahead.
+        behind: lag at the end of the run in m, negative if the segment is ahead of its drive.
         energy_residual: error of the energy balance as a fraction of the input energy.
     """
 
@@ -104,7 +103,7 @@ class StickSlip:
 
 
 class DriveMotion(NamedTuple):
-    """Motion of a segment on an elastic drive: ``OF_ELASTIC_DRIVES`` over time, and the results."""
+    """Motion of a segment on an elastic drive: variables over time, and results."""
 
     series: dict[str, Array]
     results: StickSlip
@@ -115,9 +114,9 @@ def move_segment(
 ) -> DriveMotion:
     """Return the motion of the segment from rest under the axial load.
 
-    s_c and p are linear within steps, at least 63 per period; otherwise the solution is exact. The
+    The solution is exact for s_c and p that are linear within steps, at least 63 per period. The
     accelerations in p are second differences. Histories of other drives are mirrored at t = 0, so
-    that a jump of the speed at the start gives its whole impulse within the first step.
+    that an initial jump of the speed gives its whole impulse within the first step.
 
     Args:
         drive: elastic drive of the segment.
@@ -133,7 +132,7 @@ def move_segment(
     count, step = time.size - 1, output_step / substeps
     times = step * np.arange(count * substeps + 1)
     push = np.zeros(times.size)
-    for mass, other in drive.beside:
+    for mass, other in drive.coupled_drives:
         change = other(times + step) - 2.0 * other(times) + other(np.abs(times - step))
         push -= mass * change / step**2
     recorded, sums, largest = np.zeros((count + 1, 3)), np.zeros((count + 1, 5)), np.zeros(6)
@@ -150,13 +149,15 @@ def move_segment(
     missing = float(np.abs(stored + damped + rubbed - work - pushed).max())
     results = StickSlip(
         mean=float(np.abs(force[moving]).mean()) if moving.any() else 0.0,
-        peak=max(abs(float(largest[end]) + drive.thrust) for end in (kernel.HIGH, kernel.LOW)),
+        peak=max(
+            abs(float(largest[end]) + drive.thrust) for end in (kernel.MAX_FORCE, kernel.MIN_FORCE)
+        ),
         sticks=int(largest[kernel.STICKS]),
-        slip=float(largest[kernel.JUMP]),
-        speed=float(largest[kernel.FASTEST]),
-        acceleration=float(largest[kernel.HARDEST]),
+        slip=float(largest[kernel.MAX_SLIP]),
+        speed=float(largest[kernel.MAX_SPEED]),
+        acceleration=float(largest[kernel.MAX_ACCELERATION]),
         behind=float(lag[-1]),
         energy_residual=missing / most if most > 0.0 else missing,
     )
-    series = dict(zip(OF_ELASTIC_DRIVES, (force, *recorded.T), strict=True))
+    series = dict(zip(ELASTIC_DRIVE_VARIABLES, (force, *recorded.T), strict=True))
     return DriveMotion(series, results)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Travels: the extension of a segment over time, and the rows that it changes.
 
-Nothing else changes in material coordinates: a segment that moves along its own axis has the
-inertia m̄ ü at each of its points if slopes are small. Modes, loads and observers of a segment stay
-the same. A row that reads two segments at a contact reads one of them at a place that moves with
-the extension.
+In material coordinates, a segment that moves along its axis has the inertia m̄ ü if slopes are
+small. So its modes, loads and observers do not change. A row of a contact changes, since it reads
+one of both segments at a position that moves with the extension.
 """
 
 from __future__ import annotations
@@ -20,17 +19,17 @@ from dynamics.drive.stick_slip import ElasticDrive
 from dynamics.excitation import History
 
 # Kinds of rows of a gap system that may change with time, in the order of the compiled loops.
-Kind = Literal["rows", "friction_rows", "dashpots"]
-KINDS: tuple[Kind, ...] = get_args(Kind)
+RowKind = Literal["rows", "friction_rows", "dashpots"]
+ROW_KINDS: tuple[RowKind, ...] = get_args(RowKind)
 
 
 @dataclass(frozen=True, slots=True)
 class Travel:
-    """Rows that follow the history of an extension, from 0 at t = 0.
+    """Extension over time, from 0 at t = 0, and the rows that change with it.
 
-    Example: a row that reads less of the ball's displacement as a segment extends.
+    Example: the row of a contact decreases with the extension.
 
-    >>> table = RowTable.of(lambda s: np.array([[1.0 - s]]), [0.0, 0.5])
+    >>> table = RowTable.interpolate(lambda s: np.array([[1.0 - s]]), [0.0, 0.5])
     >>> lift = Travel(pt.SCurve(travel=0.5, duration=1.0), table, (("rows", 0),))
     >>> replace(ball, travels=[lift]).at_time(1.0).rows
     array([[0.5]])
@@ -38,13 +37,13 @@ class Travel:
     Args:
         history: history in m.
         table: rows (num_moving, num_modes) over the extension.
-        moving: kind and index of each row in the gap system.
+        moved_rows: (kind, index) of each row in the gap system.
         suffix: suffix of the names of its results; None for no results.
         axial_forces: axial forces that move with the extension.
-        axial_load: axial load of all moved segments in N, against which the drive works.
+        axial_load: axial load in N of all segments that the drive moves.
         elastic: data of an elastic drive; None for a rigid drive.
-        shifts: growth of the displacement of each row per m of extension, as for a rope that is
-            wound up; none unless given.
+        shifts: increase of the displacement of each row per m of extension, as for the rope of a
+            winch; none unless given.
 
     Raises:
         ValueError: the table has another number of rows or shifts, or the history does not begin
@@ -53,7 +52,7 @@ class Travel:
 
     history: History
     table: RowTable
-    moving: Sequence[tuple[Kind, int]]
+    moved_rows: Sequence[tuple[RowKind, int]]
     suffix: str | None = None
     axial_forces: Sequence[MovingAxialForce] = ()
     axial_load: float = 0.0
@@ -62,8 +61,8 @@ class Travel:
 
     def __post_init__(self) -> None:
         rows = self.table.coefficients.shape[2]
-        if rows != len(self.moving):
-            raise ValueError(f"the table has {rows} rows, and {len(self.moving)} move")
+        if rows != len(self.moved_rows):
+            raise ValueError(f"the table has {rows} rows, and {len(self.moved_rows)} move")
         if len(self.shifts) not in (0, rows):
             raise ValueError(f"shifts must be none or {rows}, got {len(self.shifts)}")
         start = float(self.history(np.zeros(())))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Compiled loops of the integrators."""
+"""Compiled loops of time integration."""
 
-from dynamics.kernels.compiled import find_folder
+from dynamics.kernels.compiled import make_cache_folder
 
-# This must be set before a time loop is compiled; the folder is removed at the end of the process.
-_folder = find_folder()
+# The folder must be set before numba compiles. It is removed at the end of the process.
+_folder = make_cache_folder()

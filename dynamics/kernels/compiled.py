@@ -16,7 +16,7 @@ from numba import config, njit
 from numba.extending import intrinsic
 from numba.np.arrayobj import make_array
 
-# No C calls a loop, and numba's entry for that takes time to compile.
+# Options of all loops. Nothing calls them from C, and the C wrapper takes time to compile.
 LOOP: Mapping[str, Any] = MappingProxyType(
     {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 )
@@ -24,21 +24,22 @@ LOOP: Mapping[str, Any] = MappingProxyType(
 # Options of functions that are inlined in their callers.
 PART: Mapping[str, Any] = MappingProxyType({**LOOP, "forceinline": True})
 
-# Loops over modes, whose sums may be taken in any order. They are made part of whatever calls them:
-# numba optimises a copy that is only called once more, in another order, so that the process which
-# compiles would differ in the last bit from those that find its work in the cache.
+# Options of loops over modes, whose sums may be reordered. They are inlined: numba optimises a
+# function that is called a second time, in another order, so that the process that compiles would
+# differ in the last bit from those that read its cache.
 SUMS: Mapping[str, Any] = MappingProxyType(
     {**PART, "fastmath": {"reassoc", "contract", "arcp", "nsz"}}
 )
 
 
-def find_folder() -> TemporaryDirectory[str] | None:
-    """Return a cache folder for this process where no other can be written, else None.
+def make_cache_folder() -> TemporaryDirectory[str] | None:
+    """Return a temporary cache folder if the folders of numba cannot be written, else None.
 
-    numba refuses to compile what it cannot keep. Processes started from this one share the folder.
+    Without a writable folder, numba does not compile cached functions. Child processes share the
+    folder.
     """
     try:
-        njit(cache=True)(find_folder)
+        njit(cache=True)(make_cache_folder)
     except RuntimeError:
         folder = TemporaryDirectory(prefix="protractile-")
         config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"] = folder.name
@@ -47,8 +48,8 @@ def find_folder() -> TemporaryDirectory[str] | None:
 
 
 @contextmanager
-def one_compiles() -> Iterator[None]:
-    """Wait while another process compiles: it leaves in the cache what this one needs, too."""
+def compilation_lock() -> Iterator[None]:
+    """Hold the lock of compilation, so that other processes wait and then read the cache."""
     with open(__file__, encoding="utf-8") as source:
         # Without locks, as on some network disks, each process compiles for itself.
         with suppress(OSError):
@@ -58,9 +59,9 @@ def one_compiles() -> Iterator[None]:
 
 @intrinsic
 def borrow(typing_context: Any, arrays: Any) -> Any:
-    """Return the tuple of arrays without reference counts; its owner keeps the arrays alive.
+    """Return a tuple of arrays without reference counts. The owner must keep the arrays alive.
 
-    Counting is atomic, and costs a step of friction as much as its arithmetic.
+    Atomic counting would take as long as the arithmetic of a step with friction.
     """
 
     def codegen(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:

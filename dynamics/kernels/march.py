@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The time loop: steps of exact modal flow under row forces that are constant within each step.
+"""The time loop: exact modal solutions under contact and friction forces, constant in each step.
 
-On a linear flow, the work of a constant force is force times displacement. So the energy of modes
-and contacts changes by exactly the work of loads and drives less the losses of damping, friction
-and dashpots, at any step size. Rows that move read B₀ a₀ at the start and B₁ a₁ at the
-end, and push with their mean B̄ (see :mod:`dynamics.kernels.telescoping`).
+The work of a constant force is force times displacement. So the energy of modes and contacts
+changes by exactly the work of loads and drives less the losses of damping, friction and dashpots,
+for any step. Rows of travels have the displacements B₀ a₀ at the start and B₁ a₁ at the end of a
+step, and their forces act by the mean row B̄ (see :mod:`dynamics.kernels.telescoping`).
 """
 
 from __future__ import annotations
@@ -17,33 +17,33 @@ from numba import njit
 from dynamics.arrays import Array
 from dynamics.kernels.compiled import LOOP, SUMS, borrow
 from dynamics.kernels.modal_flow import Flow, compliance, finish_flow, free_flow, modal_energy
-from dynamics.kernels.row_forces import Laws, Problem, contact_response, solve_rows
+from dynamics.kernels.row_forces import Laws, Problem, contact_response, solve_contact_forces
 from dynamics.kernels.telescoping import AxialForces, MovingRows, add_axial_forces, move_rows
 from dynamics.kernels.terms import contact_energy, term_energy, term_force, term_slope
 from dynamics.trajectory import Output
 
-# Positions in the tally. From the work on as in ``dynamics.energy.ENERGIES``.
+# Indices in the tally. From the work on, their order is that of ``dynamics.energy.ENERGIES``.
 TIME, FIRST_CONTACT, CHANGES, STEPS, WORK, DAMPING, FRICTION, CONTACT, TALLY = range(9)
 
-# h ω of a pressed contact up to which a step resolves its press: the highest of samples misses
-# 1 − cos(hω/2), 3 %, of a half-sine at most.
+# Largest h ω of a closed contact at which steps resolve its force: the largest sample of a
+# half-sine is at most 1 − cos(hω/2), 3 %, too small.
 RESOLVED = 0.5
 
-# Penetration in m beyond which no energy is sought.
-_DEEPEST = 1.0
+# Maximum penetration in m in the search for a given energy.
+_MAX_DEPTH = 1.0
 
-# Iterations of the axial forces that move, and their change, as a part of them, that ends these.
-_MOST_ROUNDS, _AGREED = 40, 1.0e-10
+# Maximum number and relative tolerance of the iterations for moving axial forces.
+_MAX_ITERATIONS, _TOLERANCE = 40, 1.0e-10
 
 
 class LoopSystem(NamedTuple):
-    """Constant parts of a gap system.
+    """Data of a gap system that do not change over time.
 
     Args:
-        load: (num_modes,) the constant load.
+        load: (num_modes,) constant load.
         excitations: (num_excitations, num_modes) loads that histories multiply.
-        laws: of the rows.
-        moving, axial: rows and axial forces that travels move.
+        laws: contact and friction laws.
+        moving, axial: rows and axial forces that change with travels.
     """
 
     load: Array
@@ -58,15 +58,15 @@ class State(NamedTuple):
 
     Args:
         a, v: (num_modes,) modal coordinates and velocities.
-        rows: (num_rows, num_modes) as they are: contacts, friction rows, dashpots.
-        y: (num_rows,) their displacements in m.
+        rows: (num_rows, num_modes) current rows: contacts, friction rows, dashpots.
+        y: (num_rows,) displacements of the rows in m.
         force: (num_rows,) forces of the last step in N.
-        softening: (num_modes,) K_G a of the axial forces that move, in the last step.
-        tally: sums over all steps, by the positions above.
-        driven: (num_travels,) work of each drive so far in J.
-        crest: (num_contacts,) largest force so far in N, and
-        resolving: (num_contacts,) the step in s that would resolve the press it belongs to;
-            infinite where this one does.
+        axial_push: (num_modes,) K_G a of the moving axial forces in the last step.
+        tally: sums over all steps, by the indices above.
+        driven: (num_travels,) cumulative work of each drive in J.
+        crest: (num_contacts,) largest force of all steps in N.
+        resolving: (num_contacts,) step in s that resolves the contact at its largest force;
+            infinite if the step of this run resolves it.
     """
 
     a: Array
@@ -74,7 +74,7 @@ class State(NamedTuple):
     rows: Array
     y: Array
     force: Array
-    softening: Array
+    axial_push: Array
     tally: Array
     driven: Array
     crest: Array
@@ -85,9 +85,9 @@ class Schedule(NamedTuple):
     """Loads and extensions within the steps of a call.
 
     Args:
-        mean, change: (num_steps, num_excitations) mean of each history within each step, and its
-            change from the start to the end of the straight line that has its moments.
-        extensions: (num_steps + 1, num_travels) in m at the ends of the steps.
+        mean, change: (num_steps, num_excitations) mean and change within each step of the straight
+            line that replaces a history, see :func:`dynamics.time_step.line_within`.
+        extensions: (num_steps + 1, num_travels) extensions in m at the ends of the steps.
     """
 
     mean: Array
@@ -99,7 +99,7 @@ class Schedule(NamedTuple):
 def assign(target: Array, source: Array) -> None:
     """Copy the first numbers of ``source`` to ``target``.
 
-    A slice assignment makes numba compile the text of its error message, a quarter of the total.
+    Slice assignments compile an error message, which takes a quarter of the compile time.
     """
     for i in range(target.size):
         target[i] = source[i]
@@ -107,7 +107,7 @@ def assign(target: Array, source: Array) -> None:
 
 @njit(**SUMS)
 def read_rows(rows: Array, a: Array, values: Array) -> None:
-    """Set ``values`` (num_rows,) to rows a."""
+    """Set ``values`` (num_rows,) to the displacements of the rows."""
     for j in range(rows.shape[0]):
         total = 0.0
         for i in range(a.size):
@@ -117,7 +117,7 @@ def read_rows(rows: Array, a: Array, values: Array) -> None:
 
 @njit(**SUMS)
 def _push(rows: Array, force: Array, total: Array) -> None:
-    """Subtract Rᵀ f from ``total`` (num_modes,)."""
+    """Subtract the modal forces Rᵀ f of the rows from ``total`` (num_modes,)."""
     for j in range(rows.shape[0]):
         if force[j] != 0.0:
             for i in range(total.size):
@@ -125,12 +125,12 @@ def _push(rows: Array, force: Array, total: Array) -> None:
 
 
 @njit(**LOOP)
-def _note_contacts(state: State, laws: Laws, end: Array, free: Array, time: float) -> None:
-    """Count contacts that open or close within a step; store the time of the first contact."""
+def _update_contacts(state: State, laws: Laws, end: Array, free: Array, time: float) -> None:
+    """Count contacts that open or close within a step, and store the time of the first contact."""
     closing = np.inf
     for j in range(laws.limits.size):
         low, high = laws.limits[j]["low"], laws.limits[j]["high"]
-        # One bit per side, since shims press both sides.
+        # One bit per side, since shims may close both sides.
         before = int(state.y[j] > high) + 2 * int(state.y[j] < low)
         after = int(end[j] > high) + 2 * int(end[j] < low)
         if before == after:
@@ -139,7 +139,7 @@ def _note_contacts(state: State, laws: Laws, end: Array, free: Array, time: floa
         closed = after & ~before
         if closed != 0:
             bound = high if closed == 1 else low
-            # Until contact, the row moves as without it.
+            # Until contact, the displacement is that without contact forces.
             passed = (bound - state.y[j]) / (free[j] - state.y[j])
             closing = min(closing, time * min(max(passed, 0.0), 1.0))
     if np.isnan(state.tally[FIRST_CONTACT]) and closing < np.inf:
@@ -147,8 +147,8 @@ def _note_contacts(state: State, laws: Laws, end: Array, free: Array, time: floa
 
 
 @njit(**LOOP)
-def _stored(laws: Laws, j: int, y: float) -> tuple[float, float]:
-    """Return the energy in J of contact j at a gap in m, and the slope of its force in N/m."""
+def _energy_and_stiffness(laws: Laws, j: int, y: float) -> tuple[float, float]:
+    """Return energy in J and tangent stiffness in N/m of contact j at a gap in m."""
     energy, slope = 0.0, 0.0
     for t in range(laws.first_term[j], laws.first_term[j + 1]):
         energy += term_energy(laws.terms[t], y)
@@ -157,39 +157,42 @@ def _stored(laws: Laws, j: int, y: float) -> tuple[float, float]:
 
 
 @njit(**LOOP)
-def _slope_at(laws: Laws, j: int, side: float, energy: float) -> float:
-    """Return the slope in N/m of the force of contact j where a side, ±1, stores an energy in J."""
+def _stiffness_at_energy(laws: Laws, j: int, side: float, energy: float) -> float:
+    """Return the stiffness in N/m of contact j at a stored energy in J; side is 1 or −1."""
     onset = laws.limits[j]["high"] if side > 0.0 else laws.limits[j]["low"]
     low, high = 0.0, 1.0e-12
-    # A side without a law stores nothing, which round-off of a force may ask for.
-    while high < _DEEPEST and _stored(laws, j, onset + side * high)[0] < energy:
+    # The limit ends the search on a side without contact, which round-off of a force may give.
+    while high < _MAX_DEPTH and _energy_and_stiffness(laws, j, onset + side * high)[0] < energy:
         low, high = high, 2.0 * high
     for _ in range(10):
         middle = 0.5 * (low + high)
-        if _stored(laws, j, onset + side * middle)[0] < energy:
+        if _energy_and_stiffness(laws, j, onset + side * middle)[0] < energy:
             low = middle
         else:
             high = middle
-    slope: float = _stored(laws, j, onset + side * high)[1]
+    slope: float = _energy_and_stiffness(laws, j, onset + side * high)[1]
     return slope
 
 
 @njit(**LOOP)
-def _note_peaks(
+def _update_peaks(
     state: State, laws: Laws, compliance: Array, time: float, end: Array, force: Array,
     free: Array, peaks: Array,
 ) -> None:  # fmt: skip
-    """Keep the largest contact forces: at the end of a step that resolves the press, else its mean.
+    """Update the peaks of contact forces, and the steps that would resolve them.
 
-    An unresolved press oscillates about its mean from step to step. What resolves it is told by the
-    slope at its deepest place, where the row's kinetic energy, (y_free − y₀)²/(4 C), is stored too.
+    A peak is the force at the end of a step if the step resolves the contact, else the mean of the
+    step, about which the force oscillates. The resolving step follows from the stiffness at the
+    maximum penetration, where the contact also stores the kinetic energy (y_free − y₀)²/(4 C).
     """
     for j in range(laws.limits.size):
         largest = 0.0
         for t in range(laws.first_term[j], laws.first_term[j + 1]):
             largest += term_force(laws.terms[t], end[j])
         before = state.y[j]
-        slope = max(_stored(laws, j, before)[1], _stored(laws, j, end[j])[1])
+        slope = max(
+            _energy_and_stiffness(laws, j, before)[1], _energy_and_stiffness(laws, j, end[j])[1]
+        )
         phase = np.sqrt(2.0 * max(slope, 0.0) * compliance[j, j])
         if phase > RESOLVED or abs(force[j]) > abs(largest):
             largest = force[j]
@@ -199,8 +202,9 @@ def _note_peaks(
             state.crest[j] = abs(largest)
             state.resolving[j] = np.inf
             if phase > RESOLVED:
-                moving = (free[j] - before) ** 2 / (4.0 * compliance[j, j])
-                most = _slope_at(laws, j, np.sign(largest), _stored(laws, j, before)[0] + moving)
+                energy = _energy_and_stiffness(laws, j, before)[0]
+                energy += (free[j] - before) ** 2 / (4.0 * compliance[j, j])
+                most = _stiffness_at_energy(laws, j, np.sign(largest), energy)
                 phase = np.sqrt(2.0 * max(most, slope) * compliance[j, j])
                 state.resolving[j] = time * RESOLVED / phase
 
@@ -210,10 +214,10 @@ def _set_loads(
     system: LoopSystem, mean: Array, change: Array, middle: float, part: float,
     load: Array, tilt: Array,
 ) -> None:  # fmt: skip
-    """Set the mean loads (num_modes,) and their changes within a part of a step.
+    """Set the mean load (num_modes,) and its change ``tilt`` within a part of a step.
 
-    ``mean`` and ``change`` (num_excitations,) are those of the whole step, in parts of which the
-    ``middle`` of this ``part`` lies off the middle of the step.
+    ``mean`` and ``change`` (num_excitations,) are those of the whole step. ``part`` is the length
+    of the part and ``middle`` its offset from the middle of the step, as fractions of the step.
     """
     assign(load, system.load)
     tilt[:] = 0.0
@@ -226,10 +230,10 @@ def _set_loads(
 
 @njit(**SUMS)
 def free_time(system: LoopSystem, flow: Flow, state: State, longest: float) -> float:
-    """Return a time in s within which no contact closes; 0 where one is closed.
+    """Return a time in s up to ``longest`` within which no contact closes; 0 if one is closed.
 
-    Without forces of rows the speed of mode i is at most √(v² + (ω² a − Q)²/ω²), or |v| + |Q| t
-    where ω is 0, and that of a row at most the sum over its modes.
+    Without contact, the speed of mode i is at most √(v² + (ω² a − Q)²/ω²), or |v| + |Q| t for
+    ω = 0, and the speed of a row at most the sum over its modes.
     """
     limits, speed = system.laws.limits, np.empty(state.a.size)
     for i in range(speed.size):
@@ -254,26 +258,27 @@ def march(
     system: LoopSystem, flow: Flow, compliances: Array, state: State, schedule: Schedule,
     stretches: int, joined: int, problem: Problem, output: Output,
 ) -> bool:  # fmt: skip
-    """Advance by as many output intervals as ``output`` has; return whether all steps converged.
+    """Advance by the output intervals of ``output``, and return whether all steps converged.
 
-    An output interval is a number of stretches of 2ʲ steps. Where contacts alone act, steps in
-    which none can close are joined up to a whole stretch: the flow is exact.
+    An output interval has several stretches of 2ʲ steps. Steps in which no contact can close are
+    joined, at most to a whole stretch, since the modal solution is exact.
 
     Args:
-        system: moves.
-        flow: over a stretch, its half, its quarter and so on beyond the step: a step whose forces
-            do not converge is halved.
-        compliances: (num_lengths, num_rows, num_rows) C of each, where no row moves.
-        state: is changed.
-        schedule: of the ``stretches`` of each output interval, one after the other.
-        joined: j, halvings of a stretch that give the step; 0 where other forces act.
-        problem: scratch for the row forces.
-        output: is filled.
+        system: system that moves.
+        flow: coefficients for a stretch, half of it, a quarter and so on. They continue below the
+            step, since a step whose forces do not converge is halved.
+        compliances: (num_lengths, num_rows, num_rows) C for each length, if rows are constant.
+        state: state at the start; it is changed.
+        schedule: loads and extensions of all stretches.
+        stretches: number of stretches of an output interval.
+        joined: j; 0 if other forces than those of contacts act.
+        problem: work arrays of contact and friction forces.
+        output: output to fill in.
     """
     laws, axial, moving = borrow(system.laws), borrow(system.axial), borrow(system.moving)
     state, flow, problem = borrow(state), borrow(flow), borrow(problem)
-    a, v, rows, y, force, softening = (
-        state.a, state.v, state.rows, state.y, state.force, state.softening,
+    a, v, rows, y, force, axial_push = (
+        state.a, state.v, state.rows, state.y, state.force, state.axial_push,
     )  # fmt: skip
     tally, driven, free, now = state.tally, state.driven, problem.free, problem.force
     n, m, contacts, frictions = a.size, y.size, laws.limits.size, laws.friction.shape[1]
@@ -311,14 +316,14 @@ def march(
                 extensions[1, t] = extensions[0, t] + part * (after - before)
             if moves:
                 move_rows(extensions[1], moving, rows, rows_end, rows_mean)
-                matrix = compliance(rows_end, rows_mean, flow.rise[depth])
+                matrix = compliance(rows_end, rows_mean, flow.gain[depth])
             elif m > 0:
                 matrix = compliances[depth]
             assign(now, force)
             converged = False
-            for _ in range(_MOST_ROUNDS):
+            for _ in range(_MAX_ITERATIONS):
                 for i in range(n):
-                    total[i] = load[i] + softening[i]
+                    total[i] = load[i] + axial_push[i]
                 if m > 0:
                     free_flow(a, v, flow, depth, total, tilt, end)
                     read_rows(rows_end, end, free)
@@ -326,7 +331,7 @@ def march(
                         free[moving.number[j]] += (
                             moving.shifts[j] * extensions[1, moving.spans[j, 0]]
                         )
-                    if not solve_rows(laws, problem, matrix, y, time):
+                    if not solve_contact_forces(laws, problem, matrix, y, time):
                         break
                     _push(rows_mean, now, total)
                 free_flow(a, v, flow, depth, total, tilt, end)
@@ -339,10 +344,10 @@ def march(
                         add_axial_forces(extensions[side], axial, a_mean, 0.5, pull, stored)
                     change, largest = 0.0, 0.0
                     for i in range(n):
-                        change = max(change, abs(pull[i] - softening[i]))
+                        change = max(change, abs(pull[i] - axial_push[i]))
                         largest = max(largest, abs(pull[i]))
-                    converged = change <= _AGREED * largest
-                    assign(softening, pull)
+                    converged = change <= _TOLERANCE * largest
+                    assign(axial_push, pull)
                 if converged:
                     break
             joins = converged
@@ -359,7 +364,7 @@ def march(
                 moved = now[j] * (y_end[j] - y[j])
                 if j < contacts:
                     mean[j] += share * now[j]
-                    # A contact that opens without a force loses its stored energy.
+                    # This includes the stored energy of a contact that opens at zero force.
                     if laws.limits[j]["damping"] > 0.0:
                         _, _, elastic = contact_response(laws, j, y[j], y_end[j], time)
                         tally[CONTACT] += moved - elastic * (y_end[j] - y[j])
@@ -373,12 +378,12 @@ def march(
                         moved -= now[j] * rows_mean[j, i] * (end[i] - a[i])
                     driven[travel_of[j]] += moved
             if softens:
-                # ½ aᵀ ΔK_G a, in the mean of both ends of the step.
+                # ½ aᵀ ΔK_G a, the mean of both ends of the step.
                 for corner in range(4):
                     at, share = (a, end)[corner // 2], 0.5 - corner % 2
                     add_axial_forces(extensions[corner % 2], axial, at, share, pull, driven)
-            _note_contacts(state, laws, y_end, free, time)
-            _note_peaks(state, laws, matrix, time, y_end, now, free, peak)
+            _update_contacts(state, laws, y_end, free, time)
+            _update_peaks(state, laws, matrix, time, y_end, now, free, peak)
             work, lost = finish_flow(a, v, flow, depth, total, tilt, end, load)
             tally[WORK] += work
             tally[DAMPING] += lost

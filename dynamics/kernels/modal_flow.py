@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The exact motion of uncoupled damped modes within one time step.
+"""Exact motion of uncoupled damped modes within one time step.
 
-Every mode obeys ä + c ȧ + ω² a = Q + S (t/h − ½), with a mean force Q that is constant within the
-step of length h, and a change S of the loads. With s(t) the response to a unit impulse,
+Each mode obeys ä + c ȧ + ω² a = Q + S (t/h − ½) within a step of length h, with the mean force Q
+and the change S of the load. With the response s(t) to a unit impulse,
 r = ∫ s dt, p = ∫ r dt/h and u = ∫∫ r dt dt/h²,
 
     a₁ = (1 − ω² r) a₀ + s v₀ + r Q + (p − r/2) S
@@ -25,18 +25,18 @@ from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import SUMS
 
-# Within (c + |ω|) h of 1 or less the power series converge in so many terms.
+# Number of terms with which the power series converge for (c + |ω|) h ≤ 1.
 _TERMS = 24
 
 
 class Flow(NamedTuple):
-    """The coefficients of steps of several lengths, the later ones each half as long.
+    """Coefficients of steps of several lengths, each half as long as the one before.
 
     Args:
         time: (num_lengths,) h in s.
         omega2, damping: (num_modes,) ω² in 1/s² and c in 1/s.
-        impulse, rise, ramp, drift: (num_lengths, num_modes) s in s, and r, p, u in s².
-        loss: (num_lengths, 6, num_modes) c ∫ of αα, αβ, ββ, αr, βr, rr over the step, with
+        impulse, gain, ramp, drift: (num_lengths, num_modes) s in s, and r, p, u in s².
+        loss: (num_lengths, 6, num_modes) c ∫ dt of αα, αβ, ββ, αr, βr, rr over the step, with
             v = α v₀ + β v̇₀ + r S/h; no columns without damping.
     """
 
@@ -44,65 +44,65 @@ class Flow(NamedTuple):
     omega2: Array
     damping: Array
     impulse: Array
-    rise: Array
+    gain: Array
     ramp: Array
     drift: Array
     loss: Array
 
 
 def modal_flow(system: GapSystem, times: Array) -> Flow:
-    """Return the flow of the modes of a system over each of the times (num_lengths,) in s."""
+    """Return the coefficients of a system's modes for steps of the lengths ``times`` in s."""
     found = [_flow_over(system.omega2, system.damping, time) for time in times.tolist()]
-    impulse, rise, ramp, drift, loss = (np.array(part) for part in zip(*found, strict=True))
+    impulse, gain, ramp, drift, loss = (np.array(part) for part in zip(*found, strict=True))
     omega2, damping = (np.ascontiguousarray(part) for part in (system.omega2, system.damping))
-    return Flow(times, omega2, damping, impulse, rise, ramp, drift, loss)
+    return Flow(times, omega2, damping, impulse, gain, ramp, drift, loss)
 
 
 def _flow_over(omega2: Array, c: Array, time: float) -> tuple[Array, Array, Array, Array, Array]:
-    """Return s, r, p, u (num_modes,) and the integrals of the loss (6, num_modes) of one step."""
+    """Return s, r, p, u (num_modes,) and loss coefficients (6, num_modes) of one step."""
     phase = np.sqrt(np.maximum(omega2, 0.0)) * time
     half = _sinc(0.5 * phase)
-    impulse, rise = time * _sinc(phase), 0.5 * time**2 * half**2
+    impulse, gain = time * _sinc(phase), 0.5 * time**2 * half**2
     ramp = time**2 * _lag(phase)
     drift = 0.125 * time**2 * (1.0 + half) * _lag(0.5 * phase)
     loss = np.zeros((6, c.size if c.any() else 0))
     general = np.flatnonzero((c > 0.0) | (omega2 < 0.0))
     if general.size:
         *found, integrals = _damped_flow(omega2[general], c[general], time)
-        for of_all, of_some in zip((impulse, rise, ramp, drift), found, strict=True):
+        for of_all, of_some in zip((impulse, gain, ramp, drift), found, strict=True):
             of_all[general] = of_some
         if loss.size:
             loss[:, general] = c[general] * integrals
-    return impulse, rise, ramp, drift, loss
+    return impulse, gain, ramp, drift, loss
 
 
 def _lag(x: Array) -> Array:
-    """Return (1 − sin(x)/x)/x², through x = 0 by a spherical Bessel function."""
+    """Return (1 − sin(x)/x)/x². A spherical Bessel function avoids cancellation near x = 0."""
     return np.asarray(0.5 * _sinc(0.5 * x) ** 2 - (_sinc(x) + spherical_jn(2, x)) / 3.0)
 
 
 def _sinc(x: Array) -> Array:
-    """Return sin(x)/x. numpy's sinc rounds the argument, so that cos² + sin² drifts from 1."""
+    """Return sin(x)/x. The round-off of numpy's sinc would make cos² + sin² drift from 1."""
     return np.divide(np.sin(x), x, out=np.ones(x.shape), where=x > 0.0)
 
 
 def _damped_flow(omega2: Array, c: Array, time: float) -> tuple[Array, Array, Array, Array, Array]:
-    """Return s, r, p, u (num_modes,) and the integrals (6, num_modes) of damped or tipping modes.
+    """Return s, r, p, u (num_modes,) and loss integrals (6, num_modes) of damped or unstable modes.
 
-    Power series of s'' = −c s' − ω² s over a part of the step, and doublings of that part: closed
-    forms cancel where damping or step is small.
+    A power series of s'' = −c s' − ω² s solves a fraction of the step, which is then doubled.
+    Closed forms would suffer from cancellation for small damping or step.
     """
     doublings = np.maximum(0.0, np.ceil(np.log2(time * (c + np.sqrt(np.abs(omega2))) + 1e-300)))
     t = time / 2.0**doublings
     older, newer = np.zeros(t.size), t.copy()
-    sine, rise, fall, drift = t.copy(), t**2 / 2.0, t**3 / 6.0, t**4 / 24.0
-    # Taylor coefficients of α, β and r over the part, for the integrals of their products.
+    sine, gain, fall, drift = t.copy(), t**2 / 2.0, t**3 / 6.0, t**4 / 24.0
+    # Taylor coefficients of α, β and r in this fraction, for the integrals of their products.
     series = np.zeros((3, _TERMS, t.size))
     series[1, 1], series[2, 2] = t, 0.5 * t**2
     for k in range(2, _TERMS):
         older, newer = newer, -t / k * (c * newer + omega2 * t / (k - 1) * older)
         sine += newer
-        rise += newer * t / (k + 1)
+        gain += newer * t / (k + 1)
         fall += newer * t**2 / ((k + 1) * (k + 2))
         drift += newer * t**3 / ((k + 1) * (k + 2) * (k + 3))
         series[1, k] = newer
@@ -117,35 +117,35 @@ def _damped_flow(omega2: Array, c: Array, time: float) -> tuple[Array, Array, Ar
     gram = t * np.einsum("akm,kl,blm->abm", series, weights, series)
     for doubling in range(int(doublings.max(initial=0.0))):
         go = doubling < doublings
-        vv, aa = 1.0 - c * sine - omega2 * rise, 1.0 - omega2 * rise
-        # (v, v̇, S/h) at the end of a part: v = α v₀ + β v̇₀ + r S/h, v̇ its derivative.
+        vv, aa = 1.0 - c * sine - omega2 * gain, 1.0 - omega2 * gain
+        # Matrix of (v, v̇, S/h) over a fraction of the step: v = α v₀ + β v̇₀ + r S/h.
         zero, one = np.zeros(t.size), np.ones(t.size)
         onward = np.array(
-            [[vv + c * sine, sine, rise], [-omega2 * sine, vv, sine], [zero, zero, one]]
+            [[vv + c * sine, sine, gain], [-omega2 * sine, vv, sine], [zero, zero, one]]
         )
         more = gram + np.einsum("kam,klm,lbm->abm", onward, gram, onward)
-        new_drift = 2.0 * drift + (t - omega2 * fall) * fall + rise**2 + t * fall
-        new_fall = fall + aa * fall + sine * rise + t * rise
-        new_rise = rise + aa * rise + sine**2
+        new_drift = 2.0 * drift + (t - omega2 * fall) * fall + gain**2 + t * fall
+        new_fall = fall + aa * fall + sine * gain + t * gain
+        new_rise = gain + aa * gain + sine**2
         new_sine = sine * (aa + vv)
-        for old, new in ((drift, new_drift), (fall, new_fall), (rise, new_rise), (sine, new_sine)):
+        for old, new in ((drift, new_drift), (fall, new_fall), (gain, new_rise), (sine, new_sine)):
             old[go] = new[go]
         gram[..., go] = more[..., go]
         t = np.where(go, 2.0 * t, t)
     pairs = gram[(0, 0, 1, 0, 1, 2), (0, 1, 1, 2, 2, 2)]
-    return sine, rise, fall / time, drift / time**2, pairs
+    return sine, gain, fall / time, drift / time**2, pairs
 
 
 @njit(**SUMS)
 def free_flow(
     a: Array, v: Array, flow: Flow, length: int, force: Array, change: Array, end: Array
 ) -> None:
-    """Set ``end`` to a₁; arguments as of :func:`finish_flow`."""
-    impulse, rise, ramp = flow.impulse[length], flow.rise[length], flow.ramp[length]
+    """Set ``end`` to a₁; arguments as in :func:`finish_flow`."""
+    impulse, gain, ramp = flow.impulse[length], flow.gain[length], flow.ramp[length]
     for i in range(a.size):
-        end[i] = a[i] + impulse[i] * v[i] + rise[i] * (force[i] - flow.omega2[i] * a[i])
+        end[i] = a[i] + impulse[i] * v[i] + gain[i] * (force[i] - flow.omega2[i] * a[i])
     for i in range(change.size):
-        end[i] += (ramp[i] - 0.5 * rise[i]) * change[i]
+        end[i] += (ramp[i] - 0.5 * gain[i]) * change[i]
 
 
 @njit(**SUMS)
@@ -153,26 +153,26 @@ def finish_flow(
     a: Array, v: Array, flow: Flow, length: int, force: Array, change: Array, end: Array,
     load: Array,
 ) -> tuple[float, float]:  # fmt: skip
-    """Advance a and v (num_modes,) to the end of a step; return work and damping loss in J.
+    """Advance a and v to the end of a step, and return work and damping loss in J.
 
     Args:
-        a, v: at the start of the step.
-        flow: of steps of several lengths,
-        length: the position of this one.
-        force: (num_modes,) the mean Q of all forces in N/√kg, and
-        change: (num_modes,) the change S of the loads in it; empty where they are constant.
+        a, v: coordinates and velocities (num_modes,) at the start of the step; they are changed.
+        flow: coefficients of steps of several lengths.
+        length: index of the length of this step.
+        force: (num_modes,) mean force Q in N/√kg.
+        change: (num_modes,) change S of the load in N/√kg; empty for constant loads.
         end: (num_modes,) a₁.
-        load: (num_modes,) the part of Q whose work is returned, with that of S.
+        load: (num_modes,) part of Q whose work is returned together with that of S.
     """
     h, omega2, damping = flow.time[length], flow.omega2, flow.damping
-    impulse, rise, ramp = flow.impulse[length], flow.rise[length], flow.ramp[length]
+    impulse, gain, ramp = flow.impulse[length], flow.gain[length], flow.ramp[length]
     drift, loss = flow.drift[length], flow.loss[length]
     work = 0.0
     lost = 0.0
     for i in range(a.size):
         work += load[i] * (end[i] - a[i])
     for i in range(change.size):
-        mean = (1.0 - omega2[i] * ramp[i]) * a[i] + rise[i] / h * v[i] + ramp[i] * force[i]
+        mean = (1.0 - omega2[i] * ramp[i]) * a[i] + gain[i] / h * v[i] + ramp[i] * force[i]
         mean += (drift[i] - 0.5 * ramp[i]) * change[i]
         work += change[i] * (0.5 * (a[i] + end[i]) - mean)
     for i in range(loss.shape[1]):
@@ -183,10 +183,10 @@ def finish_flow(
         lost += rate * (loss[2, i] * rate + 2.0 * loss[4, i] * tilt) + loss[5, i] * tilt * tilt
     for i in range(a.size):
         pull = force[i] - damping[i] * v[i] - omega2[i] * a[i]
-        v[i] += impulse[i] * pull - omega2[i] * rise[i] * v[i]
+        v[i] += impulse[i] * pull - omega2[i] * gain[i] * v[i]
         a[i] = end[i]
     for i in range(change.size):
-        v[i] += (rise[i] / h - 0.5 * impulse[i]) * change[i]
+        v[i] += (gain[i] / h - 0.5 * impulse[i]) * change[i]
     return work, lost
 
 
@@ -202,17 +202,17 @@ def modal_energy(a: Array, v: Array, omega2: Array) -> tuple[float, float]:
 
 
 @njit(**SUMS)
-def compliance(ends: Array, rows: Array, rise: Array) -> Array:
-    """Return C = E diag(r) Rᵀ (num_rows, num_rows) of rows at the end and in the mean of a step.
+def compliance(ends: Array, rows: Array, gain: Array) -> Array:
+    """Return C = E diag(r) Rᵀ (num_rows, num_rows) of rows E at the end and mean rows R of a step.
 
-    No product of BLAS, whose last bits depend on threads and on addresses in memory.
+    It avoids BLAS so that results are bitwise reproducible.
     """
     count = rows.shape[0]
     result = np.zeros((count, count))
     for j in range(count):
         for k in range(count):
             total = 0.0
-            for i in range(rise.size):
-                total += ends[j, i] * rise[i] * rows[k, i]
+            for i in range(gain.size):
+                total += ends[j, i] * gain[i] * rows[k, i]
             result[j, k] = total
     return result

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The forces of all rows in one time step, constant within it.
+"""Contact, friction and dashpot forces f of one time step, constant within it.
 
 With the displacements y₁ = y_free − C f of the rows at the end of the step,
 
-- a contact presses with the discrete gradient of its energy, f = (V(y₁) − V(y₀))/(y₁ − y₀), times
+- a contact force is the discrete gradient of its energy, f = (V(y₁) − V(y₀))/(y₁ − y₀), times
   1 + d ṗ of Hunt and Crossley (1975) at the mean rate of the penetration, never adhesive;
-- friction obeys |f| ≤ μN and f = μN sign(y₁ − y₀) where it slides (Moreau 1988), N being the
-  prescribed force and the |f| of the contacts that press;
+- friction obeys |f| ≤ μN, and f = μN sign(y₁ − y₀) in sliding (Moreau 1988), where N is the
+  prescribed normal force plus the |f| of its contacts;
 - a dashpot resists the mean rate, f = (y₁ − y₀)/h.
 
-The system is solved by a semismooth Newton method on the rows that act (Alart and Curnier 1991).
+A semismooth Newton method on the active rows solves the system (Alart and Curnier 1991).
 """
 
 from __future__ import annotations
@@ -26,24 +26,25 @@ from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import LOOP
 from dynamics.kernels.terms import discrete_gradient
 
-# Iterations after which a step is halved. Two are usual.
+# Number of iterations after which a step is halved. Most steps need two.
 _MOST_ITERATIONS = 25
 
-# Residual, as a part of the largest force, that is converged, and the round-off of displacements.
+# Residual of a converged solution, as a fraction of the largest force, and relative round-off of
+# displacements.
 _CONVERGED, _ROUND_OFF = 1.0e-13, 4.0e-16
 
-# A pivot below this part of its diagonal: the row depends on those before it and keeps its force.
+# Pivot below which a row depends linearly on earlier rows; such a row keeps its force.
 _DEPENDENT = 1.0e-11
 
 
 class Laws(NamedTuple):
-    """The laws of all rows: first the contacts, then friction, then dashpots.
+    """Contact and friction laws of all rows in the order contacts, frictions, dashpots.
 
     Args:
-        terms, limits: of the contacts.
-        first_term: (num_contacts + 1,) where the terms of each contact begin.
-        friction: (2, num_frictions) μ and the prescribed normal force in N.
-        pressing: (num_frictions, num_contacts) 1 where a contact presses, else 0.
+        terms, limits: terms and open ranges of the contact laws.
+        first_term: (num_contacts + 1,) index of the first term of each contact.
+        friction: (2, num_frictions) μ and prescribed normal force in N.
+        pressing: (num_frictions, num_contacts) 1 if the contact adds to the normal force, else 0.
     """
 
     terms: Terms
@@ -54,15 +55,15 @@ class Laws(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """The unknowns of a step, and scratch for its solution.
+    """Unknowns of a step, and work arrays for their solution.
 
     Args:
         free: (num_rows,) y_free in m.
-        force: (num_rows,) f in N; the first guess, then the solution.
+        force: (num_rows,) f in N; the initial guess, then the solution.
         bound: (num_frictions,) μN in N.
-        active: (num_rows,) positions of the rows that act.
-        jacobian: (num_rows, num_rows), and
-        residual: (num_rows,) of these.
+        active: (num_rows,) indices of the active rows.
+        jacobian: (num_rows, num_rows) Jacobian of the active rows.
+        residual: (num_rows,) residuals of the active rows.
     """
 
     free: Array
@@ -74,7 +75,7 @@ class Problem(NamedTuple):
 
 
 def row_laws(system: GapSystem) -> Laws:
-    """Return the laws of a system's rows."""
+    """Return the laws of all rows of a system."""
     terms, frictions = contact_terms(system.laws), system.frictions
     first = np.searchsorted(terms["row"], np.arange(len(system.laws) + 1))
     friction = np.array([[f.coefficient, f.normal_force] for f in frictions]).reshape(-1, 2)
@@ -85,7 +86,7 @@ def row_laws(system: GapSystem) -> Laws:
 
 
 def row_problem(num_rows: int, num_frictions: int) -> Problem:
-    """Return an empty problem."""
+    """Return a problem with zero forces."""
     square = np.zeros((num_rows, num_rows))
     active = np.zeros(num_rows, dtype=np.int64)
     free, force, residual = np.zeros((3, num_rows))
@@ -96,7 +97,10 @@ def row_problem(num_rows: int, num_frictions: int) -> Problem:
 def contact_response(
     laws: Laws, j: int, before: float, after: float, time: float
 ) -> tuple[float, float, float]:
-    """Return force in N, its derivative by y₁ in N/m, and elastic force in N of contact j."""
+    """Return the force in N of contact j, its derivative by y₁ in N/m, and its elastic part in N.
+
+    ``before`` and ``after`` are y₀ and y₁ in m, ``time`` is h in s.
+    """
     force, slope, elastic = 0.0, 0.0, 0.0
     damping = laws.limits[j]["damping"]
     for t in range(laws.first_term[j], laws.first_term[j + 1]):
@@ -115,15 +119,21 @@ def contact_response(
 
 
 @njit(**LOOP)
-def solve_rows(laws: Laws, problem: Problem, compliance: Array, start: Array, time: float) -> bool:
-    """Find the forces of a step; return whether the iteration has converged.
+def solve_contact_forces(
+    laws: Laws, problem: Problem, compliance: Array, start: Array, time: float
+) -> bool:
+    """Solve for the contact, friction and dashpot forces of a step.
 
     Args:
-        laws: of the rows.
-        problem: with y_free and a guess of the forces, which becomes the solution.
-        compliance: (num_rows, num_rows) C in m/N.
-        start: (num_rows,) y₀ in m.
+        laws: contact and friction laws.
+        problem: problem with y_free and an initial guess of the forces, which the solution
+            replaces.
+        compliance: C (num_rows, num_rows) in m/N.
+        start: y₀ (num_rows,) in m.
         time: h in s.
+
+    Returns:
+        Whether the iteration has converged.
     """
     force = problem.force
     contacts, frictions = laws.limits.size, laws.friction.shape[1]
@@ -194,10 +204,9 @@ def solve_rows(laws: Laws, problem: Problem, compliance: Array, start: Array, ti
 
 @njit(**LOOP)
 def _eliminate(problem: Problem, count: int) -> None:
-    """Turn the residuals of the active rows into changes of their forces.
+    """Replace the residuals of the ``count`` active rows by the changes of their forces.
 
-    Gaussian elimination with row exchanges on the first ``count`` rows of the Jacobian, whose
-    columns are those of the active rows.
+    This is Gaussian elimination with partial pivoting, in place in the Jacobian.
     """
     matrix, right, active = problem.jacobian, problem.residual, problem.active
     for p in range(count):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Rows and axial forces of a gap system that travels move, in the time loop.
+"""Rows and axial forces that change with travels, in the time loop.
 
-Between the ends of a step a row changes its displacement by B₁ a₁ − B₀ a₀ = B̄ (a₁ − a₀) +
-(B₁ − B₀)(a₀ + a₁)/2. Forces push with the mean row B̄ on the modes; the second part times the force
-is the work of the drive, so that the energy balances exactly.
+Within a step, the displacement of a row changes by B₁ a₁ − B₀ a₀ = B̄ (a₁ − a₀) +
+(B₁ − B₀)(a₀ + a₁)/2. Forces act on the modes by the mean row B̄. The second part times the force is
+the work of the drive, so that the energy balance is exact.
 """
 
 from __future__ import annotations
@@ -14,23 +14,24 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array, Indices
-from dynamics.drive.travel import KINDS
+from dynamics.drive.travel import ROW_KINDS
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import SUMS
 
-# A mode that moves the place of a force by a smaller part of the largest does so by round-off.
+# Fraction of the largest slope of a mode at a force below which the slope of a mode is round-off.
 _NOTHING = 1.0e-13
 
 
 class MovingRows(NamedTuple):
-    """The rows that travels move, as cubics between knots.
+    """Rows that change with travels, as cubics between knots.
 
     Args:
-        number: (num_moving,) the position of each among all rows.
-        spans: (num_moving, 4) its travel, its first and last knot, and its first piece.
-        shifts: (num_moving,) growth of its displacement per m of extension.
-        knots: of all travels in m.
-        cubics: (num_pieces of all rows, 4, num_modes) coefficients of the part of a piece passed.
+        number: (num_moving,) index of each among all rows.
+        spans: (num_moving, 4) indices of its travel, first and last knot, and first piece.
+        shifts: (num_moving,) increase of its displacement per m of extension.
+        knots: knots of all travels in m.
+        cubics: (num_pieces, 4, num_modes) coefficients of powers of the relative position in a
+            piece, for all rows.
     """
 
     number: Indices
@@ -41,38 +42,38 @@ class MovingRows(NamedTuple):
 
 
 class AxialForces(NamedTuple):
-    """Axial forces that move with travels, one for each plane in which they act.
+    """Axial forces that move with travels, one for each plane of bending.
 
     Args:
         force: (num_forces,) N in N.
-        spans: (num_forces, 4) as of :class:`MovingRows`.
-        moved: (num_forces,) number of modes that move the place of each, and
-        modes: (num_forces, most_modes) these modes.
-        knots: of all, in m.
-        slopes: (num_pieces, 3, most_modes) of w′ over the powers of the part passed, and
-        passed: (num_pieces, most_modes, most_modes) ∫ w′ᵀ w′ ds before each piece; see
+        spans: (num_forces, 4) as in :class:`MovingRows`.
+        num_modes: (num_forces,) number of modes with a slope at the force.
+        modes: (num_forces, most_modes) indices of these modes.
+        knots: knots of all forces in m.
+        slopes: (num_pieces, 3, most_modes) coefficients of w′, as in
             :class:`dynamics.drive.row_table.MovingAxialForce`.
+        products: (num_pieces, most_modes, most_modes) ∫ w′ᵀ w′ ds from 0 to each piece.
     """
 
     force: Array
     spans: Indices
-    moved: Indices
+    num_modes: Indices
     modes: Indices
     knots: Array
     slopes: Array
-    passed: Array
+    products: Array
 
 
 def moving_rows(system: GapSystem) -> MovingRows:
-    """Return the rows of a system that travels move."""
-    firsts = np.cumsum([0, *(len(getattr(system, kind)) for kind in KINDS)])
-    first_of = dict(zip(KINDS, firsts[:-1].tolist(), strict=True))
+    """Return the rows of a system that change with travels."""
+    firsts = np.cumsum([0, *(len(getattr(system, kind)) for kind in ROW_KINDS)])
+    first_of = dict(zip(ROW_KINDS, firsts[:-1].tolist(), strict=True))
     numbers, spans, shifts, pieces = [], [], list[float](), 0
     cubics = [np.zeros((0, 4, system.num_modes))]
     first_knots = np.cumsum([0, *(len(travel.table.knots) for travel in system.travels)]).tolist()
     for number, travel in enumerate(system.travels):
-        shifts += travel.shifts or [0.0] * len(travel.moving)
-        for row, (kind, position) in enumerate(travel.moving):
+        shifts += travel.shifts or [0.0] * len(travel.moved_rows)
+        for row, (kind, position) in enumerate(travel.moved_rows):
             numbers.append(first_of[kind] + position)
             spans.append((number, first_knots[number], first_knots[number + 1] - 1, pieces))
             cubics.append(travel.table.coefficients[:, :, row])
@@ -87,7 +88,7 @@ def moving_rows(system: GapSystem) -> MovingRows:
 
 
 def moving_axial_forces(system: GapSystem) -> AxialForces:
-    """Return the axial forces of a system that travels move."""
+    """Return the axial forces of a system that move with travels."""
     every = [
         (number, one, plane)
         for number, travel in enumerate(system.travels)
@@ -98,12 +99,14 @@ def moving_axial_forces(system: GapSystem) -> AxialForces:
     moved = [np.flatnonzero(part > _NOTHING * part.max(initial=0.0)) for part in reach]
     most = max((modes.size for modes in moved), default=0)
     pieces = sum(len(one.table.coefficients) for _, one, _ in every)
-    slopes, passed = np.zeros((pieces, 3, most)), np.zeros((pieces, most, most))
+    slopes, products = np.zeros((pieces, 3, most)), np.zeros((pieces, most, most))
     columns, spans, first = np.zeros((len(every), most), dtype=np.int64), [], 0
     for t, ((number, one, plane), modes) in enumerate(zip(every, moved, strict=True)):
         last = first + len(one.table.coefficients)
         slopes[first:last, :, : modes.size] = one.slopes[:, :, plane, modes]
-        passed[first:last, : modes.size, : modes.size] = one.passed(plane)[:, modes[:, None], modes]
+        products[first:last, : modes.size, : modes.size] = one.slope_products(plane)[
+            :, modes[:, None], modes
+        ]
         columns[t, : modes.size] = modes
         spans.append((number, first + t, last + t, first))
         first = last
@@ -114,13 +117,13 @@ def moving_axial_forces(system: GapSystem) -> AxialForces:
         columns,
         np.concatenate([np.zeros(0), *(one.table.knots for _, one, _ in every)]),
         slopes,
-        passed,
+        products,
     )
 
 
 @njit(**SUMS)
 def find_piece(extensions: Array, span: Indices, knots: Array) -> tuple[int, float, float]:
-    """Return the piece of a span at its travel's extension, the part passed, the length in m."""
+    """Return piece, relative position in it, and its length in m at the extension of a travel."""
     travel, low, high, first = span
     start, extension = low, extensions[travel]
     while high - low > 1:
@@ -137,14 +140,14 @@ def find_piece(extensions: Array, span: Indices, knots: Array) -> tuple[int, flo
 def move_rows(
     extensions: Array, moving: MovingRows, before: Array, after: Array, mean: Array
 ) -> None:
-    """Set the rows (num_rows, num_modes) that move.
+    """Set the rows (num_rows, num_modes) that change with travels.
 
     Args:
-        extensions: (num_travels,) in m at the end of a step.
-        moving: the rows that move.
-        before: at the start of the step.
-        after: B₁, is set.
-        mean: B̄, is set.
+        extensions: (num_travels,) extensions in m at the end of a step.
+        moving: data of these rows.
+        before: B₀ at the start of the step.
+        after: B₁ at the end of the step, to be set.
+        mean: B̄, to be set.
     """
     for m in range(moving.number.size):
         row = moving.number[m]
@@ -160,21 +163,21 @@ def move_rows(
 def add_axial_forces(
     extensions: Array, axial: AxialForces, a: Array, share: float, total: Array, energies: Array
 ) -> None:
-    """Add a share of K_G a to ``total``, and of ½ aᵀ K_G a in J to the energy of each travel.
+    """Add ``share`` K_G a to ``total``, and ``share`` ½ aᵀ K_G a in J to the energy of each travel.
 
     Args:
-        extensions: (num_travels,) in m.
-        axial: the axial forces that move.
+        extensions: (num_travels,) extensions in m.
+        axial: moving axial forces.
         a: (num_modes,) modal coordinates.
-        share: factor of the force and of the energy.
-        total: (num_modes,) force on the modes; is changed.
-        energies: (num_travels,) energy that the strain energy loses; is changed.
+        share: factor of force and energy.
+        total: (num_modes,) modal force, to be changed.
+        energies: (num_travels,) reduction of the strain energy in J, to be changed.
     """
     own, force = np.zeros((2, axial.modes.shape[1]))
-    slopes, passed = axial.slopes, axial.passed
+    slopes, products = axial.slopes, axial.products
     for t in range(axial.force.size):
         p, u, length = find_piece(extensions, axial.spans[t], axial.knots)
-        count = axial.moved[t]
+        count = axial.num_modes[t]
         for i in range(count):
             own[i] = a[axial.modes[t, i]]
         level, turned, bent = 0.0, 0.0, 0.0
@@ -192,7 +195,7 @@ def add_axial_forces(
         for j in range(count):
             pressed = axial.force[t] * own[j]
             for i in range(count):
-                force[i] += passed[p, j, i] * pressed
+                force[i] += products[p, j, i] * pressed
         for i in range(count):
             total[axial.modes[t, i]] += share * force[i]
             energies[axial.spans[t, 0]] += 0.5 * share * own[i] * force[i]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Terms of contact laws in compiled loops: force, energy, slope and discrete gradient.
 
-The formulas of the first three are in :mod:`dynamics.contact_term`, which does not import numba,
-since that takes longer than the check of a case.
+:mod:`dynamics.contact_term` has the formulas of the first three. It does not import numba, since
+that takes longer than the check of a case.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ term_force, term_energy, term_slope = (
     njit(**LOOP, inline="always")(of_term) for of_term in (force_of, energy_of, slope_of)
 )
 
-# Below this relative change of a penetration the difference quotient of a slope is round-off.
+# Relative change of a penetration below which the difference quotient is round-off.
 _CLOSE = 1.0e-3
 
 
@@ -35,12 +35,12 @@ def contact_energy(y: Array, terms: Terms) -> float:
 def discrete_gradient(term: np.void, before: float, after: float) -> tuple[float, float]:
     """Return (V(y₁) − V(y₀))/(y₁ − y₀) of a term's energy V in N, and its derivative by y₁ in N/m.
 
-    Gonzalez (1996). Neither cancels where y₁ is near y₀; there the derivative, which only directs
-    Newton's method, is that of a midpoint unless the power is 1 or 2.
+    Both are free of cancellation for y₁ near y₀ (Gonzalez 1996). There the derivative, which only
+    Newton's method uses, is a midpoint value unless the exponent is 1 or 2.
 
     Args:
-        term: of a contact law.
-        before, after: the gaps y₀ and y₁ in m.
+        term: term of a contact law.
+        before, after: gaps y₀ and y₁ in m.
     """
     side, k, n = term["side"], term["stiffness"], term["exponent"]
     p, q = side * before - term["onset"], side * after - term["onset"]

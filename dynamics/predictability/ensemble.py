@@ -24,29 +24,29 @@ from dynamics.trajectory import Trajectory
 
 Vary = Literal["load", "clearance", "velocity"]
 
-# Variables that are kept for each member, since whole trajectories would need too much memory.
-KEPT = ("tip", "head", "contact_force")
+# Stored variables of each member. Whole trajectories would need too much memory.
+MEMBER_VARIABLES = ("tip", "head", "contact_force")
 
 
 @dataclass(frozen=True, slots=True)
 class EnsembleMember:
-    """Run of an ensemble, as sent to a worker.
+    """Run of an ensemble.
 
     Args:
         motion: motion without changes.
         vary: name of the changed data.
         change: relative change.
         integrator: integrator of the motion.
-        kept: returned variables.
+        variables: names of the variables to store.
     """
 
     motion: Motion
     vary: Vary
     change: float
     integrator: Integrator
-    kept: Sequence[str] = KEPT
+    variables: Sequence[str] = MEMBER_VARIABLES
 
-    def within(self, part: float) -> EnsembleMember:
+    def shortened(self, part: float) -> EnsembleMember:
         """Return the run shortened to a fraction of its duration, in whole output steps."""
         outputs = max(1, round(part * self.motion.outputs))
         return replace(
@@ -96,7 +96,7 @@ def run_members(
     executor: Executor | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> list[xr.Dataset]:
-    """Run the members; return the kept variables and ``energy_residual`` of each, in order.
+    """Run the members, and return the stored variables and ``energy_residual`` of each.
 
     The result does not depend on the executor.
 
@@ -121,10 +121,10 @@ def run_members(
 
 def _run(member: EnsembleMember) -> xr.Dataset:
     run = member.integrator(vary_motion(member.motion, member.vary, 1.0 + member.change))
-    return _kept(run, member.kept)
+    return _select_variables(run, member.variables)
 
 
-def _kept(run: Trajectory, names: Sequence[str]) -> xr.Dataset:
+def _select_variables(run: Trajectory, names: Sequence[str]) -> xr.Dataset:
     kept = run.data[[name for name in names if name in run.data]]
     return kept.assign(energy_residual=((), run.energy_residual, {"units": "1"}))
 
@@ -161,9 +161,10 @@ def integrate_ensemble(
         unchanged: trajectory of member 0, if it is available.
 
     Returns:
-        A dataset with dims ``member``, ``time``, ``station``: the variables of ``KEPT`` that the
-        system observes, and ``energy_residual`` (member); coordinate ``change`` (member), relative.
-        Attributes: ``vary``, ``relative``, ``seed``, ``integrator``, and ``step`` in s of member 0.
+        A dataset with dims ``member``, ``time``, ``station``: ``tip``, ``head`` and
+        ``contact_force`` if available, and ``energy_residual`` (member); coordinate ``change``
+        (member), relative. Attributes: ``vary``, ``relative``, ``seed``, ``integrator``, and
+        ``step`` in s of member 0.
 
     Raises:
         ValueError: an argument is out of its range, or the varied data are zero.
@@ -179,7 +180,10 @@ def integrate_ensemble(
     unchanged = integrator(motion) if unchanged is None else unchanged
     same = integrator.like(unchanged)
     others = [EnsembleMember(motion, vary, change, same) for change in changes[1:]]
-    runs = [_kept(unchanged, KEPT), *run_members(others, executor, progress)]
+    runs = [
+        _select_variables(unchanged, MEMBER_VARIABLES),
+        *run_members(others, executor, progress),
+    ]
     ensemble = xr.concat(runs, "member", combine_attrs="drop_conflicts")
     ensemble.attrs = {
         "vary": vary,

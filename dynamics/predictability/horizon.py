@@ -25,7 +25,7 @@ from dynamics.motion import Motion
 from dynamics.predictability.ensemble import EnsembleMember, Vary, check_varied, run_members
 from dynamics.trajectory import Trajectory
 
-# Fractions of the range at which two curves become distinguishable, and unrelated.
+# Fractions of the range at which two curves become distinguishable, and independent.
 SHARES = (0.01, 0.20)
 # Fraction of the range up to which the distance is proportional to ε.
 EARLY = 1.0e-4
@@ -41,8 +41,7 @@ def horizon(members: Array, time: Array, share: float) -> float:
 
     Members diverge when their spread exceeds a share of the range of member 0. The spread is half
     the distance between the largest and the smallest member, which is the error of the best single
-    prediction. A standard deviation would be smaller while most members agree, and give a later
-    horizon.
+    prediction. A standard deviation would be smaller while most members agree.
     """
     spread = 0.5 * np.ptp(members, axis=0)
     passed = np.flatnonzero(spread > share * np.ptp(members[0]))
@@ -54,8 +53,8 @@ class Growth:
     """Line T(ε) through measured horizons.
 
     Args:
-        rate: λ in 1/s; NaN with fewer than two horizons, or if smaller ε do not give later horizons
-            beyond the scatter.
+        rate: λ in 1/s; NaN with fewer than two horizons, or if the increase of horizons with
+            smaller ε is within the scatter.
         start: T(1) in s; NaN like ``rate``.
         scatter: root mean square distance of the horizons from the line in s.
     """
@@ -66,14 +65,14 @@ class Growth:
 
     @classmethod
     def fit(cls, relatives: Array, times: Array) -> Growth:
-        """Fit a line to T (num,) in s over ln ε by least squares; NaN horizons are ignored."""
+        """Fit a line to horizons T (num,) in s over ln ε by least squares, without NaN horizons."""
         known = np.isfinite(times)
         if known.sum() < 2:
             return cls(np.nan, np.nan, np.nan)
         logs = np.log(relatives[known])
         slope, start = np.polyfit(logs, times[known], 1)
         scatter = float(np.sqrt(np.mean((times[known] - slope * logs - start) ** 2)))
-        # Twice the standard error of the slope, which may result from scatter by chance.
+        # A slope within twice its standard error may result from scatter by chance.
         if not slope < -2.0 * scatter / (np.sqrt(known.sum()) * np.std(logs)):
             return cls(np.nan, np.nan, scatter)
         return cls(float(-1.0 / slope), float(start), scatter)
@@ -91,9 +90,9 @@ class Horizons:
         relatives: ε (num_relatives,), ascending.
         shares: fractions (num_shares,) of the range, ascending.
         times: horizons (num_relatives, num_shares) in s; NaN if the spread stays below the share.
-        of_step: time (num_shares,) in s at which a run with a finer step or tolerance diverges.
+        of_step: horizons (num_shares,) in s of a run with a finer step or tolerance.
         growth: line through ``times`` for each share.
-        step_change: ε with the same horizon at the first share as the finer step, by the first
+        step_change: ε whose horizon at the first share equals that of the finer step, by the first
             line; 0 if the finer step does not diverge, NaN without a line.
     """
 
@@ -108,11 +107,10 @@ class Horizons:
     def limits(self) -> list[Literal["step", "physics", "nothing"]]:
         """The limit of predictability at each share (num_shares).
 
-        ``step``: a finer step changes the run more than the largest change of the data, so that a
-            finer step would help. ``physics``: the changes of data have the larger effect.
-            ``nothing``: neither makes runs diverge to this share within the duration. If the growth
-            is measured, its line decides for all shares, since the order in which two runs reach a
-            large share is chance.
+        ``step``: the finer step has a larger effect than the largest change of the data, so that a
+            finer step extends the horizon. ``physics``: the changes of data have the larger effect.
+            ``nothing``: runs do not diverge to this share within the duration. If the growth is
+            known, its line decides for all shares, since horizons at large shares are random.
         """
         largest = self.relatives[-1]
         found: list[Literal["step", "physics", "nothing"]] = []
@@ -143,9 +141,9 @@ def measure_horizons(
     """Return the horizons of a motion for a finer step and for changes of each size.
 
     If runs with the largest change do not diverge to the first share, smaller changes are not run.
-    Runs that diverge to all shares end early. Few partners suffice for the growth at a small share,
-    with its scatter as a measure of error. Horizons at large shares are random, and earlier with
-    more partners.
+    Runs that diverge to all shares end early. Few partners suffice for the growth at a small share;
+    its scatter measures the error. Horizons at large shares are random, and earlier with more
+    partners.
 
     >>> kicked = Motion(ball, duration=1.0, velocity=[3.0])
     >>> found = measure_horizons(kicked, [1e-9, 1e-6], "velocity", observer="height")
@@ -158,8 +156,8 @@ def measure_horizons(
         vary: changed data, see :func:`dynamics.predictability.ensemble.integrate_ensemble`.
         partners: number of runs for each size, with changes between ε/2 and ε of either sign; the
             first change is ε.
-        integrator: integrator of the unchanged run, :class:`AdaptiveStep` unless given; the other
-            runs use its steps, one of them half of each.
+        integrator: integrator of the unchanged run, :class:`AdaptiveStep` unless given. The other
+            runs use its steps; the run with a finer step uses half of each.
         executor: executor as in :func:`dynamics.predictability.ensemble.run_members`.
         shares: fractions of the observer's range, ascending.
         observer: name of the compared output.
@@ -191,7 +189,7 @@ def measure_horizons(
         found = np.full((len(groups), len(shares)), np.nan)
         for number, part in enumerate(_PARTS):
             left = [g for g in range(len(groups)) if np.isnan(found[g]).any()]
-            requested = [member.within(part) for g in left for member in groups[g]]
+            requested = [member.shortened(part) for g in left for member in groups[g]]
             runs = iter(run_members(requested, executor, partial(report, done + number * _STAGE)))
             for g in left:
                 tips = [next(runs)[observer].values for _ in groups[g]]
@@ -199,7 +197,7 @@ def measure_horizons(
                 found[g] = [horizon(np.array([whole, *near]), time, share) for share in shares]
         return found
 
-    # The longest run starts first, so that no core waits for it at the end.
+    # The run with the finer step is the longest. It starts first so that all cores end together.
     of_step, of_largest = measure([finer, largest], 0.0)
     of_smaller = np.full((len(smaller), len(shares)), np.nan)
     if np.isfinite(of_largest[0]):
@@ -217,7 +215,7 @@ def measure_horizons(
     )
 
 
-def horizons_of(
+def ensemble_horizons(
     ensemble: xr.Dataset, shares: Sequence[float] = SHARES, observer: str = "tip"
 ) -> list[float]:
     """Return the horizons (num_shares) of an ensemble in s; NaN for shares out of reach."""

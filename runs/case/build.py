@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from dynamics.drive.stick_slip import OF_ELASTIC_DRIVES
+from dynamics.drive.stick_slip import ELASTIC_DRIVE_VARIABLES
 from dynamics.energy import DRIVEN_ENERGIES
 from dynamics.excitation import InitialImpulse, ReleasedLoad
-from dynamics.trajectory import OF_DRIVES, OF_STATIONS
+from dynamics.trajectory import DRIVE_VARIABLES, STATION_VARIABLES
 from geometry.axial import with_compression
 from geometry.boom import (
     Boom,
@@ -36,7 +36,7 @@ from runs.case.turning import check_turning, frame_motion, turning_loads
 
 # Quantities in the trajectories of every boom.
 _TAKEN = {
-    *OF_STATIONS,
+    *STATION_VARIABLES,
     *DRIVEN_ENERGIES,
     "time",
     "station",
@@ -128,7 +128,9 @@ def _check_observations(case: Case) -> None:
     """Check that the names of observations are unique."""
     check_names("observe", [table.name for table in case.observe])
     of_drives = {
-        name + suffix for suffix in case.driven for name in (*OF_DRIVES, *OF_ELASTIC_DRIVES)
+        name + suffix
+        for suffix in case.driven
+        for name in (*DRIVE_VARIABLES, *ELASTIC_DRIVE_VARIABLES)
     }
     for number, table in enumerate(case.observe, start=1):
         if table.name in _TAKEN | of_drives:

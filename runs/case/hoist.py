@@ -118,4 +118,4 @@ def with_hanging_load(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
         # The rope of a load on the ground reaches the tip of the boom where it rests.
         rest = tip @ initial_state(system, case.start.at_rest)[1]
         load = replace(load, slack=load.slack + load.cosine * float(rest))
-    return load.hang(system, tip, boom.segments[-1].end)
+    return load.attach(system, tip, boom.segments[-1].end)

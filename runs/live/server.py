@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.failure import NUMERICS
+from dynamics.failure import NUMERICAL_ERRORS
 from runs.case import toml
 from runs.case.messages import BadInput
 from runs.live.beam import beam_results
@@ -119,7 +119,7 @@ class LivePage:
             return
         except BadInput as error:
             yield _refusal(error.key, error.what)
-        except NUMERICS as error:
+        except NUMERICAL_ERRORS as error:
             yield _refusal("", failure_reason(error))
         except OSError as error:
             yield _refusal("", f"a file cannot be used ({error.strerror or error})")

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from dynamics.failure import NUMERICS
+from dynamics.failure import NUMERICAL_ERRORS
 from runs.case.build import build_boom
 from runs.case.combinations import CombinedCase, combined_cases
 from runs.case.schema import Case
@@ -55,7 +55,7 @@ def combination_states(case: Case) -> list[CombinationState]:
         boom = boom_with_play(combined.case, build_boom(combined.case))
         try:
             beam = StaticBeam.of(combined.case, boom)
-        except NUMERICS:
+        except NUMERICAL_ERRORS:
             found.append(CombinationState(combined, None, []))
             continue
         extremes = [*beam.extremes(case.system), *beam.foot_extremes(case.system)]

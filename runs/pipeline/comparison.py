@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 
 from dynamics.arrays import Array
-from dynamics.predictability.horizon import SHARES, horizons_of
-from dynamics.trajectory import Pointwise
+from dynamics.predictability.horizon import SHARES, ensemble_horizons
+from dynamics.trajectory import PointwiseDifferences
 from runs.pipeline.low_pass import Number, Numbers, SlowPeaks
 
 
@@ -104,7 +104,7 @@ class Distributions:
 class Comparison:
     """Comparison of two models at three levels."""
 
-    pointwise: Pointwise
+    pointwise: PointwiseDifferences
     peaks: PeakDifferences
     distributions: Distributions
 
@@ -125,12 +125,14 @@ def compare(one: xr.Dataset, other: xr.Dataset, cutoff: float, observer: str = "
     if not np.array_equal(time, other["time"].values):
         raise ValueError("the ensembles must have the same times")
     members = one[observer].values, other[observer].values
-    horizons = np.array([horizons_of(ensemble, SHARES, observer) for ensemble in (one, other)])
+    horizons = np.array(
+        [ensemble_horizons(ensemble, SHARES, observer) for ensemble in (one, other)]
+    )
     until = float(np.nan_to_num(horizons[:, 0], nan=time[-1]).min())
     # The maximum is NaN if a horizon is NaN, that is, if a model is predictable to the end.
     since = float(horizons[:, -1].max())
     return Comparison(
-        Pointwise.of(members[0][0], members[1][0], time, until),
+        PointwiseDifferences.from_curves(members[0][0], members[1][0], time, until),
         PeakDifferences.of(*(SlowPeaks.of(m, time, cutoff) for m in members)),
         Distributions.of(*members, time, since),
     )

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dynamics.failure import NUMERICS
+from dynamics.failure import NUMERICAL_ERRORS
 from dynamics.motion import MOST_STEPS, Motion
 from runs.case.checked_case import CheckedCase
 from runs.case.kinds.model import ModelTable
@@ -149,7 +149,7 @@ def _of_model(preview: Preview, model: Model) -> Cost:
     before = Cost(stand_in.memory, _RESULTS + stand_in.seconds)
     try:
         motion = preview.motion(model, stand_in.beam)
-    except NUMERICS:
+    except NUMERICAL_ERRORS:
         # The run meets the same error and reports it.
         return before
     system, time = motion.system, case.time

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.failure import NUMERICS
+from dynamics.failure import NUMERICAL_ERRORS
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
 from dynamics.trajectory import Trajectory
@@ -119,7 +119,7 @@ def evaluate_model(
         bonded = _bonded(boom, model, played, found)
         found = positions(bonded.system, times)
         other = bonded.at_rest(found)
-    except NUMERICS:
+    except NUMERICAL_ERRORS:
         # For example, rigid segments without play have no degree of freedom.
         return own
     own = replace(
@@ -134,7 +134,7 @@ def evaluate_model(
     try:
         motion = MotionPlan.of(bonded.system, case, model).trajectory()
         other = bonded.with_motion(other, found, motion, case, model)
-    except NUMERICS:
+    except NUMERICAL_ERRORS:
         # The static states are still available.
         return own
     return replace(own, motion_bonded=other.motion, life_bonded=other.life)
@@ -150,7 +150,7 @@ def _bonded(
         return LoadedModel(without, system, with_cylinders(without, system, own[1]))
     initial = [position for time, position in found.items() if _at_initial_extension(boom, time)]
     system, basis = bonded_system(played.system.at_time(0.0), initial)
-    return LoadedModel(without, system, [line.on(basis) for line in played.lines])
+    return LoadedModel(without, system, [line.transform(basis) for line in played.lines])
 
 
 def _at_initial_extension(boom: Boom, time: float) -> bool:

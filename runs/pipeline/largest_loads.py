@@ -85,7 +85,7 @@ class StaticBeam(NamedTuple):
         own = lines(boom, elements.segments)
         # Springs of walls follow the coordinates of the segments.
         basis = np.eye(own[0].rows["deflection"].shape[1], system.num_modes)
-        along = with_cylinders(boom, system, [line.on(basis) for line in own])
+        along = with_cylinders(boom, system, [line.transform(basis) for line in own])
         found = positions(system, instants(system, case.time.duration))
         rests = [static_result(boom, system, along, *rest) for rest in found.items()]
         return cls(boom, along, np.array([*found.values()]), rests)
@@ -131,7 +131,7 @@ class StaticBeam(NamedTuple):
                 continue
             x = segment.foot.x
             parts = [
-                self.positions @ (line.beside(name, x, -1) - line.beside(name, x, 1))
+                self.positions @ (line.one_sided_row(name, x, -1) - line.one_sided_row(name, x, 1))
                 for name in ("shear", "lateral_shear", "normal")
                 if name in line.rows
             ]

@@ -17,7 +17,7 @@ from beam_model.segment_model import gap_system
 from dynamics.integrator import FixedStep, Integrator
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import Vary
-from dynamics.predictability.horizon import SHARES, horizons_of, measure_horizons
+from dynamics.predictability.horizon import SHARES, ensemble_horizons, measure_horizons
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs.case.schema import TimeTable
@@ -92,7 +92,7 @@ def summarise_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> Ensembl
         ensemble: ensemble of :func:`dynamics.predictability.ensemble.integrate_ensemble`.
         peaks: peaks of the tip's slow motion that all members have; None without a cut-off.
     """
-    shares = zip(SHARES, horizons_of(ensemble), strict=True)
+    shares = zip(SHARES, ensemble_horizons(ensemble), strict=True)
     return EnsembleSummary(
         horizons={f"{share:g}": time for share, time in shares},
         energy_residual=float(ensemble["energy_residual"].max()),

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from dynamics.trajectory import Pointwise
+from dynamics.trajectory import PointwiseDifferences
 from geometry.axial import moving_force
 from geometry.boom import Boom
 from geometry.typography import TO_MILLI, TO_PERCENT, listed, signed
@@ -46,7 +46,7 @@ MOST = 0.1
 HALFWAY = 5.0
 # Scope of each level of comparison.
 DECIDES: Mapping[str, str] = {
-    "pointwise": Pointwise.decides,
+    "pointwise": PointwiseDifferences.decides,
     "peaks": PeakDifferences.decides,
     "distributions": Distributions.decides,
 }
@@ -107,7 +107,10 @@ def compare_models(
         ends = dict.fromkeys(end for end in (HALFWAY, float(time[-1])) if end <= time[-1])
         tips = {name: trajectories["tip"].sel(model=name).values for name in ran}
         for name in _others(trajectories, reference):
-            parts = [Pointwise.of(tips[reference], tips[name], time, end) for end in ends]
+            parts = [
+                PointwiseDifferences.from_curves(tips[reference], tips[name], time, end)
+                for end in ends
+            ]
             whole[name] = Whole(
                 until=[part.until for part in parts],
                 largest=[part.largest for part in parts],

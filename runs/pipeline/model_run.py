@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from beam_model.calibration import Calibration, Stiffness
-from dynamics.failure import NUMERICS, NumericsError
+from dynamics.failure import NUMERICAL_ERRORS, NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.predictability.ensemble import integrate_ensemble
 from dynamics.trajectory import Trajectory
@@ -102,7 +102,7 @@ def run_model(
         tools = None if comm is None else Workshop(comm, stages.progress, context.cache, helper)
         try:
             built = build(case, boom, model, tools)
-        except NUMERICS as error:
+        except NUMERICAL_ERRORS as error:
             if context.alone or not model.needs_shell:
                 raise
             raise SharedFailure(failure_reason(error)) from error

@@ -104,15 +104,15 @@ class MotionPlan:
 
     def warm(self) -> None:
         """Compile the time loop by one output, so that later wall times exclude compilation."""
-        from dynamics.kernels.compiled import one_compiles
+        from dynamics.kernels.compiled import compilation_lock
 
-        with one_compiles():
+        with compilation_lock():
             self.integrator(replace(self.motion, duration=self.motion.output_step))
 
     def trajectory(self, progress: Callable[[float], None] | None = None) -> Trajectory:
         """Return the motion."""
         found = self.integrator(self.motion, progress)
-        return found if self.load is None else self.load.separate(found)
+        return found if self.load is None else self.load.separate_rope(found)
 
     def step_error(self, trajectory: Trajectory, progress: Callable[[float], None]) -> float:
         """Return the change of the tip for a doubled fixed step, as a fraction of its range."""

@@ -199,7 +199,7 @@ def _reactions(motions: Motions, number: int) -> Iterator[Peak]:
         """Return a section force's jumps at x, in motion (num_times,) and at rest (num_rests,)."""
         row = np.zeros(states[0].shape[1])
         if name in line.rows:
-            row = line.beside(name, x, -1) - line.beside(name, x, 1)
+            row = line.one_sided_row(name, x, -1) - line.one_sided_row(name, x, 1)
         return [each[:, : row.size] @ row for each in states]
 
     for support in segment.supports:

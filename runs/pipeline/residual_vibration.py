@@ -14,8 +14,8 @@ from typing import Annotated
 import numpy as np
 
 from dynamics.drive.travel import Travel
-from dynamics.equilibrium import rest_at
-from dynamics.failure import NUMERICS, NumericsError
+from dynamics.equilibrium import equilibrium_at
+from dynamics.failure import NUMERICAL_ERRORS, NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array, Indices
@@ -100,7 +100,7 @@ def residual_vibration(
         return None
     try:
         tip, time = farthest_from_rest(system, trajectory)
-    except NUMERICS:
+    except NUMERICAL_ERRORS:
         return None
     stands = [
         _standing(system.at_time(when).in_own_modes(), case, model) for when in (0.0, max(ends))
@@ -125,7 +125,7 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
     values = np.array([change(times) for change in changes]).reshape(len(changes), times.size)
     passed = _passed(values)
     steps = _rest_steps(values, passed)
-    rests = [rest_at(system, t) for t in times[steps].tolist()]
+    rests = [equilibrium_at(system, t) for t in times[steps].tolist()]
     off = np.zeros(time.size)
     for name in _TIP:
         if name in system.observers:
@@ -185,5 +185,5 @@ def _standing(system: GapSystem, case: Case, model: Model) -> float | None:
         if case.start.state == "equilibrium" and not changes:
             return 0.0
         return farthest_from_rest(system, plan.trajectory())[0]
-    except NUMERICS:
+    except NUMERICAL_ERRORS:
         return None

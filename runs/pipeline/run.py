@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dynamics.failure import NUMERICS, NumericsError
+from dynamics.failure import NUMERICAL_ERRORS, NumericsError
 from geometry.boom import Boom
 from runs.case import toml
 from runs.case.build import build_boom
@@ -73,7 +73,7 @@ class Run:
                         boom, case, ran.model, ran.built, ran.motion.trajectory, ran.shell
                     )
                     check_finite(design[name])
-                except NUMERICS as error:
+                except NUMERICAL_ERRORS as error:
                     summary.failures[name], design[name] = (
                         failure_reason(error),
                         ModelDesignResults(),
@@ -110,7 +110,7 @@ def run_case(case: Case, file: str, context: RunContext) -> Run | None:
                 if found is not None:
                     check_finite(found.motion.summary)
                 return found
-            except NUMERICS as error:
+            except NUMERICAL_ERRORS as error:
                 return error
             except SharedFailure as error:
                 number = 1 + case.models.index(model)

@@ -15,9 +15,9 @@ from itertools import count, zip_longest
 import numpy as np
 
 from dynamics.drive.travel import Travel
-from dynamics.equilibrium import rest_at
+from dynamics.equilibrium import equilibrium_at
 from dynamics.excitation import Excitation
-from dynamics.failure import NUMERICS
+from dynamics.failure import NUMERICAL_ERRORS
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
 from geometry.arrays import Array, Indices
@@ -196,8 +196,8 @@ def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float,
     for time in times:
         try:
             with np.errstate(all="ignore"):
-                found[time] = rest_at(system, time)
-        except NUMERICS:
+                found[time] = equilibrium_at(system, time)
+        except NUMERICAL_ERRORS:
             if not found:
                 return {}
     return found
@@ -213,9 +213,9 @@ def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]
     known = instants(system, duration)
     found: dict[float, Array] = {}
     for time in extended_instants(system, duration):
-        with suppress(*NUMERICS), np.errstate(all="ignore"):
+        with suppress(*NUMERICAL_ERRORS), np.errstate(all="ignore"):
             if time not in known:
-                found[time] = rest_at(system, time)
+                found[time] = equilibrium_at(system, time)
     return found
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beam_model.statics import Elements, StaticState, net_reactions, static_state
-from dynamics.failure import NUMERICS
+from dynamics.failure import NUMERICAL_ERRORS
 from geometry.axial import foot_thrust
 from geometry.boom import Boom
 from geometry.contact_places import contact_centres
@@ -63,7 +63,7 @@ def statics(case: Case, boom: Boom) -> Statics | None:
             if not with_play:
                 return Statics(bonded, bonded)
             return Statics(static_state(boom_with_play(case, boom), elements), bonded)
-    except NUMERICS:
+    except NUMERICAL_ERRORS:
         return None
 
 

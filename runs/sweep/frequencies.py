@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from dynamics.damping import closed_contact_modes
-from dynamics.failure import NUMERICS
+from dynamics.failure import NUMERICAL_ERRORS
 from dynamics.motion import initial_state
 from geometry.arrays import Array
 from runs.case.build import build_boom
@@ -64,7 +64,7 @@ def first_frequencies(
             with np.errstate(all="ignore"):
                 system, _, _ = initial_state(model.build(booms, tools).system, case.start.at_rest)
                 omega = closed_contact_modes(system)[0][:MODES]
-        except NUMERICS:
+        except NUMERICAL_ERRORS:
             continue
         found[row, : omega.size] = omega / (2.0 * np.pi)
     return found

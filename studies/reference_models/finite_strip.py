@@ -53,14 +53,18 @@ class Strips(NamedTuple):
     def factor(self, length: float, waves: int, stress: StressField) -> float:
         """Return the lowest load factor in a number of half-waves over a length in m."""
         size = 4 * len(self.first)
-        stiffness, softening = np.zeros((2, size, size))
+        stiffness, geometric_stiffness = np.zeros((2, size, size))
         for i in range(len(self.first)):
             dofs = np.add.outer(4 * np.array([i, (i + 1) % len(self.first)]), np.arange(4)).ravel()
             for total, part in zip(
-                (stiffness, softening), self._strip(i, waves * np.pi / length, stress), strict=True
+                (stiffness, geometric_stiffness),
+                self._strip(i, waves * np.pi / length, stress),
+                strict=True,
             ):
                 total[np.ix_(dofs, dofs)] += part
-        (inverse,) = eigh(softening, stiffness, eigvals_only=True, subset_by_index=[size - 1] * 2)
+        (inverse,) = eigh(
+            geometric_stiffness, stiffness, eigvals_only=True, subset_by_index=[size - 1] * 2
+        )
         return float(1.0 / inverse)
 
     def lowest(self, length: float, waves: Iterable[int], stress: StressField) -> float:
@@ -81,7 +85,7 @@ class Strips(NamedTuple):
         one = np.array([[1.0, 0, 0, 0], [0, c, s, 0], [0, -s, c, 0], [0, 0, 0, 1.0]])
         turn = np.kron(np.eye(2), one)
         plane = young / (1.0 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, 0.5 * (1 - nu)]])
-        stiffness, softening = np.zeros((2, 8, 8))
+        stiffness, geometric_stiffness = np.zeros((2, 8, 8))
         for point, weight in zip(0.5 * (1.0 + _POINTS), 0.5 * width * _WEIGHTS, strict=True):
             u, v, w, dw, ddw = _shapes(point, width)
             du, dv = ((np.roll(one, 4) - one) / width for one in (_row(0), _row(1)))
@@ -93,8 +97,8 @@ class Strips(NamedTuple):
             y, z = self.first[i] + point * across
             force = t * stress(np.array([y]), np.array([z]))[0]
             slopes = k * np.array([u, v, w])
-            softening -= weight * force * slopes.T @ slopes
-        return turn.T @ stiffness @ turn, turn.T @ softening @ turn
+            geometric_stiffness -= weight * force * slopes.T @ slopes
+        return turn.T @ stiffness @ turn, turn.T @ geometric_stiffness @ turn
 
 
 def _row(dof: int) -> Array:

@@ -121,8 +121,8 @@ def test_a_lowered_pin_needs_no_cylinder() -> None:
     """Reference: analytic. A thrust of 50 kN 0.35 m above the pin of a beam on two supports."""
     boom, _ = level()
     (segment,) = boom.segments
-    rest_at = Support(5.0, stiffness=1.0e9)
-    held = replace(segment, supports=(*segment.supports, rest_at))
+    equilibrium_at = Support(5.0, stiffness=1.0e9)
+    held = replace(segment, supports=(*segment.supports, equilibrium_at))
     pin, prop = static_state(replace(boom, segments=(held,), cylinders=())).reactions
     expected = (10.0e3 * 10.0 - 50.0e3 * 0.35) / 5.0
     assert prop.force == pytest.approx(expected, rel=1e-3)

@@ -13,7 +13,7 @@ from scipy.signal import find_peaks
 from beam_model.component import SegmentModel
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
-from dynamics.damping import closed_contact_damping, closed_contact_modes, with_ratio
+from dynamics.damping import closed_contact_damping, closed_contact_modes, with_modal_damping
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep
@@ -34,7 +34,7 @@ def heavy(paper_boom: Boom, series: Callable[..., list[SegmentModel]]) -> GapSys
 @pytest.mark.parametrize("ratio", [0.005, 0.02, 0.05])
 def test_pressed_modes_have_the_ratio(heavy: GapSystem, ratio: float) -> None:
     """Reference: analytic, Φᵀ C Φ = 2ζω, and a matrix that takes energy only."""
-    damped = with_ratio(heavy, ratio)
+    damped = with_modal_damping(heavy, ratio)
     omega, shapes = closed_contact_modes(heavy)
     found = shapes[:, :8].T @ damped.damping_matrix @ shapes[:, :8]
     np.testing.assert_allclose(found, np.diag(2.0 * ratio * omega[:8]), atol=1e-9 * omega[7])
@@ -46,7 +46,7 @@ def test_pressed_modes_have_the_ratio(heavy: GapSystem, ratio: float) -> None:
 
 def test_rigid_motions_lose_speed_no_faster_than_the_first_mode(heavy: GapSystem) -> None:
     """Reference: analytic, an oscillator of the ratio ζ loses its amplitude at the rate ζω."""
-    damped = with_ratio(heavy, 0.02)
+    damped = with_modal_damping(heavy, 0.02)
     first = closed_contact_modes(heavy)[0][0]
     rigid = heavy.omega2 == 0.0
     assert rigid.sum() == 2
@@ -63,7 +63,7 @@ def test_a_pressed_boom_swings_with_the_ratio(heavy: GapSystem, mode: int, ratio
     rest = equilibrium(heavy, heavy.load)
     run = AdaptiveStep()(
         Motion(
-            with_ratio(heavy, ratio),
+            with_modal_damping(heavy, ratio),
             3.2 * 2.0 * np.pi / omega[mode],
             2.0 * np.pi / omega[mode] / 200.0,
             position=rest + 1e-3 * shapes[:, mode],
@@ -79,7 +79,7 @@ def test_a_pressed_boom_swings_with_the_ratio(heavy: GapSystem, mode: int, ratio
 def test_a_segment_that_flies_slows_down_at_the_ratio_of_the_first_mode(heavy: GapSystem) -> None:
     """Reference: analytic, exp(−ζω₁t)."""
     wide = replace(heavy, load=0.0 * heavy.load, laws=[LINEAR.law.behind(10.0)] * len(heavy.laws))
-    damped = with_ratio(wide, 0.05)
+    damped = with_modal_damping(wide, 0.05)
     tied = closed_contact_modes(wide)[0][0]
     thrown = np.where(np.arange(wide.num_modes) == np.flatnonzero(wide.omega2 == 0.0)[0], 1.0, 0.0)
     run = AdaptiveStep()(Motion(damped, 1.0, 0.1, velocity=thrown))
@@ -98,7 +98,7 @@ def test_rest_under_weight_loses_nothing(heavy: GapSystem) -> None:
 
 def test_the_error_is_of_second_order_in_the_step(heavy: GapSystem) -> None:
     """Reference: the same motion at a sixteenth of the finest step."""
-    damped = with_ratio(heavy, 0.05)
+    damped = with_modal_damping(heavy, 0.05)
     rest = equilibrium(heavy, heavy.load)
     _, shapes = closed_contact_modes(heavy)
     start = rest + 1e-3 * shapes[:, :3].sum(axis=1)
@@ -116,6 +116,6 @@ def test_a_tied_boom_keeps_its_exact_flow(
 ) -> None:
     """Reference: analytic. Its modes are the pressed ones already: 2ζω each, and no dashpots."""
     tied = gap_system(paper_boom.bonded, series((6, 6), "complete"))
-    damped = with_ratio(tied, 0.02)
+    damped = with_modal_damping(tied, 0.02)
     np.testing.assert_allclose(damped.damping, 0.04 * np.sqrt(tied.omega2))
     assert not damped.dashpots.size

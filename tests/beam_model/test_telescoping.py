@@ -316,7 +316,7 @@ def test_in_space_both_planes_soften(spatial_boom: Boom) -> None:
 
     here, there = built(0.0, DRIVE).at_time(5.0), built(4.0, None)
     assert frequencies(here) == pytest.approx(frequencies(there), rel=1e-6)
-    plain = replace(here, softening=np.zeros((0, 0)))
+    plain = replace(here, geometric_stiffness=np.zeros((0, 0)))
     assert (frequencies(plain) > 1.0005 * frequencies(there)).sum() >= 2
 
 
@@ -352,6 +352,6 @@ def test_the_ledger_and_the_order(paper_boom: Boom) -> None:
         ends = [run.data["tip"].values for run in runs]
         first, then = (np.abs(b - a).max() for a, b in pairwise(ends))
         assert then < 0.35 * first
-        passed = system.travels[0].axial_forces[0].softening(4.0)
+        passed = system.travels[0].axial_forces[0].geometric_stiffness(4.0)
         taken = 0.5 * runs[-1].states[-1] @ passed @ runs[-1].states[-1]
         assert taken > 2.0e-4 * float(np.abs(runs[-1].data["work"]).max())

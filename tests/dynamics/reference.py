@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
 from dynamics.drive.row_table import RowTable
-from dynamics.drive.travel import KINDS
+from dynamics.drive.travel import ROW_KINDS
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
@@ -52,19 +52,19 @@ def runge_kutta(motion: Motion, max_step: float = 1.0e-3) -> Array:
 
     def rate(time: float, state: Array) -> Array:
         a, v = state[:n], state[n:]
-        rows = {kind: getattr(system, kind).copy() for kind in KINDS}
-        drift = {kind: np.zeros(len(rows[kind])) for kind in KINDS}
+        rows = {kind: getattr(system, kind).copy() for kind in ROW_KINDS}
+        drift = {kind: np.zeros(len(rows[kind])) for kind in ROW_KINDS}
         pull = np.zeros(n)
         for travel in system.travels:
             ahead, behind = travel.history(np.array([time + _APART, abs(time - _APART)]))
             way, speed = float(travel.history(np.array(time))), (ahead - behind) / (2.0 * _APART)
             now, slopes = travel.table(way), table_slope(travel.table, way)
-            for (kind, j), row, slope in zip(travel.moving, now, slopes, strict=True):
+            for (kind, j), row, slope in zip(travel.moved_rows, now, slopes, strict=True):
                 rows[kind][j], drift[kind][j] = row, speed * (slope @ a)
             for force in travel.axial_forces:
-                pull += force.softening(way) @ a
-        stacked = np.concatenate([rows[kind] for kind in KINDS])
-        speeds = stacked @ v + np.concatenate([drift[kind] for kind in KINDS])
+                pull += force.geometric_stiffness(way) @ a
+        stacked = np.concatenate([rows[kind] for kind in ROW_KINDS])
+        speeds = stacked @ v + np.concatenate([drift[kind] for kind in ROW_KINDS])
         closing, sliding, dragged = np.split(speeds, parts)
         pressed = np.array([
             law.force(y) * max(0.0, 1.0 + law.damping * np.sign(y) * u)

@@ -69,7 +69,7 @@ def test_what_nothing_holds_has_no_equilibrium() -> None:
 def test_what_axial_forces_buckle_has_no_equilibrium() -> None:
     """They take more than its spring gives."""
     free = {"rows": np.zeros((0, 1)), "laws": [], "station_of_row": np.zeros(0, dtype=np.int64)}
-    buckled = replace(mass_over_stop(1.0, 900.0), **free, softening=np.array([[901.0]]))
+    buckled = replace(mass_over_stop(1.0, 900.0), **free, geometric_stiffness=np.array([[901.0]]))
     message = "nothing holds the boom, or axial forces buckle it: it has no static equilibrium"
     with pytest.raises(NumericsError, match=f"^{message}$"):
         equilibrium(buckled, np.ones(1))

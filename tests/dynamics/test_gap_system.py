@@ -66,7 +66,7 @@ def test_rates_and_dashpots_are_one_matrix() -> None:
 def test_rest_under_a_force() -> None:
     system = GapSystem(**parts() | {"omega2": np.array([4.0, 1.0, 2.0])})
     assert system.static_response(np.array([1.0, 2.0, 3.0])) == pytest.approx([0.25, 2.0, 1.5])
-    softer = replace(system, softening=np.diag([2.0, 0.5, 0.0]))
+    softer = replace(system, geometric_stiffness=np.diag([2.0, 0.5, 0.0]))
     assert softer.static_response(np.array([1.0, 2.0, 3.0])) == pytest.approx([0.5, 4.0, 1.5])
 
 

@@ -36,9 +36,9 @@ def mass_on_spring() -> GapSystem:
 
 def hoisted(load: HangingLoad, system: GapSystem, duration: float, step: float) -> Trajectory:
     """Return the motion of a system's tip and its load from rest."""
-    hung = load.hang(system, system.observers["tip"].row, 1.0)
+    hung = load.attach(system, system.observers["tip"].row, 1.0)
     motion = build_motion(hung, duration, 1.0e-3, at_rest=True)
-    return load.separate(FixedStep(step)(motion))
+    return load.separate_rope(FixedStep(step)(motion))
 
 
 def test_factor_of_a_rigid_boom() -> None:
@@ -98,7 +98,7 @@ def test_hoisting_while_a_segment_extends() -> None:
     system = lossy(SCurve(5.0, 0.4))
     tip = next(iter(system.observers.values())).row
     load = HangingLoad(0.5, 200.0, GRAVITY, SCurve(0.3, 0.3, start=0.05))
-    hung = load.hang(system, tip, 1.0)
+    hung = load.attach(system, tip, 1.0)
     motion = FixedStep(1.0e-3)(build_motion(hung, 0.4, 0.01, at_rest=False))
     assert motion.energy_residual < 1e-11
     assert len(hung.travels) == len(system.travels) + 1

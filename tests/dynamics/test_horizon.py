@@ -17,8 +17,8 @@ from dynamics.predictability.horizon import (
     EARLY,
     Growth,
     Horizons,
+    ensemble_horizons,
     horizon,
-    horizons_of,
     measure_horizons,
 )
 from dynamics.trajectory import Trajectory
@@ -34,7 +34,7 @@ def test_spread_of_a_linear_system_is_in_proportion_to_the_change() -> None:
         np.testing.assert_allclose(
             0.5 * np.ptp(tip, axis=0), expected, rtol=1e-4, atol=1e-14 + 1e-9 * expected.max()
         )
-        assert np.isnan(horizons_of(ensemble)).all()
+        assert np.isnan(ensemble_horizons(ensemble)).all()
 
 
 def test_a_linear_system_has_no_horizon() -> None:

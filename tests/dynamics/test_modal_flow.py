@@ -80,7 +80,7 @@ def test_load_response_of_the_shortest_steps(
     """
     mode = one_mass(1.0, spring=omega2, dashpot=damping)
     flow = modal_flow(mode, times := np.array([1.0e-4, 1.0e-5, 1.0e-6]))
-    for found, first in ((flow.rise, 2), (flow.ramp, 6), (flow.drift, 24)):
+    for found, first in ((flow.gain, 2), (flow.ramp, 6), (flow.drift, 24)):
         n = {2: 2, 6: 3, 24: 4}[first]
         series = times**2 / first * (
             1.0 - damping * times / (n + 1) + (damping**2 - omega2) * times**2 / (n + 1) / (n + 2)
@@ -131,5 +131,5 @@ def test_compliance_is_the_response_of_rows_to_forces() -> None:
     """Reference: analytic, E diag(r) Rᵀ."""
     random = np.random.default_rng(1)
     ends, rows = random.normal(size=(2, 3, len(MODES)))
-    rise = modal_flow(modes(), np.array([0.1])).rise[0]
+    rise = modal_flow(modes(), np.array([0.1])).gain[0]
     np.testing.assert_allclose(compliance(ends, rows, rise), ends * rise @ rows.T, rtol=1e-12)

@@ -39,7 +39,7 @@ def thrust() -> MovingAxialForce:
         own = np.sin(WAVES * (5.0 + s))
         return np.array([[*own, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, *(2.0 * own)]])
 
-    return MovingAxialForce(FORCE, RowTable.of(rows, [-1.0, 0.5, 2.0]))
+    return MovingAxialForce(FORCE, RowTable.interpolate(rows, [-1.0, 0.5, 2.0]))
 
 
 def softer(s: float) -> np.ndarray:
@@ -70,14 +70,14 @@ def pressed_along(history: SCurve | PiecewiseLinear) -> GapSystem:
 @pytest.mark.parametrize("s", [-1.0, -0.3, 0.0, 0.5, 1.7])
 def test_what_is_passed_is_softened(s: float) -> None:
     """Reference: analytic, the integral along the way by Gauss's rule."""
-    assert thrust().softening(s) == pytest.approx(softer(s), rel=1e-6, abs=1e-6 * FORCE)
+    assert thrust().geometric_stiffness(s) == pytest.approx(softer(s), rel=1e-6, abs=1e-6 * FORCE)
 
 
 @pytest.mark.parametrize("knots", [[-1.0, -0.4, 1.0], [-2.0, 0.0], [0.0, 1.0]])
 def test_what_has_passed_nothing_softens_nothing(knots: list[float]) -> None:
     """Reference: analytic, 0 to the last bit, wherever the knots are."""
-    table = RowTable.of(lambda s: np.sin(WAVES * (5.0 + s))[None], knots)
-    assert not MovingAxialForce(FORCE, table).softening(0.0).any()
+    table = RowTable.interpolate(lambda s: np.sin(WAVES * (5.0 + s))[None], knots)
+    assert not MovingAxialForce(FORCE, table).geometric_stiffness(0.0).any()
 
 
 def test_only_what_is_passed_is_integrated() -> None:
@@ -88,7 +88,7 @@ def test_only_what_is_passed_is_integrated() -> None:
         knots, np.tile(np.diff(knots)[0] * np.eye(4)[1][:, None, None], (2000, 1, 1, modes))
     )
     tracemalloc.start()
-    found = MovingAxialForce(2.0, table).softening(0.0105)
+    found = MovingAxialForce(2.0, table).geometric_stiffness(0.0105)
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert found == pytest.approx(np.full((modes, modes), 0.021), rel=1e-12)
@@ -102,8 +102,8 @@ def test_the_loop_pushes_as_the_matrix(s: float) -> None:
     force, energies = np.zeros(6), np.zeros(1)
     axial = moving_axial_forces(pressed_along(SCurve(2.0, 1.0)))
     add_axial_forces(np.array([s]), axial, a, 0.5, force, energies)
-    assert force == pytest.approx(0.5 * thrust().softening(s) @ a, rel=1e-12)
-    assert energies[0] == pytest.approx(0.25 * a @ thrust().softening(s) @ a, rel=1e-12)
+    assert force == pytest.approx(0.5 * thrust().geometric_stiffness(s) @ a, rel=1e-12)
+    assert energies[0] == pytest.approx(0.25 * a @ thrust().geometric_stiffness(s) @ a, rel=1e-12)
 
 
 def test_as_it_stands_its_own_modes_are_those_of_the_softer_boom() -> None:
@@ -116,7 +116,7 @@ def test_as_it_stands_its_own_modes_are_those_of_the_softer_boom() -> None:
     rests = [float(one.observers["tip"].row @ equilibrium(one, one.load)) for one in (stands, own)]
     assert rests[0] == pytest.approx(rests[1], rel=1e-8)
     assert own.in_own_modes() is own
-    message = "^a system with softening must be transformed by in_own_modes$"
+    message = "^a system with geometric_stiffness must be transformed by in_own_modes$"
     with pytest.raises(ValueError, match=message):
         Motion(stands, 1.0)
 

@@ -17,7 +17,7 @@ from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.kernels import march
-from dynamics.kernels.row_forces import row_laws, row_problem, solve_rows
+from dynamics.kernels.row_forces import row_laws, row_problem, solve_contact_forces
 from dynamics.kernels.terms import discrete_gradient
 from dynamics.motion import Motion
 
@@ -98,7 +98,7 @@ def test_random_steps_meet_their_laws() -> None:
         start = 2.0e-3 * random.normal(size=len(stacked))
         problem = row_problem(len(stacked), len(system.frictions))
         problem.free[:] = start + time * stacked @ random.normal(size=system.num_modes)
-        if not solve_rows(row_laws(system), problem, compliance, start, time):
+        if not solve_contact_forces(row_laws(system), problem, compliance, start, time):
             continue
         solved += 1
         end = problem.free - compliance @ problem.force

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from dynamics.contact import PowerContact
-from dynamics.damping import closed_contact_damping, with_ratio
+from dynamics.damping import closed_contact_damping, with_modal_damping
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
@@ -89,6 +89,6 @@ def test_the_pressed_boom_is_damped_as_asked_for() -> None:
         stations=[0.0],
         observers={"tip": Observer(np.ones(2))},
     )
-    omega, ratios = closed_contact_damping(with_ratio(two, 0.03))
+    omega, ratios = closed_contact_damping(with_modal_damping(two, 0.03))
     assert (omega > 0.0).all()
     assert ratios[0] == pytest.approx(0.03, rel=1e-6)

@@ -101,7 +101,7 @@ def test_other_drives_push() -> None:
     """Reference: analytic. As another drive speeds up by a, the part of the mass that goes along
     with it, m_b, swings about m_b a/k; the thrust is held."""
     lift = Stroke(travel=2.0, speed=1.0, ramp=1.0)
-    pulled = replace(ROPE, thrust=300.0, beside=((0.4 * MASS, lift),))
+    pulled = replace(ROPE, thrust=300.0, coupled_drives=((0.4 * MASS, lift),))
     time = np.linspace(0.0, 0.9, 901)
     found = move_segment(pulled, SCurve(1e-9, 1.0, start=5.0), time, np.zeros(time.size))
     behind = 0.4 * MASS / STIFFNESS * (1.0 - np.cos(OMEGA * time))
@@ -114,7 +114,7 @@ def test_other_drives_push() -> None:
 def test_another_drive_that_starts_at_once(start: float) -> None:
     """Reference: analytic. A jump to v of another drive gives the impulse m_b v to all that is
     pulled, which swings by m_b v/(m ω)."""
-    pulled = replace(ROPE, beside=((0.4 * MASS, Stroke(2.0, 1.0, start=start)),))
+    pulled = replace(ROPE, coupled_drives=((0.4 * MASS, Stroke(2.0, 1.0, start=start)),))
     time = np.linspace(0.0, 0.9, 901)
     found = move_segment(pulled, SCurve(1e-9, 1.0, start=5.0), time, np.zeros(time.size))
     behind = 0.4 / OMEGA * np.sin(OMEGA * np.maximum(time - start, 0.0))

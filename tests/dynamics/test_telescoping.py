@@ -83,7 +83,7 @@ def rider(
     if "drag" in numbers:
         scales["dashpots"] = np.sqrt(numbers.pop("drag"))
     numbers |= {kind: scale * row(0.0)[None] for kind, scale in scales.items()}
-    table = RowTable.of(
+    table = RowTable.interpolate(
         lambda way: np.array([scale * row(way) for scale in scales.values()]),
         np.linspace(-start, LENGTH - start, 3).tolist(),
     )
@@ -222,9 +222,9 @@ def test_tables_hold_cubics_and_come_near_to_the_rest() -> None:
     def rows(way: float) -> Array:
         return np.array([[(way - 1.0) ** 3 if way > 1.0 else 0.0], [np.sin(way)]])
 
-    cubic = RowTable.of(lambda way: rows(way)[:1], [0.0, 1.0, 3.0])
+    cubic = RowTable.interpolate(lambda way: rows(way)[:1], [0.0, 1.0, 3.0])
     assert len(cubic.knots) == 3
-    sine = RowTable.of(rows, [0.0, 1.0, 3.0])
+    sine = RowTable.interpolate(rows, [0.0, 1.0, 3.0])
     for way in np.linspace(0.0, 3.0, 101):
         assert cubic(way)[0] == pytest.approx(rows(way)[0], abs=1e-13)
         assert sine(way)[1] == pytest.approx(rows(way)[1], abs=1e-8)

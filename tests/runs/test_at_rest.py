@@ -95,7 +95,7 @@ def test_no_swing_of_a_load_is_missed() -> None:
 def test_a_drawn_boom_rests_under_the_largest_loads_of_where_it_is() -> None:
     """Reference: by hand. Out from 1 s on, while the second of two peaks comes; in at 3 s."""
     ways = PiecewiseLinear([0.0, 1.0, 2.0, 3.0], [0.0, 4.0, 4.0, -1.0])
-    still = RowTable.of(lambda s: np.ones((1, 1)), [-1.0, 4.0])
+    still = RowTable.interpolate(lambda s: np.ones((1, 1)), [-1.0, 4.0])
     drawn = [Travel(ways, still, (("rows", 0),), "")]
     system = ball(PiecewiseLinear([0.0, 0.5, 1.0, 1.5, 2.0], [0.0, 1.0, 0.2, 0.6, 0.3]))
     assert instants(system, 4.0) == [0.0, 0.5]

@@ -52,7 +52,7 @@ def test_the_tied_boom_lacks_the_play_alone(pair: GapSystem) -> None:
 
 def test_what_axial_forces_soften_stays_softer(pair: GapSystem) -> None:
     """Reference: analytic. Of 100 N/m they take 30 N/m, and both swing at √(70/2) rad/s."""
-    pressed = replace(pair, softening=np.diag([30.0, 0.0]))
+    pressed = replace(pair, geometric_stiffness=np.diag([30.0, 0.0]))
     tied, _ = bonded_system(pressed, [equilibrium(pressed, pressed.load)])
     np.testing.assert_allclose(tied.omega2, [35.0], rtol=1e-12)
     assert tied.in_own_modes() is tied

@@ -10,7 +10,7 @@ from scipy.stats import norm
 
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import integrate_ensemble
-from dynamics.trajectory import Pointwise
+from dynamics.trajectory import PointwiseDifferences
 from runs.pipeline.comparison import (
     Comparison,
     Distributions,
@@ -35,11 +35,11 @@ def ensemble(delay: float = 0.0, height: float = 1.0, growth: float = 0.0) -> xr
 def test_pointwise_differences_by_hand() -> None:
     """Reference: analytic. 0.02 sin²(πt) apart up to 0.5 s, so 1/51 of the larger range."""
     one, other = (ensemble(height=height)["tip"].values[0] for height in (1.0, 1.02))
-    found = Pointwise.of(one, other, TIME, 0.5)
+    found = PointwiseDifferences.from_curves(one, other, TIME, 0.5)
     assert found.largest == pytest.approx(0.02 / 1.02, rel=1e-6)
     assert found.rms == pytest.approx(0.02 / 1.02 * np.sqrt(3.0 / 8.0), rel=2e-3)
     other[501:] += 1.0  # too late to count
-    assert Pointwise.of(one, other, TIME, 0.5) == found
+    assert PointwiseDifferences.from_curves(one, other, TIME, 0.5) == found
 
 
 def test_levels_of_two_models_that_part() -> None:
@@ -105,7 +105,7 @@ def test_times_must_agree() -> None:
 
 
 def test_every_level_says_what_it_decides() -> None:
-    for level in (Pointwise, PeakDifferences, Distributions):
+    for level in (PointwiseDifferences, PeakDifferences, Distributions):
         assert level.decides.count(".") == 1
         assert "cannot tell" in level.decides
     assert list(Comparison.__slots__) == ["pointwise", "peaks", "distributions"]

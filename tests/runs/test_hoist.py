@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.equilibrium import rest_at
+from dynamics.equilibrium import equilibrium_at
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
@@ -28,7 +28,7 @@ def of_beam(case: Case) -> Case:
 
 def static_tip(case: Case, time: float) -> float:
     system = build(case, build_boom(case), case.models[0]).system
-    return float(system.observers["tip"].row @ rest_at(system.gather_loads(), time))
+    return float(system.observers["tip"].row @ equilibrium_at(system.gather_loads(), time))
 
 
 def test_hanging_load_at_rest() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import xarray as xr
 
-from dynamics.trajectory import Pointwise
+from dynamics.trajectory import PointwiseDifferences
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.comparison import Distributions, PeakDifferences
@@ -132,7 +132,9 @@ def test_each_level_says_what_it_decides() -> None:
     """Reference: the classes that measure, and the numbers by hand, in mm and ms."""
     ensembles = {"kantorovich-4": LEVELS}
     tables = comparison_tables(results({"reference": "shell", "ensembles": ensembles}))
-    for table, level in zip(tables, (Pointwise, PeakDifferences, Distributions), strict=True):
+    for table, level in zip(
+        tables, (PointwiseDifferences, PeakDifferences, Distributions), strict=True
+    ):
         assert level.decides in table.notes
         assert "against shell" in table.title
     pointwise, peaks, distributions = (table.rows for table in tables)

@@ -61,7 +61,7 @@ def swing_of(case: Case) -> ResidualVibration | None:
 def lifted(travel: float, time: float) -> GapSystem:
     """Return a mass on a spring of 1 N/m, and a spring of 3 N/m that a drive moves."""
     one = np.ones(1)
-    table = RowTable.of(lambda s: np.array([[1.0 - 0.5 * s]]), [0.0, 1.0])
+    table = RowTable.interpolate(lambda s: np.array([[1.0 - 0.5 * s]]), [0.0, 1.0])
     spring = PowerContact(3.0, exponent=1.0)
     system = GapSystem(one, one, one[None], [spring], np.array([0]), [0.0], {"tip": Observer(one)})
     return replace(system, travels=[Travel(SCurve(travel, time), table, (("rows", 0),), "")])

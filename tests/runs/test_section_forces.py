@@ -12,7 +12,7 @@ import pytest
 from beam_model.finite_element import finite_element_segments
 from beam_model.lines import lines
 from beam_model.segment_model import gap_system
-from dynamics.equilibrium import rest_at
+from dynamics.equilibrium import equilibrium_at
 from dynamics.excitation import Step
 from dynamics.line import Line
 from geometry.boom import Boom, Load, Material, Segment, Support
@@ -80,7 +80,7 @@ def test_the_shear_force_is_that_of_where_axial_forces_have_come_to() -> None:
     models = finite_element_segments(boom, 0.25, "euler-bernoulli", False)
     system = gap_system(touching(boom, LAW), models).gather_loads()
     outer = lines(boom, models)[0]
-    found = section_forces(boom, 0, outer, rest_at(system, 1.0), np.array(1.0))
+    found = section_forces(boom, 0, outer, equilibrium_at(system, 1.0), np.array(1.0))
     before = outer.x < END
     np.testing.assert_allclose(found["shear"][before], -1.0e3, rtol=2e-3)
 

@@ -101,7 +101,7 @@ def test_a_drive_draws_all_that_is_beyond() -> None:
     beyond = [sum(one.mass for one in boom.segments[number:]) for number in (1, 2, 3)]
     found = elastic_drives(case, boom)
     assert [one.mass for one in found.values()] == pytest.approx(beyond)
-    shared = [[mass for mass, _ in one.beside] for one in found.values()]
+    shared = [[mass for mass, _ in one.coupled_drives] for one in found.values()]
     assert shared == [
         pytest.approx([beyond[1], beyond[2]]),
         pytest.approx([beyond[1], beyond[2]]),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from dynamics.equilibrium import rest_at
+from dynamics.equilibrium import equilibrium_at
 from dynamics.failure import NumericsError
 from geometry.boom import Boom, Support
 from shell_model.boom_shell import ShellOptions
@@ -127,7 +127,7 @@ def at_rest(boom: Boom, options: ShellOptions) -> tuple[ReducedShell, StaticStat
     """Return the reduced shell of a boom and its state at rest."""
     shell = reduce_boom(boom, options, MPI.COMM_SELF)
     assert shell.fields is not None
-    return shell, StaticState.of(shell.fields, shell.system, rest_at(shell.system))
+    return shell, StaticState.of(shell.fields, shell.system, equilibrium_at(shell.system))
 
 
 def buckled(boom: Boom, options: ShellOptions, count: int = 1) -> list[SegmentBuckling]:

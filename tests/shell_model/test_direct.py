@@ -16,7 +16,7 @@ from scipy.linalg import eigh
 from dynamics.contact import DryFriction, PowerContact, contact_terms
 from dynamics.energy import energy_residual
 from dynamics.failure import NumericsError
-from dynamics.gap_builder import GapBuilder, Observed
+from dynamics.gap_builder import GapBuilder, ObservedReading
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
@@ -59,7 +59,7 @@ class _Loaded:
         self._omega, self._gains = np.sqrt(omega2[few]), gains[few]
         self.rest = float(gains.sum())
         self.period = 2.0 * np.pi / float(self._omega.max())
-        observed = {"tip": Observed(Reading({0: tip}))}
+        observed = {"tip": ObservedReading(Reading({0: tip}))}
         touching = ShellContacts(Boom((shell.segment,), ()), "near webs", [], [], [])
         self.few, self.all = (
             BoomShell(MPI.COMM_WORLD, [shell], [], touching, GapBuilder(), [], [push], [], observed)

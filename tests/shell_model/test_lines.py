@@ -125,5 +125,5 @@ def test_a_support_of_a_shell_bears_what_the_lever_rule_says() -> None:
     a band across the support would miss a third of it.
     """
     line, position = at_rest(flat_boom(), ShellOptions(mesh_size=0.2, contact_tolerance=0.02))[0]
-    before, behind = (line.beside("shear", 2.0, side) @ position for side in (-1, 1))
+    before, behind = (line.one_sided_row("shear", 2.0, side) @ position for side in (-1, 1))
     assert before - behind == pytest.approx(-5933.9, rel=0.02)

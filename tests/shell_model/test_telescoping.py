@@ -228,7 +228,7 @@ def test_a_pressed_one_is_the_shell_that_rests_there() -> None:
         here, there = standing(system, way), told(reduced(way))
         assert told(here) == pytest.approx(there, rel=1e-4)
     # Without the force that goes along it rests and swings by several times that elsewhere.
-    plain = replace(here, softening=np.zeros((0, 0)))
+    plain = replace(here, geometric_stiffness=np.zeros((0, 0)))
     assert (np.abs(told(plain)[:4] / there[:4] - 1.0) > 5.0e-4).all()
     run = FixedStep(5.0e-6)(Motion(system, 0.7, 1.0e-2))
     assert run.energy_residual < 1.0e-4

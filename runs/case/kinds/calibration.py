@@ -138,7 +138,7 @@ class CalibratedTable(BeamTable):
         # The coordinates of the springs follow those of the beam, and have no axial motion.
         own = along[0].rows["deflection"].shape[1]
         basis = np.eye(own, built.system.num_modes)
-        return replace(built, along=[line.on(basis) for line in along])
+        return replace(built, along=[line.transform(basis) for line in along])
 
     def lines(self, boom: Boom, built: Built) -> list[Line]:
         return list(built.along) or super().lines(boom, built)

@@ -111,7 +111,7 @@ class BeamElements(CalibratedTable):
         if shell.fields is not None:
             from shell_model.stress.lines import lines
 
-            along = [line.on(shapes) for line in lines(shell.fields, boom)]
+            along = [line.transform(shapes) for line in lines(shell.fields, boom)]
         return replace(built, system=system, num_dofs=system.num_modes, along=along)
 
     def coarsened(self, boom: Boom) -> Self:
