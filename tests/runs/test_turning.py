@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.equilibrium import rest_at
+from dynamics.equilibrium import equilibrium_at
 from dynamics.excitation import SCurve, Stroke
 from dynamics.frame_motion import FrameMotion
 from dynamics.integrator import FixedStep
@@ -78,7 +78,7 @@ def slewing_arm(tmp_path: Path, *tables: str, arm: str = ARM) -> Case:
 
 def static_tip(case: Case, time: float) -> float:
     system = build(case, build_boom(case), case.models[0]).system.gather_loads()
-    return float(system.observers["tip"].row @ rest_at(system, time))
+    return float(system.observers["tip"].row @ equilibrium_at(system, time))
 
 
 def test_arm_that_has_luffed(tmp_path: Path) -> None:
