@@ -222,5 +222,5 @@ def test_the_beginning_of_a_run_is_that_of_the_whole_run(part: float) -> None:
     whole = EnsembleMember(motion, "load", 0.0, FixedStep(1e-3), ("gap", "contact_force"))
     some, all_ = run_members([whole.shortened(part), whole])
     assert some.sizes["time"] == 1 + round(part * whole.motion.outputs)
-    for name in whole.kept:
+    for name in whole.variables:
         assert np.array_equal(some[name], all_[name][: some.sizes["time"]]), name
