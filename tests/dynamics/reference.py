@@ -36,7 +36,7 @@ def two_modes(exponent: float = 2.0) -> GapSystem:
 
 def table_slope(table: RowTable, s: float) -> Array:
     """Return the slopes (num_rows, num_modes) of the rows of a table along s, per m."""
-    piece, part, length = table.place(s)
+    piece, part, length = table.locate(s)
     powers = np.array([0.0, 1.0, 2.0 * part, 3.0 * part**2]) / length
     return np.tensordot(powers, table.coefficients[piece], 1)
 
