@@ -15,7 +15,7 @@ from geometry.arrays import Array
 from geometry.boom_error import BoomError
 from geometry.fields import PART, In, NotNegative, Number, Place, Positive, SegmentRef
 from geometry.load import Body
-from geometry.support import Support
+from geometry.support import Pin, Support
 
 if TYPE_CHECKING:
     from geometry.boom import Boom
@@ -53,6 +53,10 @@ class Cylinder:
     spread: Annotated[NotNegative, In("m")] = 0.0
     """the lateral distance in m of two cylinders side by side, for a boom in space; unless given,
     one cylinder is in the middle"""
+    capacity: Annotated[Positive, In("N")] | None = None
+    """the characteristic resistance in N to its force, for proofs; of two cylinders their sum"""
+    pin: Pin | None = None
+    """the table of the pin of its lug, for proofs"""
 
     @property
     def length(self) -> float:

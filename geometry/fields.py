@@ -93,6 +93,8 @@ Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Length = Annotated[Positive, In("m")]
+# The number of a detail category by EN 1993-1-9: 71 for 71 N/mm².
+Category = Annotated[Positive, In("1")]
 # Names become parts of file names and elements of comma-separated lists.
 NAME = r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$"
 Name = Annotated[str, Field(pattern=NAME, max_length=60)]

@@ -17,6 +17,7 @@ from geometry.boom_error import BoomError
 from geometry.fields import (
     MOST_STATIONS,
     PART,
+    Category,
     Few,
     Flag,
     In,
@@ -205,6 +206,9 @@ class BareJoint:
     dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
     """the linear dashpot across the play at each station in N s/m, in space also across the lateral
     play"""
+    detail_category: Category | None = None
+    """the number of the detail category of the welds of both segments at its stations, for
+    [[spectrum]]"""
 
 
 @part(frozen=True, slots=True, config=PART)

@@ -12,13 +12,14 @@ from itertools import pairwise
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 from pydantic.dataclasses import dataclass as part
+from pydantic_core import PydanticCustomError
 
 from geometry.arrays import Array
 from geometry.boom_error import BoomError
 from geometry.compression import UNPRESSED, Compression
-from geometry.fields import PART, In, Length, Place, Positive, placed
+from geometry.fields import PART, Category, In, Length, Place, Positive, placed
 from geometry.section import COMPONENT, Section, SectionError
 from geometry.support import Support, check_support
 from geometry.taper import areas, between, check_alike, half_way, mean_area
@@ -49,6 +50,29 @@ class Material:
     """the density in kg/m^3"""
     yield_strength: Annotated[Positive, In("Pa")] | None = None
     """the yield strength in Pa, for utilisations"""
+    yield_by_thickness: Annotated[
+        tuple[tuple[Positive, Positive], ...], In("m", "Pa"), Field(max_length=20)
+    ] = ()
+    """pairs of a plate thickness in m and the yield strength in Pa up to it, ascending, instead of
+    yield_strength; thicker plates have the last one"""
+
+    @model_validator(mode="after")
+    def _check_strengths(self) -> Material:
+        pairs = self.yield_by_thickness
+        if pairs and self.yield_strength is not None:
+            what = {"what": "has yield_strength and yield_by_thickness; give one of them"}
+            raise PydanticCustomError("unsuitable", "{what}", what)
+        if any(before[0] >= after[0] for before, after in pairwise(pairs)):
+            what = {"what": "the thicknesses of yield_by_thickness must ascend"}
+            raise PydanticCustomError("unsuitable", "{what}", what)
+        return self
+
+    def strength(self, thickness: float) -> float | None:
+        """Return the yield strength in Pa of a plate of a thickness in m; None without one."""
+        for limit, strength in self.yield_by_thickness:
+            if thickness <= limit:
+                return strength
+        return self.yield_by_thickness[-1][1] if self.yield_by_thickness else self.yield_strength
 
     @property
     def shear_modulus(self) -> float:
@@ -86,6 +110,8 @@ class Collar:
     """the x of its two ends in m, in ascending order"""
     thickness: Length
     """the additional thickness in m of all walls"""
+    detail_category: Category | None = None
+    """the number of the detail category of the welds at its ends, for [[spectrum]]"""
 
     @property
     def length(self) -> float:
@@ -111,6 +137,8 @@ class Diaphragm:
     """the x in m"""
     thickness: Length
     """the thickness in m"""
+    detail_category: Category | None = None
+    """the number of the detail category of its welds to the walls, for [[spectrum]]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,6 +271,15 @@ class Segment:
         """The mean area of the sections in m²."""
         assert self.section is not None
         return mean_area(self.section, self.head_section)
+
+    @property
+    def yield_strength(self) -> float | None:
+        """The least yield strength in Pa of the plates; None without one."""
+        if self.section is None:
+            return self.material.yield_strength
+        plates = (plate for x in self.ends for plate in self.section_at(x).plates)
+        strengths = (self.material.strength(plate.thickness) for plate in plates)
+        return min((one for one in strengths if one is not None), default=None)
 
     @property
     def mass_middle(self) -> float:

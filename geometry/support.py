@@ -4,13 +4,36 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import pi
 from typing import Annotated, Literal
 
+from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from geometry.boom_error import BoomError
 from geometry.fields import PART, In, NotNegative, Number, Place, Positive
 from geometry.section import Direction
+
+
+@dataclass(frozen=True, slots=True, config=PART)
+class Pin:
+    """Pin in double or multiple shear, for the proof of a foot or a cylinder.
+
+    >>> round(1e-3 * pt.Pin(diameter=0.05, strength=6e8).resistance)
+    1414
+    """
+
+    diameter: Annotated[Positive, In("m")]
+    """the diameter in m"""
+    strength: Annotated[Positive, In("Pa")]
+    """the ultimate tensile strength f_up in Pa"""
+    planes: Annotated[int, Field(strict=True, ge=1, le=100)] = 2
+    """the number of shear planes, of all pins that share the force"""
+
+    @property
+    def resistance(self) -> float:
+        """The characteristic shear resistance 0.6 A f_up in N (EN 1993-1-8, table 3.10)."""
+        return 0.6 * self.planes * 0.25 * pi * self.diameter**2 * self.strength
 
 
 @dataclass(frozen=True, slots=True, config=PART)
@@ -39,6 +62,8 @@ class Support:
     depth: Annotated[Number, In("m")] = 0.0
     """the depth in m of its pin below the segment's axis, for the first support of a segment with a
     cylinder or axial forces"""
+    pin: Pin | None = None
+    """the table of its pin, for the proof of the foot"""
 
     def holds_slope(self, direction: Direction) -> bool:
         """Return whether the slope of the motion along y or z is fixed."""

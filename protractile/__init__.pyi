@@ -16,6 +16,7 @@ from geometry.segment import Diaphragm as Diaphragm
 from geometry.segment import Material as Material
 from geometry.segment import PointMass as PointMass
 from geometry.segment import Segment as Segment
+from geometry.support import Pin as Pin
 from geometry.support import Support as Support
 
 # Sections

@@ -31,7 +31,7 @@ from runs.case.checked_case import CheckedCase
 from runs.case.kinds.model import ModelTable
 from runs.case.schema import Case, Model
 from runs.case.units import System
-from runs.pipeline.combinations import combination_states, combination_tables
+from runs.pipeline.combinations import combination_results, combination_tables
 from runs.pipeline.drives import (
     drive_lines,
     stick_slip_cautions,
@@ -142,7 +142,7 @@ def check_case(declared: CheckedCase) -> Check:
         *([_reactions(found.with_play, case.system)] if found else []),
         *([_cylinders(found.with_play, case.system)] if found else []),
         static_table(case, shown, extremes),
-        *combination_tables(combination_states(case), case.system),
+        *combination_tables(combination_results(case), case),
     ]
     drives = list(stick_slip_estimates(case, boom))
     lines = [*drive_lines(boom, case.system), *stick_slip_lines(drives, case.system)]

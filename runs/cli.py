@@ -341,6 +341,18 @@ def check(case: CaseFile, picture: Picture = None) -> int:
 
 
 @app.command()
+def prove(case: CaseFile) -> int:
+    """Prove strength, stability, deflection and fatigue for all combinations of a case.
+
+    The exit status is 1 where a proof fails.
+    """
+    from runs.case.reading import load
+    from runs.prove import print_proofs
+
+    return print_proofs(load(case), case, Terminal())
+
+
+@app.command()
 def live(
     case: CaseFile,
     no_browser: Annotated[

@@ -38,34 +38,33 @@ _PLAIN = LoadCaseTable.model_validate({"name": "case"})
 
 
 class CombinedCase(NamedTuple):
-    """The case of a combination in a load case; names are empty where the case gives none."""
+    """The case of a combination in a load case, with the names of both.
 
-    combination: str
-    load_case: str
+    Args:
+        name: names of combination and load case, as far as the case gives them; else ``case``.
+        case: the case with the loads of the combination.
+        combination: the combination; a default one if the case gives none.
+    """
+
+    name: str
     case: Case
-
-    @property
-    def name(self) -> str:
-        """The names of combination and load case; ``case`` if the case gives none."""
-        return ", ".join(filter(None, (self.combination, self.load_case))) or "case"
+    combination: CombinationTable
 
 
 def combined_cases(case: Case) -> Iterator[CombinedCase]:
     """Yield the case of each combination in each of its load cases."""
-    load_cases = case.load_cases or (None,)
-    if not case.combinations:
-        for one in load_cases:
-            yield CombinedCase("", one.name if one else "", combine(case, one))
-    for combination in case.combinations:
-        factors = {group: combination.factors.of(group) or 0.0 for group in UNIT}
-        for one in load_cases:
-            if one is None or combination.load_cases is None:
-                selected = True
-            else:
-                selected = one.name in combination.load_cases
-            if selected:
-                name = one.name if one else ""
-                yield CombinedCase(combination.name, name, combine(case, one, factors))
+    alone = CombinationTable.model_validate({"name": "case", "factors": {}})
+    for combination in case.combinations or (alone,):
+        factors = UNIT
+        if combination is not alone:
+            factors = {group: combination.factors.of(group) or 0.0 for group in UNIT}
+        names = [combination.name] if case.combinations else []
+        if not case.load_cases:
+            yield CombinedCase(combination.name, combine(case, None, factors), combination)
+        for one in case.load_cases:
+            if combination.load_cases is None or one.name in combination.load_cases:
+                name = ", ".join([*names, one.name])
+                yield CombinedCase(name, combine(case, one, factors), combination)
 
 
 def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) -> Case:
@@ -87,9 +86,10 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
             "payload": _payload(case, table),
             "joints": _joints(case, table),
             "cylinders": tuple(_turned(case, table)),
-            "hoist": None,
+            **dict.fromkeys(("hoist", "slew", "luff")),
             "load_cases": (),
             "combinations": (),
+            "spectra": (),
         }
     )
     if case.hoist is not None and table.payload is None:
@@ -213,15 +213,18 @@ def check_combinations(case: Case) -> None:
     names = [one.name for one in case.load_cases]
     for number, combination in enumerate(case.combinations, start=1):
         selected = names if combination.load_cases is None else combination.load_cases
-        for name in selected:
-            if name not in names:
-                what = (
-                    f"{name!r} is no load case; give {choices(names)}"
-                    if names
-                    else ("the case has no [[load_case]]; leave it out")
-                )
-                raise BoomError(f"combination[{number}].load_cases", what)
+        _check_names(f"combination[{number}].load_cases", selected, names)
         _check_factors(case, number, combination, selected)
+    for number, spectrum in enumerate(case.spectra, start=1):
+        _check_names(f"spectrum[{number}].load_cases", spectrum.load_cases, names)
+
+
+def _check_names(where: str, selected: Sequence[str], names: Sequence[str]) -> None:
+    for name in selected:
+        if not names:
+            raise BoomError(where, "the case has no [[load_case]]; leave it out")
+        if name not in names:
+            raise BoomError(where, f"{name!r} is no load case; give {choices(names)}")
 
 
 def _check_factors(

@@ -22,7 +22,7 @@ from runs.process.terminal import shorten
 # Keys of the case that are arrays of tables.
 _ARRAYS = (
     "segment", "joint", "stop", "cylinder", "load", "axial", "base", "observe", "model",
-    "load_case", "combination",
+    "load_case", "combination", "spectrum",
 )  # fmt: skip
 
 # Attributes of a boom, and their keys.

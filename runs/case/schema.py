@@ -303,6 +303,12 @@ class BucklingTable(CaseTable):
     modes: Count = 1
     """the number of buckling modes of the walls of each segment of a shell; beams have estimates by
     panel formulas"""
+    curve: Annotated[
+        tuple[tuple[NotNegative, Annotated[float, Field(strict=True, gt=0.0, le=1.0)]], ...],
+        In("1", "1"),
+    ] = ()
+    """pairs of a slenderness and the reduction of the strength there, for proofs; Winter's curve
+    and that of EN 1993-1-5 for shear unless given"""
 
 
 class LimitsTable(CaseTable):
@@ -384,6 +390,26 @@ class FactorsTable(CaseTable):
         return None if numbers is None else prod(numbers)
 
 
+class ResistanceTable(CaseTable):
+    """Factors by which proofs divide resistances."""
+
+    material: Annotated[Positive, In("1")] = 1.0
+    """the factor on yield strengths"""
+    stability: Annotated[Positive, In("1")] = 1.0
+    """the factor on buckling resistances of plates and of the boom"""
+    pad: Annotated[Positive, In("1")] = 1.0
+    """the factor on allowable pressures of pads"""
+    cylinder: Annotated[Positive, In("1")] = 1.0
+    """the factor on capacities of cylinders"""
+    pin: Annotated[Positive, In("1")] = 1.0
+    """the factor on shear resistances of pins"""
+
+
+ProofName = Literal["yield", "plate", "column", "pad", "cylinder", "pin", "deflection"]
+# The proofs of a combination unless it names others.
+PROOFS: tuple[ProofName, ...] = ("yield", "plate", "column", "pad", "cylinder", "pin")
+
+
 class CombinationTable(CaseTable):
     """A combination of loads, in some of the load cases or in all."""
 
@@ -393,6 +419,22 @@ class CombinationTable(CaseTable):
     """the names of its load cases; all unless given"""
     factors: FactorsTable
     """group = factor, for each group of its load cases"""
+    resistance: ResistanceTable = ResistanceTable.model_validate({})
+    """the table of resistance factors"""
+    proofs: tuple[ProofName, ...] = PROOFS
+    """the proofs that the combination demands: yield, plate, column, pad, cylinder and pin unless
+    given; deflection compares the tip with limits.tip_at_rest"""
+
+
+class SpectrumTable(CaseTable):
+    """A sequence of load cases that repeats, for the proof of fatigue."""
+
+    name: Name
+    """the name of the spectrum"""
+    load_cases: Annotated[tuple[str, ...], Field(min_length=2, max_length=1000)]
+    """the names of the load cases in their order, from which the sequence starts again"""
+    repeats: Annotated[int, Field(strict=True, ge=1, le=10**9)]
+    """the number of repetitions in the service life"""
 
 
 if TYPE_CHECKING:
@@ -469,6 +511,8 @@ class Case(CaseKeys, CaseHeading):
     """the load cases, one [[load_case]] each; the case itself unless given"""
     combinations: Annotated[tuple[CombinationTable, ...], Few] = Field((), alias="combination")
     """the combinations of loads, one [[combination]] each; each load case alone unless given"""
+    spectra: Annotated[tuple[SpectrumTable, ...], Few] = Field((), alias="spectrum")
+    """the sequences of load cases for the proof of fatigue, one [[spectrum]] each"""
     models: Annotated[tuple[Model, ...], Field(min_length=1, max_length=MOST_MODELS)] = Field(
         alias="model"
     )

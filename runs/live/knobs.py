@@ -51,6 +51,7 @@ _FIRST = (
 # Tables whose numbers cannot be changed in the page, which has its own beam.
 _WITHOUT = (
     "ensemble", "model", "title", "units", "shown_units", "load_case", "combination",
+    "spectrum",
 )  # fmt: skip
 
 # Maximum length of a list of numbers; longer ones are histories and measured curves.

@@ -9,7 +9,10 @@ soften it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
+
+import numpy as np
 
 from dynamics.failure import NUMERICAL_ERRORS
 from runs.case.build import build_boom
@@ -35,12 +38,12 @@ _KINDS = {
 }
 
 
-class CombinationState(NamedTuple):
-    """Static states of a combination in a load case; ``beam`` is None without an equilibrium."""
+@dataclass(frozen=True, slots=True)
+class CombinationResult:
+    """Extremes of a combination in a load case; empty without an equilibrium."""
 
-    combined: CombinedCase
-    beam: StaticBeam | None
-    extremes: Sequence[StaticExtreme]
+    name: str
+    extremes: list[StaticExtreme]
 
     def largest(self, kind: str) -> StaticExtreme | None:
         """Return the largest result of a kind, a key of the table's columns."""
@@ -48,39 +51,57 @@ class CombinationState(NamedTuple):
         return max(own, key=lambda one: abs(one.largest), default=None)
 
 
+class CombinationState(NamedTuple):
+    """Static states of a combination in a load case; ``beam`` is None without an equilibrium."""
+
+    combined: CombinedCase
+    beam: StaticBeam | None
+
+    @property
+    def result(self) -> CombinationResult:
+        """The extremes, with places in the units of the case."""
+        system, beam = self.combined.case.system, self.beam
+        extremes = [*beam.extremes(system), *beam.foot_extremes(system)] if beam else []
+        return CombinationResult(self.combined.name, extremes)
+
+
 def combination_states(case: Case) -> list[CombinationState]:
-    """Return the static states of all combinations; none without load cases and combinations."""
+    """Return the static states of all combinations; those of the case without combinations."""
     found = []
-    for combined in combined_cases(case) if case.load_cases or case.combinations else ():
+    for combined in combined_cases(case):
         boom = boom_with_play(combined.case, build_boom(combined.case))
         try:
-            beam = StaticBeam.of(combined.case, boom)
+            with np.errstate(all="ignore"):
+                beam = StaticBeam.of(combined.case, boom)
         except NUMERICAL_ERRORS:
-            found.append(CombinationState(combined, None, []))
-            continue
-        extremes = [*beam.extremes(case.system), *beam.foot_extremes(case.system)]
-        found.append(CombinationState(combined, beam, extremes))
+            beam = None
+        found.append(CombinationState(combined, beam))
     return found
 
 
-def combination_tables(states: Sequence[CombinationState], system: System) -> Iterator[Table]:
+def combination_results(case: Case) -> list[CombinationResult]:
+    """Return the results of a case's combinations; empty without load cases and combinations."""
+    given = case.load_cases or case.combinations
+    return [one.result for one in combination_states(case)] if given else []
+
+
+def combination_tables(results: Sequence[CombinationResult], case: Case) -> Iterator[Table]:
     """Yield the table of combinations, and that of their envelope, in the units of a case."""
-    beams = [one.beam for one in states if one.beam is not None]
-    if not beams:
+    system = case.system
+    if not any(one.extremes for one in results):
         return
-    columns = [Column("combination", [one.combined.name for one in states])]
+    columns = [Column("combination", [one.name for one in results])]
     for kind, heading in _KINDS.items():
-        values = [one.largest(kind) for one in states]
+        values = [one.largest(kind) for one in results]
         most = max((abs(one.largest) for one in values if one), default=0.0)
         if most:
             cells = [_marked(one, most, system) if one else None for one in values]
             columns.append(Column(heading, cells))
-    notes = [f"{_GOVERNS.strip()} governs.", beam_note(beams[0].boom)]
-    missing = [one.combined.name for one in states if one.beam is None]
-    notes += [f"{name}: no rest is found." for name in missing]
+    notes = [f"{_GOVERNS.strip()} governs.", beam_note(boom_with_play(case, build_boom(case)))]
+    notes += [f"{one.name}: no rest is found." for one in results if not one.extremes]
     yield Table("Combinations at rest, the largest results", columns, notes, "combinations")
-    if len(states) > 1:
-        yield _envelope(states, system)
+    if len(results) > 1:
+        yield _envelope(results, system)
 
 
 def _marked(one: StaticExtreme, most: float, system: System) -> str:
@@ -88,12 +109,12 @@ def _marked(one: StaticExtreme, most: float, system: System) -> str:
     return text + (_GOVERNS if abs(one.largest) == most else " " * len(_GOVERNS))
 
 
-def _envelope(states: Sequence[CombinationState], system: System) -> Table:
+def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
     """Return the least and the largest value of each result, and the combination that governs."""
     of_name: dict[str, list[tuple[StaticExtreme, str]]] = {}
-    for state in states:
-        for one in state.extremes:
-            of_name.setdefault(one.name, []).append((one, state.combined.name))
+    for result in results:
+        for one in result.extremes:
+            of_name.setdefault(one.name, []).append((one, result.name))
     least = [min(several, key=lambda pair: pair[0].largest) for several in of_name.values()]
     most = [max(several, key=lambda pair: pair[0].largest) for several in of_name.values()]
     governs = [

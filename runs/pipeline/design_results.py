@@ -7,9 +7,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from runs.case.schema import Model
+from runs.pipeline.combinations import CombinationResult
 from runs.pipeline.modes import Mode, ModeComparison
 from runs.pipeline.motion_results import MotionResult
 from runs.pipeline.panels import PanelBuckling
+from runs.pipeline.proofs import Proofs
 from runs.pipeline.residual_vibration import ResidualVibration
 from runs.pipeline.static_results import StaticResult
 from runs.pipeline.statics import Reaction
@@ -130,6 +132,8 @@ class DesignResults:
         modes: comparison of the modes of all models; None if fewer than two models have modes.
         play: effect of play in each model with play.
         quality_notes: notes on the accuracy.
+        combinations: statics of all load cases and combinations, as beam elements.
+        proofs: their proofs; None without load cases and combinations.
     """
 
     models: dict[str, ModelDesignResults]
@@ -138,6 +142,8 @@ class DesignResults:
     modes: ModeComparison | None = None
     play: list[PlayEffect] = field(default_factory=list)
     quality_notes: list[QualityNote] = field(default_factory=list)
+    combinations: list[CombinationResult] = field(default_factory=list)
+    proofs: Proofs | None = None
 
 
 def play_effects(models: list[Model], design: Mapping[str, ModelDesignResults]) -> list[PlayEffect]:

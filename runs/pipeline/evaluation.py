@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from types import MappingProxyType
 from typing import NamedTuple
@@ -20,6 +21,7 @@ from geometry.telescoping import travel
 from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
 from runs.pipeline.bonded import bonded_system
+from runs.pipeline.combinations import combination_states
 from runs.pipeline.design_results import DesignResults, ModelDesignResults, play_effects
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.model_quality import quality_notes, reference_of
@@ -27,6 +29,7 @@ from runs.pipeline.models import MotionPlan
 from runs.pipeline.modes import ModeComparison, matched, modes
 from runs.pipeline.motion_results import Motions, evaluate_motion
 from runs.pipeline.panels import weakest_panels
+from runs.pipeline.proofs import prove
 from runs.pipeline.residual_vibration import residual_vibration
 from runs.pipeline.section_forces import with_cylinders
 from runs.pipeline.static_results import (
@@ -178,6 +181,12 @@ def evaluate_run(
         modes=_compared_modes(boom, ran, models),
         play=play_effects(ran, models) if boom.joints else [],
     )
+    if case.load_cases or case.combinations:
+        states = combination_states(case)
+        design = replace(design, combinations=[one.result for one in states])
+        with suppress(*NUMERICAL_ERRORS):
+            # A combination without rest has no proofs; the table of combinations says so.
+            design = replace(design, proofs=prove(case, states))
     return replace(design, quality_notes=[*quality_notes(summary, design, case.time.duration)])
 
 

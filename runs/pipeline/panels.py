@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Buckling of walls by formulas for long panels: a quick estimate from section forces.
+"""Stresses of walls from section forces, and buckling of walls by formulas for long panels.
 
 Each wall is a long plate, simply supported at its folds, under a linear stress along the boom and a
 mean shear stress. The estimate neglects the restraint by adjacent walls and the local load of pads.
@@ -9,11 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
+from geometry.arrays import Array
+from geometry.section import Plate, Section
 from geometry.segment import Material, Segment
 from runs.pipeline.static_results import Diagram, StaticResult
+from runs.pipeline.strength import outer_corners
 
 # Coefficient k of a long plate in shear (Southwell and Skan 1924).
 SHEAR = 5.34
@@ -36,83 +40,134 @@ class PanelBuckling:
     factor: float
 
 
-def normal_coefficient(ratio: float) -> float:
-    """Return k of a long plate for the ratio ψ of the stresses at its edges.
+class WallStresses(NamedTuple):
+    """Stresses of a wall in a static state.
+
+    Args:
+        segment: the segment.
+        plate: the wall.
+        x: (num_places,) x of the cross-sections in m.
+        edges: (2, num_places) axial stress at the ends of the mid-line in Pa, positive in tension.
+        fibres: (2, num_places) axial stress at the outer corners.
+        shear: (num_places,) mean shear stress in Pa, not negative.
+    """
+
+    segment: Segment
+    plate: Plate
+    x: Array
+    edges: Array
+    fibres: Array
+    shear: Array
+
+    @property
+    def slenderness(self) -> float:
+        """The width over the thickness."""
+        return self.plate.length / self.plate.thickness
+
+
+def normal_coefficient(ratio: float | Array) -> Array:
+    """Return k of long plates for the ratio ψ of the stresses at their edges.
 
     ψ is the stress at the other edge over the largest compression (EN 1993-1-5, table 4.1): 4.0 in
     compression, 23.9 in bending.
     """
-    if ratio >= 0.0:
-        return 8.2 / (1.05 + ratio)
-    if ratio > -1.0:
-        return 7.81 - 6.29 * ratio + 9.78 * ratio**2
+    ratio = np.asarray(ratio)
+    compressed, bent = 8.2 / (1.05 + np.maximum(ratio, 0.0)), 7.81 - 6.29 * ratio + 9.78 * ratio**2
     # The table ends at −3, beyond which tension is neglected.
-    return 5.98 * (1.0 - max(ratio, -3.0)) ** 2
+    beyond = 5.98 * (1.0 - np.maximum(ratio, -3.0)) ** 2
+    return np.asarray(np.select([ratio >= 0.0, ratio > -1.0], [compressed, bent], beyond))
+
+
+def stress_ratio(edges: Array) -> Array:
+    """Return ψ, at least −3, for the axial stresses (2, ...) at two edges; 1 without compression.
+
+    Args:
+        edges: axial stresses in Pa, positive in tension.
+    """
+    largest = -edges.min(axis=0)
+    compressed = largest > 0.0
+    ratio = -edges.max(axis=0) / np.where(compressed, largest, 1.0)
+    return np.asarray(np.where(compressed, np.maximum(ratio, -3.0), 1.0))
 
 
 def panel_factor(
-    material: Material, slenderness: float, edges: tuple[float, float], shear: float
-) -> float:
-    """Return the buckling factor of a long panel; infinite without compression and shear.
+    material: Material,
+    slenderness: float,
+    edges: tuple[float, float] | Array,
+    shear: float | Array,
+) -> Array:
+    """Return the buckling factors (...) of a long panel; infinite without compression and shear.
 
     Stresses interact by EN 1993-1-5, (10.6).
 
     Args:
         material: isotropic material.
         slenderness: width over thickness.
-        edges: axial stresses at both edges in Pa, positive in tension.
-        shear: shear stress in Pa.
+        edges: axial stresses (2, ...) at both edges in Pa, positive in tension.
+        shear: shear stress (...) in Pa.
     """
-    young, nu = material.youngs_modulus, material.poissons_ratio
+    young, nu, edges = material.youngs_modulus, material.poissons_ratio, np.asarray(edges)
     unit = np.pi**2 * young / (12.0 * (1.0 - nu**2) * slenderness**2)
-    sheared = abs(shear) / (SHEAR * unit)
-    largest = -min(edges)
-    if largest <= 0.0:
-        return 1.0 / sheared if sheared else np.inf
-    ratio = max(-max(edges) / largest, -3.0)
-    pressed = largest / (normal_coefficient(ratio) * unit)
+    sheared = np.abs(shear) / (SHEAR * unit)
+    ratio = stress_ratio(edges)
+    pressed = np.maximum(-edges.min(axis=0), 0.0) / (normal_coefficient(ratio) * unit)
     mean = 0.25 * (1.0 + ratio) * pressed
-    return float(1.0 / (mean + np.sqrt(mean**2 + 0.5 * (1.0 - ratio) * pressed**2 + sheared**2)))
+    part = mean + np.sqrt(mean**2 + 0.5 * (1.0 - ratio) * pressed**2 + sheared**2)
+    return np.asarray(np.divide(1.0, part, out=np.full_like(part, np.inf), where=part > 0.0))
 
 
 def weakest_panels(segments: Sequence[Segment], rest: StaticResult) -> list[PanelBuckling]:
     """Return the wall of each segment with a known section that buckles first in a static state."""
-    found = []
+    found: dict[str, PanelBuckling] = {}
+    for wall in nominal_wall_stresses(segments, rest):
+        name = wall.segment.name
+        factors = panel_factor(wall.segment.material, wall.slenderness, wall.edges, wall.shear)
+        least = int(factors.argmin())
+        one = PanelBuckling(name, wall.plate.name, float(wall.x[least]), float(factors[least]))
+        if np.isfinite(one.factor) and one.factor < getattr(found.get(name), "factor", np.inf):
+            found[name] = one
+    return [*found.values()]
+
+
+def nominal_wall_stresses(
+    segments: Sequence[Segment], rest: StaticResult
+) -> Iterator[WallStresses]:
+    """Yield the stresses of each wall of the segments with known sections in a static state."""
     for segment, diagram in zip(segments, rest.diagrams, strict=True):
-        if segment.section is not None and "moment" in diagram.curves:
-            weakest = min(_panels(segment, diagram), key=lambda panel: panel.factor)
-            if np.isfinite(weakest.factor):
-                found.append(weakest)
-    return found
-
-
-def _panels(segment: Segment, diagram: Diagram) -> Iterator[PanelBuckling]:
-    """Yield all walls of a segment at all places of its diagram."""
-    none = [0.0] * len(diagram.x)
-    curves = [
-        diagram.normal,
-        *(
-            diagram.curves.get(name, none)
-            for name in ("moment", "lateral_moment", "shear", "lateral_shear", "torque")
-        ),
-    ]
-    for x, normal, moment, lateral, shear, aside, torque in zip(diagram.x, *curves, strict=True):
-        section = segment.section_at(x)
-        slopes = np.array(
-            [
-                lateral / section.lateral_second_moment_of_area,
-                moment / section.second_moment_of_area,
-            ]
+        if segment.section is None or "moment" not in diagram.curves:
+            continue
+        places = (
+            [slice(None)]
+            if segment.head_section is None
+            else [slice(number, number + 1) for number in range(len(diagram.x))]
         )
-        forces = [(shear, section.shear_plates("z")), (aside, section.shear_plates("y"))]
-        for number, plate in enumerate(section.plates):
-            first, last = (
-                float(normal / section.area + slopes @ place) for place in (plate.start, plate.end)
-            )
-            along = sum(abs(force * dict(shares).get(number, 0.0)) for force, shares in forces)
-            flow = along / plate.length + abs(torque) / (2.0 * section.enclosed_area)
-            slenderness = plate.length / plate.thickness
-            factor = panel_factor(
-                segment.material, slenderness, (first, last), flow / plate.thickness
-            )
-            yield PanelBuckling(segment.name, plate.name, x, factor)
+        for part in places:
+            x = np.array(diagram.x[part])
+            yield from _walls(segment, segment.section_at(float(x[0])), diagram, part, x)
+
+
+def _walls(
+    segment: Segment, section: Section, diagram: Diagram, part: slice, x: Array
+) -> Iterator[WallStresses]:
+    """Yield the walls of a section at the places x (num_places,) of a part of a diagram."""
+    names = ("moment", "lateral_moment", "shear", "lateral_shear", "torque")
+    moment, lateral, shear, aside, torque = (
+        np.array(diagram.curves[name][part]) if name in diagram.curves else np.zeros(x.size)
+        for name in names
+    )
+    mean = np.array(diagram.normal[part]) / section.area
+    slopes = (
+        lateral / section.lateral_second_moment_of_area,
+        (moment / section.second_moment_of_area),
+    )
+    forces = [(shear, dict(section.shear_plates("z"))), (aside, dict(section.shear_plates("y")))]
+    corners = np.transpose(outer_corners(section))
+    for number, plate in enumerate(section.plates):
+        outer = corners[[number, (number + 1) % len(section.plates)]]
+        edges, fibres = (
+            np.array([mean + slopes[0] * y + slopes[1] * z for y, z in ends])
+            for ends in ((plate.start, plate.end), outer)
+        )
+        along = sum(np.abs(force * shares.get(number, 0.0)) for force, shares in forces)
+        flow = along / plate.length + np.abs(torque) / (2.0 * section.enclosed_area)
+        yield WallStresses(segment, plate, x, edges, fibres, flow / plate.thickness)

@@ -37,7 +37,7 @@ STEEP, FLAT = 3.0, 5.0
 COUNTS = find_spec("rainflow") is not None
 
 # Unit in Pa of the numbers that name detail categories.
-_MEGA = 1.0e6
+MEGA = 1.0e6
 
 # Number of classes of stored ranges.
 _CLASSES = 20
@@ -242,7 +242,7 @@ def largest_stresses(
 
 def utilisation(segment: Segment, stress: float) -> float | None:
     """Return the utilisation of the yield strength; None if the segment has none."""
-    strength = segment.material.yield_strength
+    strength = segment.yield_strength
     return None if strength is None else abs(stress) / strength
 
 
@@ -314,7 +314,7 @@ def life(varying: Varying, table: LifeTable) -> Life:
     damage = None
     if table.detail_category is not None:
         raised = table.partial_factor * sizes
-        damage = float((counts / endurance(raised, _MEGA * table.detail_category)).sum())
+        damage = float((counts / endurance(raised, MEGA * table.detail_category)).sum())
     largest = float(sizes.max(initial=0.0))
     kept, edges = np.histogram(sizes, _CLASSES, (0.0, largest or 1.0), weights=counts)
     return Life(

@@ -48,7 +48,7 @@ def render(
         snapshots: snapshots on the disk.
         viewer: file of the interactive viewer beside the report.
     """
-    texts = tables_by_part(results)
+    texts, proofs = tables_by_part(results), results.summary.design.proofs
     pictures = {part: [figure for figure in figures if figure.part == part] for part in PARTS}
     pictures |= {"snapshots": [*snapshots]}
     shown = [
@@ -70,6 +70,7 @@ def render(
         adds=play_effect(results),
         of=results.play.model if results.play else "",
         strength=utilisation_verdict(results),
+        proved="" if proofs is None else proofs.governing(results.case.system),
         deviation=deviation_note(results),
         quality=[known.line for known in results.summary.design.quality_notes],
         viewer=viewer,

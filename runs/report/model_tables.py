@@ -8,9 +8,8 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from dynamics.predictability.horizon import SHARES
+from geometry.boom import Boom
 from geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT
-from runs.case.build import material_of
-from runs.case.schema import Case
 from runs.pipeline.metrics import metrics
 from runs.pipeline.results import Results
 from runs.pipeline.summary import CalibrationCard, FirstPeak, ModelSummary
@@ -246,7 +245,7 @@ def wall_table(results: Results) -> Table | None:
         Column("shear force", [carried.shear for *_, carried in walls], ".2f", "kN"),
         Column("moment", [carried.moment for *_, carried in walls], ".2f", "kN m"),
     )
-    largest = [f"{name}: {_largest(results.case, stress)}" for name, stress in shells.items()]
+    largest = [f"{name}: {_largest(results.boom, stress)}" for name, stress in shells.items()]
     means = (
         "Means over the row of elements at x, on the side of the tip. Axial forces are positive "
         "in tension; shear forces act on the part before the section, along each wall, upwards "
@@ -257,11 +256,11 @@ def wall_table(results: Results) -> Table | None:
     return Table(title, columns, (*largest, means), "walls")
 
 
-def _largest(case: Case, stress: StressSummary) -> str:
+def _largest(boom: Boom, stress: StressSummary) -> str:
     """Return the design stress, which is a mean over a patch, and the stress at the instant."""
     triangle = (
         f"single element, which grows with mesh refinement beside a line of contact: "
-        f"{number(TO_MEGA * stress.von_mises, 3)} MPa{_of_yield(case, stress)} at "
+        f"{number(TO_MEGA * stress.von_mises, 3)} MPa{_of_yield(boom, stress)} at "
         f"x = {stress.x:.2f} m in {stress.segment!r}, {stress.face} face of the wall "
         f"{stress.wall!r}, at {stress.time:.3f} s, the instant of this table."
     )
@@ -270,15 +269,15 @@ def _largest(case: Case, stress: StressSummary) -> str:
     return (
         "largest von Mises stress over a patch of half a wall, which converges with mesh "
         "refinement: "
-        f"{number(TO_MEGA * patch.von_mises, 3)} MPa{_of_yield(case, patch)} near "
+        f"{number(TO_MEGA * patch.von_mises, 3)} MPa{_of_yield(boom, patch)} near "
         f"x = {patch.x:.2f} m in {patch.segment!r}, at {patch.time:.3f} s; of a {triangle}"
     )
 
 
-def _of_yield(case: Case, stress: StressSummary | LargestPatch) -> str:
+def _of_yield(boom: Boom, stress: StressSummary | LargestPatch) -> str:
     """Return the utilisation of the yield strength, if the case specifies it."""
-    names = [segment.name for segment in case.segments]
-    strength = material_of(case, names.index(stress.segment)).yield_strength
+    (segment,) = (one for one in boom.segments if one.name == stress.segment)
+    strength = segment.yield_strength
     if strength is None:
         return ""
     return f" ({percent(stress.von_mises / strength)} of the yield strength)"

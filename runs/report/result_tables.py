@@ -10,9 +10,11 @@ import numpy as np
 from geometry.cylinder import force_name
 from runs.case.hoist import hanging_load
 from runs.case.turning import frame_motion
+from runs.pipeline.combinations import combination_tables
 from runs.pipeline.design_results import ModelDesignResults, PlayDifference
 from runs.pipeline.metrics import records
 from runs.pipeline.motion_results import Peak
+from runs.pipeline.proofs import proof_table
 from runs.pipeline.results import Results
 from runs.pipeline.static_results import StaticResult
 from runs.report.figure_context import of_rests
@@ -28,6 +30,7 @@ ROUND_OFF = 1.0e-9
 
 def result_tables(results: Results) -> list[Table]:
     """Return all tables for which a run has data, except the summary, in the report's order."""
+    design = results.summary.design
     found = [
         play_table(results),
         *rest_tables(results),
@@ -42,6 +45,8 @@ def result_tables(results: Results) -> list[Table]:
         stress_table(results),
         buckling_table(results),
         life_table(results),
+        *combination_tables(design.combinations, results.case),
+        design.proofs and proof_table(design.proofs, results.case),
     ]
     return [table for table in found if table is not None]
 

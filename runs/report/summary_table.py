@@ -147,7 +147,7 @@ def utilisation_verdict(results: Results, model: str | None = None) -> str:
 
 def _not_given(results: Results, model: str) -> str:
     """Return text with the missing strengths: steel, and pads that carry load in a model."""
-    steels = [one.name for one in results.boom.segments if one.material.yield_strength is None]
+    steels = [one.name for one in results.boom.segments if one.yield_strength is None]
     pressed = (pad for pad in results.summary.pads if pad.model == model and pad.force > 0.0)
     pads = {pad.inner: None for pad in pressed if pad.utilisation is None}
     missing = {"yield strength is given of": steels, "allowable pressure is given of pads of": pads}
@@ -243,7 +243,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
             "Pad: one of a pair, under its largest force during the motion"
             f"{bears and f'; %: of the allowable {bears}'}."
         )
-    strengths = _span(one.material.yield_strength for one in results.boom.segments)
+    strengths = _span(one.yield_strength for one in results.boom.segments)
     if strengths:
         yield f"Stresses: % of the yield strength, {strengths}."
     shells = {name: one.stress for name, one in results.summary.models.items() if one.stress}

@@ -27,7 +27,7 @@ from runs.case.units import scaled
 Tables = dict[str, Any]
 
 # Tables that have no effect on runs of a sweep, with the reason.
-_NO_RUN = dict.fromkeys(("limits", "load_case", "combination"), "no run depends on it")
+_NO_RUN = dict.fromkeys(("limits", "load_case", "combination", "spectrum"), "no run depends on it")
 UNUSED = {"ensemble": "a sweep runs no ensembles", **_NO_RUN}
 
 # Maximum number of points, which take weeks.

@@ -42,7 +42,7 @@ SUPPORTS = [
     ("[[joint]]",
      _CYLINDER.replace("depth", "height"),
      "cylinder[1].height: unknown key; known ones are segment, x, depth, ground, stiffness, "
-     "dashpot, spread"),
+     "dashpot, spread, capacity, pin"),
     ("[[joint]]",
      _CYLINDER.replace("stiffness", "spread = 1.0\nstiffness"),
      "cylinder[1].spread: the boom is flat, and nothing turns about its axis; leave it out, or "

@@ -12,7 +12,7 @@ import pytest
 from runs.case.checked_case import CheckedCase
 from runs.case.conversion import in_si
 from runs.check import print_check
-from runs.pipeline.combinations import combination_states, combination_tables
+from runs.pipeline.combinations import combination_results, combination_tables
 from runs.pipeline.largest_loads import StaticExtreme
 from tests.runs.case_texts import read_case, refusal
 from tests.runs.summaries import printed
@@ -80,8 +80,8 @@ factors = { dead = 0.0, payload = 1.1, wind = 1.22 }
 
 def results(folder: Path, text: str) -> dict[str, Mapping[str, StaticExtreme]]:
     return {
-        state.combined.name: {one.name: one for one in state.extremes}
-        for state in combination_states(read_case(folder, text))
+        result.name: {one.name: one for one in result.extremes}
+        for result in combination_results(read_case(folder, text))
     }
 
 
@@ -177,11 +177,11 @@ def test_load_cases_in_millimetres_and_from_files(tmp_path: Path) -> None:
 
 def test_check_marks_the_governing_combination(tmp_path: Path) -> None:
     case = read_case(tmp_path, LIFT + CASES + FACTORS)
-    states = combination_states(case)
-    first, envelope = combination_tables(states, case.system)
-    tips = [state.largest("tip").largest for state in states]  # type: ignore[union-attr]
+    found = combination_results(case)
+    first, envelope = combination_tables(found, case)
+    tips = [state.largest("tip").largest for state in found]  # type: ignore[union-attr]
     marked = dict(zip(first.columns[0].cells, first.columns[1].text, strict=True))
-    governing = states[tips.index(min(tips))].combined.name
+    governing = found[tips.index(min(tips))].name
     assert [name for name, tip in marked.items() if "*" in tip] == [governing]
     cells = {row[0]: row[1:] for row in envelope.rows}
     assert cells["tip"][2] == governing

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Fatigue damage of weld details under sequences of load cases.
+
+A detail stays at its place of the segment, whatever the extension. Its nominal stress in each load
+case is that of the outer fibres at its cross-section. Ranges are counted around the closed
+sequence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.boom import Boom
+from runs.case.build import build_boom
+from runs.case.combinations import combine
+from runs.case.schema import Case
+from runs.pipeline.largest_loads import StaticBeam
+from runs.pipeline.section_forces import section_forces
+from runs.pipeline.statics import boom_with_play
+from runs.pipeline.strength import COUNTS, MEGA, Fibres, counted, endurance
+
+# Number of cross-sections of a segment at which its worst weld may be.
+_SECTIONS = 41
+
+# Distance to both sides of a detail, at which section forces may jump, in m.
+_BESIDE = 1.0e-6
+
+
+class Detail(NamedTuple):
+    """A weld detail: name, index of its segment, x in the case's position in m, and category."""
+
+    name: str
+    segment: int
+    x: float
+    category: float
+
+
+class Damage(NamedTuple):
+    """Miner's sum of all spectra, and the spectrum with the largest share."""
+
+    sum: float
+    spectrum: str
+
+
+def details(case: Case, boom: Boom) -> Iterator[Detail]:
+    """Yield the details of a boom: at collars, diaphragms and stations, and of the worst weld."""
+    for number, segment in enumerate(boom.segments):
+        name = segment.name
+        for collar in segment.collars:
+            if collar.detail_category is not None:
+                for x in collar.span:
+                    yield Detail(f"collar, {name}", number, x, collar.detail_category)
+        for plate in segment.diaphragms:
+            if plate.detail_category is not None:
+                yield Detail(f"diaphragm, {name}", number, plate.x, plate.detail_category)
+        if case.life.detail_category is not None:
+            for x in np.linspace(segment.start, segment.end, _SECTIONS):
+                yield Detail(f"worst weld, {name}", number, float(x), case.life.detail_category)
+    for joint in boom.joints:
+        if joint.detail_category is not None:
+            for x in joint.stations:
+                for number in (joint.outer, joint.inner):
+                    name = f"station, {boom.segments[number].name}"
+                    yield Detail(name, number, x, joint.detail_category)
+
+
+def detail_damages(case: Case) -> list[tuple[Detail, Damage]]:
+    """Return the governing detail of each name with its damage under all spectra of a case.
+
+    The result is empty without spectra or without the package ``rainflow``.
+
+    Raises:
+        NumericsError: a load case has no equilibrium.
+    """
+    if not (case.spectra and COUNTS):
+        return []
+    found: dict[str, tuple[Detail, Damage]] = {}
+    tables = {one.name: one for one in case.load_cases}
+    named = {name for spectrum in case.spectra for name in spectrum.load_cases}
+    beams: dict[str, StaticBeam] = {}
+    for name in named:
+        plain = combine(case, tables[name])
+        beams[name] = StaticBeam.of(plain, boom_with_play(plain, build_boom(plain)))
+    boom = build_boom(case)
+    for detail in details(case, boom):
+        if boom.segments[detail.segment].section is None:
+            continue
+        inside = detail.x - boom.segments[detail.segment].start
+        stress = {name: _stress(beam, detail.segment, inside) for name, beam in beams.items()}
+        damage = _damage(case, detail.category, stress)
+        if detail.name not in found or damage.sum > found[detail.name][1].sum:
+            found[detail.name] = detail, damage
+    return [*found.values()]
+
+
+def _stress(beam: StaticBeam, number: int, inside: float) -> Array:
+    """Return the stress (2 num_fibres, num_rests) in Pa on both sides of a place in a segment."""
+    segment, line = beam.boom.segments[number], beam.lines[number]
+    fibres = Fibres.of(segment, line)
+    assert fibres is not None
+    time = np.array([rest.time for rest in beam.rests])
+    curves = section_forces(beam.boom, number, line, beam.positions, time)
+    x = np.clip(segment.start + inside + np.array([-_BESIDE, _BESIDE]), *segment.ends)
+    return np.array(
+        [
+            [np.interp(at, line.x, row) for row in fibres.stress(fibre, curves)]
+            for fibre in range(len(fibres.z))
+            for at in x
+        ]
+    )
+
+
+def _damage(case: Case, category: float, stress: Mapping[str, Array]) -> Damage:
+    """Return the damage of the worst fibre of a detail, by the stresses in all load cases."""
+    shares = []
+    for spectrum in case.spectra:
+        # The sequence of all rests of the load cases, closed.
+        sequence = np.concatenate([stress[name] for name in spectrum.load_cases], axis=1)
+        of_fibres = []
+        for one in sequence:
+            start = int(np.abs(one).argmax())
+            sizes, counts = counted([*np.roll(one, -start), one[start]])
+            raised = case.life.partial_factor * sizes
+            of_fibres.append(float((counts / endurance(raised, MEGA * category)).sum()))
+        shares.append(spectrum.repeats * np.array(of_fibres))
+    worst = int(np.sum(shares, axis=0).argmax())
+    own = [float(share[worst]) for share in shares]
+    return Damage(sum(own), case.spectra[int(np.argmax(own))].name)

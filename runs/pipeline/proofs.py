@@ -1,0 +1,330 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Proofs of strength, stability, deflection and fatigue for all combinations of a case.
+
+The stresses are those of outer fibres, from section forces of second order. Only the governing
+proof of each part of the boom is kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from beam_model.boom_modes import critical_factor
+from beam_model.statics import Elements
+from dynamics.failure import NUMERICAL_ERRORS, NumericsError
+from geometry.arrays import Array
+from geometry.boom import Boom
+from runs.case.schema import Case, CombinationTable
+from runs.case.units import System
+from runs.pipeline.combinations import CombinationState
+from runs.pipeline.fatigue import detail_damages
+from runs.pipeline.largest_loads import StaticBeam, in_units
+from runs.pipeline.panels import (
+    WallStresses,
+    nominal_wall_stresses,
+    panel_factor,
+    stress_ratio,
+)
+from runs.report.tables import Column, Table
+
+# Formula of each proof.
+FORMULAS: Mapping[str, str] = {
+    "yield": "√(σ² + 3 τ²) ≤ f_y(t)/γ; σ of outer fibres, τ mean of the wall (EN 1993-1-1, 6.2.1)",
+    "plate": (
+        "√((σ/ρ)² + 3 (τ/χ)²) ≤ f_y(t)/γ; ρ and χ at √(α_ult/α_cr) of panel formulas "
+        "(EN 1993-1-5, 10)"
+    ),
+    "column": "N ≤ N_cr/γ, joints in contact; stresses and tip contain N by second order",
+    "pad": "F/(length · width) ≤ allowable pressure/γ, for one pad of a pair",
+    "cylinder": "F ≤ capacity/γ",
+    "pin": "F ≤ 0.6 n A f_up/γ, n shear planes (EN 1993-1-8, table 3.10)",
+    "deflection": "tip at rest ≤ limits.tip_at_rest",
+    "fatigue": "Σ n/N ≤ 1, nominal ranges, rainflow and Miner (EN 1993-1-9, 7.1 and A.5)",
+}
+
+
+# What to change where a proof fails.
+_REMEDIES: Mapping[str, str] = {
+    "yield": "thicker walls there, a larger section or stronger steel",
+    "plate": "a thicker, narrower or stiffened wall there",
+    "column": "larger sections, a smaller extension or less force along the boom",
+    "pad": "longer or wider pads, or a longer overlap",
+    "cylinder": "a larger cylinder, or a longer lever arm to the foot",
+    "pin": "a thicker pin, or more shear planes",
+    "deflection": "larger sections, less play or a longer overlap",
+    "fatigue": "a better detail, its place at less stress, or fewer repeats",
+}
+
+
+class Proof(NamedTuple):
+    """Demand on a part of the boom, and its resistance.
+
+    Args:
+        kind: kind of the proof, a key of :data:`FORMULAS`.
+        part: the part of the boom.
+        place: the part and the wall or detail that governs.
+        x: x of the place in m; None for parts without one.
+        demand, resistance: both in the unit; the resistance is divided by its factor.
+        unit: SI unit.
+        combination: combination and load case, or spectrum, that governs.
+    """
+
+    kind: str
+    part: str
+    place: str
+    x: float | None
+    demand: float
+    resistance: float
+    unit: str
+    combination: str = ""
+
+    @property
+    def utilisation(self) -> float:
+        """The demand over the resistance."""
+        return self.demand / self.resistance
+
+    @property
+    def remedy(self) -> str:
+        """What to change if the proof fails."""
+        return _REMEDIES[self.kind]
+
+    @property
+    def holds(self) -> bool:
+        """True if the demand does not exceed the resistance."""
+        return self.demand <= self.resistance
+
+    def text(self, system: System) -> str:
+        """Return a sentence with place, numbers and combination, in units of a system."""
+        both = (in_units(one, self.unit, system) for one in (self.demand, self.resistance))
+        demand, resistance = (one.removesuffix(" 1") for one in both)
+        relation = "≤" if self.holds else "exceeds"
+        place = "" if self.place == self.kind else f", {self.place}"
+        place += "" if self.x is None else f" at {system.text(self.x, 'm')}"
+        return (
+            f"{self.kind}{place}: {demand} {relation} {resistance} "
+            f"({100.0 * self.utilisation:.3g} %) in {self.combination}"
+        )
+
+
+class Proofs(NamedTuple):
+    """Proofs of a case, the governing one first, and notes on what is not proved."""
+
+    proofs: list[Proof]
+    notes: list[str]
+
+    def governing(self, system: System) -> str:
+        """Return a sentence on the governing proof and the number of those that fail."""
+        if not self.proofs:
+            return "The case has no numbers for a proof."
+        failed, governs = sum(not one.holds for one in self.proofs), self.proofs[0]
+        text = (
+            f"{failed} of {len(self.proofs)} proofs fail"
+            if failed
+            else f"All {len(self.proofs)} proofs hold"
+        )
+        change = f"; {governs.remedy}" if failed else ""
+        return f"{text}. Governing: {governs.text(system)}{change}."
+
+
+def prove(case: Case, states: Sequence[CombinationState]) -> Proofs:
+    """Return the governing proofs of all combinations, as beam elements.
+
+    Args:
+        case: a checked case.
+        states: static states of its combinations.
+
+    Raises:
+        NumericsError: a combination has no equilibrium.
+    """
+    found: dict[tuple[str, str], Proof] = {}
+    for state in states:
+        for one in _proofs(state, case):
+            other = found.setdefault((one.kind, one.part), one)
+            if one.utilisation > other.utilisation:
+                found[one.kind, one.part] = one
+    for one in _fatigue(case):
+        found[one.kind, one.part] = one
+    proofs = sorted(found.values(), key=lambda one: -one.utilisation)
+    return Proofs(proofs, [*_missing(case, states)])
+
+
+def _proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
+    name, beam, table = state.combined.name, state.beam, state.combined.combination
+    if beam is None:
+        raise NumericsError(f"{name}: the boom has no rest; nothing holds it, or it buckles")
+    for rule in (_of_walls, _of_boom, _of_stations, _of_feet):
+        for one in rule(beam, table, case):
+            if one.kind in table.proofs:
+                yield one._replace(combination=name)
+
+
+def _of_walls(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
+    for rest in beam.rests:
+        for wall in nominal_wall_stresses(beam.boom.segments, rest):
+            strength = wall.segment.material.strength(wall.plate.thickness)
+            if strength is None:
+                continue
+            equivalent = np.sqrt(np.abs(wall.fibres).max(axis=0) ** 2 + 3.0 * wall.shear**2)
+            reduced = reduced_stress(wall, strength, case.buckling.curve if case.buckling else ())
+            for kind, stress, factor in (
+                ("yield", equivalent, table.resistance.material),
+                ("plate", reduced, table.resistance.stability),
+            ):
+                most = int(stress.argmax())
+                name = wall.segment.name
+                place, x = f"{name} {wall.plate.name}", float(wall.x[most])
+                yield Proof(kind, name, place, x, float(stress[most]), strength / factor, "Pa")
+
+
+def reduced_stress(
+    wall: WallStresses, strength: float, curve: Sequence[tuple[float, float]] = ()
+) -> Array:
+    """Return the stress (num_places,) in Pa of a wall, raised by its reductions for buckling.
+
+    √((σ/ρ)² + 3 (τ/χ)²) with the largest compression σ of the mid-line (EN 1993-1-5, 10 (5) b).
+
+    Args:
+        wall: stresses of a wall.
+        strength: yield strength in Pa.
+        curve: pairs of slenderness and reduction for both; :func:`winter` and
+            :func:`shear_reduction` unless given.
+    """
+    pressed = np.maximum(-wall.edges.min(axis=0), 0.0)
+    equivalent = np.sqrt(pressed**2 + 3.0 * wall.shear**2)
+    critical = panel_factor(wall.segment.material, wall.slenderness, wall.edges, wall.shear)
+    with np.errstate(divide="ignore"):
+        # Without stress the factor is infinite, and the slenderness zero.
+        slenderness = np.sqrt(np.where(equivalent > 0.0, strength / equivalent, 0.0) / critical)
+    if curve:
+        along = across = np.interp(slenderness, *np.transpose(curve))
+    else:
+        along, across = winter(slenderness, stress_ratio(wall.edges)), shear_reduction(slenderness)
+    return np.asarray(np.hypot(pressed / along, np.sqrt(3.0) * wall.shear / across))
+
+
+def winter(slenderness: float | Array, ratio: float | Array = 1.0) -> Array:
+    """Return the reduction ρ of an internal wall (Winter 1947; EN 1993-1-5, (4.2)).
+
+    Args:
+        slenderness: λ̄, the root of strength over critical stress.
+        ratio: ψ, the stress at the other edge over the largest compression.
+    """
+    slenderness, ratio = np.asarray(slenderness, dtype=float), np.maximum(ratio, -3.0)
+    stocky = slenderness <= 0.5 + np.sqrt(0.085 - 0.055 * ratio)
+    square = np.where(stocky, 1.0, slenderness**2)
+    return np.asarray(np.where(stocky, 1.0, (slenderness - 0.055 * (3.0 + ratio)) / square))
+
+
+def shear_reduction(slenderness: float | Array) -> Array:
+    """Return the reduction χ of a wall in shear, 0.83/λ̄ ≤ 1 (EN 1993-1-5, table 5.1, η = 1)."""
+    return np.asarray(0.83 / np.maximum(slenderness, 0.83))
+
+
+def _of_boom(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
+    boom = beam.boom
+    if boom.compressed and "column" in table.proofs:
+        factor = _critical(boom)
+        normal = min(min(one.normal) for rest in beam.rests for one in rest.diagrams)
+        if factor is not None and np.isfinite(factor) and normal < 0.0:
+            resistance = -normal * factor / table.resistance.stability
+            yield Proof("column", "boom", "boom", None, -normal, resistance, "N")
+    permitted = case.limits.tip_at_rest if case.limits else None
+    if permitted is not None:
+        tip = max(abs(rest.tip) for rest in beam.rests)
+        yield Proof("deflection", "tip", "tip", None, tip, permitted, "m")
+
+
+def _critical(boom: Boom) -> float | None:
+    """Return the factor of the axial forces at which the boom buckles; None if unknown."""
+    try:
+        with np.errstate(all="ignore"):
+            return critical_factor(boom, Elements(boom).segments)
+    except NUMERICAL_ERRORS:
+        return None
+
+
+def _of_stations(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
+    for one in beam.extremes(case.system):
+        used = one.utilisation
+        if used is not None and used.part == "pad" and used.value:
+            resistance = used.load / used.value / table.resistance.pad
+            part = one.name.removeprefix("pad, ")
+            yield Proof("pad", part, part, used.x, used.load, resistance, "Pa")
+    for number, cylinder in enumerate(beam.boom.cylinders, start=1):
+        name = "cylinder" if len(beam.boom.cylinders) == 1 else f"cylinder {number}"
+        force = max(abs([*rest.cylinders.values()][number - 1]) for rest in beam.rests)
+        if cylinder.capacity is not None:
+            resistance = cylinder.capacity / table.resistance.cylinder
+            yield Proof("cylinder", name, name, None, force, resistance, "N")
+        if cylinder.pin is not None:
+            resistance = cylinder.pin.resistance / table.resistance.pin
+            yield Proof("pin", name, f"lug of {name}", cylinder.x, force, resistance, "N")
+
+
+def _of_feet(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
+    forces = {one.name: abs(one.largest) for one in beam.foot_extremes(case.system)}
+    for segment in beam.boom.segments:
+        name = f"foot, {segment.name}"
+        if segment.foot is not None and segment.foot.pin is not None and name in forces:
+            resistance = segment.foot.pin.resistance / table.resistance.pin
+            yield Proof("pin", name, name, segment.foot.x, forces[name], resistance, "N")
+
+
+def _fatigue(case: Case) -> Iterator[Proof]:
+    """Yield the proof of each detail under all spectra; none without spectra and categories."""
+    for detail, damage in detail_damages(case):
+        name = detail.name
+        yield Proof("fatigue", name, name, detail.x, damage.sum, 1.0, "1", damage.spectrum)
+
+
+def _missing(case: Case, states: Sequence[CombinationState]) -> Iterator[str]:
+    """Yield a note on each kind of proof for which the case has no numbers."""
+    beam = states[0].beam
+    assert beam is not None
+    boom = beam.boom
+    asked = {name for state in states for name in state.combined.combination.proofs}
+    steels = [one.name for one in boom.segments if one.yield_strength is None]
+    if steels and asked & {"yield", "plate"}:
+        yield f"Not proved: yield and plate of {', '.join(steels)}, without yield strength."
+    pressures = any(one.utilisation is not None for one in beam.rests[0].stations)
+    if "pad" in asked and boom.joints and not pressures:
+        yield "Not proved: pads, without allowable_pressure."
+    if "cylinder" in asked and any(one.capacity is None for one in boom.cylinders):
+        yield "Not proved: cylinder, without capacity."
+    pins = [one.foot.pin for one in boom.segments if one.foot is not None]
+    pins += [one.pin for one in boom.cylinders]
+    if "pin" in asked and not any(pins):
+        yield "Not proved: pins, without the table pin."
+    if not case.spectra:
+        yield "Not proved: fatigue, without [[spectrum]]."
+    if "deflection" not in asked:
+        yield "Not proved: deflection, in the proofs of no combination."
+    elif case.limits is None or case.limits.tip_at_rest is None:
+        yield "Not proved: deflection, without limits.tip_at_rest."
+
+
+def proof_table(found: Proofs, case: Case) -> Table:
+    """Return the table of proofs, the governing one first."""
+    proofs, system = found.proofs, case.system
+
+    def shown(values: Sequence[float]) -> list[str]:
+        pairs = zip(values, proofs, strict=True)
+        return [in_units(value, one.unit, system).removesuffix(" 1") for value, one in pairs]
+
+    at = ["" if one.x is None else f"{system.of(one.x, 'm'):.4g}" for one in proofs]
+    columns = [
+        Column("proof", [one.kind for one in proofs]),
+        Column("place", [one.place for one in proofs]),
+        Column(f"x\n{system.label('m')}", at),
+        Column("demand", shown([one.demand for one in proofs])),
+        Column("resis-\ntance", shown([one.resistance for one in proofs])),
+        Column("utilis-\nation", [f"{100.0 * one.utilisation:.3g} %" for one in proofs]),
+        Column("", ["✓" if one.holds else "✗" for one in proofs]),
+        Column("combi-\nnation", [one.combination for one in proofs]),
+    ]
+    kinds = dict.fromkeys(one.kind for one in proofs)
+    notes = [f"{kind}: {FORMULAS[kind]}." for kind in kinds] + found.notes
+    return Table("Proofs", columns, notes, "proofs", ["✗"])

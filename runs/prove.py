@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Output of ``prove``: statics of all combinations, proofs, and a line for each that fails."""
+
+from __future__ import annotations
+
+from rich.console import Console
+
+from runs.case.schema import Case
+from runs.pipeline.combinations import combination_states, combination_tables
+from runs.pipeline.proofs import proof_table, prove
+from runs.process.terminal import message, say, shorten
+
+
+def print_proofs(case: Case, file: str, console: Console) -> int:
+    """Print the proofs of a checked case; return 1 if one fails, or else 0.
+
+    Args:
+        case: the case.
+        file: its file, for messages.
+        console: console for the tables; lines on proofs that fail go to stderr.
+
+    Raises:
+        NumericsError: a combination has no equilibrium.
+    """
+    states = combination_states(case)
+    proved = prove(case, states)
+    for table in combination_tables([one.result for one in states], case):
+        table.show(console)
+    proof_table(proved, case).show(console)
+    console.print(proved.governing(case.system), markup=False, highlight=False)
+    failed = [one for one in proved.proofs if not one.holds]
+    for one in failed:
+        say(message(f"{shorten(file)}: {one.text(case.system)}; {one.remedy}"))
+    return 1 if failed else 0

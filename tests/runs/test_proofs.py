@@ -1,0 +1,304 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Proofs of combinations: formulas by hand, the table, the exit status and the report."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geometry.section import BoxSection
+from geometry.segment import Material, Segment
+from protractile.cases import run_case
+from runs import CASES as CASE_FILES
+from runs import cli
+from runs.case import reading
+from runs.pipeline.combinations import combination_states
+from runs.pipeline.panels import WallStresses
+from runs.pipeline.proofs import (
+    Proof,
+    Proofs,
+    prove,
+    reduced_stress,
+    shear_reduction,
+    winter,
+)
+from runs.pipeline.summary import Summary
+from runs.report.document import render
+from runs.report.pages import Addition
+from tests.runs.case_texts import read_case, refusal
+from tests.runs.test_combinations import CASES, LIFT, by_hand
+
+G = 9.80665
+HEIGHT, WIDTH, FLANGE, WEB, LENGTH = 0.40, 0.30, 0.016, 0.008, 6.0
+# A cantilever without weight, with a load across its tip and a force along it.
+ARM = f"""
+title = "An arm"
+time = {{ duration = 1.0 }}
+model = [{{ name = "beam", kind = "finite-element", theory = "timoshenko" }}]
+life = {{ partial_factor = 1.15 }}
+limits = {{ tip_at_rest = 0.05 }}
+
+[material]
+youngs_modulus = 2.1e11
+poissons_ratio = 0.3
+density = 7850.0
+yield_by_thickness = [[0.008, 3.55e8], [0.016, 3.45e8], [0.04, 3.35e8]]
+
+[[segment]]
+name = "arm"
+length = {LENGTH}
+supports = [{{ x = 0.0, kind = "clamped" }}]
+section = {{ height = {HEIGHT}, width = {WIDTH}, flange = {FLANGE}, web = {WEB} }}
+collars = [{{ span = [2.0, 2.5], thickness = 0.01, detail_category = 50.0 }}]
+diaphragms = [{{ x = 4.0, thickness = 0.01, detail_category = 71.0 }}]
+
+[[load_case]]
+name = "empty"
+load = [{{ segment = "arm", x = "head", magnitude = -10e3 }}]
+
+[[load_case]]
+name = "loaded"
+load = [{{ segment = "arm", x = "head", magnitude = -50e3 }}]
+
+[[load_case]]
+name = "pulled"
+load = [{{ segment = "arm", x = "head", magnitude = 20e3 }}]
+
+[[spectrum]]
+name = "day"
+load_cases = ["empty", "loaded"]
+repeats = 100000
+
+[[spectrum]]
+name = "storm"
+load_cases = ["empty", "loaded", "empty", "pulled"]
+repeats = 2000
+
+[[combination]]
+name = "A"
+factors = {{ payload = 1.5 }}
+resistance = {{ material = 1.1, stability = 1.2 }}
+proofs = ["yield", "plate", "deflection"]
+"""
+
+
+def second_moment() -> float:
+    """Return the second moment of the walls by their mid-lines, as in a thin-walled section."""
+    return FLANGE * WIDTH * HEIGHT**2 / 2.0 + WEB * HEIGHT**3 / 6.0 + WIDTH * FLANGE**3 / 6.0
+
+
+def proofs_of(folder: Path, text: str) -> tuple[dict[tuple[str, str], Proof], Proofs]:
+    case = read_case(folder, text)
+    found = prove(case, combination_states(case))
+    return {(one.kind, one.part): one for one in found.proofs}, found
+
+
+@pytest.mark.parametrize(
+    ("slenderness", "ratio", "reduction"),
+    [
+        (0.673, 1.0, 1.0),
+        (1.0, 1.0, 0.78),
+        (2.0, 1.0, 0.445),
+        (1.0, 0.0, 0.835),
+        (2.0, -1.0, 0.4725),
+        (0.874, -1.0, 1.0),
+    ],
+)
+def test_winter(slenderness: float, ratio: float, reduction: float) -> None:
+    """Reference: analytic, (λ̄ − 0.055(3 + ψ))/λ̄² by hand; 0.673 and 0.874 end its plateaus."""
+    assert winter(slenderness, ratio) == pytest.approx(reduction, abs=1e-3)
+
+
+def test_reduced_stress_of_a_wall() -> None:
+    """Reference: by hand, b/t = 60 in compression with shear; EN 1993-1-5, 10 (5) b."""
+    steel = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+    box = BoxSection(height=0.36, width=0.36, flange=0.006, web=0.006)
+    arm = Segment.of_section("arm", 0.0, 5.0, steel, box)
+    edges, shear = np.full((2, 1), -150e6), np.array([40e6])
+    wall = WallStresses(arm, box.plates[0], np.zeros(1), edges, edges, shear)
+    unit = pi**2 * 2.1e11 / (12.0 * 0.91 * 60.0**2)
+    pressed, sheared = 150e6 / (4.0 * unit), 40e6 / (5.34 * unit)
+    # For uniform compression (10.6) is 1/α = 1/2α_x + √(1/4α_x² + 1/α_τ²).
+    inverse = 0.5 * pressed + sqrt(0.25 * pressed**2 + sheared**2)
+    equivalent = sqrt(150e6**2 + 3.0 * 40e6**2)
+    slenderness = sqrt(460e6 / equivalent * inverse)
+    assert slenderness > 0.83
+    rho, chi = (slenderness - 0.22) / slenderness**2, 0.83 / slenderness
+    by_hand = sqrt((150e6 / rho) ** 2 + 3.0 * (40e6 / chi) ** 2)
+    # k of the table is 8.2/2.05 = 4.0.
+    assert reduced_stress(wall, 460e6) == pytest.approx([by_hand], rel=1e-12)
+    assert shear_reduction(slenderness) == pytest.approx(chi)
+    (own,) = reduced_stress(wall, 460e6, [(0.0, 1.0), (slenderness, 0.5), (3.0, 0.1)])
+    assert own == pytest.approx(equivalent / 0.5, rel=1e-9)
+
+
+def test_yield_plate_and_deflection_of_a_cantilever(tmp_path: Path) -> None:
+    """Reference: analytic. The flanges have 345 MPa, the webs 355 MPa and the mean shear of V."""
+    found, proofs = proofs_of(tmp_path, ARM)
+    force = 75e3
+    fibre = 0.5 * (HEIGHT + FLANGE) * force * LENGTH / second_moment()
+    shear = force / (2.0 * WEB * HEIGHT)
+    of_flange, of_web = fibre / 345e6, sqrt(fibre**2 + 3.0 * shear**2) / 355e6
+    one = found["yield", "arm"]
+    assert one.combination == "A, loaded"
+    assert one.utilisation == pytest.approx(1.1 * max(of_flange, of_web), rel=1e-3)
+    assert ("right" in one.place) == (of_web > of_flange)
+    # Stocky walls are not reduced; mid-lines have less stress than outer fibres.
+    middle = fibre * HEIGHT / (HEIGHT + FLANGE)
+    assert found["plate", "arm"].utilisation == pytest.approx(1.2 * middle / 345e6, rel=1e-3)
+    tip = found["deflection", "tip"]
+    bent = force * LENGTH**3 / (3.0 * 2.1e11 * second_moment())
+    assert tip.demand == pytest.approx(bent, rel=0.03)
+    assert tip.resistance == 0.05
+    assert not any("deflection" in note for note in proofs.notes)
+
+
+def damage_by_hand(x: float, category: float) -> float:
+    """Return Miner's sum by EN 1993-1-9, 7.1, of both spectra at x in m."""
+
+    def stress(force: float) -> float:
+        return 0.5 * (HEIGHT + FLANGE) * force * (LENGTH - x) / second_moment() / 1e6
+
+    def endured(size: float) -> float:
+        constant = 0.737 * category
+        if 1.15 * size < 0.549 * constant:
+            return np.inf
+        slope = 3.0 if 1.15 * size >= constant else 5.0
+        return 5e6 * (constant / (1.15 * size)) ** slope
+
+    # The storm has one range from loaded to pulled, and one between the empty states, which is 0.
+    return 1e5 / endured(stress(40e3)) + 2e3 / endured(stress(70e3))
+
+
+@pytest.mark.parametrize(
+    ("name", "x", "category"), [("collar", 2.0, 50.0), ("diaphragm", 4.0, 71.0)]
+)
+def test_damage_of_details(tmp_path: Path, name: str, x: float, category: float) -> None:
+    """Reference: by hand; the standard rounds its limits to three digits, slope 5 twice that."""
+    found, _ = proofs_of(tmp_path, ARM)
+    one = found["fatigue", f"{name}, arm"]
+    assert one.demand == pytest.approx(damage_by_hand(x, category), rel=5e-3)
+    assert one.combination == "day"
+    assert one.x == x
+
+
+def test_worst_weld_is_at_the_base(tmp_path: Path) -> None:
+    """Reference: by hand."""
+    found, _ = proofs_of(tmp_path, ARM.replace("{ partial", "{ detail_category = 80.0, partial"))
+    assert found["fatigue", "worst weld, arm"].demand == pytest.approx(
+        damage_by_hand(0.0, 80.0), rel=5e-3
+    )
+
+
+PINNED = (
+    LIFT.replace("stiffness = 3e7 }", "stiffness = 3e7, capacity = 3e5, "
+                 "pin = { diameter = 0.05, strength = 6e8, planes = 4 } }")
+    .replace('"hinged" }', '"hinged", pin = { diameter = 0.06, strength = 6e8 } }')
+    .replace('"corner" }', '"corner", allowable_pressure = 5e6 }')
+)  # fmt: skip
+STRONG = """
+[[combination]]
+name = "A"
+load_cases = ["level"]
+factors = { dead = 1.32, payload = 1.34, wind = 0.0 }
+resistance = { cylinder = 1.2, pin = 1.25, pad = 2.0 }
+"""
+
+
+def test_cylinder_and_pins_of_a_lift(tmp_path: Path) -> None:
+    """Reference: analytic, moments about the pin; EN 1993-1-8, table 3.10."""
+    found, proofs = proofs_of(tmp_path, PINNED + CASES + STRONG)
+    force = by_hand(0.0, 2.0, 1.32, 1.34, 0.0)
+    assert found["cylinder", "cylinder"].utilisation == pytest.approx(1.2 * force / 3e5, rel=1e-4)
+    shear = 4.0 * 0.6 * 0.25 * pi * 0.05**2 * 6e8
+    assert found["pin", "cylinder"].utilisation == pytest.approx(1.25 * force / shear, rel=1e-4)
+    assert found["pin", "foot, base"].resistance == pytest.approx(0.5 * shear * 1.44 / 1.25)
+    states = combination_states(read_case(tmp_path, PINNED + CASES + STRONG))
+    pads = {one.name: one.largest for one in states[0].result.extremes}
+    pad = found["pad", "fly, station 2"]
+    assert pad.utilisation == pytest.approx(2.0 * pads["pad, fly, station 2"] / 5e6, rel=1e-12)
+    assert [note.partition(":")[2].split(",")[0] for note in proofs.notes] == [
+        " yield and plate of base", " fatigue", " deflection",
+    ]  # fmt: skip
+
+
+def test_a_slender_column_buckles(tmp_path: Path) -> None:
+    """Reference: analytic, Euler's cantilever π² E J/(4 L²), within its shear flexibility."""
+    text = ARM.replace("load = [{", "axial = [{ force = 2e6 }]\nload = [{").replace(
+        '"yield", ', '"column", '
+    )
+    found, _ = proofs_of(tmp_path, text)
+    euler = pi**2 * 2.1e11 * second_moment() / (4.0 * LENGTH**2)
+    column = found["column", "boom"]
+    assert column.demand == pytest.approx(1.5 * 2e6)
+    assert column.resistance == pytest.approx(euler / 1.2, rel=0.03)
+
+
+@pytest.mark.parametrize(("force", "status"), [(50e3, 0), (150e3, 1)])
+def test_exit_status_and_width(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    force: float,
+    status: int,
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    path = tmp_path / "arm.toml"
+    text = ARM.replace("-50e3", f"-{force}").replace("repeats = 100000", "repeats = 1")
+    path.write_text(text.replace("tip_at_rest = 0.05", "tip_at_rest = 1.0"), encoding="utf-8")
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["prove", str(path)])
+    assert ended.value.code == status
+    shown = capsys.readouterr()
+    assert max(map(len, shown.out.splitlines())) <= 80
+    assert ("All 5 proofs hold" in shown.out) == (status == 0)
+    failed = shown.err.strip().splitlines()
+    assert len(failed) == 2 * status
+    if failed:
+        assert "yield, arm" in failed[0] + failed[1]
+        assert "exceeds" in failed[0]
+
+
+def test_the_first_screen_of_the_report(tmp_path: Path) -> None:
+    results = run_case(read_case(tmp_path, ARM))
+    proofs = results.summary.design.proofs
+    read = Summary.model_validate_json(str(results.summary)).design
+    assert read.proofs == proofs
+    assert read.combinations == results.summary.design.combinations
+    assert proofs is not None
+    page = render(results, Addition(), [], [])
+    sentence = proofs.governing(results.case.system)
+    assert sentence.split(". Governing")[0] in page.split("<table")[0]
+    for title in ("Combinations at rest", "Envelope of the combinations", "Proofs"):
+        assert title in page
+
+
+def test_shipped_cases_are_proved() -> None:
+    """Reference: non-regression; slender webs of the crane buckle first, the others hold."""
+    failed = {}
+    for name in ("lift", "inspection-arm", "crane-proof"):
+        case = reading.load(str(CASE_FILES / f"{name}.toml"))
+        found = prove(case, combination_states(case)).proofs
+        failed[name] = {(one.kind, one.part) for one in found if not one.holds}
+    assert failed["lift"] == failed["inspection-arm"] == set()
+    assert failed["crane-proof"] == {("plate", part) for part in ("base", "second", "third", "fly")}
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("0.016, 3.45e8", "0.008, 3.45e8"),
+         "material: the thicknesses of yield_by_thickness must ascend"),
+        (("yield_by", "yield_strength = 3e8\nyield_by"),
+         "material: has yield_strength and yield_by_thickness; give one of them"),
+        (('["empty", "loaded"]', '["empty", "full"]'), "spectrum[1].load_cases: 'full' is no load "
+         "case; give 'empty', 'loaded' or 'pulled'"),
+        (('"plate", ', '"plates", '), "combination[1].proofs[2]: must be 'yield', 'plate', "
+         "'column', 'pad', 'cylinder', 'pin' or 'deflection', got 'plates'"),
+    ],
+)  # fmt: skip
+def test_bad_proofs(tmp_path: Path, change: tuple[str, str], message: str) -> None:
+    assert refusal(tmp_path, ARM.replace(*change)) == message
