@@ -66,8 +66,9 @@ validity: $(READY) ## where a beam may stand for the shell, over friction, play 
 
 other-codes: build/other-codes/ready ## OpenSees, sectionproperties and Exudyn, beside which tests hold results
 
+# Tests start some hundred processes, each of which would compile all modules without bytecode.
 test: $(READY) ## all tests
-	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+	NUMBA_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 fuzz: $(READY) ## a thousand errors in cases, load files and command lines; each must give one line
 	$(BIN)/python -m tests.fuzz

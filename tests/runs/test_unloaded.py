@@ -59,9 +59,16 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ADDED)
-def test_a_boom_without_loads_is_run_and_reported(kind: str) -> None:
-    """Reference: analytic. Without loads it rests straight, and moves only if it begins so."""
+def test_a_boom_without_loads_is_run_and_reported(
+    kind: str, request: pytest.FixtureRequest
+) -> None:
+    """Reference: analytic. Without loads it rests straight, and moves only if it begins so.
+
+    Figures of one boom that rests and of one that moves are printed.
+    """
     added, moves = ADDED[kind]
+    if kind not in {"nothing", "thrown"}:
+        request.getfixturevalue("unprinted")
     Path("case.toml").write_text(UNLOADED + added, encoding="utf-8")
     assert protractile("check", "case.toml") == 0
     assert protractile("run", "case.toml", "--no-pictures", "--out", "out") == 0
