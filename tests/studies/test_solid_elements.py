@@ -9,8 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 from scipy.optimize import brentq
+
+pytest.importorskip("dolfinx", reason="the study needs DOLFINx")
+
+from mpi4py import MPI
 
 from geometry.arrays import Array
 from geometry.boom import Collar, PointMass, Segment, Support

@@ -9,9 +9,12 @@ from functools import cache
 import numpy as np
 import pytest
 import scipy.sparse
+from scipy.linalg import eigh
+
+pytest.importorskip("dolfinx", reason="the study needs DOLFINx")
+
 from mpi4py import MPI
 from petsc4py import PETSc
-from scipy.linalg import eigh
 
 from dynamics.contact import DryFriction, PowerContact, contact_terms
 from dynamics.energy import energy_residual
@@ -30,6 +33,7 @@ from shell_model.segment.segment_shell import SegmentShell
 from studies.reference_models.resisting_rows import ResistingRows, resist
 from studies.reference_models.unreduced import GeneralisedAlpha, integrate_directly
 from tests.shell_model.booms import HELD, LAW, boom_in_space, flat_boom, three_segments
+from tests.shell_model.conftest import box_shell
 from tests.touching import touching
 
 _SOFT = replace(LAW.law, stiffness=1.0e9, exponent=1.0).behind(LAW.above)
@@ -73,8 +77,6 @@ class _Loaded:
 
 @pytest.fixture(scope="module")
 def loaded() -> _Loaded:
-    from tests.shell_model.conftest import box_shell
-
     return _Loaded(box_shell(1.0, 3.0, HELD))
 
 
