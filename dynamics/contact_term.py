@@ -17,9 +17,10 @@ import numpy.typing as npt
 Terms = npt.NDArray[np.void]
 Limits = npt.NDArray[np.void]
 
-# Types: a gap in a compiled loop, or an array of gaps; a function of a term and a gap.
+# Types: a gap in a compiled loop, or an array of gaps; a function of a term, or of the arrays of
+# several terms with one exponent, and a gap.
 Gap = Any
-OfTerm = Callable[[np.void, Gap], Gap]
+OfTerm = Callable[[Any, Gap], Gap]
 
 # Record of a term in the law of a row.
 TERM = np.dtype(

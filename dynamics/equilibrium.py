@@ -9,17 +9,27 @@ which would allow a range of equilibria, is ignored.
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import LinAlgError, cholesky, solve_triangular
+from scipy.linalg import LinAlgError, cho_solve, cholesky, eigh, solve_triangular
 
 from dynamics.arrays import Array
 from dynamics.contact import contact_terms
-from dynamics.contact_term import OfTerm, energy_of, force_of, slope_of
+from dynamics.contact_term import OfTerm, Term, Terms, force_of, slope_of
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 
 # Permitted unbalanced force, as a fraction of the load or the force of shims; the minimiser aims at
 # a hundredth of it.
 BALANCE = 1.0e-6
+
+# Unbalanced force at which the search ends, and its maximum number of steps.
+_AIM, _MOST_STEPS = 0.01 * BALANCE, 200
+
+# Least curvature of a step, as a fraction of that of the boom with closed contacts.
+_FLAT = 1.0e-6
+
+# Slope of the energy at the end of a line search as a fraction of that at its beginning, and
+# multiple of a step beyond which nothing holds the boom.
+_EXACT, _FARTHEST = 0.1, 1.0e9
 
 
 def equilibrium(system: GapSystem, load: Array) -> Array:
@@ -41,20 +51,21 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     pushed = load - np.array(pressed) @ system.rows
     if not pushed.any():
         return np.zeros(system.num_modes)
-    terms = contact_terms(system.laws)
+    laws = contact_terms(system.laws)
     # L Lᵀ, the stiffness with each contact's tangent at the force of the whole load, scales the
     # unknowns, so that all directions have a similar stiffness.
     whole = max(float(np.linalg.norm(load)), float(np.linalg.norm(pushed)))
-    force = whole * np.sqrt(system.row_masses)
-    spring = np.array([law.slope_at(f) for law, f in zip(system.laws, force.tolist(), strict=True)])
+    row, k, n = laws["row"], np.abs(laws["stiffness"]), laws["exponent"]
+    force, spring = whole * np.sqrt(system.row_masses), np.zeros(len(system.laws))
+    np.maximum.at(spring, row, n * k ** (1.0 / n) * force[row] ** (1.0 - 1.0 / n))
     try:
         factor = cholesky(system.stiffness + (system.rows.T * spring) @ system.rows, lower=True)
     except LinAlgError:
         raise NumericsError(
             "nothing holds the boom, or axial forces buckle it: it has no static equilibrium"
         ) from None
-    if not (system.laws or system.geometric_stiffness.size):
-        return np.asarray(load / system.omega2)
+    if not system.laws:
+        return np.asarray(cho_solve((factor, True), load))
     scaled_load = solve_triangular(factor, load, lower=True)
     scaled_push = solve_triangular(factor, pushed, lower=True)
     unit = max(float(np.linalg.norm(scaled_load)), float(np.linalg.norm(scaled_push)))
@@ -69,39 +80,59 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     stiffness = (unscaled.T * system.omega2) @ unscaled
     if system.geometric_stiffness.size:
         stiffness -= unscaled.T @ system.geometric_stiffness @ unscaled
+    minimum = _minimum(stiffness, scaled_load, rows, laws, unit)
+    if minimum is None:
+        raise NumericsError("no static equilibrium is found: look for a segment that nothing holds")
+    return np.asarray(unit * unscaled @ minimum)
+
+
+def _minimum(stiffness: Array, load: Array, rows: Array, laws: Terms, unit: float) -> Array | None:
+    """Return the minimum of the potential energy by Newton's method; None if there is none.
+
+    Args:
+        stiffness, load, rows: those of the system in its scaled unknowns.
+        laws: terms of the contacts.
+        unit: scale of the unknowns, from which contacts take gaps in m.
+    """
+    from scipy.optimize import brentq
+
+    # Terms with a common exponent, as arrays.
+    terms = [
+        {name: laws[name][laws["exponent"] == n] for name in ("row", *Term._fields)}
+        | {"exponent": n}
+        for n in np.unique(laws["exponent"])
+    ]
+    row_of_value = np.concatenate([term["row"] for term in terms])
 
     def sum_terms(of_term: OfTerm, x: Array) -> Array:
-        """Return the sums (num_rows,) of terms; a compiled loop would take longer to load."""
-        total, y = np.zeros(len(rows)), unit * rows @ x
-        for term in terms:
-            total[term["row"]] += of_term(term, y[term["row"]])
-        return total
-
-    def energy(x: Array) -> float:
-        contact = sum_terms(energy_of, x).sum() / unit**2
-        return float(0.5 * x @ stiffness @ x - scaled_load @ x + contact)
+        """Return the sums (num_rows,) of terms."""
+        gaps = unit * rows @ x
+        values = [of_term(term, gaps[term["row"]]) for term in terms]
+        return np.asarray(np.bincount(row_of_value, np.concatenate(values), len(rows)), dtype=float)
 
     def unbalanced(x: Array) -> Array:
-        forces = sum_terms(force_of, x)
-        return np.asarray(stiffness @ x - scaled_load + rows.T @ forces / unit)
+        return np.asarray(stiffness @ x - load + rows.T @ sum_terms(force_of, x) / unit)
 
-    def tangent(x: Array) -> Array:
-        slopes = sum_terms(slope_of, x)
-        return np.asarray(stiffness + (rows.T * slopes) @ rows)
+    def slope(length: float, x: Array, step: Array) -> float:
+        """Return the slope of the energy along a step."""
+        return float(unbalanced(x + length * step) @ step)
 
-    from scipy.optimize import minimize
-
-    found = minimize(
-        energy,
-        np.zeros(scaled_load.size),
-        method="trust-exact",
-        jac=unbalanced,
-        hess=tangent,
-        options={"gtol": 0.01 * BALANCE, "maxiter": 1000, "max_trust_radius": 1.0e9},
-    )
-    if not np.linalg.norm(found.jac) < BALANCE:
-        raise NumericsError("no static equilibrium is found: look for a segment that nothing holds")
-    return np.asarray(unit * unscaled @ found.x)
+    x = np.zeros(load.size)
+    for _ in range(_MOST_STEPS):
+        force = unbalanced(x)
+        if np.linalg.norm(force) < _AIM:
+            break
+        # With the magnitudes of the curvatures the energy falls along the step, even where axial
+        # forces make a segment unstable within its play.
+        curvatures, axes = eigh(stiffness + (rows.T * sum_terms(slope_of, x)) @ rows)
+        step = -axes @ (axes.T @ force / np.maximum(np.abs(curvatures), _FLAT))
+        small, low, high = _EXACT * abs(float(force @ step)), 0.0, 1.0
+        while (end := slope(high, x, step)) < -small and high < _FARTHEST:
+            low, high = high, 4.0 * high
+        if end < -small:
+            return None
+        x = x + (brentq(slope, low, high, (x, step), rtol=_EXACT) if end > small else high) * step
+    return x if np.linalg.norm(force) < BALANCE else None
 
 
 def equilibrium_at(system: GapSystem, time: float = 0.0) -> Array:
