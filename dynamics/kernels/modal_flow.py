@@ -114,7 +114,9 @@ def _damped_flow(omega2: Array, c: Array, time: float) -> tuple[Array, Array, Ar
     series[0] += c * series[1]
     number = np.arange(_TERMS)
     weights = 1.0 / (1.0 + number[:, None] + number)
-    gram = t * np.einsum("akm,kl,blm->abm", series, weights, series)
+    gram = t * np.einsum(
+        "akm,bkm->abm", series, np.tensordot(series, weights, (1, 0)).swapaxes(1, 2)
+    )
     for doubling in range(int(doublings.max(initial=0.0))):
         go = doubling < doublings
         vv, aa = 1.0 - c * sine - omega2 * gain, 1.0 - omega2 * gain

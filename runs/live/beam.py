@@ -42,9 +42,6 @@ from runs.report.summary_table import governing_pads, pad_text, summary_table, u
 # Type of a table of the page: title and value of each row.
 Rows = list[tuple[str, str]]
 
-# Steps of an output interval in the preview of a motion.
-_PREVIEW_STEPS = 4
-
 # Heights of the charts in pixels: of a panel, and of the axis below all of them.
 _PANEL, _BELOW = 150, 60
 
@@ -94,7 +91,7 @@ def beam_results(checked: CheckedCase, check_current: Callable[[], None]) -> Ite
     plan = MotionPlan.of(built.system, case, model)
     # A constant step gives a preview long before the motion with error control.
     for stage, integrator in (
-        ("preview", FixedStep(case.time.output_step / _PREVIEW_STEPS)),
+        ("preview", FixedStep(case.time.output_step)),
         ("motion", plan.integrator),
     ):
         trajectory = integrator(plan.motion, lambda _: check_current())
@@ -128,11 +125,13 @@ def _tip_chart(trajectory: Trajectory) -> Any:
 
 def _results(checked: CheckedCase, own: ModelDesignResults, data: xr.Dataset) -> Results:
     """Return the results of the only model."""
-    case = checked.case
-    design = DesignResults({case.models[0].name: own})
-    return Results(case, data, Summary(
+    case, design = checked.case, DesignResults({checked.case.models[0].name: own})
+    results = Results(case, data, Summary(
         title=case.title, case_hash="", versions={}, models={}, failures={}, design=design
     ))  # fmt: skip
+    # The property would build the same boom again.
+    vars(results)["boom"] = checked.boom
+    return results
 
 
 def _fibres(loaded: LoadedModel, rests: Sequence[Any]) -> Iterator[FibreStress]:

@@ -172,5 +172,5 @@ def loaded_pads(
 
 def side_force(law: ContactLaw, side: int, gap: float) -> float:
     """Return the contact force on a side in N, positive in compression."""
-    there = law.one_sided(side)
-    return 0.0 if there is None else float(abs(there.force(np.array(gap))))
+    depths = [(term, max(side * gap - term.onset, 0.0)) for term in law.terms if term.side == side]
+    return float(sum(term.stiffness * depth**term.exponent for term, depth in depths))

@@ -140,9 +140,6 @@ class CalibratedTable(BeamTable):
         basis = np.eye(own, built.system.num_modes)
         return replace(built, along=[line.transform(basis) for line in along])
 
-    def lines(self, boom: Boom, built: Built) -> list[Line]:
-        return list(built.along) or super().lines(boom, built)
-
     def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
         # Only contacts of this model include the compliance of its springs.
         return super().without_play(boom) if self.calibrated_by is None else None

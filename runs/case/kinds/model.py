@@ -45,6 +45,13 @@ class Beams:
         return self.model.segments(self.boom)
 
     @cached_property
+    def lines(self) -> list[Line]:
+        """The lines along the segments."""
+        from beam_model.lines import lines
+
+        return lines(self.boom.bonded if self.model.bonded else self.boom, self.segments)
+
+    @cached_property
     def critical_factor(self) -> float | None:
         """The buckling factor of the boom's axial forces, as in :class:`Built`."""
         from beam_model.boom_modes import critical_factor
@@ -113,6 +120,7 @@ class Built:
     shell: ReducedShell | None = None  #: other data of a reduced shell
     calibration: Calibration | None = None  #: calibration of a beam by its shell
     along: Sequence[Line] = ()  #: lines along the segments, on the first rank
+    beams: Beams | None = None  #: the beams of a model without calibration
 
 
 @dataclass(frozen=True, slots=True)
@@ -376,12 +384,10 @@ class BeamTable(ModelTable):
         boom = joined.boom.bonded if self.bonded else joined.boom
         system = gap_system(boom, beams.segments)
         factor, seconds = beams.critical_factor, {"build": perf_counter() - start}
-        return Built(system, system.num_modes, seconds, factor)
+        return Built(system, system.num_modes, seconds, factor, beams=beams)
 
     def lines(self, boom: Boom, built: Built) -> list[Line]:
-        from beam_model.lines import lines
-
-        return lines(boom.bonded if self.bonded else boom, self.segments(boom))
+        return list(built.along) if built.beams is None else built.beams.lines
 
     def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
         from beam_model.lines import lines
