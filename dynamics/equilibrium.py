@@ -29,7 +29,7 @@ _FLAT = 1.0e-6
 
 # Slope of the energy at the end of a line search as a fraction of that at its beginning, and
 # multiple of a step beyond which nothing holds the boom.
-_EXACT, _FARTHEST = 0.1, 1.0e9
+_EXACT, _FARTHEST = 0.05, 1.0e9
 
 
 def equilibrium(system: GapSystem, load: Array) -> Array:
