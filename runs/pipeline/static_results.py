@@ -284,8 +284,7 @@ def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[St
 def _closed(system: GapSystem, gaps: Array, rows: Indices) -> float:
     """Return the mean approach in m on the right less that on the left, which beams share."""
     right, left = (
-        [gaps[row] for row in rows if np.isfinite(system.laws[row].onset(side))]
-        for side in SIGNS
+        [gaps[row] for row in rows if np.isfinite(system.laws[row].onset(side))] for side in SIGNS
     )
     return float(np.mean(right) - np.mean(left)) if right and left else 0.0
 
