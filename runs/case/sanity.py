@@ -104,6 +104,8 @@ def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
         if axial.force is not None:
             where, what = f"axial[{number}].force", "the size of the force along the boom"
             yield UsualRange(where, what, abs(axial.force), "N", 0.0, 100.0 * weight, 100.0)
+    what = "the damping ratio"
+    yield UsualRange("damping.modal", what, case.damping.modal, "1", 0.0, 0.1, 100.0)
     if (category := case.life.detail_category) is not None:
         what = "the detail category after EN 1993-1-9, in N/mm^2,"
         yield UsualRange("life.detail_category", what, category, "1", 36.0, 160.0, 10.0)

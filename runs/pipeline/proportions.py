@@ -33,6 +33,13 @@ LIGHT, HEAVY = 1.0e-3, 1.0e2
 # Fraction of the boom's weight: larger upward loads are probably weights with the wrong sign.
 LIFTING = 0.3
 
+# Number of periods of the boom beyond which a run is too long for a design.
+MANY_PERIODS = 1000.0
+
+# Young's modulus in Pa and density in kg/m³ of steel, and the relative differences within which a
+# number is that of steel.
+STEEL, STEEL_WITHIN = (2.1e11, 7850.0), (0.06, 0.1)
+
 # Relative difference up to which two loads, or a mass and a force, count as the same.
 SAME, ALIKE = 0.01, 0.05
 
@@ -46,6 +53,8 @@ def proportion_cautions(case: Case, boom: Boom) -> list[str]:
         *_given_twice(case, boom),
         *_without_gravity(case, boom),
         *_in_vain(case),
+        *_materials(case),
+        *_cylinders(case, boom),
         *_pads(case, boom),
         *_meshes(case, boom),
     ]
@@ -75,11 +84,52 @@ def _in_vain(case: Case) -> Iterator[str]:
             f"gravity.angle: {angle:g} degrees is nearly level; if it is in radians, give "
             f"{np.rad2deg(angle):.4g}"
         )
-    for number, cylinder in enumerate(case.cylinders, start=1):
-        if (height := cylinder.ground[1]) > -cylinder.depth:
+    if case.cylinders and angle < -LEVEL:
+        yield (
+            f"gravity.angle: {angle:g} degrees: the boom on its cylinder points down; upward "
+            "angles are positive"
+        )
+
+
+def _materials(case: Case) -> Iterator[str]:
+    """Yield a caution for each density that does not belong to steel, which the modulus does."""
+    tables = {f"segment[{i}].material": one.material for i, one in enumerate(case.segments, 1)}
+    for where, table in {"material": case.material, **tables}.items():
+        if table is None:
+            continue
+        off = [
+            abs(value / steel - 1.0) > within
+            for value, steel, within in zip(
+                (table.youngs_modulus, table.density), STEEL, STEEL_WITHIN, strict=True
+            )
+        ]
+        if off == [False, True] and 0.1 * STEEL[1] < table.density < STEEL[1]:
+            yield (
+                f"{where}.density: {table.density:g} kg/m³ is light for steel, whose Young's "
+                f"modulus is given; steel has {STEEL[1]:g} kg/m³"
+            )
+
+
+def _cylinders(case: Case, boom: Boom) -> Iterator[str]:
+    """Yield a caution for each cylinder that pulls, holds a sliding segment or is superfluous."""
+    for number, (table, cylinder) in enumerate(
+        zip(case.cylinders, boom.cylinders, strict=True), start=1
+    ):
+        segment = boom.segments[cylinder.segment]
+        if (height := table.ground[1]) > -table.depth:
             yield (
                 f"cylinder[{number}].ground: a height of {height:g} m is above the lug, and the "
                 "cylinder would pull; usual is below, where heights are negative"
+            )
+        if cylinder.segment:
+            yield (
+                f"cylinder[{number}].segment: {segment.name!r} slides in another segment; a "
+                f"luffing cylinder usually holds {boom.segments[0].name!r}"
+            )
+        elif any(support.clamped for support in segment.supports):
+            yield (
+                f"cylinder[{number}]: {segment.name!r} has a clamped support, beside which a "
+                "cylinder carries little; a foot is usually hinged"
             )
 
 
@@ -128,12 +178,32 @@ def _sizes(case: Case, boom: Boom) -> Iterator[str]:
             f"the payload of {payload.mass:g} kg is less than a thousandth of the boom's "
             f"{weight / STANDARD_GRAVITY:.4g} kg; check the units"
         )
+    if payload is not None and payload.mass % 5.0:
+        round_mass = 10.0 * round(payload.mass / STANDARD_GRAVITY / 10.0)
+        if isclose(payload.mass, STANDARD_GRAVITY * round_mass, rel_tol=5.0e-4):
+            yield (
+                f"payload.mass: {payload.mass:g} is the weight of {round_mass:g} kg in N; if it "
+                f"is in N, give {round_mass:g} kg"
+            )
     largest = max(map(abs, forces))
     if largest > HEAVY * weight:
         yield (
             f"a load of {largest:.4g} N is more than a hundred times the boom's weight of "
             f"{weight:.4g} N; check the units"
         )
+    for number, load in enumerate(boom.loads[: len(case.loads)], start=1):
+        force = abs(load.resultant(boom.segments[load.segment].length))
+        if 0.0 < force < LIGHT * weight and load in added:
+            yield (
+                f"load[{number}]: {force:.4g} N is less than a thousandth of the boom's weight of "
+                f"{weight:.4g} N; check the units"
+            )
+        outer = next((one.outer for one in boom.joints if one.inner == load.segment), None)
+        if outer is not None and load.x is not None and load.x < boom.segments[outer].end:
+            yield (
+                f"load[{number}].x: {load.x:g} m on {boom.segments[load.segment].name!r} lies "
+                f"inside {boom.segments[outer].name!r}; usual is the head"
+            )
     lift, turn = np.sum(list(_lasting(boom)), axis=0)
     if lift > LIFTING * weight:
         yield (
@@ -145,6 +215,13 @@ def _sizes(case: Case, boom: Boom) -> Iterator[str]:
             f"the loads lift the boom: about its base they turn it up by {turn:.4g} N m more than "
             "weights turn it down; those that pull down are negative"
         )
+    elif payload is not None and case.gravity is not None:
+        uplift = sum(load.magnitude for load in added if load.x == boom.tip)
+        if uplift > 0.5 * STANDARD_GRAVITY * payload.mass:
+            yield (
+                f"the loads at the tip lift the payload by {uplift:.4g} N; loads that pull down "
+                "are negative"
+            )
 
 
 def _lasting(boom: Boom) -> Iterator[tuple[float, float]]:
@@ -209,14 +286,20 @@ def _without_gravity(case: Case, boom: Boom) -> Iterator[str]:
 
 
 def period_cautions(where: str, frequency: float, case: Case) -> list[str]:
-    """Return a caution if the run is shorter than one period of the boom.
+    """Return a caution if the run is shorter than one period of the boom, or has very many.
 
     Args:
         where: source of the frequency, for example ``in MODEL``.
         frequency: first frequency in Hz, with closed contacts.
         case: case with the duration.
     """
-    if case.time.duration * frequency >= 1.0:
+    periods = case.time.duration * frequency
+    if periods > MANY_PERIODS:
+        return [
+            f"caution: time.duration: the run of {case.time.duration:g} s has {periods:.3g} "
+            f"periods {where}; if the duration is in ms, give {1e-3 * case.time.duration:g} s"
+        ]
+    if periods >= 1.0:
         return []
     return [
         f"caution: time.duration: the run of {case.time.duration:g} s is shorter than one period "
