@@ -75,11 +75,11 @@ class FrameMotion:
         radius, slew = self.radius + along * cosine, self.slewed(time, 1)
         out = speed * cosine - along * sine * turn
         return np.array(
-            [
+            np.broadcast_arrays(
                 extension.rate(time, 2) - along * turn**2 - slew**2 * radius * cosine,
                 radius * self.slewed(time, 2) + 2.0 * slew * out,
                 along * faster + 2.0 * speed * turn + slew**2 * radius * sine,
-            ]
+            )
         )
 
 
@@ -117,7 +117,7 @@ class FrameAcceleration:
     @property
     def peak(self) -> float:
         """The largest |acceleration| in m/s², at sampled times."""
-        kinks = np.array(self.kinks)
+        kinks = np.array(self.kinks or (0.0,))
         times = np.linspace(kinks.min(), kinks.max(), _SAMPLES)
         return float(np.abs(self(np.concatenate([times, kinks]))).max())
 
@@ -136,6 +136,22 @@ class FrameAcceleration:
         }
         own = frame.accelerations(time, self.x, self.extension)[component]
         return np.asarray(own + frame.gravity * weight[self.direction])
+
+
+class PathAcceleration(FrameAcceleration):
+    """Acceleration of a place of the straight boom along an axis that stands still.
+
+    z points up, and x outwards at ψ = 0; arguments as of :class:`FrameAcceleration`.
+    """
+
+    def __call__(self, time: Array) -> Array:
+        along, aside, across = self.frame.accelerations(time, self.x or 0.0, self.extension)
+        luffed, slewed = self.frame.luffed(time), self.frame.slewed(time)
+        if self.direction == "z":
+            return np.asarray(along * np.sin(luffed) + across * np.cos(luffed))
+        out = along * np.cos(luffed) - across * np.sin(luffed)
+        first, second = (out, -aside) if self.direction == "x" else (aside, out)
+        return np.asarray(first * np.cos(slewed) + second * np.sin(slewed))
 
 
 def _angle(law: MotionLaw, time: Array, order: int) -> Array:

@@ -1,32 +1,79 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A load on a rope below the tip: hoisting, lift-off and hanging.
+"""A load on a rope below the tip: hoisting, lift-off, hanging and swinging.
 
 The load m has its own coordinate z, its height above its initial position. The rope carries only
 tension,
 
     T = k max(w cos α − z + h(t) − s, 0),
 
-with the deflection w of the tip across the boom, the luffing angle α, the hoisted length h since
-t = 0, and the slack s. Until lift-off the ground carries the load. Rope and ground are contact
-rows. The winch is a travel of the rope's row, so that the energy balance includes its work.
+with the deflection w of the tip across the boom, the luffing angle α, the length h that the winch
+has wound up since t = 0, and the slack s. The ground carries the load while it lies there. Rope and
+ground are contact rows. A travel moves the row of the rope, so that the energy balance includes the
+work of the winch.
+
+A load that swings as a pendulum of the length l has two horizontal coordinates X and Y besides, in
+axes that stand still, relative to the place of the tip of the straight boom. For small angles, the
+tip draws it by the springs m g/l in both. Its acceleration together with that of this place is the
+force of the springs over m. No term of a turning frame is left out, since the axes stand still;
+slewing and luffing turn the rows that read the tip.
 """
 
 from __future__ import annotations
 
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.contact import PowerContact
+from dynamics.contact import ContactLaw, PowerContact
 from dynamics.drive.row_table import RowTable
-from dynamics.drive.travel import Travel
-from dynamics.excitation import History
+from dynamics.drive.travel import RowKind, Travel
+from dynamics.excitation import Excitation, History, MotionLaw, PiecewiseLinear
+from dynamics.frame_motion import FrameMotion, PathAcceleration
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.trajectory import Trajectory
 
 # Ratio of the stiffnesses of ground and rope.
 _GROUND = 100.0
+
+
+@dataclass(frozen=True, slots=True)
+class Pendulum:
+    """Horizontal motion of a hanging load.
+
+    Args:
+        length: distance l from the tip to the load in m.
+        frame: slewing and luffing of the boom.
+        x: initial place of the tip along the boom in m.
+        extension: travel of the tip along the boom.
+        winds: forces on the load in N along X, which points outwards at t = 0, or Y, and their
+            histories.
+    """
+
+    length: float
+    frame: FrameMotion
+    x: float
+    extension: MotionLaw
+    winds: Sequence[tuple[Literal["x", "y"], float, History]] = ()
+
+    def read(self, time: float, across: Array, lateral: Array) -> Array:
+        """Return the rows (3, num_modes) of the tip's deflections up, along X and along Y.
+
+        Args:
+            time: time in s.
+            across, lateral: rows (num_modes,) of its deflections along z and y of the boom.
+        """
+        luffed, slewed = self.frame.luffed(np.array(time)), self.frame.slewed(np.array(time))
+        out = -np.sin(luffed) * across
+        return np.array(
+            [
+                np.cos(luffed) * across,
+                np.cos(slewed) * out - np.sin(slewed) * lateral,
+                np.sin(slewed) * out + np.cos(slewed) * lateral,
+            ]
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +86,9 @@ class HangingLoad:
         gravity: acceleration in m/s².
         hoist: hoisted length in m over time; None for a rope of constant length.
         cosine: cos α of the luffing angle.
-        slack: s in m at w = 0 of a load on the ground at t = 0; None for a load that hangs.
+        slack: s in m at w = 0 of a load that lies on the ground at t = 0; None for a load that
+            hangs.
+        pendulum: horizontal motion of a load that hangs; None if it only moves vertically.
 
     Raises:
         ValueError: mass, stiffness or gravity is not finite and positive.
@@ -51,6 +100,7 @@ class HangingLoad:
     hoist: History | None = None
     cosine: float = 1.0
     slack: float | None = None
+    pendulum: Pendulum | None = None
 
     def __post_init__(self) -> None:
         for name in ("mass", "stiffness", "gravity"):
@@ -65,23 +115,34 @@ class HangingLoad:
     def attach(self, system: GapSystem, tip: Array, x: float) -> GapSystem:
         """Return the system of a boom with the load at its tip.
 
-        The load adds the last coordinate, and a station with one contact row each for rope and
-        ground.
+        The load has the last coordinates. The stations of rope, springs of a pendulum and ground
+        follow those of the boom, with one contact row each. Under a flat boom the load swings in
+        the plane of the boom alone.
 
         Args:
             system: gap system of the boom without the load.
             tip: row (num_modes,) of the deflection w.
             x: position of the tip in m.
         """
+        own = self._coordinates(system.observers)
+        aside = system.observers.get("tip_lateral")
+        lateral = np.zeros(tip.shape) if aside is None else aside.row
+        coordinates = np.eye(own, system.num_modes + own, system.num_modes) / np.sqrt(self.mass)
 
         def widen(rows: Array) -> Array:
-            return np.pad(rows, [(0, 0)] * (rows.ndim - 1) + [(0, 1)])
+            return np.pad(rows, [(0, 0)] * (rows.ndim - 1) + [(0, own)])
 
         def widen_table(table: RowTable) -> RowTable:
             return RowTable(table.knots, widen(table.coefficients))
 
-        height = np.append(np.zeros(system.num_modes), 1.0 / np.sqrt(self.mass))
-        rope, rows = self.cosine * widen(tip) - height, len(system.rows)
+        def stretches(time: float) -> Array:
+            """Return the rows (own, num_modes + own) of the tip's motion less that of the load."""
+            if self.pendulum is None:
+                return np.asarray(self.cosine * widen(tip[None]) - coordinates)
+            return np.asarray(widen(self.pendulum.read(time, tip, lateral)[:own]) - coordinates)
+
+        height, first = coordinates[0], len(system.rows)
+        hung = stretches(0.0)
         travels = [
             replace(
                 travel,
@@ -93,18 +154,41 @@ class HangingLoad:
             for travel in system.travels
         ]
         if self.hoist is not None:
-            constant = np.pad(rope[None, None, None], [(0, 0), (0, 3), (0, 0), (0, 0)])
+            constant = np.pad(hung[None, None, :1], [(0, 0), (0, 3), (0, 0), (0, 0)])
             table = RowTable(np.array([0.0, 1.0]), constant)
-            travels.append(Travel(self.hoist, table, (("rows", rows),), shifts=(1.0,)))
-        tension = PowerContact(self.stiffness, 1.0).upper().behind(self.slack or 0.0)
-        contacts = [(rope, tension)]
+            travels.append(Travel(self.hoist, table, (("rows", first),), shifts=(1.0,)))
+        pulling = PowerContact(self.stiffness, 1.0).upper().behind(self.slack or 0.0)
+        contacts: list[tuple[Array, ContactLaw]] = [(hung[0], pulling)]
+        excitations = [replace(one, load=widen(one.load)) for one in system.excitations]
+        if self.pendulum is not None:
+            swing = self.pendulum
+            spring = PowerContact(self.weight / swing.length, 1.0)
+            contacts += [(row, spring) for row in hung[1:]]
+            moves = [*swing.frame.slew.kinks, *swing.frame.luff.kinks]
+            if moves and max(moves) > 0.0:
+                # The rows follow time, up to the end of slewing and luffing.
+                breaks = sorted({0.0, *(time for time in moves if time > 0.0)})
+                clock = PiecewiseLinear((0.0, breaks[-1]), (0.0, breaks[-1]))
+                rows: list[tuple[RowKind, int]] = [("rows", first + k) for k in range(own)]
+                table = RowTable.interpolate(stretches, breaks)
+                travels.append(Travel(clock, table, rows, shifts=(0.0,) * own))
+            axes: tuple[Literal["z", "x", "y"], ...] = ("z", "x", "y")
+            for axis, coordinate in zip(axes, coordinates, strict=False):
+                history = PathAcceleration(swing.frame, axis, swing.x, swing.extension)
+                if history.peak > 0.0:
+                    excitations.append(Excitation(-self.mass * coordinate, history))
+                excitations += [
+                    Excitation(force * coordinate, when)
+                    for direction, force, when in swing.winds
+                    if direction == axis
+                ]
         if self.slack is not None:
             ground = PowerContact(_GROUND * self.stiffness, 1.0).lower()
             contacts.append((height, ground.behind(0.0, -self.weight / ground.below)))
         numbers = [len(system.stations) + number for number in range(len(contacts))]
         return replace(
             system,
-            omega2=np.append(system.omega2, 0.0),
+            omega2=np.append(system.omega2, np.zeros(own)),
             load=widen(system.load) - self.weight * height,
             rows=np.concatenate([widen(system.rows), [row for row, _ in contacts]]),
             laws=[*system.laws, *(law for _, law in contacts)],
@@ -122,26 +206,45 @@ class HangingLoad:
             damping=widen(system.damping),
             dashpots=widen(system.dashpots),
             friction_rows=widen(system.friction_rows),
-            excitations=[replace(one, load=widen(one.load)) for one in system.excitations],
+            excitations=excitations,
             released_load=widen(system.released_load),
             initial_impulse=widen(system.initial_impulse),
             travels=travels,
             geometric_stiffness=np.pad(
-                system.geometric_stiffness, (0, 1 if system.geometric_stiffness.size else 0)
+                system.geometric_stiffness, (0, own if system.geometric_stiffness.size else 0)
             ),
         )
 
     def separate_rope(self, motion: Trajectory) -> Trajectory:
         """Return the motion without the stations of the load, and with the variables of the rope.
 
-        ``rope_force`` and ``rope_force_peak`` in N are the mean and the maximum of the output
-        interval that ends at the time, positive in tension. Their attribute ``weight`` is m g.
+        ``rope_force`` and ``rope_force_peak`` in N, the mean and the maximum of the output interval
+        that ends at the time, are positive in tension; their attribute ``weight`` is m g. A
+        pendulum has ``swing_out`` and ``swing_aside`` in m, the distances of the load from the tip
+        in the directions of the boom; their attribute ``length`` is l.
         """
-        own = motion.data.sizes["station"] - (1 if self.slack is None else 2)
+        rows = self._coordinates([str(name) for name in motion.data]) + (
+            0 if self.slack is None else 1
+        )
+        own = motion.data.sizes["station"] - rows
         data = motion.data.isel(station=slice(own))
         for name in ("contact_force", "contact_force_peak"):
             force = motion.data[name].isel(station=own, drop=True)
             force.attrs["long_name"] = force.attrs["long_name"].replace("contact", "rope")
             force.attrs["weight"] = self.weight
             data[name.replace("contact", "rope")] = force
+        if self.pendulum is not None:
+            slewed = self.pendulum.frame.slewed(motion.time)
+            # The gaps of the springs, the tip's place less the load's, in axes that stand still.
+            gaps = -motion.data["gap"].values.T[own + 1 :]
+            one, other = gaps if len(gaps) == 2 else (gaps[0], np.zeros(slewed.shape))
+            swings = {"swing_out": np.cos(slewed) * one + np.sin(slewed) * other}
+            if len(gaps) == 2:
+                swings["swing_aside"] = np.cos(slewed) * other - np.sin(slewed) * one
+            for name, values in swings.items():
+                data[name] = "time", values, {"units": "m", "length": self.pendulum.length}
         return Trajectory(data, motion.states)
+
+    def _coordinates(self, known: Container[str]) -> int:
+        """Return the number of coordinates of the load; ``known`` are the outputs of the boom."""
+        return 1 if self.pendulum is None else 2 + ("tip_lateral" in known)

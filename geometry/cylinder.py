@@ -80,7 +80,7 @@ class Cylinder:
         """Return the cylinder, as seen from the boom, after it luffs by a turn in rad."""
         along, up = self.ground[0] - foot.x, self.ground[1] + foot.depth
         cosine, sine = cos(turn), sin(turn)
-        ground = (foot.x + along * cosine + up * sine, up * cosine - along * sine - foot.depth)
+        ground = (foot.x + along * cosine + up * sine, -foot.depth - along * sine + up * cosine)
         return replace(self, ground=ground)
 
     def pull(self, x: Array, foot: Support | None) -> Array:

@@ -11,10 +11,7 @@ from dynamics.contact import PowerContact
 from dynamics.excitation import (
     History,
     InitialImpulse,
-    PiecewiseLinear,
-    Ramp,
     ReleasedLoad,
-    Sine,
     Step,
 )
 from geometry.axial import Thrust, with_compression
@@ -23,11 +20,11 @@ from geometry.fields import Distance, at
 from geometry.joint import BareStop
 from geometry.load import Load, Moment, PartialLoad, Turn
 from geometry.typography import choices
+from runs.case.history import history_of
 from runs.case.schema import (
     AxialTable,
     Case,
     GravityTable,
-    HistoryTable,
     LoadTable,
     PayloadTable,
     VelocityTable,
@@ -280,25 +277,3 @@ def _load_history(where: str, table: LoadTable) -> History | ReleasedLoad:
             "one of them out",
         )
     return ReleasedLoad() if table.released else history
-
-
-def history_of(where: str, table: HistoryTable) -> History:
-    """Return the history of a load or of an acceleration.
-
-    Raises:
-        BoomError: keys contradict one another, or the table is invalid.
-    """
-    given = [key for key in ("ramp", "frequency", "table") if getattr(table, key) is not None]
-    if len(given) > 1:
-        raise BoomError(f"{where}.{given[1]}", f"{given[0]} is given; leave one of them out")
-    if table.ramp is not None:
-        return Ramp(table.ramp)
-    if table.frequency is not None:
-        return Sine(table.frequency)
-    if table.table is not None:
-        times, factors = zip(*table.table, strict=True)
-        try:
-            return PiecewiseLinear(times, factors)
-        except ValueError as error:
-            raise BoomError(f"{where}.table", str(error)) from None
-    return Step()

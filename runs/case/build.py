@@ -78,7 +78,7 @@ def build_boom(case: Case) -> Boom:
         joints,
         (
             *actions.loads(case, segments),
-            *(() if frame is None else turning_loads(frame, segments, joints)),
+            *turning_loads(frame, segments, joints),
         ),
         actions.stops(case),
         case.observe,
@@ -86,7 +86,7 @@ def build_boom(case: Case) -> Boom:
     )
     check_contacts_at_rest(boom)
     check_elastic_drives(case, boom)
-    check_hoist(case)
+    check_hoist(case, _in_space(case))
     return boom
 
 

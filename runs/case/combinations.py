@@ -185,15 +185,7 @@ def _turned(case: Case, table: LoadCaseTable) -> Iterator[Cylinder]:
     boom = build_boom(case) if turn and case.cylinders else None
     for number, one in enumerate(case.cylinders):
         foot = boom.segments[boom.cylinders[number].segment].foot if boom else None
-        if foot is None:
-            yield one
-            continue
-        x, z = one.ground[0] - foot.x, one.ground[1] + foot.depth
-        ground = (
-            foot.x + x * cos(turn) + z * sin(turn),
-            -foot.depth - x * sin(turn) + z * cos(turn),
-        )
-        yield replace(one, ground=ground)
+        yield one if foot is None else one.luffed(turn, foot)
 
 
 def check_combinations(case: Case) -> None:

@@ -3,22 +3,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from dynamics.excitation import is_constant
+from dynamics.excitation import HistorySum, is_constant
 from dynamics.gap_system import GapSystem
-from dynamics.hanging_load import HangingLoad
+from dynamics.hanging_load import HangingLoad, Pendulum
 from dynamics.motion import initial_state
 from geometry.axial import Thrust
 from geometry.boom import Boom, BoomError
-from geometry.fields import Flag, In, NotNegative, Number, Positive
+from geometry.fields import Few, Flag, In, NotNegative, Number, Positive
+from geometry.telescoping import drives_of
 from runs.case.drive import TravelTable
+from runs.case.history import HistoryTable, history_of
+from runs.case.turning import frame_motion
 
 if TYPE_CHECKING:
     from runs.case.schema import Case
+
+
+class WindTable(HistoryTable):
+    """A horizontal force on a load that swings, such as that of wind."""
+
+    direction: Literal["x", "y"] = "y"
+    """the direction, which stands still: away from the crane at t = 0, or to the side"""
+    force: Annotated[Number, In("N")] = 1.0
+    """the force in N; a factor, 1 unless given, if the heading of its file has such a unit"""
+
+    amount: ClassVar[str] = "force"
 
 
 class HoistTable(TravelTable):
@@ -44,9 +59,16 @@ class HoistTable(TravelTable):
     slack: Annotated[NotNegative, In("m")] = 0.0
     """the length in m that the winch takes up before the rope is straight, of a load that lies on
     the ground"""
+    pendulum: Annotated[Positive, In("m")] | None = None
+    """the distance in m from the tip to a hanging load, which then swings; it only moves vertically
+    unless given"""
+    wind: Annotated[tuple[WindTable, ...], Few] = ()
+    """the forces of wind on a load that swings"""
+    dropped: Flag = False
+    """whether the hanging load is dropped at t = 0"""
 
 
-def check_hoist(case: Case) -> None:
+def check_hoist(case: Case, spatial: bool) -> None:
     """Check the data of a hoisted load.
 
     Raises:
@@ -59,6 +81,26 @@ def check_hoist(case: Case) -> None:
         raise BoomError("hoist.mass", "nothing weighs without the table gravity; give it")
     if table.hanging and table.slack:
         raise BoomError("hoist.slack", "the load hangs; leave slack or hanging out")
+    for key in ("pendulum", "dropped"):
+        if getattr(table, key) and not table.hanging:
+            raise BoomError(f"hoist.{key}", "the load lies on the ground; give hanging = true")
+    if table.wind and table.pendulum is None:
+        raise BoomError("hoist.wind", "the load does not swing; give pendulum, its length in m")
+    for key in ("travel", "table", "pendulum"):
+        if table.dropped and getattr(table, key) is not None:
+            raise BoomError(f"hoist.{key}", "the load is dropped at t = 0; leave one of them out")
+    if table.pendulum is None and not table.dropped and (case.slew or case.luff):
+        raise BoomError(
+            "hoist.pendulum",
+            "missing; a load swings as the boom turns; it is its distance in m from the tip",
+        )
+    for number, wind in enumerate(table.wind, start=1):
+        history_of(f"hoist.wind[{number}]", wind)
+        if wind.direction == "y" and not spatial:
+            raise BoomError(
+                f"hoist.wind[{number}].direction",
+                "the boom is flat, and nothing moves along 'y'; give the joints lateral_play",
+            )
     if case.ensemble is not None:
         raise BoomError("hoist", "an ensemble of hoisted loads is not available; leave one out")
     of_rope = {key: getattr(table, key) for key in ("area", "modulus", "length")}
@@ -73,10 +115,10 @@ def check_hoist(case: Case) -> None:
         raise BoomError("hoist.travel", "missing; it is the length in m by which the winch hoists")
 
 
-def hanging_load(case: Case) -> HangingLoad | None:
-    """Return the hoisted load of a checked case."""
+def hanging_load(case: Case, boom: Boom) -> HangingLoad | None:
+    """Return the hoisted load of a checked case; None if there is none, or if it is dropped."""
     table = case.hoist
-    if table is None or case.gravity is None:
+    if table is None or case.gravity is None or table.dropped:
         return None
     stiffness = table.stiffness
     if stiffness is None:
@@ -94,12 +136,28 @@ def hanging_load(case: Case) -> HangingLoad | None:
         None if history is None or is_constant(history) else history,
         case.gravity.across / gravity,
         None if table.hanging else table.slack,
+        None if table.pendulum is None else _pendulum(case, boom, table.pendulum, table.wind),
+    )
+
+
+def _pendulum(case: Case, boom: Boom, length: float, winds: Sequence[WindTable]) -> Pendulum:
+    last = len(boom.segments) - 1
+    drives = drives_of(boom.joints, last)
+    return Pendulum(
+        length,
+        frame_motion(case, boom.segments),
+        boom.segments[last].end,
+        HistorySum(tuple(drive.history for drive in drives)),
+        [
+            (wind.direction, wind.force, history_of(f"hoist.wind[{number}]", wind))
+            for number, wind in enumerate(winds, start=1)
+        ],
     )
 
 
 def hoist_thrust(case: Case, segment: int, x: float) -> tuple[Thrust, ...]:
     """Return the axial force on the boom's tip of a hanging load, which acts throughout."""
-    if case.hoist is None or case.gravity is None:
+    if case.hoist is None or case.gravity is None or case.hoist.dropped:
         return ()
     return (Thrust(segment, x, case.hoist.mass * case.gravity.along),)
 
@@ -110,10 +168,12 @@ def with_hanging_load(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
     Raises:
         NumericsError: the boom has no equilibrium from which to start.
     """
-    load = hanging_load(case)
+    load, tip = hanging_load(case, boom), system.observers["tip"].row
+    if case.hoist is not None and case.gravity is not None and case.hoist.dropped:
+        pull = case.hoist.mass * case.gravity.across
+        return replace(system, released_load=system.released_load - pull * tip)
     if load is None:
         return system
-    tip = system.observers["tip"].row
     if load.slack is not None:
         # The rope of a load on the ground reaches the tip of the boom where it rests.
         rest = tip @ initial_state(system, case.start.at_rest)[1]

@@ -23,11 +23,12 @@ from runs.case.combinations import check_combinations
 from runs.case.contact import ContactTable, table_law
 from runs.case.conversion import in_si
 from runs.case.drive import TravelTable
+from runs.case.history import HistoryTable
 from runs.case.kinds.shell import check_mesh_size
 from runs.case.limits import MOST_MEMBERS, units_of
 from runs.case.messages import BadInput
 from runs.case.sanity import check_ranges
-from runs.case.schema import Case, EnsembleTable, HistoryTable, Model, TimeTable
+from runs.case.schema import Case, EnsembleTable, Model, TimeTable
 from runs.case.units import System
 from runs.case.user_files import read_text
 
@@ -246,6 +247,9 @@ def _read_tables(case: Case, path: str) -> Case:
         )
         for i, one in enumerate(case.load_cases, start=1)
     ]
+    hoist = case.hoist and _travel(path, "hoist", case.hoist, system)
+    if hoist is not None:
+        hoist = hoist.model_copy(update={"wind": standing("hoist.wind", hoist.wind)})
     return case.model_copy(
         update={
             "load_cases": tuple(load_cases),
@@ -253,7 +257,7 @@ def _read_tables(case: Case, path: str) -> Case:
             "models": tuple(models),
             "loads": standing("load", case.loads),
             "base": standing("base", case.base),
-            "hoist": case.hoist and _travel(path, "hoist", case.hoist, system),
+            "hoist": hoist,
             "slew": case.slew and _travel(path, "slew", case.slew, system),
             "luff": case.luff and _travel(path, "luff", case.luff, system),
         }

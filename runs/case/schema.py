@@ -35,6 +35,7 @@ from geometry.observation import Observation, Recorded
 from geometry.segment import Material
 from geometry.support import Support
 from runs.case.contact import JointTable
+from runs.case.history import HistoryTable
 from runs.case.hoist import HoistTable
 from runs.case.kinds import KINDS
 from runs.case.kinds.model import ModelTable
@@ -42,13 +43,11 @@ from runs.case.limits import (
     MOST_MEMBERS,
     MOST_MODELS,
     MOST_SEGMENTS,
-    MOST_TIMES,
     CaseTable,
     Count,
     Exponent,
     Part,
     Text,
-    error_at,
     errors_in,
 )
 from runs.case.segment import SegmentTable
@@ -95,36 +94,8 @@ class StopTable(BareStop):
     """the exponent n of the contact law"""
 
 
-Times = Annotated[tuple[tuple[Number, Number], ...], In("s", "1")]
-
 # Groups of loads with a common factor in a combination.
 Group = Literal["dead", "payload", "wind", "dynamic", "test"]
-
-
-class HistoryTable(CaseTable):
-    """History over time; constant from t = 0 on unless a key is given."""
-
-    ramp: Annotated[Positive, In("s")] | None = None
-    """the time in s of the rise to the full value"""
-    frequency: Annotated[Positive, In("Hz")] | None = None
-    """the frequency of a sine in Hz"""
-    table: Annotated[Times, Field(min_length=2, max_length=MOST_TIMES)] | None = None
-    """pairs of a time in s and a factor, linear between them and constant beyond"""
-    file: Text | None = None
-    """a CSV file of such pairs; its path is relative to the case file"""
-    columns: tuple[Text, Text] | None = None
-    """the names of the columns of times and factors in the heading of the file; not needed if the
-    file has only two columns"""
-
-    # Key of the quantity that the history multiplies.
-    amount: ClassVar[str]
-
-    @model_validator(mode="after")
-    def _has_an_amount(self) -> Self:
-        # A file with the unit of the quantity makes this key superfluous.
-        if self.file is None and self.amount not in self.model_fields_set:
-            raise error_at(self, "missing", self.amount)
-        return self
 
 
 class LoadTable(HistoryTable):

@@ -87,10 +87,8 @@ def check_turning(case: Case, spatial: bool) -> None:
             )
 
 
-def frame_motion(case: Case, segments: Sequence[Segment]) -> FrameMotion | None:
-    """Return slewing and luffing of a checked case; None if the frame stands still."""
-    if case.slew is None and case.luff is None:
-        return None
+def frame_motion(case: Case, segments: Sequence[Segment]) -> FrameMotion:
+    """Return slewing and luffing of a checked case."""
     histories = {
         key: table.history(key)
         for key, table in (("slew", case.slew), ("luff", case.luff))
@@ -110,6 +108,8 @@ def turning_loads(
     frame: FrameMotion, segments: Sequence[Segment], joints: Sequence[Joint]
 ) -> Iterator[Load]:
     """Yield the inertia loads across the boom by slewing and luffing, and changes of its weight."""
+    if not (frame.slew.kinks or frame.luff.kinks):
+        return
     directions: tuple[Direction, ...] = ("z", "y")
     for number, segment in enumerate(segments):
         extension = HistorySum(tuple(drive.history for drive in drives_of(joints, number)))

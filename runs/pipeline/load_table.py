@@ -10,9 +10,10 @@ import numpy as np
 
 from geometry.boom import Boom
 from geometry.load import Load, PartialLoad
-from runs.case.actions import history_of, thrusts
+from runs.case.actions import thrusts
 from runs.case.drive import resolving_times
-from runs.case.schema import Case, HistoryTable, LoadTable
+from runs.case.history import HistoryTable, history_of
+from runs.case.schema import Case, LoadTable
 from runs.case.units import System
 from runs.report.formatting import number
 from runs.report.tables import Column, Table

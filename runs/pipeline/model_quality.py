@@ -29,10 +29,13 @@ from runs.pipeline.proportions import (
     tip_cautions,
 )
 from runs.pipeline.summary import Comparisons, Summary, Whole
-from runs.pipeline.turning import turning_cautions
+from runs.pipeline.turning import pendulum_frequency, swing_cautions, turning_cautions
 
 # Difference of members, as a fraction of the tip's range, beyond which their motions diverge.
 _PARTED = 0.2
+
+# Factor above the frequency of a pendulum from which modes are those of the boom.
+_APART = 1.2
 
 # Part of a lateral play that causes a caution where bulging walls close it.
 BULGED = 0.1
@@ -238,6 +241,7 @@ def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list
         *stress_cautions(summary, boom),
         *bulge_cautions(summary, boom),
         *_large_displacements(boom, data),
+        *swing_cautions(case, data),
         *_numerical(summary),
         *series_notes(case),
     ]
@@ -252,7 +256,16 @@ def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
     slowest = min(((mode.frequency, name) for name, one in found for mode in one.modes), default=())
     if slowest:
         yield from period_cautions(f"in {slowest[1]}", slowest[0], case)
-        yield from turning_cautions(f"in {slowest[1]}", slowest[0], case)
+    pendulum = pendulum_frequency(case)
+    bending = [
+        (mode.frequency, name)
+        for name, one in found
+        for mode in one.modes
+        if mode.frequency > _APART * pendulum
+    ]
+    if bending:
+        frequency, name = min(bending)
+        yield from turning_cautions(f"in {name}", frequency, case)
 
 
 def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:

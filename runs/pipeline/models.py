@@ -15,6 +15,7 @@ from dynamics.hanging_load import HangingLoad
 from dynamics.motion import Motion, build_motion
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
+from runs.case.build import build_boom
 from runs.case.elastic_drive import with_elastic_drives
 from runs.case.hoist import hanging_load, with_hanging_load
 from runs.case.kinds.model import Built, Joined, ModelTable, Workshop
@@ -92,7 +93,8 @@ class MotionPlan:
         """
         from dynamics.integrator import AdaptiveStep, FixedStep
 
-        motion, time, load = initial_motion(system, case), case.time, hanging_load(case)
+        motion, time = initial_motion(system, case), case.time
+        load = None if case.hoist is None else hanging_load(case, build_boom(case))
         step = model.step or time.step
         if step is None:
             return cls(motion, AdaptiveStep(time.tolerance), load)

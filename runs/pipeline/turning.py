@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,14 +12,27 @@ from dynamics.excitation import MotionLaw
 from runs.case.drive import resolving_times
 from runs.case.schema import Case
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 # Part of the first circular frequency beyond which Coriolis forces of the boom matter.
 _SLOW = 0.05
+
+# Swing over the length of a pendulum beyond which its angle is not small.
+_SMALL = 0.2
 
 
 def _laws(case: Case) -> Iterator[tuple[str, str, MotionLaw]]:
     for key, verb, table in (("slew", "Slews", case.slew), ("luff", "Luffs", case.luff)):
         if table is not None:
             yield key, verb, table.history(key)
+
+
+def pendulum_frequency(case: Case) -> float:
+    """Return √(g/l)/2π of the hanging load in Hz; 0 if it does not swing."""
+    if case.gravity is None or case.hoist is None or case.hoist.pendulum is None:
+        return 0.0
+    return float(np.sqrt(case.gravity.acceleration / case.hoist.pendulum) / (2.0 * np.pi))
 
 
 def fastest_turn(law: MotionLaw) -> float:
@@ -34,6 +48,21 @@ def turning_lines(case: Case) -> Iterator[str]:
             f"{verb} by {float(law(np.array(max(kinks)))):g} degrees from {max(0.0, min(kinks)):g} "
             f"to {max(kinks):g} s, at {fastest_turn(law):.4g} degrees/s at most."
         )
+
+
+def swing_cautions(case: Case, data: xr.Dataset) -> Iterator[str]:
+    """Yield a caution for each model whose hanging load swings by a large angle."""
+    for name in ("swing_out", "swing_aside"):
+        if name not in data:
+            continue
+        length = case.hoist.pendulum if case.hoist and case.hoist.pendulum else np.inf
+        swings = np.abs(data[name].values).max(axis=1) / length
+        for model, swing in zip(data["model"].values, swings, strict=True):
+            if swing > _SMALL:
+                yield (
+                    f"caution: hoist.pendulum: in {model} the load swings by "
+                    f"{np.rad2deg(np.arctan(swing)):.3g} degrees; it moves as for small angles"
+                )
 
 
 def turning_cautions(where: str, frequency: float, case: Case) -> Iterator[str]:

@@ -236,7 +236,7 @@ def drive_table(results: Results) -> Table | None:
 
 def hoist_table(results: Results) -> Table | None:
     """Return lift-off, rope force and dynamic factor of every model; None without a hoist."""
-    load, data = hanging_load(results.case), results.trajectories
+    load, data = hanging_load(results.case, results.boom), results.trajectories
     if load is None:
         return None
     rows = []
@@ -247,13 +247,21 @@ def hoist_table(results: Results) -> Table | None:
         )
         raised = np.flatnonzero(mean >= load.weight)
         lifted = None if load.slack is None or not raised.size else data["time"].values[raised[0]]
-        rows.append((str(model), lifted, peak.max(), peak.max() / load.weight))
-    models, lifted, most, factors = zip(*rows, strict=True)
+        swings = [
+            np.abs(np.asarray(data[name].sel(model=model).values, dtype=float)).max()
+            if name in data
+            else None
+            for name in ("swing_out", "swing_aside")
+        ]
+        rows.append((str(model), lifted, peak.max(), peak.max() / load.weight, *swings))
+    models, lifted, most, factors, out, aside = zip(*rows, strict=True)
     columns = (
         Column("model", models),
         Column("lift-off", lifted, ".3f", "s"),
         Column("rope force,\nmaximum", most, ".3g", "kN"),
         Column("factor φ₂", factors, ".3f"),
+        *([Column("swing in the plane\nof the boom", out, ".3g", "m")] if any(out) else []),
+        *([Column("swing\naside", aside, ".3g", "m")] if any(aside) else []),
     )
     notes = (
         "At lift-off the force of all falls reaches the weight of the load. φ₂ is their largest "
@@ -265,9 +273,9 @@ def hoist_table(results: Results) -> Table | None:
 def luffing_table(results: Results) -> Table | None:
     """Return length and force of the cylinders of every model; None if nothing luffs."""
     boom, data = results.boom, results.trajectories
-    frame = frame_motion(results.case, boom.segments)
-    if frame is None or results.case.luff is None or not boom.cylinders:
+    if results.case.luff is None or not boom.cylinders:
         return None
+    frame = frame_motion(results.case, boom.segments)
     time, rows = data["time"].values, []
     turns = frame.luffed(time) - frame.luffed(time[0])
     for position, cylinder in enumerate(boom.cylinders, start=1):

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from dynamics.excitation import SCurve, Stroke
+from dynamics.excitation import HistorySum, Ramp, SCurve, Stroke
+from dynamics.frame_motion import FrameMotion
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.hanging_load import HangingLoad
+from dynamics.hanging_load import HangingLoad, Pendulum
 from dynamics.integrator import FixedStep
 from dynamics.motion import build_motion
 from dynamics.trajectory import Trajectory
@@ -34,10 +35,12 @@ def mass_on_spring() -> GapSystem:
     )
 
 
-def hoisted(load: HangingLoad, system: GapSystem, duration: float, step: float) -> Trajectory:
+def hoisted(
+    load: HangingLoad, system: GapSystem, duration: float, step: float, output: float = 1.0e-3
+) -> Trajectory:
     """Return the motion of a system's tip and its load from rest."""
     hung = load.attach(system, system.observers["tip"].row, 1.0)
-    motion = build_motion(hung, duration, 1.0e-3, at_rest=True)
+    motion = build_motion(hung, duration, output, at_rest=True)
     return load.separate_rope(FixedStep(step)(motion))
 
 
@@ -91,6 +94,109 @@ def test_a_hanging_load_rests() -> None:
     data = hoisted(load, mass_on_spring(), 0.2, 1.0e-3).data
     assert data["rope_force"].values == pytest.approx(np.full(201, load.weight), rel=1e-5)
     assert data["tip"].values == pytest.approx(np.full(201, -12000.0 / 2.0e6), rel=1e-5)
+
+
+def mass_on_springs() -> GapSystem:
+    """Return a tip of 500 kg on springs of 2 MN/m across and 0.5 MN/m sideways, without loads."""
+    system, mass = mass_on_spring(), 500.0
+    rows = np.eye(2) / np.sqrt(mass)
+    return replace(
+        system,
+        omega2=np.array([2.0e6, 0.5e6]) / mass,
+        load=np.zeros(2),
+        rows=np.zeros((0, 2)),
+        observers={"tip": Observer(rows[0]), "tip_lateral": Observer(rows[1])},
+        **dict.fromkeys(("damping", "dashpots", "friction_rows"), np.zeros(0)),
+        released_load=np.zeros(0),
+        initial_impulse=np.zeros(0),
+    )
+
+
+def test_pendulum_on_a_support_with_a_constant_acceleration() -> None:
+    """Reference: analytic, x = −(a l/g) (1 − cos √(g/l) t) behind the support."""
+    stiff = replace(mass_on_springs(), omega2=np.full(2, 1.0e16))
+    swing = Pendulum(4.0, FrameMotion(), 10.0, Stroke(8.0, 1.0, 2.0))
+    data = hoisted(HangingLoad(MASS, ROPE, GRAVITY, pendulum=swing), stiff, 2.0, 1.0e-3).data
+    behind = 0.5 * 4.0 / GRAVITY * (1.0 - np.cos(np.sqrt(GRAVITY / 4.0) * data["time"].values))
+    assert data["swing_out"].values == pytest.approx(-behind, abs=1e-6)
+    assert not data["swing_aside"].values.any()
+
+
+def test_load_under_a_boom_that_turns_steadily() -> None:
+    """Reference: analytic, the load hangs outwards by ψ̇² R l/(g − ψ̇² l) for small angles.
+
+    About this place it swings with √(g/l) ± ψ̇ in the frame of the boom.
+    """
+    stiff = replace(mass_on_springs(), omega2=np.full(2, 1.0e16))
+    rate, own = np.deg2rad(10.0), np.sqrt(GRAVITY / 3.0)
+    frame = FrameMotion(slew=Stroke(900.0, 10.0, 10.0), radius=-1.0)
+    load = HangingLoad(MASS, ROPE, GRAVITY, pendulum=Pendulum(3.0, frame, 11.0, HistorySum(())))
+    data = hoisted(load, stiff, 25.0, 5.0e-3, output=0.02).data
+    late = data["time"].values > 10.0
+    time = data["time"].values[late]
+    waves = [wave((own + sign * rate) * time) for sign in (-1.0, 1.0) for wave in (np.cos, np.sin)]
+    fit = np.column_stack([np.ones(time.size), *waves])
+    out = rate**2 * 10.0 * 3.0 / (GRAVITY - rate**2 * 3.0)
+    for name, place in (("swing_out", out), ("swing_aside", 0.0)):
+        swung = data[name].values[late]
+        (found, *_), *_ = np.linalg.lstsq(fit, swung, rcond=None)
+        assert found == pytest.approx(place, abs=1e-3 * out)
+        assert np.ptp(swung) > 0.1 * out
+
+
+def test_load_that_swings_while_the_boom_slews_and_luffs() -> None:
+    """Reference: other code, scipy's DOP853 of tip and load in the turning frame.
+
+    There the load has all terms of Coriolis, of Euler, and centrifugal ones. Order 2 in the step.
+    """
+    frame = FrameMotion(SCurve(80.0, 2.0), Stroke(-20.0, 15.0, 0.5), 50.0, 0.5, -1.0)
+    place, out, length = 9.0, SCurve(1.0, 2.0), 3.0
+    wind = Ramp(0.5)
+    swing = Pendulum(length, frame, place, out, [("y", 300.0, wind)])
+    load = HangingLoad(MASS, ROPE, GRAVITY, pendulum=swing)
+
+    def rates(time: float, state: np.ndarray) -> np.ndarray:
+        (w, v, z, r, t), speeds = state[:5], state[5:]
+        now = np.array(time)
+        luffed = frame.luffed(now)
+        slewed, turn, faster = (frame.slewed(now, order) for order in range(3))
+        along, aside, across = frame.accelerations(now, place, out)
+        radial = along * np.cos(luffed) - across * np.sin(luffed)
+        up = along * np.sin(luffed) + across * np.cos(luffed)
+        # The tip's deflection is so small that the frame does not accelerate it further.
+        rope = ROPE * max(w * np.cos(luffed) - z, 0.0)
+        pull = MASS * GRAVITY / length * np.array([r + w * np.sin(luffed), t - v])
+        blown = 300.0 * wind(now) * np.array([np.sin(slewed), np.cos(slewed)])
+        turned = [
+            2.0 * turn * speeds[4] + faster * t + turn**2 * r - radial,
+            -2.0 * turn * speeds[3] - faster * r + turn**2 * t - aside,
+        ]
+        forces = [
+            (-2.0e6 * w - np.cos(luffed) * rope - np.sin(luffed) * pull[0]) / 500.0,
+            (-0.5e6 * v + pull[1]) / 500.0,
+            rope / MASS - GRAVITY - up,
+            *((blown - pull) / MASS + turned),
+        ]
+        return np.concatenate([speeds, forces])
+
+    sagged = -MASS * GRAVITY * np.cos(np.deg2rad(50.0)) / 2.0e6
+    stretched = sagged * np.cos(np.deg2rad(50.0)) - MASS * GRAVITY / ROPE
+    start = [sagged, 0.0, stretched, -sagged * np.sin(np.deg2rad(50.0)), 0.0, *np.zeros(5)]
+    times = 1.0e-3 * np.arange(2501)
+    exact = solve_ivp(
+        rates, (0.0, 2.5), start, "DOP853", times, rtol=1e-9, atol=1e-11, max_step=0.02
+    ).y
+    swung = exact[3] + exact[0] * np.sin(frame.luffed(times)), exact[4] - exact[1]
+    errors = []
+    for step in (1.0e-3, 5.0e-4):
+        motion = hoisted(load, mass_on_springs(), 2.5, step)
+        found = [motion.data[name].values for name in ("swing_out", "swing_aside", "tip")]
+        pairs = zip(found, (*swung, exact[0]), strict=True)
+        errors.append(max(np.abs(one - other).max() for one, other in pairs))
+        assert motion.energy_residual < 1e-11
+    assert np.abs(swung).max() > 0.5
+    assert errors[0] < 1e-3
+    assert errors[1] < 0.3 * errors[0]
 
 
 def test_hoisting_while_a_segment_extends() -> None:

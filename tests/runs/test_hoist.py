@@ -12,9 +12,10 @@ from dynamics.equilibrium import equilibrium_at
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
+from runs.case.hoist import HoistTable, WindTable
 from runs.case.messages import BadInput
 from runs.case.reading import load
-from runs.case.schema import Case, LoadTable
+from runs.case.schema import Case, LoadTable, StartTable
 from runs.pipeline.models import build
 from runs.report.result_tables import hoist_table
 
@@ -65,6 +66,40 @@ def test_results_of_a_hoist() -> None:
     assert 1.0 < factor < 1.5
 
 
+def test_dropped_load() -> None:
+    """Reference: a force of the same size at the tip that is released at t = 0."""
+    case = change(of_beam(load(str(CASES / "hoist.toml"))), **{"time.duration": 0.4})
+    weight = LoadTable(
+        segment="fly",
+        x="head",  # type: ignore[arg-type] # read as in a file
+        magnitude=-0.5 * 5000.0 * 9.80665,
+        released=True,
+    )
+    hung = HoistTable(mass=5000.0, stiffness=1.0e6, hanging=True, dropped=True)
+    tips = [
+        run_case(case.model_copy(update=one)).trajectories["tip"].values
+        for one in ({"hoist": hung}, {"hoist": None, "loads": (weight,)})
+    ]
+    assert tips[0] == pytest.approx(tips[1], abs=1e-6)
+    assert np.ptp(tips[0]) > 0.1
+
+
+def test_load_swings_under_wind() -> None:
+    """Reference: analytic, 2 F l/(m g) of a force F that acts at once."""
+    case = of_beam(load(str(CASES / "hoist.toml")))
+    wind = WindTable(direction="x", force=500.0)
+    hung = HoistTable(mass=5000.0, stiffness=1.0e6, hanging=True, pendulum=2.0, wind=(wind,))
+    still = case.model_copy(update={"hoist": hung, "start": StartTable()})
+    results = run_case(change(still, **{"time.duration": 1.5, "damping.modal": 0.0}))
+    swung = results.trajectories["swing_out"]
+    assert swung.attrs["length"] == 2.0
+    table = hoist_table(results)
+    assert table is not None
+    assert table.columns[-1].cells[0] == pytest.approx(np.abs(swung.values).max())
+    # The load begins at rest, below the tip that sways as it falls onto its supports.
+    assert np.abs(swung.values).max() > 2.0 * 500.0 * 2.0 / (5000.0 * 9.80665)
+
+
 @pytest.mark.parametrize(
     ("before", "after", "message"),
     [
@@ -87,6 +122,27 @@ def test_results_of_a_hoist() -> None:
             "falls = 4\n",
             "falls = 4\nhanging = true\nslack = 0.1\n",
             "hoist.slack: the load hangs; leave slack or hanging out",
+        ),
+        (
+            "falls = 4\n",
+            "falls = 4\npendulum = 10.0\n",
+            "hoist.pendulum: the load lies on the ground; give hanging = true",
+        ),
+        (
+            "falls = 4\n",
+            "falls = 4\nhanging = true\ndropped = true\n",
+            "hoist.travel: the load is dropped at t = 0; leave one of them out",
+        ),
+        (
+            "falls = 4\n",
+            "falls = 4\nhanging = true\nwind = [{ force = 100.0 }]\n",
+            "hoist.wind: the load does not swing; give pendulum, its length in m",
+        ),
+        (
+            "falls = 4\n",
+            "falls = 4\nhanging = true\npendulum = 10.0\nwind = [{ force = 100.0 }]\n",
+            "hoist.wind[1].direction: the boom is flat, and nothing moves along 'y'; give the "
+            "joints lateral_play",
         ),
         (
             "[gravity]\nangle = 60.0\n",
