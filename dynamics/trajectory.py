@@ -291,13 +291,25 @@ class Trajectory:
         )
 
 
-def _first_prominent(values: Array, prominence: float) -> int | None:
-    """Return the index of the first peak of at least a prominence, or None.
+def prominent_peaks(values: Array, prominence: float) -> list[int]:
+    """Return the indices of all peaks with a prominence.
 
-    It equals the first of ``scipy.signal.find_peaks``, whose import takes half a second.
+    They are those of ``scipy.signal.find_peaks``, whose import takes half a second.
     """
+    found: list[int] = []
+    begin = 0
+    while (peak := _first_prominent(values[begin:], prominence)) is not None:
+        found.append(begin + peak)
+        begin += peak + 1
+    return found
+
+
+def _first_prominent(values: Array, prominence: float) -> int | None:
+    """Return the index of the first peak with a prominence, or None."""
+    if prominence == 0.0 or values.size == 0:
+        return None
     risen = values - np.minimum.accumulate(values) >= prominence
-    if prominence == 0.0 or not risen.any():
+    if not risen.any():
         return None
     start = int(risen.argmax())
     after = values[start:]

@@ -141,10 +141,11 @@ def run(
             context = RunContext(comm, report_progress, cache, cache, helper)
             finished = run_case(effective, case, context)
             assert finished is not None
-            finished.evaluate()
-            judged = judge(finished.results)
-            report_progress("report", "pictures and figures", 0.0)
-            output.write(finished, judged, part, not no_pictures, helper)
+            with output.writing(finished, part, not no_pictures, helper) as write:
+                finished.evaluate()
+                judged = judge(finished.results)
+                report_progress("report", "pictures and figures", 0.0)
+                write(judged)
             report_progress("report", "pictures and figures", 1.0)
         print(printable(str(folder / output.REPORT)))
         status = print_runs({case: finished.results}, {case: judged})

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -84,63 +85,87 @@ class LoadedModel(NamedTuple):
         return replace(own, motion=motion, life=lives)
 
 
-def evaluate_model(
-    boom: Boom,
-    case: Case,
-    model: Model,
-    built: Built,
-    trajectory: Trajectory,
-    shell: ShellOutput | None,
-) -> ModelDesignResults:
-    """Return the design results of one model, on the first rank.
+@dataclass(frozen=True)
+class ModelEvaluation:
+    """Evaluation of one model after its run, on the first rank.
 
     Args:
         boom: boom of the case.
         case: the case of the model.
         model: a model of the case.
         built: the model before time integration.
-        trajectory: motion of the model.
-        shell: further output of a shell; None for a beam.
     """
-    played = LoadedModel.of(boom, model, built)
-    system, times = played.system, instants(played.system, case.time.duration)
-    found, extended = positions(system, times), extended_positions(system, case.time.duration)
-    own = played.at_rest(found, extended)
-    own = played.with_motion(own, found | extended, trajectory, case, model)
-    if shell is not None and own.motion is not None:
-        walls = wall_stresses(played.boom, shell.stresses)
-        own = replace(own, motion=replace(own.motion, walls=walls))
-    if shell is not None and shell.buckling is not None:
-        own = replace(own, buckling=shell.buckling.segments)
-    if case.buckling is not None and (rest := own.farthest_static) is not None:
-        own = replace(own, panels=weakest_panels(played.boom.segments, rest))
-    own = replace(own, residual_vibration=residual_vibration(system, trajectory, case, model))
-    if model.bonded or not boom.joints or case.hoist is not None:
-        # The boom without play has no rope.
-        return own
-    try:
-        bonded = _bonded(boom, model, played, found)
-        found = positions(bonded.system, times)
-        other = bonded.at_rest(found)
-    except NUMERICAL_ERRORS:
-        # For example, rigid segments without play have no degree of freedom.
-        return own
-    own = replace(
-        own,
-        static_bonded=[state for state in other.static if _at_initial_extension(boom, state.time)],
-        # Their shapes hardly differ from those of the boom with play.
-        modes_bonded=[replace(mode, shapes=[]) for mode in other.modes],
-    )
-    if boom.driven:
-        # The boom without play cannot telescope.
-        return own
-    try:
-        motion = MotionPlan.of(bonded.system, case, model).trajectory()
-        other = bonded.with_motion(other, found, motion, case, model)
-    except NUMERICAL_ERRORS:
-        # The static states are still available.
-        return own
-    return replace(own, motion_bonded=other.motion, life_bonded=other.life)
+
+    boom: Boom
+    case: Case
+    model: Model
+    built: Built
+
+    @cached_property
+    def _played(self) -> LoadedModel:
+        return LoadedModel.of(self.boom, self.model, self.built)
+
+    @cached_property
+    def _times(self) -> list[float]:
+        return instants(self._played.system, self.case.time.duration)
+
+    @cached_property
+    def _found(self) -> dict[float, Array]:
+        return positions(self._played.system, self._times)
+
+    def evaluate(self, trajectory: Trajectory, shell: ShellOutput | None) -> ModelDesignResults:
+        """Return the design results with the play of the model.
+
+        Args:
+            trajectory: motion of the model.
+            shell: further output of a shell; None for a beam.
+        """
+        played, case = self._played, self.case
+        system, found = played.system, self._found
+        extended = extended_positions(system, case.time.duration)
+        own = played.at_rest(found, extended)
+        own = played.with_motion(own, found | extended, trajectory, case, self.model)
+        if shell is not None and own.motion is not None:
+            walls = wall_stresses(played.boom, shell.stresses)
+            own = replace(own, motion=replace(own.motion, walls=walls))
+        if shell is not None and shell.buckling is not None:
+            own = replace(own, buckling=shell.buckling.segments)
+        if case.buckling is not None and (rest := own.farthest_static) is not None:
+            own = replace(own, panels=weakest_panels(played.boom.segments, rest))
+        vibration = residual_vibration(system, trajectory, case, self.model)
+        return replace(own, residual_vibration=vibration)
+
+    def add_bonded(self, own: ModelDesignResults) -> ModelDesignResults:
+        """Return design results with those of the same model without play, if it has any."""
+        boom, case, model = self.boom, self.case, self.model
+        if model.bonded or not boom.joints or case.hoist is not None:
+            # The boom without play has no rope.
+            return own
+        try:
+            bonded = _bonded(boom, model, self._played, self._found)
+            found = positions(bonded.system, self._times)
+            other = bonded.at_rest(found)
+        except NUMERICAL_ERRORS:
+            # For example, rigid segments without play have no degree of freedom.
+            return own
+        own = replace(
+            own,
+            static_bonded=[
+                state for state in other.static if _at_initial_extension(boom, state.time)
+            ],
+            # Their shapes hardly differ from those of the boom with play.
+            modes_bonded=[replace(mode, shapes=[]) for mode in other.modes],
+        )
+        if boom.driven:
+            # The boom without play cannot telescope.
+            return own
+        try:
+            motion = MotionPlan.of(bonded.system, case, model).trajectory()
+            other = bonded.with_motion(other, found, motion, case, model)
+        except NUMERICAL_ERRORS:
+            # The static states are still available.
+            return own
+        return replace(own, motion_bonded=other.motion, life_bonded=other.life)
 
 
 def _bonded(

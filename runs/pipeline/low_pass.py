@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import BeforeValidator, PlainSerializer, PlainValidator
 
 from dynamics.arrays import Array
+from dynamics.trajectory import prominent_peaks
 
 # Types of arrays and numbers in JSON, which has neither NaN nor infinity.
 Numbers = Annotated[
@@ -82,14 +83,12 @@ def mean_period(time: Array, tip: Array) -> float:
         time: (num_times,) in s.
         tip: tip deflection (num_times,) in m; the motion starts from its first value.
     """
-    from scipy.signal import find_peaks
-
     if tip.size < 3:
         return float("nan")
     off = tip - tip[0]
     side = np.sign(off[np.abs(off).argmax()])
-    peaks, _ = find_peaks(side * tip, prominence=PROMINENCE * np.ptp(tip))
-    return float(np.diff(time[peaks]).mean()) if peaks.size > 1 else float("nan")
+    peaks = prominent_peaks(side * tip, PROMINENCE * float(np.ptp(tip)))
+    return float(np.diff(time[peaks]).mean()) if len(peaks) > 1 else float("nan")
 
 
 @dataclass(frozen=True, slots=True)

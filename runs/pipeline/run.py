@@ -18,8 +18,8 @@ from runs.case.schema import Case, Model
 from runs.folder.versions import versions
 from runs.pipeline import members
 from runs.pipeline.context import RunContext
-from runs.pipeline.design_results import ModelDesignResults
-from runs.pipeline.evaluation import evaluate_model, evaluate_run
+from runs.pipeline.design_results import DesignResults, ModelDesignResults
+from runs.pipeline.evaluation import ModelEvaluation, evaluate_run
 from runs.pipeline.model_output import BeamOutput, ShellOutput
 from runs.pipeline.model_quality import compare_models
 from runs.pipeline.model_run import (
@@ -29,6 +29,7 @@ from runs.pipeline.model_run import (
     failure_reason,
     run_model,
 )
+from runs.pipeline.pads import pad_loads
 from runs.pipeline.results import CONVENTIONS, Results, label
 from runs.pipeline.summary import Ensembles, Summary, check_finite
 
@@ -64,14 +65,31 @@ class Run:
             NumericsError: a common result of all models, such as their comparison, is not finite.
         """
         case, boom, summary = self.results.case, self.results.boom, self.results.summary
+        design = self._evaluate_models(lambda one, own: one.add_bonded(own))
+        summary.design = evaluate_run(boom, case, summary, design)
+        self.results.conclude()
+        check_finite(summary)
+
+    def evaluate_with_play(self) -> None:
+        """Add the results of models with their own play alone, and pad forces, to the summary."""
+        results, summary = self.results, self.results.summary
+        summary.design = DesignResults(models=self._evaluate_models(lambda _, own: own))
+        summary.pads = list(pad_loads(results.case, results.boom, results.trajectories))
+        check_finite(summary)
+
+    def _evaluate_models(
+        self, complete: Callable[[ModelEvaluation, ModelDesignResults], ModelDesignResults]
+    ) -> dict[str, ModelDesignResults]:
+        """Return the design results of each model, which a function completes."""
+        case, boom, summary = self.results.case, self.results.boom, self.results.summary
         design = {}
         for name, ran in self.ran.items():
             own = summary.models[name]
             with ran.stages.stage("design results"), np.errstate(all="ignore"):
                 try:
-                    design[name] = evaluate_model(
-                        boom, case, ran.model, ran.built, ran.motion.trajectory, ran.shell
-                    )
+                    evaluation = ModelEvaluation(boom, case, ran.model, ran.built)
+                    found = evaluation.evaluate(ran.motion.trajectory, ran.shell)
+                    design[name] = complete(evaluation, found)
                     check_finite(design[name])
                 except NUMERICAL_ERRORS as error:
                     summary.failures[name], design[name] = (
@@ -80,9 +98,7 @@ class Run:
                     )
             own.seconds = ran.stages.seconds
             own.wall_time = (own.wall_time or 0.0) + own.seconds["design results"]
-        summary.design = evaluate_run(boom, case, summary, design)
-        self.results.conclude()
-        check_finite(summary)
+        return design
 
 
 def run_case(case: Case, file: str, context: RunContext) -> Run | None:

@@ -199,4 +199,4 @@ def pack_plotly() -> str:
 
 def compressed(text: str) -> str:
     """Return a text compressed by gzip, in base 64."""
-    return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode("ascii")
+    return base64.b64encode(gzip.compress(text.encode(), 6, mtime=0)).decode("ascii")

@@ -4,8 +4,11 @@
 from __future__ import annotations
 
 import json
+import pickle
 import shutil
 from collections.abc import Callable, Sequence
+from concurrent.futures import BrokenExecutor, Executor
+from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
 
@@ -40,7 +43,10 @@ from runs.report.rest_figures import at_rest, envelopes, mode_shapes
 FOLDER = "figures"
 FIGURE_DIGEST = ".drawn-of"
 
-FIGURES: Sequence[Callable[[FigureContext], list[Figure]]] = (
+# A function that draws some figures of a run.
+Draw = Callable[[FigureContext], list[Figure]]
+
+FIGURES: Sequence[Draw] = (
     boom,
     tip,
     close_up,
@@ -61,19 +67,41 @@ FIGURES: Sequence[Callable[[FigureContext], list[Figure]]] = (
 )
 
 
-def draw(results: Results, folder: Path) -> list[Figure]:
+def draw(results: Results, folder: Path, helper: Executor | None = None) -> list[Figure]:
     """Draw all figures for which a run has data.
 
     Args:
         results: results of the run.
         folder: folder of the PNG files; it must exist. Existing files are kept.
+        helper: second process, which draws from the last figure on as soon as it is idle.
     """
+    there = {}
+    with suppress(BrokenExecutor):
+        if helper is not None:
+            # Pickled here, since the results grow as this process uses them.
+            content = pickle.dumps(results)
+            for figures in reversed(FIGURES):
+                there[figures] = helper.submit(_draw_there, figures, content, folder)
+    drawn: list[Figure] = []
+    for figures in FIGURES:
+        with suppress(BrokenExecutor):
+            if figures in there and not there[figures].cancel():
+                drawn += there[figures].result()
+                continue
+        drawn += _draw_some(figures, results, folder)
+    return drawn
+
+
+def _draw_there(figures: Draw, results: bytes, folder: Path) -> list[Figure]:
+    return _draw_some(figures, pickle.loads(results), folder)
+
+
+def _draw_some(figures: Draw, results: Results, folder: Path) -> list[Figure]:
     with matplotlib.rc_context(theme.RC):
-        run = FigureContext(results, folder)
-        return [figure for figures in FIGURES for figure in figures(run)]
+        return figures(FigureContext(results, folder))
 
 
-def draw_in(results: Results, folder: Path) -> list[Figure]:
+def draw_in(results: Results, folder: Path, helper: Executor | None = None) -> list[Figure]:
     """Draw the figures into a run's folder; remove figures of other data."""
     figures, known = folder / FOLDER, folder / FIGURE_DIGEST
     figure_digest = _figure_digest(results, folder)
@@ -81,7 +109,7 @@ def draw_in(results: Results, folder: Path) -> list[Figure]:
     if not known.is_file() or known.read_text(encoding="utf-8") != figure_digest:
         shutil.rmtree(figures)
         figures.mkdir()
-    drawn = draw(results, figures)
+    drawn = draw(results, figures, helper)
     for earlier in set(figures.iterdir()) - {figure.path for figure in drawn}:
         earlier.unlink()
     write_whole(known, figure_digest)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from io import StringIO
@@ -58,21 +58,19 @@ def rendered_again(
                 write_workbook(results, part, folder, excel)
 
 
-def write(
-    run: Run,
-    addition: Addition,
-    folder: Path,
-    snapshots_now: bool = True,
-    helper: Executor | None = None,
-) -> None:
-    """Write all files of a run.
+@contextmanager
+def writing(
+    run: Run, folder: Path, snapshots_now: bool = True, helper: Executor | None = None
+) -> Iterator[Callable[[Addition], None]]:
+    """Write the motion of a run; yield the function that writes all other files.
+
+    Meanwhile another process draws snapshots, before the run is evaluated.
 
     Args:
-        run: a finished run.
-        addition: addition of a client.
+        run: a run.
         folder: an empty folder.
         snapshots_now: whether snapshots are drawn now, or later on request.
-        helper: process that draws them; a new one unless given.
+        helper: process that draws them and figures; a new one for snapshots alone unless given.
     """
     results = run.results
     results.write(folder)
@@ -83,20 +81,30 @@ def write(
     pictured = [*files.values()] if snapshots_now else []
     later = LATER if files and not pictured else None
     results.summary.snapshots = Snapshots(written=[], skipped=later)
-    try:
-        motion = folder / TRAJECTORIES
-        with snapshots.drawing(results, pictured, motion, folder, helper=helper) as gather:
+    motion = folder / TRAJECTORIES
+    with snapshots.drawing(results, pictured, motion, folder, helper=helper) as gather:
+
+        def write_others(addition: Addition) -> None:
             write_csv(results.trajectories, folder / "trajectories.csv")
             for name, path in files.items():
                 prefix = path.name.removesuffix(FIELDS)
                 run.shells[name].write_files(folder, prefix)
             if turned := viewer(run):
                 write_whole(folder / VIEWER, turned)
-            figures = draw_in(results, folder)
-            gather()
-    except RenderingUnavailable as reason:
-        results.summary.snapshots = Snapshots(written=[], skipped=str(reason))
-    _write_pages(results, addition, folder, figures)
+            figures = draw_in(results, folder, helper if pictured else None)
+            try:
+                gather()
+            except RenderingUnavailable as reason:
+                results.summary.snapshots = Snapshots(written=[], skipped=str(reason))
+            _write_pages(results, addition, folder, figures)
+
+        yield write_others
+
+
+def write(run: Run, addition: Addition, folder: Path) -> None:
+    """Write all files of an evaluated run to an empty folder."""
+    with writing(run, folder) as write_others:
+        write_others(addition)
 
 
 def write_report(results: Results, addition: Addition, folder: Path) -> None:

@@ -290,19 +290,22 @@ def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
 def few_shapes(moved: Array) -> tuple[Array, Array]:
     """Return factors (num_frames, num_shapes) and shapes (num_shapes, num_values) of a motion.
 
-    They follow from the singular value decomposition (Eckart and Young 1936), truncated with an
-    error of at most ``LEFT`` times the largest value.
+    They follow from the singular value decomposition (Eckart and Young 1936) by the eigenvectors of
+    the Gram matrix of the frames, truncated with an error of at most ``LEFT`` times the largest
+    value.
 
     Args:
         moved: displacements (num_frames, num_values).
     """
-    left, sizes, right = np.linalg.svd(moved, full_matrices=False)
-    largest = float(np.abs(moved).max())
-    for count in range(1, sizes.size + 1):
-        parts = left[:, :count] * sizes[:count]
-        if np.abs(parts @ right[:count] - moved).max() <= LEFT * largest:
+    _, parts = np.linalg.eigh(moved @ moved.T)
+    parts = parts[:, ::-1]
+    shapes, largest = parts.T @ moved, float(np.abs(moved).max())
+    left = moved.copy()
+    for count in range(1, len(parts) + 1):
+        left -= np.outer(parts[:, count - 1], shapes[count - 1])
+        if np.abs(left).max() <= LEFT * largest:
             break
-    return parts, right[:count]
+    return parts[:, :count], shapes[:count]
 
 
 def _typed(values: Array) -> dict[str, str]:

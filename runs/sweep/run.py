@@ -135,7 +135,7 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
             failures[model.name] = str(error).removeprefix(": model[1]: ")
             continue
         assert finished is not None
-        finished.evaluate()
+        finished.evaluate_with_play()
         # Design results may fail after a successful motion.
         failures.update(finished.results.summary.failures)
         models[model.name] = measure(finished.results, model.name)

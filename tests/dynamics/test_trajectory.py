@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.signal import find_peaks
 
 from dynamics.arrays import Array
 from dynamics.contact import DryFriction, PowerContact
@@ -16,7 +17,7 @@ from dynamics.energy import ENERGIES, energy_residual
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
-from dynamics.trajectory import Trajectory
+from dynamics.trajectory import Trajectory, prominent_peaks
 
 STOP = PowerContact(stiffness=1.0e4, exponent=1.0).behind(1.0e-2)
 
@@ -200,3 +201,13 @@ def test_blows_from_both_sides_within_an_output_interval_do_not_cancel(
         run = FixedStep(5e-4)(Motion(free, 2.0, output_step=0.5, velocity=[5.0 * np.sqrt(2.0)]))
         peaks = np.abs(run.data["contact_force_peak"].values[1:, 0])
         np.testing.assert_allclose(peaks, 5.0 * np.sqrt(1.0e4 * 2.0), rtol=1e-3)
+
+
+@pytest.mark.parametrize("count", [0, 1, 3, 50, 400])
+def test_prominent_peaks(count: int) -> None:
+    """Reference: scipy.signal.find_peaks, for noise and for random walks."""
+    noise = np.random.default_rng(count).standard_normal(count)
+    for values in (noise, np.cumsum(noise)):
+        for prominence in (0.1, 1.0, 3.0):
+            expected, _ = find_peaks(values, prominence=prominence)
+            assert prominent_peaks(values, prominence) == expected.tolist()

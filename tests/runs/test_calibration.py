@@ -164,7 +164,7 @@ def test_a_run_leaves_its_card(case: Case, tmp_path: Path) -> None:
     run = run_models(alone, "", RunContext(MPI.COMM_SELF))
     assert run is not None
     run.evaluate()
-    write(run, Addition(), tmp_path, None)
+    write(run, Addition(), tmp_path)
     told = json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))
     summary = run.results.summary.models["sprung"].calibration
     assert summary is not None

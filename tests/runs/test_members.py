@@ -124,7 +124,7 @@ def test_ensembles_say_what_they_are(run: Run) -> None:
 
 @pytest.mark.usefixtures("unprinted")
 def test_ensembles_are_read_back(run: Run, tmp_path: Path) -> None:
-    write(run, Addition(), tmp_path, tmp_path)
+    write(run, Addition(), tmp_path)
     results = Results.load(tmp_path)
     assert results.ensembles is not None
     assert run.results.ensembles is not None
@@ -142,7 +142,7 @@ def test_a_run_without_ensembles_has_no_file_of_them(case: Case, tmp_path: Path)
     without = run_case(short, "", RunContext())
     assert without is not None
     without.evaluate()
-    write(without, Addition(), tmp_path, tmp_path)
+    write(without, Addition(), tmp_path)
     assert not (tmp_path / "ensembles.nc").exists()
     assert Results.load(tmp_path).ensembles is None
 

@@ -43,7 +43,7 @@ def run() -> Run:
 def folder(run: Run, tmp_path: Path, few_figures: None) -> Path:
     out = tmp_path / "out"
     out.mkdir()
-    write(run, judge(run.results), out, out)
+    write(run, judge(run.results), out)
     return out
 
 
@@ -64,7 +64,7 @@ def test_columns_of_stations_are_told_apart(run: Run, tmp_path: Path) -> None:
     in_space = replace(run, results=replace(run.results, trajectories=data))
     out = tmp_path / "out"
     out.mkdir()
-    write(in_space, Addition(), out, out)
+    write(in_space, Addition(), out)
     gaps = [name for name in header(out) if name.startswith("gap@")]
     assert gaps == ["gap@9", "gap@10", "gap@9y", "gap@10y", "gap@9#2"]
 
@@ -101,11 +101,11 @@ def test_a_model_that_nothing_answers_for_keeps_its_motion(
     def singular(*_: object) -> ModelDesignResults:
         raise np.linalg.LinAlgError("Singular matrix")
 
-    monkeypatch.setattr("runs.pipeline.run.evaluate_model", singular)
+    monkeypatch.setattr("runs.pipeline.run.ModelEvaluation.evaluate", singular)
     again = replace(run, results=replace(run.results, summary=run.results.summary.model_copy()))
     again.results.summary.failures = {}
     again.evaluate()
-    write(again, Addition(), tmp_path, tmp_path)
+    write(again, Addition(), tmp_path)
     found = Results.load(tmp_path)
     xr.testing.assert_identical(found.trajectories.load(), run.results.trajectories)
     assert found.summary.failures == {
