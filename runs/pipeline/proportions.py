@@ -216,7 +216,7 @@ def _sizes(case: Case, boom: Boom) -> Iterator[str]:
             "weights turn it down; those that pull down are negative"
         )
     elif payload is not None and case.gravity is not None:
-        uplift = sum(load.magnitude for load in added if load.x == boom.tip)
+        uplift = sum(max(load.magnitude, 0.0) for load in added if load.x == boom.tip)
         if uplift > 0.5 * STANDARD_GRAVITY * payload.mass:
             yield (
                 f"the loads at the tip lift the payload by {uplift:.4g} N; loads that pull down "
