@@ -12,6 +12,7 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -342,15 +343,38 @@ def check(case: CaseFile, picture: Picture = None) -> int:
 
 
 @app.command()
-def prove(case: CaseFile) -> int:
+def prove(
+    case: CaseFile,
+    shell: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="A shell of the case, in place of beam elements."),
+    ] = None,
+    no_cache: NoCache = False,
+) -> int:
     """Prove strength, stability, deflection and fatigue for all combinations of a case.
 
     The exit status is 1 where a proof fails.
     """
-    from runs.case.reading import load
+    from runs.case.kinds.shell import Shell
+    from runs.case.messages import BadInput
+    from runs.case.reading import load, select
     from runs.prove import print_proofs
 
-    return print_proofs(load(case), case, Terminal())
+    checked = load(case)
+    if shell is None:
+        return print_proofs(checked, case, Terminal())
+    (model,) = select(checked, case, [shell]).models
+    if not isinstance(model, Shell):
+        raise BadInput(case, "--shell", f"{shell!r} is no shell; leave it out for beam elements")
+    comm = ranks.enter_mpi(checked, case)
+    assert comm is not None
+    from runs.case.kinds.model import Workshop
+    from runs.folder.cache import Cache
+
+    with ranks.all_end_together(comm), progress.display([shell]) as report_progress:
+        stages = partial(report_progress, shell)
+        workshop = Workshop(comm, stages, None if no_cache else Cache.of_user())
+        return print_proofs(checked, case, Terminal(), (model, workshop))
 
 
 @app.command()

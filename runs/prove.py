@@ -5,26 +5,36 @@ from __future__ import annotations
 
 from rich.console import Console
 
+from runs.case.kinds.model import Workshop
+from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
 from runs.pipeline.combinations import combination_states, combination_tables
+from runs.pipeline.combined_shells import shell_states
 from runs.pipeline.proofs import proof_table, prove
 from runs.process.terminal import message, say, shorten
 
 
-def print_proofs(case: Case, file: str, console: Console) -> int:
+def print_proofs(
+    case: Case, file: str, console: Console, shell: tuple[Shell, Workshop] | None = None
+) -> int:
     """Print the proofs of a checked case; return 1 if one fails, or else 0.
 
     Args:
         case: the case.
         file: its file, for messages.
         console: console for the tables; lines on proofs that fail go to stderr.
+        shell: shell of the case and its context, in place of beam elements; all ranks call.
 
     Raises:
         NumericsError: a combination has no equilibrium.
     """
-    states = combination_states(case)
+    states = combination_states(case) if shell is None else shell_states(case, *shell)
+    if not states:
+        # Only the first rank has the states of a shell.
+        return 0
     proved = prove(case, states)
-    for table in combination_tables([one.result for one in states], case):
+    name = "" if shell is None else shell[0].name
+    for table in combination_tables([one.result for one in states], case, name):
         table.show(console)
     proof_table(proved, case).show(console)
     console.print(proved.governing(case.system), markup=False, highlight=False)

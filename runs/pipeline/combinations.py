@@ -21,6 +21,8 @@ from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.largest_loads import StaticBeam, StaticExtreme, beam_note, in_units
 from runs.pipeline.statics import boom_with_play
+from runs.pipeline.strength import WallStress
+from runs.pipeline.wall_buckling import WallBuckling
 from runs.report.tables import Column, Table
 
 # Mark of the governing values of a table.
@@ -52,10 +54,19 @@ class CombinationResult:
 
 
 class CombinationState(NamedTuple):
-    """Static states of a combination in a load case; ``beam`` is None without an equilibrium."""
+    """Static states of a combination in a load case.
+
+    Args:
+        combined: the case of the combination.
+        beam: the static states; None without an equilibrium.
+        walls: largest wall stresses of each segment of a shell.
+        buckling: buckling of the segments of a shell, where it is computed.
+    """
 
     combined: CombinedCase
     beam: StaticBeam | None
+    walls: Sequence[WallStress] = ()
+    buckling: Sequence[WallBuckling] = ()
 
     @property
     def result(self) -> CombinationResult:
@@ -85,8 +96,16 @@ def combination_results(case: Case) -> list[CombinationResult]:
     return [one.result for one in combination_states(case)] if given else []
 
 
-def combination_tables(results: Sequence[CombinationResult], case: Case) -> Iterator[Table]:
-    """Yield the table of combinations, and that of their envelope, in the units of a case."""
+def combination_tables(
+    results: Sequence[CombinationResult], case: Case, shell: str = ""
+) -> Iterator[Table]:
+    """Yield the table of combinations, and that of their envelope, in the units of a case.
+
+    Args:
+        results: results of the combinations.
+        case: the case.
+        shell: name of the shell that has these results; beam elements unless given.
+    """
     system = case.system
     if not any(one.extremes for one in results):
         return
@@ -97,7 +116,11 @@ def combination_tables(results: Sequence[CombinationResult], case: Case) -> Iter
         if most:
             cells = [_marked(one, most, system) if one else None for one in values]
             columns.append(Column(heading, cells))
-    notes = [f"{_GOVERNS.strip()} governs.", beam_note(boom_with_play(case, build_boom(case)))]
+    notes = [f"{_GOVERNS.strip()} governs."]
+    if shell:
+        notes.append(f"By {shell}; one reduced shell for each geometry, with its axial forces.")
+    else:
+        notes.append(beam_note(boom_with_play(case, build_boom(case))))
     notes += [f"{one.name}: no rest is found." for one in results if not one.extremes]
     yield Table("Combinations at rest, the largest results", columns, notes, "combinations")
     if len(results) > 1:

@@ -14,6 +14,8 @@ import numpy as np
 
 from beam_model.lines import lines
 from beam_model.statics import Elements, static_state, static_theory
+from dynamics.failure import NumericsError
+from dynamics.gap_system import GapSystem
 from dynamics.line import Line
 from geometry.arrays import Array
 from geometry.axial import foot_thrust
@@ -86,7 +88,26 @@ class StaticBeam(NamedTuple):
         # Springs of walls follow the coordinates of the segments.
         basis = np.eye(own[0].rows["deflection"].shape[1], system.num_modes)
         along = with_cylinders(boom, system, [line.transform(basis) for line in own])
-        found = positions(system, instants(system, case.time.duration))
+        return cls.at_rest(boom, system, along, case.time.duration)
+
+    @classmethod
+    def at_rest(
+        cls, boom: Boom, system: GapSystem, along: Sequence[Line], duration: float
+    ) -> StaticBeam:
+        """Return the static states of a model at t = 0 and under extreme loads.
+
+        Args:
+            boom: the boom, without drives.
+            system: system of the model, whose ``load`` includes all constant loads.
+            along: lines along the segments, with the forces of cylinders.
+            duration: duration of the loads' histories in s.
+
+        Raises:
+            NumericsError: the boom has no rest at t = 0.
+        """
+        found = positions(system, instants(system, duration))
+        if not found:
+            raise NumericsError("the boom has no rest under the loads of t = 0")
         rests = [static_result(boom, system, along, *rest) for rest in found.items()]
         return cls(boom, along, np.array([*found.values()]), rests)
 

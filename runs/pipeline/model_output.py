@@ -96,7 +96,7 @@ class ShellOutput:
         if buckling is not None and buckling.shapes is not None:
             fields = fields.assign(buckling.shapes)
         shell = ShellStress.of(fields)
-        stresses = stress_near_places(shell, _places(boom), names).assign_attrs(model=name)
+        stresses = stress_near_places(shell, force_places(boom), names).assign_attrs(model=name)
         meshes = dict(zip(names, reduced.meshes, strict=True))
         return cls(fields, stresses, summarise(shell, stresses), meshes, buckling)
 
@@ -155,7 +155,7 @@ def frames(num_times: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
     return np.unique(np.linspace(0, num_times - 1, FRAMES).round().astype(np.intp))
 
 
-def _places(boom: Boom) -> list[float]:
+def force_places(boom: Boom) -> list[float]:
     """Return the x of all concentrated forces on a segment, in ascending order."""
     places = {x for number in range(len(boom.segments)) for x in boom.stations_of(number)}
     places |= {support.x for segment in boom.segments for support in segment.supports}

@@ -37,6 +37,11 @@ FORMULAS: Mapping[str, str] = {
         "√((σ/ρ)² + 3 (τ/χ)²) ≤ f_y(t)/γ; ρ and χ at √(α_ult/α_cr) of panel formulas "
         "(EN 1993-1-5, 10)"
     ),
+    "patch": "σ_v ≤ f_y/γ; mean von Mises stress of the shell over half a wall near a force",
+    "buckling": (
+        "σ_v ≤ ρ f_y/γ; α_cr is the lowest factor of the shell, ρ the lower of ρ and χ at "
+        "√(f_y/(σ_v α_cr)) (EN 1993-1-5, 10)"
+    ),
     "column": "N ≤ N_cr/γ, joints in contact; stresses and tip contain N by second order",
     "pad": "F/(length · width) ≤ allowable pressure/γ, for one pad of a pair",
     "cylinder": "F ≤ capacity/γ",
@@ -50,6 +55,8 @@ FORMULAS: Mapping[str, str] = {
 _REMEDIES: Mapping[str, str] = {
     "yield": "thicker walls there, a larger section or stronger steel",
     "plate": "a thicker, narrower or stiffened wall there",
+    "patch": "a collar or thicker walls there, longer pads, or pads nearer the webs",
+    "buckling": "a thicker, narrower or stiffened wall there, or a collar at the pads",
     "column": "larger sections, a smaller extension or less force along the boom",
     "pad": "longer or wider pads, or a longer overlap",
     "cylinder": "a larger cylinder, or a longer lever arm to the foot",
@@ -159,6 +166,9 @@ def _proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
         for one in rule(beam, table, case):
             if one.kind in table.proofs:
                 yield one._replace(combination=name)
+    for one in _of_shell(state, case):
+        if _OF_SHELLS[one.kind] in table.proofs:
+            yield one._replace(combination=name)
 
 
 def _of_walls(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
@@ -221,6 +231,45 @@ def winter(slenderness: float | Array, ratio: float | Array = 1.0) -> Array:
 def shear_reduction(slenderness: float | Array) -> Array:
     """Return the reduction χ of a wall in shear, 0.83/λ̄ ≤ 1 (EN 1993-1-5, table 5.1, η = 1)."""
     return np.asarray(0.83 / np.maximum(slenderness, 0.83))
+
+
+def _of_shell(state: CombinationState, case: Case) -> Iterator[Proof]:
+    """Yield the proofs by wall stresses and buckling factors of a shell."""
+    beam, factors = state.beam, state.combined.combination.resistance
+    assert beam is not None
+    segments = {segment.name: segment for segment in beam.boom.segments}
+    for wall in state.walls:
+        strength = segments[wall.segment].yield_strength
+        if strength is not None:
+            at = wall.segment, wall.segment, wall.x
+            yield Proof("patch", *at, wall.patch, strength / factors.material, "Pa")
+    curve = case.buckling.curve if case.buckling else ()
+    for one in state.buckling:
+        strength = segments[one.segment].yield_strength
+        walls = [
+            wall
+            for rest in beam.rests
+            for wall in nominal_wall_stresses(beam.boom.segments, rest)
+            if wall.segment.name == one.segment
+        ]
+        if strength is None or not one.factors or not walls:
+            continue
+        stress = max(
+            float(np.hypot(np.abs(wall.edges).max(axis=0), np.sqrt(3.0) * wall.shear).max())
+            for wall in walls
+        )
+        slenderness = float(np.sqrt(strength / (stress * one.factors[0])))
+        if curve:
+            reduction = float(np.interp(slenderness, *np.transpose(curve)))
+        else:
+            reduction = float(min(winter(slenderness), shear_reduction(slenderness)))
+        place = f"{one.segment} {one.walls[0]}"
+        resistance = reduction * strength / factors.stability
+        yield Proof("buckling", one.segment, place, one.x[0], stress, resistance, "Pa")
+
+
+# Proofs of shells, with the name in a combination that demands them.
+_OF_SHELLS = {"patch": "yield", "buckling": "plate"}
 
 
 def _of_boom(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:

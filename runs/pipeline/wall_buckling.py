@@ -75,17 +75,41 @@ def wall_buckling(
     Raises:
         NumericsError: the boom has no static state, or the modes of a segment cannot be computed.
     """
+    assert case.buckling is not None
+    joined = model.joined(boom).boom
+    state = _static_state(joined, case, built) if comm.rank == 0 else None
+    return buckled_shell(joined, model, built, state, case.buckling.modes, comm)
+
+
+def buckled_shell(
+    boom: Boom,
+    model: Shell,
+    built: Built,
+    state: StaticState | None,
+    count: int,
+    comm: MPI.Comm,
+) -> BuckledShell | None:
+    """Return the buckling of a shell's walls in a static state, on rank 0. Collective.
+
+    Args:
+        boom: boom with the contacts of the model.
+        model: a shell of the case.
+        built: this shell before time integration.
+        state: the static state, on rank 0.
+        count: number of modes of each segment.
+        comm: ranks that share the shell.
+
+    Raises:
+        NumericsError: as for :func:`wall_buckling`.
+    """
     from shell_model.buckling import buckle_segments
 
-    assert case.buckling is not None
     assert built.shell is not None
-    joined = model.joined(boom).boom
     meshes: Sequence[PlatedMesh | None] = built.shell.meshes or [None] * len(boom.segments)
-    state = comm.bcast(_static_state(joined, case, built) if comm.rank == 0 else None)
+    state = comm.bcast(state)
     if state is None:
         raise NumericsError("the boom has no static state in which its walls could buckle")
-    count = case.buckling.modes
-    found = buckle_segments(joined, meshes, state, model.options(), count, comm)
+    found = buckle_segments(boom, meshes, state, model.options(), count, comm)
     if comm.rank != 0:
         return None
     names = [segment.name for segment in boom.segments]

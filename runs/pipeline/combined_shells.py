@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Statics of all combinations of a case by a shell.
+
+Combinations with the same geometry share one reduced shell: it is reduced under unit loads of all
+of them, and each combination has its own loads and plays. The axial forces that soften it are those
+of the combination with the largest ones, which is on the safe side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import count
+
+import numpy as np
+
+from dynamics.excitation import InitialImpulse, ReleasedLoad, Step
+from dynamics.failure import NUMERICAL_ERRORS
+from geometry.boom import Boom
+from geometry.load import Load
+from runs.case.build import build_boom
+from runs.case.combinations import CombinedCase, combined_cases
+from runs.case.kinds.model import Built, Joined, Workshop
+from runs.case.kinds.shell import Shell
+from runs.case.schema import Case
+from runs.pipeline.combinations import CombinationState
+from runs.pipeline.largest_loads import StaticBeam
+from runs.pipeline.model_output import force_places
+from runs.pipeline.section_forces import with_cylinders
+from runs.pipeline.strength import wall_stresses
+from runs.pipeline.wall_buckling import buckled_shell
+
+
+def shell_states(case: Case, model: Shell, workshop: Workshop) -> list[CombinationState]:
+    """Return the static states of all combinations by a shell, on rank 0. Collective.
+
+    With a table ``buckling`` the segments' buckling factors are those of the state with the
+    farthest tip of each geometry.
+
+    Args:
+        case: a checked case.
+        model: a shell of the case.
+        workshop: the context of the shell.
+    """
+    combined = list(combined_cases(case))
+    booms = [_without_drives(model.joined(build_boom(one.case)).boom) for one in combined]
+    groups: dict[str, list[int]] = {}
+    for number, boom in enumerate(booms):
+        places = [segment.ends for segment in boom.segments]
+        groups.setdefault(repr((places, boom.cylinders)), []).append(number)
+    found: dict[int, CombinationState] = {}
+    for numbers in groups.values():
+        shared = _shared([booms[number] for number in numbers])
+        built = model.build(Joined(shared[0]), workshop)
+        states = [
+            _state(combined[number], boom, model, built)
+            for number, boom in zip(numbers, shared[1:], strict=True)
+            if workshop.comm.rank == 0
+        ]
+        if case.buckling is not None:
+            states = _buckled(case, shared, states, model, built, workshop)
+        found |= dict(zip(numbers, states, strict=False))
+    return [found[number] for number in sorted(found)]
+
+
+def _without_drives(boom: Boom) -> Boom:
+    return replace(boom, joints=tuple(replace(joint, drive=None) for joint in boom.joints))
+
+
+def _shared(booms: Sequence[Boom]) -> list[Boom]:
+    """Return a boom under unit loads of all booms, then each boom with these loads in this order.
+
+    The booms differ in loads, in axial forces and in nothing else.
+    """
+    from shell_model.standard import standard_boom
+
+    of_booms = [_by_kind(boom) for boom in booms]
+    kinds = {kind: load for loads in of_booms for kind, load in loads.items()}
+    unit = [replace(load, magnitude=1.0, history=Step()) for load in kinds.values()]
+
+    def pressed(boom: Boom) -> float:
+        ends = [force for one in boom.segments for piece in one.compression.ends for force in piece]
+        return max(ends, default=0.0)
+
+    most = max(booms, key=pressed)
+    # A segment without load in one boom may have one in another.
+    of_segments = (boom.segments for boom in booms)
+    own = [max(parts, key=lambda one: abs(one.load)) for parts in zip(*of_segments, strict=True)]
+    segments = [
+        replace(segment, load=loaded.load, lateral=loaded.lateral)
+        for segment, loaded in zip(most.segments, own, strict=True)
+    ]
+    whole = standard_boom(replace(most, segments=tuple(segments), loads=tuple(unit)))
+    return [
+        whole,
+        *(
+            replace(
+                boom,
+                loads=tuple(
+                    loads.get(kind, replace(load, magnitude=0.0, history=Step()))
+                    for kind, load in kinds.items()
+                ),
+            )
+            for boom, loads in zip(booms, of_booms, strict=True)
+        ),
+    ]
+
+
+def _by_kind(boom: Boom) -> dict[str, Load]:
+    """Return the loads of a boom at rest by place and direction; equal ones have numbers."""
+    found: dict[str, Load] = {}
+    for load in boom.loads:
+        if isinstance(load.history, ReleasedLoad | InitialImpulse):
+            continue
+        kind = repr(replace(load, magnitude=1.0, history=None))
+        found[next(key for k in count() if (key := f"{kind}#{k}") not in found)] = load
+    return found
+
+
+def _state(combined: CombinedCase, boom: Boom, model: Shell, built: Built) -> CombinationState:
+    """Return the static states of a combination, on rank 0."""
+    from shell_model.standard import with_plays_and_loads
+    from shell_model.stress.history import stress_near_places
+    from shell_model.stress.stresses import ShellStress
+
+    assert built.shell is not None
+    own = with_plays_and_loads(built.shell, boom)
+    system = own.system.gather_loads()
+    along = with_cylinders(boom, system, model.lines(boom, replace(built, shell=own)))
+    try:
+        with np.errstate(all="ignore"):
+            beam = StaticBeam.at_rest(boom, system, along, combined.case.time.duration)
+    except NUMERICAL_ERRORS:
+        return CombinationState(combined, None)
+    assert own.fields is not None
+    fields = own.fields.assign(
+        state=(("time", "mode"), beam.positions.astype(np.float32)),
+        time=("time", [rest.time for rest in beam.rests]),
+    )
+    names = [segment.name for segment in boom.segments]
+    stresses = stress_near_places(ShellStress.of(fields), force_places(boom), names)
+    return CombinationState(combined, beam, wall_stresses(boom, stresses))
+
+
+def _buckled(
+    case: Case,
+    shared: Sequence[Boom],
+    states: Sequence[CombinationState],
+    model: Shell,
+    built: Built,
+    workshop: Workshop,
+) -> list[CombinationState]:
+    """Return the states with the buckling of the one with the farthest tip. Collective."""
+    from shell_model.buckling import StaticState
+    from shell_model.standard import with_plays_and_loads
+
+    assert case.buckling is not None
+    assert built.shell is not None
+    states, state, farthest = list(states), None, 0
+    if workshop.comm.rank == 0:
+        tips = [
+            max((abs(rest.tip) for rest in one.beam.rests), default=0.0) if one.beam else -1.0
+            for one in states
+        ]
+        farthest = int(np.argmax(tips))
+        if (beam := states[farthest].beam) is not None and built.shell.fields is not None:
+            own = with_plays_and_loads(built.shell, shared[1 + farthest])
+            rest = int(np.argmax([abs(one.tip) for one in beam.rests]))
+            extensions = dict.fromkeys(range(len(shared[0].joints)), 0.0)
+            state = StaticState.of(built.shell.fields, own.system, beam.positions[rest], extensions)
+    buckled = buckled_shell(shared[0], model, built, state, case.buckling.modes, workshop.comm)
+    if buckled is not None:
+        states[farthest] = states[farthest]._replace(buckling=buckled.segments)
+    return states

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Combinations by a shell: one reduction for each geometry, patch stresses and buckling."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from mpi4py import MPI
+
+from runs import cli
+from runs.case.build import build_boom
+from runs.case.kinds.model import Workshop
+from runs.case.kinds.shell import Shell
+from runs.pipeline.combinations import CombinationState
+from runs.pipeline.combined_shells import shell_states
+from runs.pipeline.largest_loads import StaticBeam
+from runs.pipeline.proofs import prove
+from runs.pipeline.section_forces import with_cylinders
+from tests.runs.case_texts import read_case
+from tests.runs.test_combinations import CASES, FACTORS, LIFT
+
+SHELL = """
+model = [
+  { name = "beam", kind = "finite-element" },
+  { name = "shell", kind = "shell", mesh_size = 0.3, contact_tolerance = "any" },
+]
+buckling = { modes = 1 }
+"""
+# Two levels of load at 45 degrees and, drawn in, another geometry.
+TEXT = (
+    SHELL
+    + LIFT.replace("9e11", "2.1e11, yield_strength = 3.55e8")
+    .replace('model = [{ name = "beam", kind = "finite-element", theory = "timoshenko" }]', "")
+    .replace('bears = "corner"', "allowable_pressure = 2e7")
+    + CASES
+    + FACTORS
+)
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def states(tmp_path_factory: pytest.TempPathFactory) -> list[CombinationState]:
+    case = read_case(tmp_path_factory.mktemp("shell"), TEXT)
+    shell = case.models[1]
+    assert isinstance(shell, Shell)
+    return shell_states(case, shell, Workshop(MPI.COMM_WORLD))
+
+
+def test_one_shell_serves_combinations_of_a_geometry(states: list[CombinationState]) -> None:
+    """Reference: other code path, a shell reduced for a combination alone."""
+    assert [one.combined.name for one in states] == ["A, raised", "A, level", "B, level"]
+    for state in (states[0], states[2]):
+        case = state.combined.case
+        shell, boom = case.models[1], build_boom(case)
+        joined = shell.joined(boom)
+        built = shell.build(joined, Workshop(MPI.COMM_WORLD))
+        system = built.system.gather_loads()
+        lines = with_cylinders(joined.boom, system, shell.lines(joined.boom, built))
+        alone = StaticBeam.at_rest(joined.boom, system, lines, case.time.duration)
+        expected = {one.name: one.largest for one in alone.extremes(case.system)}
+        for one in state.result.extremes:
+            if one.name in expected:
+                # B has smaller axial forces than the shared shell.
+                assert one.largest == pytest.approx(expected[one.name], rel=2e-3)
+
+
+def test_proofs_by_patches_and_factors(states: list[CombinationState], tmp_path: Path) -> None:
+    """Reference: by hand; a factor multiplies loads, and so the stress, up to buckling."""
+    case = read_case(tmp_path, TEXT)
+    proofs = {(one.kind, one.part): one for one in prove(case, states).proofs}
+    patches = {wall.segment: wall.patch for wall in states[0].walls}
+    patch = proofs["patch", "base"]
+    assert patch.demand == max(
+        next(wall.patch for wall in state.walls if wall.segment == "base") for state in states
+    )
+    assert patch.demand >= patches["base"]
+    # Of both geometries, the state with the farthest tip has factors.
+    buckled = [state for state in states if state.buckling]
+    assert [one.combined.name for one in buckled] == ["A, raised", "A, level"]
+    assert ("buckling", "base") in proofs
+    one = proofs["buckling", "base"]
+    factor = next(
+        found.factors[0]
+        for state in buckled
+        if state.combined.name == one.combination
+        for found in state.buckling
+        if found.segment == "base"
+    )
+    slenderness = (3.55e8 / (one.demand * factor)) ** 0.5
+    reduction = min(1.0, (slenderness - 0.22) / slenderness**2) if slenderness > 0.673 else 1.0
+    reduction = min(reduction, 0.83 / max(slenderness, 0.83))
+    assert one.resistance == pytest.approx(reduction * 3.55e8, rel=1e-9)
+
+
+def test_the_command_takes_a_shell(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    path = tmp_path / "lift.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["prove", str(path), "--shell", "shell"])
+    shown = capsys.readouterr().out
+    assert ended.value.code in (0, 1)
+    assert "By shell; one reduced shell for each geometry" in shown
+    assert max(map(len, shown.splitlines())) <= 80
+    with pytest.raises(SystemExit) as refused:
+        cli.main(["prove", str(path), "--shell", "beam"])
+    assert refused.value.code == 2
+    assert "--shell: 'beam' is no shell" in capsys.readouterr().err
