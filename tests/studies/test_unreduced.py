@@ -141,8 +141,8 @@ def test_an_impact_is_that_of_the_reduced_shell(exponent: float, stiffness: floa
     boom = Boom(flat_boom().segments[:1], (), stops=(stop,))
     krylov = KrylovOptions((5.0, 50.0, 300.0, 1500.0, 8000.0), 4)
     reduced = reduce_boom(boom, ShellOptions(0.5, krylov=krylov), MPI.COMM_SELF)
-    reference = FixedStep(2.0e-6)(Motion(reduced.system, 0.15))
-    motion = integrate_directly(_full(boom), 0.15, 5.0e-5)
+    reference = FixedStep(4.0e-6)(Motion(reduced.system, 0.12))
+    motion = integrate_directly(_full(boom), 0.12, 5.0e-5)
     tip, exact = motion.observed["tip"], reference.data["tip"].values
     assert reference.first_contact < 0.1
     assert np.abs(tip - exact).max() < 2.0e-3 * np.ptp(exact)
@@ -181,7 +181,7 @@ def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
     """
     boom = flat_boom(friction=0.2)
     system = reduce_boom(touching(boom, _SOFT), ShellOptions(0.5), MPI.COMM_SELF).system
-    reference = FixedStep(5.0e-6)(Motion(system, 0.4))
+    reference = FixedStep(1.0e-5)(Motion(system, 0.4))
     full = _full(boom)
     motion = integrate_directly(full, 0.4, 2.5e-4)
     exact = reference.data["tip"].values
