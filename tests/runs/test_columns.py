@@ -103,94 +103,63 @@ def test_a_contact_s_file_may_be_in_millimetres_and_kilonewtons() -> None:
     assert joint.force_columns is None
 
 
+PAIRS = "give a CSV file of two columns, time in s and factor; a heading may say other units"
+OF_THREE = "t;F;v\n0;1;2\n1;1;2\n"
+
+
 @pytest.mark.parametrize(
-    ("csv", "keys", "line"),
+    ("csv", "columns", "line"),
     [
-        (
-            "t;F;v\n0;1;2\n1;1;2\n",
-            "magnitude = 1.0",
-            "file: 'gust.csv' has 3 columns in line 1; name two of them",
-        ),
-        (
-            "t;F;v\n0;1;2\n1;1;2\n",
-            'magnitude = 1.0\ncolumns = ["t", "G"]',
-            "file: 'gust.csv' has 0 columns 'G' in line 1; name columns that it has once",
-        ),
-        (
-            "t;F;F\n0;1;2\n1;1;2\n",
-            'magnitude = 1.0\ncolumns = ["t", "F"]',
-            "file: 'gust.csv' has 2 columns 'F' in line 1; name columns that it has once",
-        ),
-        (
-            "0;1\n1;1\n",
-            'magnitude = 1.0\ncolumns = ["t", "F"]',
-            "file: 'gust.csv' has no heading; leave the names of columns out",
-        ),
-        (
-            "t (s);F (V)\n0;1\n1;1\n",
-            "",
-            "file: 'gust.csv' has a unit in line 1, column 2 that is no unit that is known; "
-            "give N/m or another unit of the kind",
-        ),
-        (
-            "t (s);F (kN)\n0;1\n1;1\n",
-            "",
-            "file: 'gust.csv' has a unit in line 1, column 2 that is another quantity; "
-            "give N/m or another unit of the kind",
-        ),
-        (
-            "t (m);F (kN/m)\n0;1\n1;1\n",
-            "",
-            "file: 'gust.csv' has a unit in line 1, column 1 that is another quantity; "
-            "give s or another unit of the kind",
-        ),
-        (
-            "t (s);F\n0;1\n1;1\n",
-            "",
-            "magnitude: missing; it is the load in N at x, or in N/m along the segment, or the "
-            "moment in N m; a factor, 1 unless given, if the heading of its file has such a unit",
-        ),
-        (
-            "t (s);F\n0;1,5\n1;1.234,5\n",
-            "magnitude = 1.0",
-            "file: 'gust.csv' has no finite number in line 3, column 2; give a CSV file of two "
-            "columns, time in s and factor; a heading may say other units",
-        ),
-        (
-            "t (s);F\n0;1,5\n1\n",
-            "magnitude = 1.0",
-            "file: 'gust.csv' has 1 column in line 3; give a CSV file of two "
-            "columns, time in s and factor; a heading may say other units",
-        ),
-        (
-            "root:*:1:0:99\nsecret:$y$j9T$Xa:1:0:99\n",
-            "magnitude = 1.0",
-            "file: 'gust.csv' has 1 column in line 1; give a CSV file of two columns, time in s "
-            "and factor; a heading may say other units",
-        ),
-        (
-            "0,5,1,2\n0,6,1,3\n",
-            "magnitude = 1.0",
-            "file: 'gust.csv' has 4 columns in line 1; give a CSV file of two "
-            "columns, time in s and factor; a heading may say other units",
-        ),
-        (
-            "t,F\n",
-            "magnitude = 1.0",
-            "file: 'gust.csv' has fewer than two lines of numbers; give a CSV file of two "
-            "columns, time in s and factor; a heading may say other units",
-        ),
-        (
-            "0;1\n1;1\n",
-            'magnitude = 1.0\ncolumns = ["t"]',
-            "columns: must be a list of two names, got ['t']",
-        ),
+        (OF_THREE, "", "'gust.csv' has 3 columns in line 1; name two of them"),
+        (OF_THREE, '["t", "G"]',
+         "'gust.csv' has 0 columns 'G' in line 1; name columns that it has once"),
+        (OF_THREE.replace("v", "F"), '["t", "F"]',
+         "'gust.csv' has 2 columns 'F' in line 1; name columns that it has once"),
+        ("0;1\n1;1\n", '["t", "F"]',
+         "'gust.csv' has no heading; leave the names of columns out"),
+        ("t (s);F\n0;1,5\n1;1.234,5\n", "",
+         f"'gust.csv' has no finite number in line 3, column 2; {PAIRS}"),
+        ("t (s);F\n0;1,5\n1\n", "", f"'gust.csv' has 1 column in line 3; {PAIRS}"),
+        ("root:*:1:0:99\nsecret:$y$j9T$Xa:1:0:99\n", "",
+         f"'gust.csv' has 1 column in line 1; {PAIRS}"),
+        ("0,5,1,2\n0,6,1,3\n", "", f"'gust.csv' has 4 columns in line 1; {PAIRS}"),
+        ("t,F\n", "", f"'gust.csv' has fewer than two lines of numbers; {PAIRS}"),
+    ],
+)  # fmt: skip
+def test_what_is_no_pair_of_columns_is_refused(csv: str, columns: str, line: str) -> None:
+    keys = f"magnitude = 1.0\ncolumns = {columns}" if columns else "magnitude = 1.0"
+    assert complaint(csv, keys) == f"file: {line}"
+
+
+@pytest.mark.parametrize(
+    ("heading", "column", "unit", "wrong"),
+    [
+        ("t (s);F (V)", 2, "N/m", "no unit that is known"),
+        ("t (s);F (kN)", 2, "N/m", "another quantity"),
+        ("t (m);F (kN/m)", 1, "s", "another quantity"),
     ],
 )
-def test_what_is_no_pair_of_columns_is_refused(csv: str, keys: str, line: str) -> None:
+def test_other_units_are_refused(heading: str, column: int, unit: str, wrong: str) -> None:
+    assert complaint(f"{heading}\n0;1\n1;1\n", "") == (
+        f"file: 'gust.csv' has a unit in line 1, column {column} that is {wrong}; give {unit} or "
+        "another unit of the kind"
+    )
+
+
+def test_factors_need_a_magnitude_and_columns_are_two() -> None:
+    assert complaint("t (s);F\n0;1\n1;1\n", "") == (
+        "magnitude: missing; it is the load in N at x, or in N/m along the segment, or the "
+        "moment in N m; a factor, 1 unless given, if the heading of its file has such a unit"
+    )
+    one = 'magnitude = 1.0\ncolumns = ["t"]'
+    assert complaint("0;1\n1;1\n", one) == "columns: must be a list of two names, got ['t']"
+
+
+def complaint(csv: str, keys: str) -> str:
+    """Return the message about the load with which a case is refused."""
     with pytest.raises(BadInput) as refused:
         case_of(csv, keys)
-    assert str(refused.value) == f"case.toml: load[1].{line}"
+    return str(refused.value).removeprefix("case.toml: load[1].")
 
 
 def test_columns_of_no_file_are_refused() -> None:
