@@ -78,7 +78,7 @@ class PointwiseDifferences:
             within this time.
     """
 
-    decides: ClassVar[str] = (
+    scope: ClassVar[str] = (
         "Tells how far the models are apart from one moment to the next up to the common horizon; "
         "it cannot tell anything about later times."
     )

@@ -18,7 +18,7 @@ from runs.case.schema import Case
 from runs.client import judge
 from runs.folder.cache import Cache
 from runs.folder.files import whole_folder
-from runs.pipeline.context import RunContext, silent
+from runs.pipeline.context import RunContext, ignore_progress
 from runs.pipeline.results import Results, prepare
 from runs.pipeline.run import run_case as run_models
 from runs.process import workers
@@ -215,7 +215,7 @@ def sweep(
         prepare_sweep(path, _CASE)
 
         def run_plan(plan: Plan) -> list[Outcome]:
-            return run_points(plan, path, pool, silent, Cache.of_user())
+            return run_points(plan, path, pool, ignore_progress, Cache.of_user())
 
         plan, outcomes = search.run_until(plan, bound, plan_of, run_plan)
         return output.write(plan, outcomes, path) if folder else output.gather(plan, outcomes)

@@ -268,7 +268,7 @@ def _friction(joint: Joint) -> str:
 def _models(case: Case, boom: Boom) -> Table:
     rows = []
     for model in case.models:
-        laws = {str(joint.contact) for joint in model.joined(boom).boom.joints}
+        laws = {str(joint.contact) for joint in model.model_boom(boom).boom.joints}
         contact = "bonded" if model.bonded else "; ".join(sorted(laws))
         rows.append((model.name, model.kind, model.describe(), contact))
     headings = ("model", "kind", "description", "contact (k in N/mⁿ)")
@@ -345,7 +345,7 @@ def _extreme_axial_force(
 
 
 def _critical_factor(declared: CheckedCase, model: Model) -> float | None:
-    return model.coarsened(declared.boom).critical_factor(declared.joined(model))
+    return model.coarsen(declared.boom).critical_factor(declared.model_boom(model))
 
 
 def _buckling(declared: CheckedCase) -> Table:
@@ -362,14 +362,14 @@ def _buckling(declared: CheckedCase) -> Table:
 
 def _damping_ratios(preview: Preview) -> Table:
     """Return the total damping ratios of the first modes of each model, with closed contacts."""
-    case, boom = preview.declared.case, preview.declared.boom
+    case, boom = preview.checked.case, preview.checked.boom
     given = [*case.damping.model_dump().values(), *(s.viscous_damping for s in boom.segments)]
     given += [joint.dashpot for joint in boom.joints]
     given += [cylinder.dashpot for cylinder in boom.cylinders]
     given += [support.dashpot for segment in boom.segments for support in segment.supports]
     rows: list[tuple[str, ...]] = []
     for model in case.models if any(given) else ():
-        beam = model.stand_in(boom).beam if model.needs_shell else model.coarsened(boom)
+        beam = model.surrogate(boom).beam if model.needs_shell else model.coarsen(boom)
         # Some booms have fewer modes.
         cells = zip_longest(range(SHOWN_MODES), _ratios(preview, model, beam), fillvalue="")
         rows.append((_beam_name(model), *(cell for _, cell in [*cells][:SHOWN_MODES])))
@@ -382,7 +382,7 @@ def _ratios(preview: Preview, model: Model, beam: ModelTable) -> list[str]:
         with np.errstate(all="ignore"):
             motion = preview.motion(model, beam)
             rest = constant_load_equilibrium(
-                motion.system, preview.declared.case.start.at_rest, motion.position
+                motion.system, preview.checked.case.start.at_rest, motion.position
             )
             found = closed_contact_damping(motion.system, rest)
     except NUMERICAL_ERRORS:

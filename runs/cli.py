@@ -368,12 +368,12 @@ def prove(
         raise BadInput(case, "--shell", f"{shell!r} is no shell; leave it out for beam elements")
     comm = ranks.enter_mpi(checked, case)
     assert comm is not None
-    from runs.case.kinds.model import Workshop
+    from runs.case.kinds.model import BuildContext
     from runs.folder.cache import Cache
 
     with ranks.all_end_together(comm), progress.display([shell]) as report_progress:
         stages = partial(report_progress, shell)
-        workshop = Workshop(comm, stages, None if no_cache else Cache.of_user())
+        workshop = BuildContext(comm, stages, None if no_cache else Cache.of_user())
         return print_proofs(checked, case, Terminal(), (model, workshop))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from rich.console import Console
 
-from runs.case.kinds.model import Workshop
+from runs.case.kinds.model import BuildContext
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
 from runs.pipeline.combinations import combination_states, combination_tables
@@ -15,7 +15,7 @@ from runs.process.terminal import message, say, shorten
 
 
 def print_proofs(
-    case: Case, file: str, console: Console, shell: tuple[Shell, Workshop] | None = None
+    case: Case, file: str, console: Console, shell: tuple[Shell, BuildContext] | None = None
 ) -> int:
     """Print the proofs of a checked case; return 1 if one fails, or else 0.
 

@@ -82,7 +82,7 @@ def station_compliances(contact: Contact, part: float) -> Array:
     model = scale_mesh(shell_of(contact.case), part)
     options = model.options()
     shells = assemble_segments(boom, options, MPI.COMM_SELF)
-    seen = model.joined(boom).boom
+    seen = model.model_boom(boom).boom
     touching = ShellContacts.of(seen, shells, options.contact_line, options.surface)
     rows = touching.rows({}).contacts
     stations = [row.station for row in rows]

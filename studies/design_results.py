@@ -20,7 +20,7 @@ from runs.case import reading as case_file
 from runs.pipeline.context import RunContext
 from runs.pipeline.design_results import DesignResults, ModelDesignResults
 from runs.pipeline.modes import modes
-from runs.pipeline.motion_results import Motions, evaluate_motion
+from runs.pipeline.motion_results import MotionAndStatics, evaluate_motion
 from runs.pipeline.run import run_case
 from runs.pipeline.static_results import Diagram, positions, static_result
 from studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
@@ -148,6 +148,6 @@ def suddenly_loaded_results(boom: Boom, segments: list[SegmentModel]) -> ModelDe
     rest = positions(system)[0.0]
     static = [static_result(boom, system, along, 0.0, rest)]
     motion = simulate(system, duration=0.5)
-    motions = Motions(boom, along, motion, rest[None], static, jumps=False)
+    motions = MotionAndStatics(boom, along, motion, rest[None], static, jumps=False)
     moved, _ = evaluate_motion(motions)
     return ModelDesignResults(static=static, modes=modes(boom, system, along, rest), motion=moved)

@@ -87,7 +87,7 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, progress: Progress
     case = set_duration(case, sizes.duration)
     boom, output_step = build_boom(case), case.time.output_step
     model = shell_of(case).model_copy(update={"mesh_size": sizes.mesh, "contact_tolerance": "any"})
-    seen = model.joined(boom).boom
+    seen = model.model_boom(boom).boom
     krylov = KrylovOptions(sizes.shifts, sizes.moments)
     options = ShellOptions(sizes.mesh, contact_line=model.contact_line)
     finer = replace(options, krylov=krylov)

@@ -25,7 +25,7 @@ from dynamics.predictability.ensemble import perturbations
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.kinds.kantorovich import Kantorovich
-from runs.case.kinds.model import of_kind
+from runs.case.kinds.model import select_kind
 from runs.case.schema import Case
 from runs.folder.cache import Cache
 from runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER, judge
@@ -102,7 +102,7 @@ class Interpretation:
         models = tuple(
             model.model_copy(
                 update={"contact": None}
-                | ({"base": self.base} if of_kind(Kantorovich, [model]) else {})
+                | ({"base": self.base} if select_kind(Kantorovich, [model]) else {})
             )
             for model in paper.models
             if model.name in MODELS

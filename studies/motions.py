@@ -24,7 +24,7 @@ from geometry.boom import Boom
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.kinds.model import Built, Workshop, of_kind
+from runs.case.kinds.model import BuildContext, BuiltModel, select_kind
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case, Model
 from runs.folder.cache import Cache
@@ -69,7 +69,7 @@ def model_of(case: Case, name: str) -> Model:
 
 def shell_of(case: Case) -> Shell:
     """Return the shell by the name that the cases give it."""
-    (shell,) = of_kind(Shell, [model_of(case, "shell")])
+    (shell,) = select_kind(Shell, [model_of(case, "shell")])
     return shell
 
 
@@ -77,16 +77,16 @@ def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
     """Return any model of a case as a gap system, with shells on this process alone."""
     from mpi4py import MPI
 
-    return build(case, boom, model, Workshop(MPI.COMM_SELF)).system
+    return build(case, boom, model, BuildContext(MPI.COMM_SELF)).system
 
 
-def build_all(case: Case, models: Mapping[str, Model]) -> dict[str, Built]:
+def build_all(case: Case, models: Mapping[str, Model]) -> dict[str, BuiltModel]:
     """Return several models of a case, with each shell reduced once."""
     from mpi4py import MPI
 
     boom = build_boom(case)
     with TemporaryDirectory(prefix="protractile-") as scratch:
-        tools = Workshop(MPI.COMM_SELF, cache=Cache(Path(scratch)))
+        tools = BuildContext(MPI.COMM_SELF, cache=Cache(Path(scratch)))
         return {name: build(case, boom, model, tools) for name, model in models.items()}
 
 

@@ -165,7 +165,8 @@ class Rule:
         """Create the rule from the boom's beams without play, and statics."""
         boom = build_boom(case)
         tied = [
-            model_of(case, name).without_play(boom) for name in ("beam-fe-rotary", "timoshenko")
+            model_of(case, name).system_without_play(boom)
+            for name in ("beam-fe-rotary", "timoshenko")
         ]
         tips = [static_tip(system) for system, _ in filter(None, tied)]
         inner = boom.segments[1]

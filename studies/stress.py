@@ -199,7 +199,7 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
         progress(f"mesh of {size:g} m")
         pressed.append(InnerSegmentState.on_mesh(boom, size))
     progress(f"mesh of {sizes.default:g} m, reduced")
-    seen = model_of(case, "shell").joined(boom).boom
+    seen = model_of(case, "shell").model_boom(boom).boom
     reduced = InnerSegmentState.reduced(seen, sizes.default)
     near = stresses(pressed, sizes)
     title = "Von Mises stress where the inner segment is pressed"

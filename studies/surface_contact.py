@@ -166,7 +166,7 @@ def _proofs(case: Case, system: GapSystem) -> Iterator[Proof]:
     start, end = boom.overlap(joint)
     clearance = system.laws[0].terms[0].onset
     whole = _upper_stiffness(system)
-    upper, _ = model_of(case, "shell").joined(boom).boom.joints[0].contact.terms
+    upper, _ = model_of(case, "shell").model_boom(boom).boom.joints[0].contact.terms
     n, k = upper.exponent, upper.stiffness * len(joint.stations)
 
     def forces(tail: float, slope: float) -> Array:

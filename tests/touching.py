@@ -30,4 +30,4 @@ def touching(boom: Boom, laws: Laws, lateral_laws: Laws = ()) -> Boom:
 
 def contact_laws(case: Case, model: Model, direction: Direction = "z") -> list[Gap]:
     """Return the law of each joint of a case in a model."""
-    return [joint.law(direction) for joint in model.joined(build_boom(case)).boom.joints]
+    return [joint.law(direction) for joint in model.model_boom(build_boom(case)).boom.joints]

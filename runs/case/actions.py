@@ -20,7 +20,7 @@ from geometry.fields import Distance, at
 from geometry.joint import BareStop
 from geometry.load import Load, Moment, PartialLoad, Turn
 from geometry.typography import choices
-from runs.case.history import history_of
+from runs.case.history import build_history
 from runs.case.schema import (
     AxialTable,
     Case,
@@ -35,13 +35,13 @@ STANDARD_GRAVITY = 9.80665
 
 
 def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
-    """Return the weights, the loads from t = 0 on, the loads released at t = 0, and the impulses.
+    """Return all loads across the boom: weights, applied and released loads, and impulses.
 
-    :func:`dynamics.motion.begin` turns released loads and impulses into the state at t = 0.
+    Released loads and impulses act through the state at t = 0.
 
     Raises:
         BoomError: a segment is unknown, a history is invalid, or a payload has its own gravity
-            beside the table ``gravity``.
+            although the table ``gravity`` is given.
     """
     if case.gravity is not None and case.payload is not None and case.payload.gravity is not None:
         raise BoomError(
@@ -57,17 +57,19 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
     if case.gravity is not None:
         given += _inertia_loads(-case.gravity.across, "z", Step(), segments)
     for number, base in enumerate(case.base, start=1):
-        history = history_of(f"base[{number}]", base)
+        history = build_history(f"base[{number}]", base)
         given += _inertia_loads(-base.acceleration, base.direction, history, segments)
     for name, velocity in case.start.velocity.items():
-        given += _initial_momentum(index_of("start.velocity", name, segments), velocity, segments)
+        given += _initial_momentum(
+            segment_index("start.velocity", name, segments), velocity, segments
+        )
     return tuple(given)
 
 
 def _initial_momentum(
     index: int, velocity: VelocityTable, segments: Sequence[Segment]
 ) -> list[Load]:
-    """Return the momentum of a segment that moves as a rigid body."""
+    """Return the impulses that give a segment its rigid-body velocity at t = 0."""
     segment = segments[index]
     x0 = segment.start if velocity.x is None else at(velocity.x, segment.start, segment.end)
     planes: tuple[tuple[Direction, float, float], ...] = (
@@ -118,7 +120,7 @@ def with_weight(
     acceleration: float = STANDARD_GRAVITY,
     thrusts: Sequence[Thrust] = (),
 ) -> Boom:
-    """Return the boom with the weight of all masses, across it and along it, from t = 0 on.
+    """Return the boom with the weight of all masses, across and along the boom, from t = 0 on.
 
     >>> upright = pt.with_weight(boom, angle=90.0, acceleration=10.0)
     >>> foot = upright.segments[0].compression.ends[0][0]
@@ -129,7 +131,7 @@ def with_weight(
         boom: the boom without weight.
         angle: luffing angle in degrees, positive where the tip is up.
         acceleration: acceleration of gravity in m/s².
-        thrusts: other axial forces, such as a hoist rope's.
+        thrusts: other axial forces, such as that of a hoist rope.
     """
     gravity = GravityTable(acceleration=float(acceleration), angle=float(angle))
     segments = with_compression(boom.segments, boom.joints, thrusts, gravity.along)
@@ -141,7 +143,7 @@ def thrusts(case: Case, segments: Sequence[Segment]) -> tuple[Thrust, ...]:
     """Return the axial forces on the boom except weights.
 
     Raises:
-        BoomError: a segment is unknown, a place is outside its segment, a rope has no payload, or a
+        BoomError: a segment is unknown, a point is outside its segment, a rope has no payload, or a
             force is given twice or not at all.
     """
     return tuple(
@@ -159,7 +161,12 @@ def _thrust(where: str, table: AxialTable, case: Case, segments: Sequence[Segmen
 
 
 def axial_force(where: str, table: AxialTable, case: Case) -> float:
-    """Return the compressive force in N of a table of a case; ``where`` is its key.
+    """Return the compressive force in N of a table ``axial`` of a case.
+
+    Args:
+        where: key of the table, for messages.
+        table: data of the force.
+        case: case of the table.
 
     Raises:
         BoomError: a rope has no payload, or a force is given twice or not at all.
@@ -223,14 +230,14 @@ def stops(case: Case) -> tuple[Stop, ...]:
             contact=PowerContact(
                 table.stiffness, table.exponent, stiffness_below=table.stiffness_below
             ),
-            **values(table, BareStop),
+            **field_values(table, BareStop),
         )
         for table in case.stops
     )
 
 
 def series_notes(case: Case) -> list[str]:
-    """Return a line for each tabulated history that is shorter or longer than the run."""
+    """Return a note on each tabulated history that is shorter or longer than the run."""
     duration = case.time.duration
     tabled = [(f"load[{i}]", load.table) for i, load in enumerate(case.loads, start=1)]
     tabled += [(f"base[{i}]", base.table) for i, base in enumerate(case.base, start=1)]
@@ -251,12 +258,12 @@ def series_notes(case: Case) -> list[str]:
     return notes
 
 
-def values(table: Any, part: type) -> dict[str, Any]:
-    """Return the fields of a part that a table of the case has, with their values."""
+def field_values(table: Any, part: type) -> dict[str, Any]:
+    """Return the values of a table of the case for the fields of a dataclass."""
     return {field.name: getattr(table, field.name) for field in fields(part)}
 
 
-def index_of(where: str, name: str, segments: Sequence[Segment | SegmentTable]) -> int:
+def segment_index(where: str, name: str, segments: Sequence[Segment | SegmentTable]) -> int:
     """Return the index of the segment with a name.
 
     Raises:
@@ -269,7 +276,7 @@ def index_of(where: str, name: str, segments: Sequence[Segment | SegmentTable]) 
 
 
 def _load_history(where: str, table: LoadTable) -> History | ReleasedLoad:
-    history = history_of(where, table)
+    history = build_history(where, table)
     if table.released and not isinstance(history, Step):
         raise BoomError(
             f"{where}.released",

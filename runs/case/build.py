@@ -26,7 +26,7 @@ from geometry.joint import BareJoint
 from geometry.section import Section, SectionError, infer_inner_section, infer_outer_section
 from geometry.taper import check_alike, half_way, mean_area
 from runs.case import actions
-from runs.case.actions import values
+from runs.case.actions import field_values
 from runs.case.contact import JointTable
 from runs.case.elastic_drive import check_elastic_drives
 from runs.case.hoist import check_hoist, hoist_thrust
@@ -34,8 +34,8 @@ from runs.case.schema import Case
 from runs.case.segment import SegmentTable
 from runs.case.turning import check_turning, frame_motion, turning_loads
 
-# Quantities in the trajectories of every boom.
-_TAKEN = {
+# Names of outputs that every boom has.
+_OUTPUT_NAMES = {
     *STATION_VARIABLES,
     *DRIVEN_ENERGIES,
     "time",
@@ -45,20 +45,20 @@ _TAKEN = {
     "model",
 }
 
-# Relative tolerance between the given beam properties and those of the plates. Data sheets round
-# them.
-SAME_SECTION = 0.01
+# Permitted relative difference of given beam properties from those of the plates: data sheets give
+# rounded numbers.
+SECTION_TOLERANCE = 0.01
 
 
 def build_boom(case: Case) -> Boom:
-    """Return the boom of a case, with inferred sections where the case gives none.
+    """Return the boom of a case. Sections that the case does not give are inferred.
 
     Raises:
         BoomError: the boom is invalid.
     """
     check_names("segment", [segment.name for segment in case.segments])
-    _check_flat(case)
-    _check_joined(case)
+    _check_planar(case)
+    _check_joint_segments(case)
     _check_observations(case)
     ends = _spans(case.segments, case.joints)
     joints = tuple(_joint(case, number, ends) for number in range(len(case.joints)))
@@ -71,7 +71,7 @@ def build_boom(case: Case) -> Boom:
         case, len(segments) - 1, segments[-1].end
     )
     segments = with_compression(segments, joints, thrusts, along)
-    check_turning(case, _in_space(case))
+    check_turning(case, _is_spatial(case))
     frame = frame_motion(case, segments)
     boom = Boom(
         segments,
@@ -86,20 +86,20 @@ def build_boom(case: Case) -> Boom:
     )
     check_contacts_at_rest(boom)
     check_elastic_drives(case, boom)
-    check_hoist(case, _in_space(case))
+    check_hoist(case, _is_spatial(case))
     return boom
 
 
-def check_varied(case: Case, boom: Boom) -> None:
-    """Check that the case has the data that its ensemble varies.
+def check_ensemble_data(case: Case, boom: Boom) -> None:
+    """Check that the case has the load or the play that its ensemble varies.
 
     Raises:
-        BoomError: the data are missing.
+        BoomError: the load or the play is missing.
     """
     if case.ensemble is None or all(model.bonded for model in case.models):
         return
     vary = case.ensemble.vary
-    if vary == "load" and not _loaded(boom):
+    if vary == "load" and not _has_lasting_load(boom):
         raise BoomError(
             "ensemble.vary",
             "no load acts from t = 0 on, of which members change a part; give vary = 'clearance', "
@@ -114,8 +114,8 @@ def check_varied(case: Case, boom: Boom) -> None:
         )
 
 
-def _loaded(boom: Boom) -> bool:
-    """Return whether a load acts from t = 0 on."""
+def _has_lasting_load(boom: Boom) -> bool:
+    """Return True if a load acts from t = 0 on."""
     own = [segment.load for segment in boom.segments]
     own += [segment.lateral.load for segment in boom.segments if segment.lateral is not None]
     lasting = [
@@ -133,7 +133,7 @@ def _check_observations(case: Case) -> None:
         for name in (*DRIVE_VARIABLES, *ELASTIC_DRIVE_VARIABLES)
     }
     for number, table in enumerate(case.observe, start=1):
-        if table.name in _TAKEN | of_drives:
+        if table.name in _OUTPUT_NAMES | of_drives:
             raise BoomError(
                 f"observe[{number}].name",
                 f"{table.name!r} is the name of another output already; give it its own",
@@ -155,13 +155,13 @@ def check_names(where: str, names: Sequence[str]) -> None:
             )
 
 
-def _check_joined(case: Case) -> None:
+def _check_joint_segments(case: Case) -> None:
     """Check that each joint connects two segments, and that no two joints connect the same pair."""
     names = [segment.name for segment in case.segments]
     for index, table in enumerate(case.joints):
         where = f"joint[{index + 1}]"
         for end in ("outer", "inner"):
-            actions.index_of(f"{where}.{end}", getattr(table, end), case.segments)
+            actions.segment_index(f"{where}.{end}", getattr(table, end), case.segments)
         if table.outer == table.inner:
             raise BoomError(f"{where}.inner", "must be another segment than the outer one")
         for number, other in enumerate(case.joints[:index], start=1):
@@ -190,7 +190,7 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
             f"joint[{index + 1}]", table.stations, table.locked_at, (table.inner, tail)
         )
     joint = Joint(
-        **values(table, BareJoint) | {"outer": outer, "inner": inner},
+        **field_values(table, BareJoint) | {"outer": outer, "inner": inner},
         contact=table.law("z"),
         lateral_contact=None if table.lateral_play is None else table.law("y"),
         drive=drive,
@@ -199,7 +199,7 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
 
 
 def _check_plays(where: str, table: JointTable) -> None:
-    """Check that no station's play exceeds the joint's, and that shims leave clearance."""
+    """Check the play on one side against the play of both, and that shims go without play."""
     for key, of, pressed in (
         ("play_above", "play", "interference"),
         ("lateral_play_right", "lateral_play", "lateral_interference"),
@@ -214,7 +214,7 @@ def _check_plays(where: str, table: JointTable) -> None:
 def _segment(case: Case, index: int, section: Section | None, ends: tuple[float, float]) -> Segment:
     table = case.segments[index]
     material = material_of(case, index)
-    mass, second_moment = _beam_numbers(case, index)
+    mass, second_moment = _beam_properties(case, index)
     rotary, head = table.rotary_inertia, _head_section(table, index)
     payload: tuple[PointMass, ...] = ()
     if case.payload is not None and index == len(case.segments) - 1:
@@ -234,7 +234,7 @@ def _segment(case: Case, index: int, section: Section | None, ends: tuple[float,
         viscous_damping=table.viscous_damping,
         masses=table.masses + payload,
         lateral=_lateral(table, material, section and half_way(section, head))
-        if _in_space(case)
+        if _is_spatial(case)
         else None,
         collars=table.collars,
         diaphragms=table.diaphragms,
@@ -242,7 +242,7 @@ def _segment(case: Case, index: int, section: Section | None, ends: tuple[float,
 
 
 def material_of(case: Case, index: int) -> Material:
-    """Return a segment's own material, or the case's."""
+    """Return the material of a segment: its own, or the material of the case."""
     table = case.segments[index].material or case.material
     if table is None:
         raise BoomError(
@@ -253,9 +253,9 @@ def material_of(case: Case, index: int) -> Material:
     return table
 
 
-def _check_flat(case: Case) -> None:
-    """Check that a flat boom has no lateral actions."""
-    if _in_space(case):
+def _check_planar(case: Case) -> None:
+    """Check that a planar boom has no lateral actions."""
+    if _is_spatial(case):
         return
     remedy = "the boom is flat, and nothing moves along 'y'; give the joints lateral_play"
     for number, segment in enumerate(case.segments, start=1):
@@ -270,7 +270,7 @@ def _check_flat(case: Case) -> None:
                 raise BoomError(f"start.velocity.{name}.{key}", remedy)
 
 
-def _in_space(case: Case) -> bool:
+def _is_spatial(case: Case) -> bool:
     return any(joint.lateral_play is not None for joint in case.joints)
 
 
@@ -294,24 +294,24 @@ def _lateral(table: SegmentTable, material: Material, section: Section | None) -
     )
 
 
-def _beam_numbers(case: Case, index: int) -> tuple[float, float]:
+def _beam_properties(case: Case, index: int) -> tuple[float, float]:
     """Return the mass per length in kg/m and the second moment of area in m⁴ of a segment."""
     table = case.segments[index]
-    section, head = _given_section(table, index), _head_section(table, index)
+    section, head = _section_of_table(table, index), _head_section(table, index)
     mass, second_moment = table.mass_per_length, table.second_moment_of_area
     if section is not None:
         _check_plates(case, index, section)
         mass = mass or material_of(case, index).density * mean_area(section, head)
         second_moment = second_moment or half_way(section, head).second_moment_of_area
     if mass is None:
-        raise _missing(index, "mass_per_length")
+        raise _missing_key_error(index, "mass_per_length")
     if second_moment is None:
-        raise _missing(index, "second_moment_of_area")
+        raise _missing_key_error(index, "second_moment_of_area")
     return mass, second_moment
 
 
 def _check_plates(case: Case, index: int, section: Section) -> None:
-    """Check that a section is given only once and agrees with the given beam properties."""
+    """Check that a section is given only once and agrees with given mass and second moment."""
     table = case.segments[index]
     where = f"segment[{index + 1}]"
     if table.height_to_width is not None:
@@ -323,7 +323,7 @@ def _check_plates(case: Case, index: int, section: Section) -> None:
         ("mass_per_length", table.mass_per_length, section.mass_per_length(density)),
         ("second_moment_of_area", table.second_moment_of_area, section.second_moment_of_area),
     ):
-        if given is not None and abs(given / own - 1.0) > SAME_SECTION:
+        if given is not None and abs(given / own - 1.0) > SECTION_TOLERANCE:
             raise BoomError(
                 f"{where}.{key}",
                 f"{given:g} is not the section's own {own:.6g}, and beams and shell would be "
@@ -331,12 +331,12 @@ def _check_plates(case: Case, index: int, section: Section) -> None:
             )
 
 
-def _missing(index: int, key: str) -> BoomError:
+def _missing_key_error(index: int, key: str) -> BoomError:
     what = f"missing; it is {described(SegmentTable.model_fields[key])}"
     return BoomError(f"segment[{index + 1}].{key}", what)
 
 
-def _given_section(table: SegmentTable, index: int) -> Section | None:
+def _section_of_table(table: SegmentTable, index: int) -> Section | None:
     if table.section is None:
         return None
     try:
@@ -348,10 +348,10 @@ def _given_section(table: SegmentTable, index: int) -> Section | None:
 def _head_section(table: SegmentTable, index: int) -> Section | None:
     if table.head_section is None:
         return None
-    where, tail = f"segment[{index + 1}]", _given_section(table, index)
+    where, tail = f"segment[{index + 1}]", _section_of_table(table, index)
     if tail is None:
         raise BoomError(f"{where}.section", "missing; a segment with a head_section tapers from it")
-    for key in _OF_SECTIONS:
+    for key in _SECTION_PROPERTIES:
         if getattr(table, key) is not None:
             raise BoomError(
                 f"{where}.{key}",
@@ -365,19 +365,19 @@ def _head_section(table: SegmentTable, index: int) -> Section | None:
     return head
 
 
-# Keys of the properties that vary along a tapered segment.
-_OF_SECTIONS = (
+# Keys that a tapered segment must not have, since its sections determine these properties.
+_SECTION_PROPERTIES = (
     "mass_per_length", "second_moment_of_area", "rotary_inertia", "lateral_second_moment_of_area",
     "lateral_rotary_inertia", "torsion_constant", "polar_inertia",
 )  # fmt: skip
 
 
 def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
-    """Return the sections of all segments: those of the case, then the inferred ones."""
-    sections = [_given_section(table, i) for i, table in enumerate(case.segments)]
+    """Return the given or inferred section of each segment; None if it is unknown."""
+    sections = [_section_of_table(table, i) for i, table in enumerate(case.segments)]
     for i, table in enumerate(case.segments):
         if sections[i] is None and table.height_to_width is not None:
-            sections[i] = _infer(case, i, table.height_to_width)
+            sections[i] = _infer_section(case, i, table.height_to_width)
     # One pass per joint reaches every inner segment, whatever the order of the joints.
     for _ in joints:
         for joint in joints:
@@ -390,16 +390,19 @@ def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
                         f"missing, and none is inferred within {around.name!r}, which tapers; "
                         "give it",
                     )
-                sections[joint.inner] = _infer(case, joint.inner, (outer, 0.5 * joint.play))
+                sections[joint.inner] = _infer_section(case, joint.inner, (outer, 0.5 * joint.play))
     return sections
 
 
-def _infer(case: Case, index: int, hint: float | tuple[Section, float]) -> Section | None:
-    """Infer a section from its height-to-width ratio, or from the outer section and the clearance.
+def _infer_section(case: Case, index: int, hint: float | tuple[Section, float]) -> Section | None:
+    """Infer a section from mass, second moment and a hint; None if none exists or is needed.
 
-    Return None where neither is available and no model needs the section.
+    Args:
+        case: the case.
+        index: index of the segment.
+        hint: height-to-width ratio, or the outer section and the clearance to it in m.
     """
-    mass, second_moment = _beam_numbers(case, index)
+    mass, second_moment = _beam_properties(case, index)
     area = mass / material_of(case, index).density
     try:
         if isinstance(hint, tuple):
@@ -417,7 +420,7 @@ def _spans(
     """Return the x of the ends of each segment in m.
 
     Args:
-        segments: segments with a name each; the first one starts at 0 if it has a length only.
+        segments: segments; the first one starts at x = 0 if it has a length only.
         joints: joints of these segments.
 
     Raises:
@@ -425,27 +428,27 @@ def _spans(
     """
     lengths = {segment.name: segment.length for segment in segments}
     ends = {segment.name: segment.span for segment in segments if segment.span is not None}
-    extended = [
+    telescoped = [
         (f"joint[{i}].extension", j) for i, j in enumerate(joints, 1) if j.extension is not None
     ]
-    for number, (where, joint) in enumerate(extended):
+    for number, (where, joint) in enumerate(telescoped):
         if lengths[joint.inner] is None:
             raise BoomError(
                 where,
                 f"{joint.inner!r} has a span, which says how far it is out; give it by its length, "
                 "or leave extension out",
             )
-        for other, before in extended[:number]:
+        for other, before in telescoped[:number]:
             if before.inner == joint.inner:
                 raise BoomError(
                     where, f"{joint.inner!r} has its place by {other}; leave one of them out"
                 )
     first = segments[0]
-    if first.length is not None and first.name not in {joint.inner for _, joint in extended}:
+    if first.length is not None and first.name not in {joint.inner for _, joint in telescoped}:
         ends[first.name] = 0.0, first.length
     # One pass per joint places the segments, in any order of the joints.
-    for _ in extended:
-        for where, joint in extended:
+    for _ in telescoped:
+        for where, joint in telescoped:
             if joint.outer in ends and joint.inner not in ends:
                 length = lengths[joint.inner]
                 assert length is not None
@@ -463,7 +466,7 @@ def _spans(
 def _inner_span(
     where: str, joint: JointTable, outer: tuple[float, float], length: float
 ) -> tuple[float, float]:
-    """Return the ends of an inner segment in m."""
+    """Return the x of the ends of an inner segment in m, by its extension."""
     start, end = outer
     assert joint.extension is not None
     least = max(0.0, length - (end - start))

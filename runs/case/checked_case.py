@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A checked case with its boom and models, which are built once."""
+"""A checked case with its boom, and the boom as each model sees it."""
 
 from __future__ import annotations
 
@@ -8,24 +8,24 @@ from functools import cached_property
 
 from geometry.boom import Boom
 from runs.case.build import build_boom
-from runs.case.kinds.model import Joined
+from runs.case.kinds.model import ModelBoom
 from runs.case.schema import Case, Model
 
 
 @dataclass(frozen=True)
 class CheckedCase:
-    """A checked case with its boom and the booms of its models, built on first use."""
+    """A checked case. Its boom is built once, on first use."""
 
     case: Case  #: a case with a valid boom
-    _joined: dict[str, Joined] = field(default_factory=dict, init=False, repr=False)
+    _model_booms: dict[str, ModelBoom] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def boom(self) -> Boom:
         """The boom of the case, from :func:`runs.case.build.build_boom`."""
         return build_boom(self.case)
 
-    def joined(self, model: Model) -> Joined:
-        """Return the boom for one of the case's models."""
-        if model.name not in self._joined:
-            self._joined[model.name] = model.joined(self.boom)
-        return self._joined[model.name]
+    def model_boom(self, model: Model) -> ModelBoom:
+        """Return the boom with the contact laws of one of the models of the case."""
+        if model.name not in self._model_booms:
+            self._model_booms[model.name] = model.model_boom(self.boom)
+        return self._model_booms[model.name]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Reader of two columns of a CSV file from an instrument, a program or a spreadsheet.
 
-Commas, semicolons, tabs or spaces separate cells, a comma within a number is a decimal comma, and
-text after a # is a comment. A heading names the columns, each with its unit after the name, in
-brackets, after a slash or ``in``, or in a line of units below.
+Commas, semicolons, tabs or spaces separate cells. A comma within a number is a decimal comma. Text
+after a # is a comment. A heading names the columns and may give their units: in brackets, after a
+slash or ``in``, or in a second line.
 """
 
 from __future__ import annotations
@@ -24,24 +24,24 @@ from runs.case.user_files import read_any_text
 from runs.process.terminal import shorten
 
 _SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
-# Between two cells: spaces that do not stand beside a comma, before a unit or after a slash.
+# Spaces that separate two cells: not next to a comma, before a bracket or slash, or after a slash.
 _SPACES = re.compile(r"(?<![\s,/])\s+(?![\s,\[(/])")
-_HEADED = re.compile(r"(.*?)\s*(?:\[(.+)\]|\((.+)\)|/(.+)|\bin (.+))")
+_HEADING = re.compile(r"(.*?)\s*(?:\[(.+)\]|\((.+)\)|/(.+)|\bin (.+))")
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """Expected content of one of the two columns."""
+    """Quantity and unit that a column must contain."""
 
     name: str  #: name of the column in messages
-    unit: str  #: unit of the numbers, unless the heading gives another one of the same dimension
-    factor: bool = False  #: whether the numbers are factors if the heading gives no unit
+    unit: str  #: unit of the numbers, if the heading gives no other
+    factor: bool = False  #: True if numbers without a unit are dimensionless factors
 
     def __str__(self) -> str:
         return self.name if self.factor else f"{self.name} in {self.unit}"
 
     def scale(self, unit: str) -> float:
-        """Return the factor from a unit of the file to the column's own unit.
+        """Return the conversion factor from a unit in the file to the unit of the column.
 
         Raises:
             ValueError: the unit is unknown, or of another dimension.
@@ -59,7 +59,7 @@ class Pairs:
     """Pairs of numbers from two columns, in the columns' units."""
 
     values: tuple[tuple[float, float], ...]  #: the first numbers of the pairs increase
-    measured: bool  #: whether the heading gives a unit for the second column
+    measured: bool  #: True if the second column has a unit, so that its numbers are no factors
 
 
 def read_pairs(
@@ -85,22 +85,24 @@ def read_pairs(
     try:
         rows = _rows(read_any_text(place))
         if len(rows) > MOST_TIMES:
-            raise _Unfit(f"has {len(rows)} lines", f"give {MOST_TIMES} at most")
+            raise _FileError(f"has {len(rows)} lines", f"give {MOST_TIMES} at most")
         headings = [rows.pop(0) for _ in range(2) if rows and not rows[0].has_number]
-        chosen, scales, measured = _chosen(headings, names, columns)
+        chosen, scales, measured = _choose_columns(headings, names, columns)
         for row in rows:
             row.check_columns(chosen, names)
         pairs = np.array([[row.number(i) for i in chosen] for row in rows])
         if len(rows) < 2:
-            raise _Unfit("has fewer than two lines of numbers")
+            raise _FileError("has fewer than two lines of numbers")
         falls = np.flatnonzero(np.diff(pairs[:, 0]) <= 0.0)
         if falls.size:
             line = rows[falls[0] + 1].line
-            raise _Unfit(f"has a {columns[0].name} in line {line} that does not rise", "sort them")
+            raise _FileError(
+                f"has a {columns[0].name} in line {line} that does not rise", "sort them"
+            )
     except OSError as error:
         what = f"'{shorten(str(place))}' cannot be read ({error.strerror}); {remedy}"
         raise BadInput(path, key, what) from None
-    except _Unfit as unfit:
+    except _FileError as unfit:
         what = f"{name} {unfit.what}; {unfit.remedy or remedy}"
         raise BadInput(path, key, what) from None
     except (ValueError, csv.Error):
@@ -108,14 +110,14 @@ def read_pairs(
     return Pairs(tuple((float(x), float(y)) for x, y in pairs * scales), measured)
 
 
-class _Unfit(Exception):
-    """Error for a file, whose text does not quote the content of the file.
+class _FileError(Exception):
+    """Error in the content of a file. The message does not quote the content.
 
-    The path may be wrong, and messages must not disclose another file's content.
+    The user may have given the path of another file, whose content must stay private.
 
     Args:
         what: description of the error.
-        remedy: the remedy; by default to give the right file.
+        remedy: the remedy; by default a file with the right columns.
     """
 
     def __init__(self, what: str, remedy: str = "") -> None:
@@ -125,7 +127,7 @@ class _Unfit(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """A line of the file with its cells; empty lines and comments make no row."""
+    """Cells of a line of the file that is neither empty nor a comment."""
 
     line: int  #: line number, from 1
     cells: list[str]
@@ -135,23 +137,23 @@ class _Row:
         return any(map(_is_number, self.cells))
 
     def check_columns(self, chosen: Sequence[int], names: Sequence[str] | None) -> None:
-        """Check that the chosen columns exist, and that any others have names."""
+        """Check that the chosen columns exist, and that there are no others without names."""
         count = len(self.cells)
         if count <= max(chosen) or (names is None and count != len(chosen)):
             columns = "1 column" if count == 1 else f"{count} columns"
-            raise _Unfit(f"has {columns} in line {self.line}")
+            raise _FileError(f"has {columns} in line {self.line}")
 
     def number(self, column: int) -> float:
-        """Return the number in a cell; raise :class:`_Unfit` if there is none."""
+        """Return the number in a cell; raise :class:`_FileError` if there is none."""
         with suppress(ValueError):
             number = _number(self.cells[column])
             if np.isfinite(number):
                 return number
-        raise _Unfit(f"has no finite number in line {self.line}, column {column + 1}")
+        raise _FileError(f"has no finite number in line {self.line}, column {column + 1}")
 
 
 def _rows(text: str) -> list[_Row]:
-    """Return all lines except empty ones and comments."""
+    """Return the cells of all lines except empty lines and comments."""
     numbered = enumerate(text.splitlines(), start=1)
     lines = [(number, line.partition("#")[0].strip()) for number, line in numbered]
     lines = [(number, line) for number, line in lines if line]
@@ -160,7 +162,7 @@ def _rows(text: str) -> list[_Row]:
         del lines[0]
     else:
         separator = next((mark for mark in ";\t" if lines and mark in lines[0][1]), ",")
-        # Headings may have spaces between words; the last line is one of numbers.
+        # The last line decides, since a heading may have spaces between words.
         last = _SPACES.split(lines[-1][1]) if lines else []
         if separator == "," and len(last) > 1 and all(map(_is_number, last)):
             return [_Row(number, _SPACES.split(line)) for number, line in lines]
@@ -182,32 +184,32 @@ def _is_number(cell: str) -> bool:
     return False
 
 
-def _chosen(
+def _choose_columns(
     headings: Sequence[_Row], names: Sequence[str] | None, columns: Sequence[Column]
 ) -> tuple[list[int], list[float], bool]:
     """Return indices, unit factors and ``measured`` (see :class:`Pairs`) of the two columns.
 
     Raises:
-        _Unfit: a missing name, too many columns, an incompatible unit.
+        _FileError: a missing name, too many columns, an incompatible unit.
     """
     if not headings:
         if names is not None:
-            raise _Unfit("has no heading", "leave the names of columns out")
+            raise _FileError("has no heading", "leave the names of columns out")
         return [0, 1], [1.0, 1.0], False
     heading = headings[0]
-    cells = [_split(cell) for cell in heading.cells]
+    cells = [_split_heading(cell) for cell in heading.cells]
     known = [name for name, _ in cells]
     if names is None:
         if len(known) > 2:
             what = f"has {len(known)} columns in line {heading.line}"
-            raise _Unfit(what, "name two of them")
+            raise _FileError(what, "name two of them")
         chosen = [0, 1]
     else:
-        wanted = [_split(name)[0] for name in names]
+        wanted = [_split_heading(name)[0] for name in names]
         for name in wanted:
             if (count := known.count(name)) != 1:
                 what = f"has {count} columns {shorten(name)!r} in line {heading.line}"
-                raise _Unfit(what, "name columns that it has once")
+                raise _FileError(what, "name columns that it has once")
         chosen = [known.index(name) for name in wanted]
     for row in headings:
         row.check_columns(chosen, names)
@@ -218,7 +220,7 @@ def _chosen(
         try:
             scales.append(1.0 if unit is None else column.scale(unit.strip("[]()")))
         except ValueError as error:
-            raise _Unfit(
+            raise _FileError(
                 f"has a unit in line {of_units.line}, column {i + 1} that is {error}",
                 f"give {column.unit} or another unit of the kind",
             ) from None
@@ -226,9 +228,9 @@ def _chosen(
     return chosen, scales, measured
 
 
-def _split(cell: str) -> tuple[str, str | None]:
+def _split_heading(cell: str) -> tuple[str, str | None]:
     """Return the name and the unit of a heading."""
-    found = _HEADED.fullmatch(cell)
+    found = _HEADING.fullmatch(cell)
     if found is None:
         return cell, None
     return found[1], next(unit for unit in found.groups()[1:] if unit)

@@ -15,18 +15,18 @@ from geometry.fields import PART, In, NotNegative, Number, Positive
 from geometry.joint import BareJoint
 from geometry.section import Side
 from runs.case.drive import DriveTable
-from runs.case.limits import CaseTable, Exponent, Text, error_at, superfluous
+from runs.case.limits import CaseTable, Exponent, Text, error_at, superfluous_error
 
 if TYPE_CHECKING:
     from dynamics.contact import ContactLaw
     from dynamics.contact_table import TableContact
 
-BOTH: tuple[Side, Side] = (1, -1)
+BOTH_SIDES: tuple[Side, Side] = (1, -1)
 
 # Number of pads that share the force on one side of a station, one beside each web.
 PADS_OF_SIDE = 2
 
-# Maximum number of terms. The time loop evaluates each one for every row in every step.
+# Maximum number of points of a law. The time loop evaluates all of them at every contact.
 MOST_POINTS = 1000
 
 PAD_WITHOUT_STIFFNESS = (
@@ -34,7 +34,7 @@ PAD_WITHOUT_STIFFNESS = (
     "joint's stiffness"
 )
 
-_OF_POWER = ("stiffness", "stiffness_below", "exponent")
+_POWER_LAW_KEYS = ("stiffness", "stiffness_below", "exponent")
 
 
 def table_law(points: Sequence[tuple[float, float]], damping: float = 0.0) -> TableContact:
@@ -61,14 +61,14 @@ def _check_law(table: ContactTable, of_power: Sequence[str]) -> None:
     """Check that power laws have a stiffness, and that tables and pads with a thickness do not.
 
     Args:
-        table: the table with all its keys, in any order.
+        table: the table of a contact or a joint.
         of_power: keys that only power laws may have.
 
     Raises:
-        ValidationError: a key is missing or superfluous.
+        ValidationError: a key is missing or superfluous_error.
     """
     tables = [key for key in ("force_table", "force_file") if getattr(table, key)]
-    pad = table.thick_pads if isinstance(table, JointTable) else None
+    pad = table.elastic_pads_key if isinstance(table, JointTable) else None
     given = pad or next(iter(tables), None)
     if given is None:
         if table.stiffness is None and getattr(table, "pad", None) is not None:
@@ -80,7 +80,7 @@ def _check_law(table: ContactTable, of_power: Sequence[str]) -> None:
     others = tables if pad else tables[1:]
     keys = others + [key for key in of_power if getattr(table, key) is not None]
     if keys:
-        raise superfluous(table, given, *keys)
+        raise superfluous_error(table, given, *keys)
 
 
 Forces = Annotated[
@@ -124,11 +124,11 @@ class ContactTable:
 
     @model_validator(mode="after")
     def _one_law(self) -> Self:
-        _check_law(self, _OF_POWER)
+        _check_law(self, _POWER_LAW_KEYS)
         return self
 
     def exponent_of(self, key: str) -> float | None:
-        """Return the exponent that belongs to a stiffness key; None if the table has none."""
+        """Return the exponent of the power law of a stiffness key; None if it is not given."""
         return self.exponent or 2.0
 
     def law(self, direction: Direction) -> ContactLaw | None:
@@ -153,8 +153,8 @@ class JointTable(ContactTable, BareJoint):
     """the exponent n to the sides; the same unless given"""
 
     @property
-    def thick_pads(self) -> str | None:
-        """Key of the pads whose thickness determines the contact stiffness."""
+    def elastic_pads_key(self) -> str | None:
+        """The key of pads whose thickness determines the contact stiffness; None without one."""
         if self.pads:
             return "pads"
         return "pad.thickness" if self.pad is not None and self.pad.thickness else None
@@ -162,32 +162,32 @@ class JointTable(ContactTable, BareJoint):
     @model_validator(mode="after")
     def _pads_or_pad(self) -> Self:
         if self.pads and self.pad is not None:
-            raise superfluous(self, "pads", "pad")
+            raise superfluous_error(self, "pads", "pad")
         return self
 
     @model_validator(mode="after")
     def _one_law(self) -> Self:
-        # A lateral stiffness makes the lateral law a power law, even beside a tabulated vertical
-        # law.
+        # With a lateral stiffness the lateral law is a power law, even if the vertical law is a
+        # table.
         lateral = () if self.lateral_stiffness else ("lateral_exponent",)
-        _check_law(self, (*_OF_POWER, *lateral))
+        _check_law(self, (*_POWER_LAW_KEYS, *lateral))
         if self.pads and self.lateral_stiffness:
-            raise superfluous(self, "pads", "lateral_stiffness")
+            raise superfluous_error(self, "pads", "lateral_stiffness")
         if self.lateral_exponent and not self.lateral_stiffness and not self.pads:
             raise error_at(self, "missing", "lateral_stiffness")
         return self
 
     def exponent_of(self, key: str) -> float | None:
-        along_z = 1.0 if self.thick_pads and not self.stiffness else self.exponent
+        along_z = 1.0 if self.elastic_pads_key and not self.stiffness else self.exponent
         return self.lateral_exponent or along_z if key == "lateral_stiffness" else along_z
 
     def law(self, direction: Direction) -> ContactLaw | None:
-        """Return the contact law of each station in a direction; None without pads in it."""
+        """Return the contact law of each station in a direction; None if no pad acts in it."""
         if self.pads:
             above, below = (
                 PADS_OF_SIDE
                 * sum(pad.stiffness for pad in self.pads if pad.touches(direction, side))
-                for side in BOTH
+                for side in BOTH_SIDES
             )
             return _law(self, above, below, 1.0) if above or below else None
         of_pads = PADS_OF_SIDE * self.pad.stiffness if self.pad and self.pad.stiffness else None

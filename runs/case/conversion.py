@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Conversion of a case to SI units, by the units that the fields of its tables declare."""
+"""Conversion of a case to SI units. Each field of the schema declares its unit."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from typing import Any
 
 from runs.case.limits import CaseTable, is_table, units_of
 from runs.case.schema import Case
-from runs.case.units import System, scaled
+from runs.case.units import System, scale
 
 
-def in_si(case: Case) -> Case:
-    """Return the case in SI units; its field ``units`` stays, for display.
+def convert_to_si(case: Case) -> Case:
+    """Return the case in SI units; ``shown_units`` keeps the original units for display.
 
     Args:
-        case: a case that stands alone, without files.
+        case: a case without references to files.
 
     Raises:
         OverflowError: a number overflows in SI units.
@@ -29,13 +29,13 @@ def in_si(case: Case) -> Case:
     models = []
     for model in case.models:
         own = [] if model.contact is None else [model.contact.exponent_of("stiffness")]
-        models.append(_converted(model, system, next(iter([*own, *laws]), None) or 2.0))
+        models.append(_convert(model, system, next(iter([*own, *laws]), None) or 2.0))
     shown = {"units": "SI", "shown_units": case.shown_units or case.units, "models": tuple(models)}
-    found: Case = _converted(case, system).model_copy(update=shown)
+    found: Case = _convert(case, system).model_copy(update=shown)
     return found
 
 
-def _converted(table: Any, system: System, exponent: float = 2.0) -> Any:
+def _convert(table: Any, system: System, exponent: float = 2.0) -> Any:
     # Defaults are in SI units.
     if isinstance(table, CaseTable):
         keys = table.model_fields_set
@@ -44,20 +44,20 @@ def _converted(table: Any, system: System, exponent: float = 2.0) -> Any:
     changed = {}
     for key in keys:
         sizes = [system.size(unit) for unit in units_of(table, key, exponent)]
-        changed[key] = _scaled(getattr(table, key), sizes, system, exponent)
+        changed[key] = _convert_value(getattr(table, key), sizes, system, exponent)
     if isinstance(table, CaseTable):
         return table.model_copy(update=changed)
     return replace(table, **changed)
 
 
-def _scaled(value: Any, sizes: Sequence[Fraction], system: System, exponent: float) -> Any:
-    """Return a value of a table with all numbers scaled; several sizes apply to a row's columns."""
+def _convert_value(value: Any, sizes: Sequence[Fraction], system: System, exponent: float) -> Any:
+    """Return a value in SI units; several sizes convert the numbers of a tuple one by one."""
     if is_table(value):
-        return _converted(value, system, exponent)
+        return _convert(value, system, exponent)
     if isinstance(value, dict):
-        return {key: _scaled(item, sizes, system, exponent) for key, item in value.items()}
+        return {key: _convert_value(item, sizes, system, exponent) for key, item in value.items()}
     if isinstance(value, tuple) and len(sizes) == len(value) > 1 and isinstance(value[0], float):
-        return tuple(scaled(number, size) for number, size in zip(value, sizes, strict=True))
+        return tuple(scale(number, size) for number, size in zip(value, sizes, strict=True))
     if isinstance(value, tuple):
-        return tuple(_scaled(item, sizes, system, exponent) for item in value)
-    return scaled(value, sizes[0]) if isinstance(value, float) and sizes else value
+        return tuple(_convert_value(item, sizes, system, exponent) for item in value)
+    return scale(value, sizes[0]) if isinstance(value, float) and sizes else value

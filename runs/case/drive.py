@@ -16,24 +16,24 @@ from geometry.fields import Distance, In, NotNegative, Number, Positive, describ
 from geometry.joint import Carrier, Drive
 from runs.case.limits import MOST_TIMES, CaseTable, Text
 
-# Least duration in s and least travel in m: a shorter time is an input error.
-_SHORTEST, _NOWHERE = 1.0e-6, 1.0e-9
+# Shorter times in s are input errors; a shorter travel in m counts as none.
+_MIN_TIME, _MIN_TRAVEL = 1.0e-6, 1.0e-9
 
-# Minimum number of evenly spaced times, times per period of the fastest history, maximum number.
-_TIMES, _OF_SWING, _MOST_TIMES = 2001, 100, 1_000_001
-# Fraction of the duration below which two times are the same.
+# Minimum number of sampling times, number per period of the fastest history, and maximum number.
+_TIMES, _PER_PERIOD, _MOST_TIMES = 2001, 100, 1_000_001
+# Two times closer than this fraction of the duration count as one.
 _SAME_TIME = 1.0e-9
 
-# Kinds of histories of the extension, by their keys.
-_WAYS = ("time", "speed", "table")
+# Keys of which one defines the history of the extension.
+_HISTORY_KEYS = ("time", "speed", "table")
 
-Ways = Annotated[
+TravelPairs = Annotated[
     tuple[tuple[Number, Number], ...], In("s", "m"), Field(min_length=2, max_length=MOST_TIMES)
 ]
 
 
 class TravelTable(CaseTable):
-    """Length over time, of a drive or a winch."""
+    """History of the length that a drive or a winch travels."""
 
     travel: Annotated[Number, In("m")] | None = None
     """the length in m by which the segment extends; negative where it retracts"""
@@ -46,7 +46,7 @@ class TravelTable(CaseTable):
     given"""
     start: Annotated[NotNegative, In("s")] = 0.0
     """the time in s at which the travel begins"""
-    table: Ways | None = None
+    table: TravelPairs | None = None
     """pairs of a time in s and the extension in m since the start, linear between them and constant
     beyond, instead of a travel"""
     file: Text | None = None
@@ -68,7 +68,7 @@ class TravelTable(CaseTable):
         Raises:
             BoomError: keys contradict one another, or a key is missing.
         """
-        given = [key for key in _WAYS if getattr(self, key) is not None]
+        given = [key for key in _HISTORY_KEYS if getattr(self, key) is not None]
         if not given:
             raise BoomError(
                 f"{where}.time",
@@ -79,11 +79,11 @@ class TravelTable(CaseTable):
         if self.ramp and self.speed is None:
             raise BoomError(f"{where}.ramp", f"{given[0]} is given; only a speed has a ramp")
         for key, seconds in (("time", self.time), ("ramp", self.ramp)):
-            if seconds and seconds < _SHORTEST:
-                what = f"must be at least {_SHORTEST:g} s, got {seconds:g} s"
+            if seconds and seconds < _MIN_TIME:
+                what = f"must be at least {_MIN_TIME:g} s, got {seconds:g} s"
                 raise BoomError(f"{where}.{key}", what)
         if self.table is not None:
-            return self._tabled(where)
+            return self._table_history(where)
         if self.travel is None:
             raise BoomError(f"{where}.travel", f"missing; it is {self.meaning('travel')}")
         if self.time is not None:
@@ -99,7 +99,7 @@ class TravelTable(CaseTable):
         except ValueError as error:
             raise BoomError(f"{where}.ramp", str(error)) from None
 
-    def _tabled(self, where: str) -> MotionLaw:
+    def _table_history(self, where: str) -> MotionLaw:
         for key in ("travel", "start"):
             if getattr(self, key):
                 raise BoomError(f"{where}.{key}", "table is given; leave one of them out")
@@ -147,8 +147,9 @@ class DriveTable(TravelTable):
 
         Args:
             where: key of its joint.
-            stations, locked_at: stations and locked station of the joint.
-            inner: name of the moving segment, and the x of its tail in m.
+            stations: stations of the joint.
+            locked_at: locked station of the joint.
+            inner: name of the inner segment, and the x of its tail in m.
 
         Raises:
             BoomError: as :meth:`history`, or a station is on no segment.
@@ -159,23 +160,23 @@ class DriveTable(TravelTable):
         carriers = tuple(_carrier(place, *goes) for place in stations)
         locked: Carrier = "inner"
         if isinstance(locked_at, float) and locked_at < tail:
-            # The drive pushes the tail from this fixed end.
+            # A cylinder, fixed at locked_at on the outer segment, pushes the tail.
             locked = "outer"
         elif locked_at is not None:
             locked = _carrier(locked_at, f"{where}.locked_at", "the place", name)
         drive = Drive(history, carriers, self.least_overlap, locked)
         low, high = drive.reach
-        return drive if high - low > _NOWHERE else None
+        return drive if high - low > _MIN_TRAVEL else None
 
 
-def fastest(drive: Drive) -> float:
+def max_speed(drive: Drive) -> float:
     """Return the largest speed of a drive in m/s."""
     times = resolving_times([drive.history], max(drive.history.kinks))
     return float(np.abs(np.diff(drive.history(times)) / np.diff(times)).max())
 
 
 def resolving_times(histories: Sequence[History], duration: float) -> Array:
-    """Return rising times (num_times,) in s from 0 to ``duration`` that resolve all histories.
+    """Return ascending times (num_times,) in s from 0 to ``duration`` that resolve all histories.
 
     >>> from runs.case.drive import resolving_times
     >>> 0.01 in resolving_times([pt.Ramp(0.01)], 1000.0)
@@ -184,7 +185,7 @@ def resolving_times(histories: Sequence[History], duration: float) -> Array:
     found = [kink for history in histories for kink in history.kinks if 0.0 < kink <= duration]
     kinks = np.unique(np.array(found))
     swings = max((history.fastest for history in histories), default=0.0) * duration / (2.0 * np.pi)
-    number = int(np.clip(np.ceil(_OF_SWING * swings) + 1.0, _TIMES, _MOST_TIMES))
+    number = int(np.clip(np.ceil(_PER_PERIOD * swings) + 1.0, _TIMES, _MOST_TIMES))
     even = np.linspace(0.0, duration, number)
     nearest = np.clip(np.rint(kinks / even[1]), 1, number - 2).astype(np.int64)
     same = np.abs(even[nearest] - kinks) <= _SAME_TIME * duration

@@ -16,8 +16,8 @@ from runs.case.contact import JointTable
 from runs.case.drive import DriveTable
 from runs.case.schema import Case
 
-# Frequency or decay rate in Hz above which a drive counts as rigid.
-_FASTEST = 1.0e3
+# Largest natural frequency or decay rate of an elastic drive in Hz; a stiffer one counts as rigid.
+_MAX_RATE = 1.0e3
 
 
 def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
@@ -49,10 +49,10 @@ def with_elastic_drives(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
     found = elastic_drives(case, boom)
     suffixes = {group.suffix: found.get(group.joints[0]) for group in moved_stations(boom)}
 
-    def pulling(travel: Travel) -> Travel:
+    def with_elasticity(travel: Travel) -> Travel:
         return replace(travel, elastic=None if travel.suffix is None else suffixes[travel.suffix])
 
-    return replace(system, travels=[pulling(travel) for travel in system.travels])
+    return replace(system, travels=[with_elasticity(travel) for travel in system.travels])
 
 
 def check_elastic_drives(case: Case, boom: Boom) -> None:
@@ -63,11 +63,11 @@ def check_elastic_drives(case: Case, boom: Boom) -> None:
     for number, joint, drive in _drives(case):
         where = f"joint[{number + 1}].drive"
         if drive.stiffness is None:
-            _check_stiff(where, drive)
+            _check_rigid(where, drive)
             continue
         _check_friction(where, joint, drive)
         mass = _moved_mass(boom, number) if boom.joints[number].drive is not None else 0.0
-        rates = 2.0 * pi * _FASTEST
+        rates = 2.0 * pi * _MAX_RATE
         for key, value, most, unit in (
             ("stiffness", drive.stiffness, mass * rates**2, "N/m"),
             ("dashpot", drive.dashpot, mass * rates, "N s/m"),
@@ -80,7 +80,7 @@ def check_elastic_drives(case: Case, boom: Boom) -> None:
                 )
 
 
-def _check_stiff(where: str, drive: DriveTable) -> None:
+def _check_rigid(where: str, drive: DriveTable) -> None:
     given = {"dashpot": drive.dashpot, "static_friction": drive.static_friction}
     for key, value in given.items():
         if value:

@@ -41,7 +41,7 @@ class HistoryTable(CaseTable):
         return self
 
 
-def history_of(where: str, table: HistoryTable) -> History:
+def build_history(where: str, table: HistoryTable) -> History:
     """Return the history of a load or of an acceleration.
 
     Raises:

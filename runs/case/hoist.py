@@ -18,7 +18,7 @@ from geometry.boom import Boom, BoomError
 from geometry.fields import Few, Flag, In, NotNegative, Number, Positive
 from geometry.telescoping import drives_of
 from runs.case.drive import TravelTable
-from runs.case.history import HistoryTable, history_of
+from runs.case.history import HistoryTable, build_history
 from runs.case.turning import frame_motion
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def check_hoist(case: Case, spatial: bool) -> None:
             "missing; a load swings as the boom turns; it is its distance in m from the tip",
         )
     for number, wind in enumerate(table.wind, start=1):
-        history_of(f"hoist.wind[{number}]", wind)
+        build_history(f"hoist.wind[{number}]", wind)
         if wind.direction == "y" and not spatial:
             raise BoomError(
                 f"hoist.wind[{number}].direction",
@@ -149,14 +149,14 @@ def _pendulum(case: Case, boom: Boom, length: float, winds: Sequence[WindTable])
         boom.segments[last].end,
         HistorySum(tuple(drive.history for drive in drives)),
         [
-            (wind.direction, wind.force, history_of(f"hoist.wind[{number}]", wind))
+            (wind.direction, wind.force, build_history(f"hoist.wind[{number}]", wind))
             for number, wind in enumerate(winds, start=1)
         ],
     )
 
 
 def hoist_thrust(case: Case, segment: int, x: float) -> tuple[Thrust, ...]:
-    """Return the axial force on the boom's tip of a hanging load, which acts throughout."""
+    """Return the constant axial force of a hanging load on the tip of the boom."""
     if case.hoist is None or case.gravity is None or case.hoist.dropped:
         return ()
     return (Thrust(segment, x, case.hoist.mass * case.gravity.along),)
@@ -175,7 +175,7 @@ def with_hanging_load(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
     if load is None:
         return system
     if load.slack is not None:
-        # The rope of a load on the ground reaches the tip of the boom where it rests.
+        # The slack counts from the tip in its initial position.
         rest = tip @ initial_state(system, case.start.at_rest)[1]
         load = replace(load, slack=load.slack + load.cosine * float(rest))
     return load.attach(system, tip, boom.segments[-1].end)

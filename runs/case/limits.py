@@ -23,7 +23,7 @@ class CaseTable(BaseModel):
 
 
 def is_table(value: Any) -> bool:
-    """Return whether a value is a table of a case: a :class:`CaseTable`, or a part of a boom."""
+    """Return True if a value is a table of a case: a :class:`CaseTable`, or a part of a boom."""
     return hasattr(type(value), "__pydantic_fields__")
 
 
@@ -33,7 +33,7 @@ def units_of(table: Any, key: str, exponent: float = 2.0) -> tuple[str, ...]:
     Args:
         table: table with the key.
         key: name of the field.
-        exponent: exponent of the contact law, for a table without one.
+        exponent: exponent of the contact law if the table has none.
     """
     if isinstance(table, CaseTable):
         declared = table.declared_units(key)
@@ -47,19 +47,21 @@ def units_of(table: Any, key: str, exponent: float = 2.0) -> tuple[str, ...]:
     return tuple(reduce(lambda unit, power: unit.replace(*power), powers, u) for u in declared)
 
 
-def errors_in(table: Any, kind: str | PydanticCustomError, *at: tuple[Any, ...]) -> ValidationError:
-    """Return a validator's errors, each from a path of keys and the value there."""
+def validation_error(
+    table: Any, kind: str | PydanticCustomError, *at: tuple[Any, ...]
+) -> ValidationError:
+    """Return the validation error of a table, from the path and the value of each wrong key."""
     errors = [InitErrorDetails(type=kind, loc=path, input=value) for path, value in at]
     return ValidationError.from_exception_data(type(table).__name__, errors)
 
 
 def error_at(table: Any, kind: str | PydanticCustomError, *keys: str) -> ValidationError:
-    """Return a validator's errors at keys of a table."""
-    return errors_in(table, kind, *(((key,), getattr(table, key)) for key in keys))
+    """Return the validation error at keys of a table."""
+    return validation_error(table, kind, *(((key,), getattr(table, key)) for key in keys))
 
 
-def superfluous(table: Any, given: str, *keys: str) -> ValidationError:
-    """Return a validator's error for keys that repeat the information of another key."""
+def superfluous_error(table: Any, given: str, *keys: str) -> ValidationError:
+    """Return the validation error at keys that contradict or repeat another key."""
     what = {"what": f"{given} is given; leave one of them out"}
     return error_at(table, PydanticCustomError("unsuitable", "{what}", what), *keys)
 
@@ -76,12 +78,12 @@ Text = Annotated[str, Field(pattern=PRINTABLE, max_length=200)]
 MOST_MEMBERS = 10_000
 # More plates are an input error, and would take too long to draw.
 MOST_SEGMENTS, MOST_MODELS, MOST_FACETS = 20, 50, 20
-# This suffices for an acceleration measured for a minute at 1 kHz.
+# This suffices for one minute of measured accelerations at 1 kHz.
 MOST_TIMES = 100_000
 
 
-def _modes(given: Any) -> Any:
-    """Check a number of modes or ``auto``; the messages of a union type would name its branches."""
+def _check_modes(given: Any) -> Any:
+    """Check a number of modes or ``auto``, with one message in place of two by a union type."""
     if given == "auto" or (isinstance(given, int) and not isinstance(given, bool) and given > 0):
         return given
     raise PydanticCustomError("modes", "a whole number above 0, or 'auto'")
@@ -89,7 +91,9 @@ def _modes(given: Any) -> Any:
 
 Modes = Annotated[
     int | Literal["auto"],
-    BeforeValidator(_modes, json_schema_input_type=Annotated[int, Field(gt=0)] | Literal["auto"]),
+    BeforeValidator(
+        _check_modes, json_schema_input_type=Annotated[int, Field(gt=0)] | Literal["auto"]
+    ),
 ]
 
 
@@ -97,8 +101,8 @@ Modes = Annotated[
 LEAST_CONTACT_TOLERANCE = 1.0e-3
 
 
-def _contact_tolerance(given: Any) -> Any:
-    """Check a fraction or ``any``; the messages of a union type would name its branches."""
+def _check_contact_tolerance(given: Any) -> Any:
+    """Check a fraction or ``any``, with one message in place of two by a union type."""
     number = isinstance(given, float) and LEAST_CONTACT_TOLERANCE <= given < 1.0
     if given == "any" or number:
         return given
@@ -112,5 +116,5 @@ def _contact_tolerance(given: Any) -> Any:
 ContactTolerance = Annotated[
     float | Literal["any"],
     In("1"),
-    BeforeValidator(_contact_tolerance, json_schema_input_type=Part | Literal["any"]),
+    BeforeValidator(_check_contact_tolerance, json_schema_input_type=Part | Literal["any"]),
 ]

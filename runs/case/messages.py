@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Error messages on user input: one line that names the place and the remedy."""
+"""Error messages on user input: one line that names the key, the error and the remedy."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ _ARRAYS = (
     "load_case", "combination", "spectrum",
 )  # fmt: skip
 
-# Attributes of a boom, and their keys.
+# Key of each attribute of a boom.
 _PARTS = {f"{key}s": key for key in ("segment", "joint", "load", "stop", "cylinder")}
 _PARTS["observations"] = "observe"
 
-# Descriptions of valid input, which messages put before the given value; limits of the schema
-# replace the braces.
-_MUST = {
+# Descriptions of valid input by error type, for messages that quote the given value. Limits of the
+# schema replace the braces.
+_VALID_INPUT = {
     "float_type": "a number",
     "int_type": "a whole number",
     "bool_type": "true or false",
@@ -49,8 +49,8 @@ _MUST = {
     "tuple_type": "a list",
 }
 _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
-# Messages that do not quote the given value.
-_SAYS = {
+# Messages by error type that do not quote the given value.
+_MESSAGES = {
     "unsuitable": "{what}",
     "too_short": "too short; give {min_length} at least",
     "too_long": "too many; give {max_length} at most",
@@ -59,7 +59,7 @@ _SAYS = {
 
 
 class BadInput(Exception):
-    """An input error: ``file`` as the user gave it, ``key``, the error and the valid input."""
+    """An input error: file, key, and the error with the valid input."""
 
     def __init__(self, file: str, key: str, what: str) -> None:
         super().__init__(" ".join(f"{shorten(file)}: {shorten(key)}: {what}".split()))
@@ -69,9 +69,9 @@ class BadInput(Exception):
 
     @classmethod
     def from_validation(cls, file: str, error: ValidationError) -> BadInput:
-        """Return the most informative one of the schema's errors.
+        """Return the most informative error of a validation.
 
-        A misspelled key causes two errors, an unknown and a missing key; the first says more.
+        A misspelled key causes two errors, an unknown and a missing key. The unknown key is named.
         """
         faults = error.errors(include_url=False)
         first = next((f for f in faults if f["type"] in _UNKNOWN), faults[0])
@@ -79,7 +79,7 @@ class BadInput(Exception):
 
     @classmethod
     def from_boom(cls, file: str, error: BoomError) -> BadInput:
-        """Return a boom's error with its key: ``segment[2].span`` for ``segments[1].start``."""
+        """Return the error at a key of the file: ``segment[2].span``, not ``segments[1].start``."""
         part = re.split(r"\W", error.where)[0]
         if part not in _PARTS:
             return cls(file, error.where, error.what)
@@ -89,7 +89,7 @@ class BadInput(Exception):
 
 
 def first_error(error: ValidationError) -> str:
-    """Return place and description of the first error in a file that the program wrote."""
+    """Return path and description of the first error in a file that the program wrote."""
     fault = error.errors(include_url=False)[0]
     return "".join(f"{step}: " for step in fault["loc"]) + fault["msg"]
 
@@ -97,11 +97,11 @@ def first_error(error: ValidationError) -> str:
 def _explain(
     fault: str, location: tuple[int | str, ...], value: Any, context: Mapping[str, Any] | None
 ) -> tuple[str, str]:
-    """Return the key and the message."""
+    """Return the key and the message of a validation error."""
     key = _key(location)
     limits = context or {}
     if fault == "missing" and isinstance(location[-1], int):
-        return _key(location[:-1]), f"must be {_pair(location)}, got {_shown(value)}"
+        return _key(location[:-1]), f"must be {_pair(location)}, got {_format_value(value)}"
     if fault == "missing":
         return key, f"missing; it is {described(_field(location))}"
     if fault == "union_tag_not_found":
@@ -109,15 +109,18 @@ def _explain(
     if fault in _UNKNOWN:
         return key, _unknown_key(location)
     if fault == "union_tag_invalid" and location[0] == "model":
-        return f"{key}.kind", f"must be {_kinds()}, got {_shown(value['kind'])}"
+        return f"{key}.kind", f"must be {_kinds()}, got {_format_value(value['kind'])}"
     if fault == "union_tag_invalid":
-        return f"{key}.shape", f"must be {choices(list(SHAPES))}, got {_shown(value['shape'])}"
+        return (
+            f"{key}.shape",
+            f"must be {choices(list(SHAPES))}, got {_format_value(value['shape'])}",
+        )
     if fault == "too_short" and limits["min_length"] == 1:
         return key, "empty; give at least one"
     if fault == "too_long" and limits["max_length"] == 2:
         must = _pair(location)
-    elif fault in _SAYS:
-        return key, _SAYS[fault].format(**limits)
+    elif fault in _MESSAGES:
+        return key, _MESSAGES[fault].format(**limits)
     elif fault == "string_pattern_mismatch" and limits["pattern"] == NAME:
         must = "made of letters, digits, blanks and . _ + -, starting with one of the first"
     elif fault == "string_pattern_mismatch":
@@ -127,8 +130,8 @@ def _explain(
     elif fault.startswith(("model_", "dict_", "dataclass_")):
         must = "a table"
     else:
-        must = _MUST[fault].format(**limits)
-    return key, f"must be {must}, got {_shown(value)}"
+        must = _VALID_INPUT[fault].format(**limits)
+    return key, f"must be {must}, got {_format_value(value)}"
 
 
 def _pair(location: Sequence[int | str]) -> str:
@@ -137,7 +140,7 @@ def _pair(location: Sequence[int | str]) -> str:
 
 
 def _key(location: Sequence[int | str]) -> str:
-    """Return the key, such as ``segment[2].span``, of a schema path; paths count from 0."""
+    """Return the key of a schema path: ``segment[2].span`` for ``('segment', 1, 'span')``."""
     key = ""
     for step in _without_kind(location):
         key += f"[{step + 1}]" if isinstance(step, int) else f".{step}" if key else step
@@ -155,7 +158,7 @@ def _without_kind(location: Sequence[int | str]) -> list[int | str]:
 
 
 def _table(location: Sequence[int | str]) -> type:
-    """Return the table of the last step of a path."""
+    """Return the class of the table in which a path ends."""
     names = [step for step in location[:-1] if isinstance(step, str)]
     if names[:2] == ["start", "velocity"]:
         # The next step of the path is the name of a segment.
@@ -164,7 +167,7 @@ def _table(location: Sequence[int | str]) -> type:
 
 
 def _tables(table: type) -> Iterator[tuple[str, type]]:
-    """Yield the keys of tables within a table, at all levels."""
+    """Yield key and class of each table within a table, at all levels."""
     for key, name in names_of(table).items():
         for inner in _models(fields_of(table)[name].annotation):
             yield key, inner
@@ -195,7 +198,7 @@ def _kinds() -> str:
     return choices(list(KINDS))
 
 
-def _shown(value: Any) -> str:
+def _format_value(value: Any) -> str:
     text = repr(value) if not isinstance(value, bool) else str(value).lower()
     return text if len(text) <= 60 else f"{text[:57]}..."
 

@@ -16,12 +16,12 @@ from pydantic import ValidationError
 from geometry.boom import BoomError
 from geometry.fields import described
 from geometry.typography import choices
-from runs.case.build import build_boom, check_names, check_varied
+from runs.case.build import build_boom, check_ensemble_data, check_names
 from runs.case.checked_case import CheckedCase
 from runs.case.columns import Column, read_pairs
 from runs.case.combinations import check_combinations
 from runs.case.contact import ContactTable, table_law
-from runs.case.conversion import in_si
+from runs.case.conversion import convert_to_si
 from runs.case.drive import TravelTable
 from runs.case.history import HistoryTable
 from runs.case.kinds.shell import check_mesh_size
@@ -58,18 +58,18 @@ def load(path: str) -> Case:
 
 
 def load_checked(path: str) -> CheckedCase:
-    """Return the boom and models of a case file; raise the errors of :func:`load`."""
+    """Read and check a case file like :func:`load`, and return it with its boom."""
     return check_tables(_read(path), path)
 
 
 def check_tables(tables: Mapping[str, object], path: str) -> CheckedCase:
-    """Return the boom and models of the tables of a case file, whose path messages name.
+    """Check the tables of a case file, and return the case with its boom.
 
     Raises:
         BadInput: the content is invalid.
     """
     try:
-        case = in_si(_read_tables(Case.model_validate(tables), path))
+        case = convert_to_si(_read_tables(Case.model_validate(tables), path))
     except ValidationError as error:
         raise BadInput.from_validation(path, error) from None
     except OverflowError:
@@ -79,7 +79,7 @@ def check_tables(tables: Mapping[str, object], path: str) -> CheckedCase:
 
 
 def check(case: Case, path: str) -> CheckedCase:
-    """Check a case beyond its schema, and return its boom and models.
+    """Check a case beyond its schema, and return it with its boom.
 
     Raises:
         BadInput: the case is invalid.
@@ -109,11 +109,11 @@ def select(
 
     Args:
         case: a checked case.
-        path: path of its file, for messages.
+        path: path of the case file, for messages.
         models: names of the models; by default all.
-        mesh_size: size of uniform meshes in m.
+        mesh_size: edge length of uniform meshes in m.
         members: number of members of each ensemble; 0 for none.
-        modes: modes of the shells: a number, or ``auto``.
+        modes: number of coordinates of each shell segment, or ``auto``.
 
     Raises:
         BadInput: a name is unknown, a mesh size or number of modes is invalid or not used, or an
@@ -159,7 +159,7 @@ def select(
     selected = case.model_copy(update={"models": chosen, "ensemble": ensemble})
     if members:
         try:
-            check_varied(selected, build_boom(selected))
+            check_ensemble_data(selected, build_boom(selected))
         except BoomError as error:
             raise BadInput.from_boom(path, error) from None
     return selected
@@ -168,7 +168,7 @@ def select(
 def _with_shells(
     models: Sequence[Model], path: str, option: str, update: Mapping[str, object]
 ) -> tuple[Model, ...]:
-    """Return the models after an option has changed their shells."""
+    """Return the models with an option of the command line set in their shells."""
     if not any(model.needs_shell for model in models):
         raise BadInput(path, option, "no shell is to be run; leave it out")
     return tuple(model.with_shells(update) for model in models)
@@ -205,7 +205,7 @@ def _read_tables(case: Case, path: str) -> Case:
     """Return the case with the contents of its CSV files in place of their names."""
     system = System(case.units)
 
-    def standing(key: str, histories: Sequence[History]) -> tuple[History, ...]:
+    def resolve_histories(key: str, histories: Sequence[History]) -> tuple[History, ...]:
         return tuple(
             _history(path, f"{key}[{i}]", history, system)
             for i, history in enumerate(histories, start=1)
@@ -240,7 +240,7 @@ def _read_tables(case: Case, path: str) -> Case:
     load_cases = [
         one.model_copy(
             update={
-                key: standing(f"load_case[{i}].{shown}", given)
+                key: resolve_histories(f"load_case[{i}].{shown}", given)
                 for key, shown in (("loads", "load"), ("base", "base"))
                 if (given := getattr(one, key)) is not None
             }
@@ -249,14 +249,14 @@ def _read_tables(case: Case, path: str) -> Case:
     ]
     hoist = case.hoist and _travel(path, "hoist", case.hoist, system)
     if hoist is not None:
-        hoist = hoist.model_copy(update={"wind": standing("hoist.wind", hoist.wind)})
+        hoist = hoist.model_copy(update={"wind": resolve_histories("hoist.wind", hoist.wind)})
     return case.model_copy(
         update={
             "load_cases": tuple(load_cases),
             "joints": tuple(joints),
             "models": tuple(models),
-            "loads": standing("load", case.loads),
-            "base": standing("base", case.base),
+            "loads": resolve_histories("load", case.loads),
+            "base": resolve_histories("base", case.base),
             "hoist": hoist,
             "slew": case.slew and _travel(path, "slew", case.slew, system),
             "luff": case.luff and _travel(path, "luff", case.luff, system),
@@ -265,7 +265,7 @@ def _read_tables(case: Case, path: str) -> Case:
 
 
 def _history(path: str, key: str, table: History, system: System) -> History:
-    """Return a table with the pairs of its CSV file, if it has one."""
+    """Return the table of a history after reading its CSV file, if any."""
     _check_columns(path, f"{key}.columns", table.columns, table.file)
     if table.file is None:
         return table
@@ -276,13 +276,13 @@ def _history(path: str, key: str, table: History, system: System) -> History:
     if not read.measured and table.amount not in table.model_fields_set:
         what = described(type(table).model_fields[table.amount])
         raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
-    # The default values become given ones, in the units of the case file.
+    # Without this the default value would be in SI units, not in those of the case file.
     amount = {table.amount: getattr(table, table.amount)}
     return table.model_copy(update={"file": None, "columns": None, "table": read.values, **amount})
 
 
 def _travel(path: str, key: str, travel: Travel, system: System) -> Travel:
-    """Return a drive, winch or turn with the pairs of its CSV file, if it has one."""
+    """Return the table of a drive, winch or turn after reading its CSV file, if any."""
     _check_columns(path, f"{key}.columns", travel.columns, travel.file)
     if travel.file is None:
         return travel
@@ -304,7 +304,7 @@ def _check_columns(path: str, key: str, names: object, file: str | None) -> None
 
 
 def _unreadable(error: Exception, text: str) -> tuple[str, str]:
-    """Return key and message for an existing file with invalid text."""
+    """Return key and message for an existing file that cannot be read."""
     if isinstance(error, OSError):
         return "file", f"cannot be read ({error.strerror}); give a case file that can"
     if isinstance(error, UnicodeDecodeError):
@@ -343,16 +343,16 @@ def _check_time(time: TimeTable) -> None:
 
 
 def _check_boom(found: CheckedCase) -> None:
-    """Check that the boom is valid, and that its models suit it."""
+    """Check the boom, the models, and the load cases and combinations."""
     case, boom = found.case, found.boom
     check_ranges(case, boom)
     check_names("model", [model.name for model in case.models])
     for number, model in enumerate(case.models, start=1):
         where = f"model[{number}]"
         _check_step(f"{where}.step", model.step, case.time)
-        model.check(where, found.joined(model))
+        model.check(where, found.model_boom(model))
     _check_step("time.step", case.time.step, case.time)
-    check_varied(case, boom)
+    check_ensemble_data(case, boom)
     check_combinations(case)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Usual ranges of the numbers of a case; numbers far outside usually have another unit."""
+"""Usual ranges of the numbers of a case. A number far outside usually has another unit."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import numpy as np
 from geometry.boom import Boom, BoomError, Segment
 from runs.case.actions import STANDARD_GRAVITY
 from runs.case.contact import JointTable
-from runs.case.drive import fastest
+from runs.case.drive import max_speed
 from runs.case.schema import Case
 from runs.case.units import System, Unit
 
 # Units that a user may have meant, most likely first.
-_TAKEN_FOR = {
+_LIKELY_UNITS = {
     "Pa": ("MPa", "GPa", "kPa", "Pa"),
     "m": ("mm", "cm", "m"),
     "m/s": ("mm/s", "m/s"),
@@ -24,7 +24,7 @@ _TAKEN_FOR = {
     "kg/m^3": ("t/m^3", "t/mm^3", "kg/m^3"),
 }
 
-# Height of a box over the radius of gyration of its section, which is between 2.2 and 2.8.
+# Height of a box over its radius of gyration: 2.2 to 2.8 in practice.
 _HEIGHT_OVER_GYRATION = 2.5
 
 
@@ -33,10 +33,11 @@ class UsualRange(NamedTuple):
 
     Args:
         key: key in the case file.
-        what: description, for example ``friction of 'fly'``.
+        what: description in messages, for example ``the height of 'fly'``.
         value: value in SI units.
         unit: SI unit, ``1`` for none.
-        least, most: limits of usual values.
+        least: smallest usual value.
+        most: largest usual value.
         margin: factor beyond these limits at which a value is impossible.
     """
 
@@ -59,7 +60,7 @@ class UsualRange(NamedTuple):
         return not self.least / self.margin <= self.value <= self.most * self.margin
 
     def text(self, system: System) -> str:
-        """Return text with the number, its usual range, and the unit that may have been meant."""
+        """Return a message with the number, its usual range, and the unit the user may mean."""
         limits = [
             f"{word} {system.of(limit, self.unit):.3g}"
             for word, limit in (("from", self.least), ("up to", self.most))
@@ -68,7 +69,7 @@ class UsualRange(NamedTuple):
         label = "" if self.unit == "1" else f" {system.label(self.unit)}"
         given = system.of(self.value, self.unit)
         text = f"{self.what} is {given:.5g}{label}, usual is {' '.join(limits)}{label}"
-        for name in _TAKEN_FOR.get(self.unit, ()):
+        for name in _LIKELY_UNITS.get(self.unit, ()):
             meant = given * Unit.of(name).factor
             if self.least <= meant <= self.most:
                 return f"{text}; if it is in {name}, give {system.of(meant, self.unit):.5g}{label}"
@@ -87,15 +88,15 @@ def check_ranges(case: Case, boom: Boom) -> None:
 
 
 def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
-    """Yield all numbers of a case with a known usual range.
+    """Yield the numbers of a case that have a usual range.
 
     The limits are wide: laboratory booms of 1 m and cranes of 60 m are within them.
     """
-    yield from _of_materials(case)
+    yield from _material_ranges(case)
     for number, segment in enumerate(boom.segments):
-        yield from _of_section(f"segment[{number + 1}]", segment)
+        yield from _section_ranges(f"segment[{number + 1}]", segment)
     for number in range(len(boom.joints)):
-        yield from _of_joint(case, boom, number)
+        yield from _joint_ranges(case, boom, number)
     for number, cylinder in enumerate(boom.cylinders, start=1):
         where, what = f"cylinder[{number}].ground", f"the length of cylinder {number}"
         yield UsualRange(where, what, cylinder.length, "m", 0.02 * boom.length, boom.length, 10.0)
@@ -111,8 +112,8 @@ def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
         yield UsualRange("life.detail_category", what, category, "1", 36.0, 160.0, 10.0)
 
 
-def _of_materials(case: Case) -> Iterator[UsualRange]:
-    """Yield the material data; the ranges include solids from plastics to tungsten."""
+def _material_ranges(case: Case) -> Iterator[UsualRange]:
+    """Yield the material data. The ranges cover solids from plastics to tungsten."""
     tables = {f"segment[{i}].material": one.material for i, one in enumerate(case.segments, 1)}
     for where, table in {"material": case.material, **tables}.items():
         if table is None:
@@ -126,7 +127,7 @@ def _of_materials(case: Case) -> Iterator[UsualRange]:
                 yield UsualRange(f"{where}.{key}", what, value, unit, *limits)
 
 
-def _of_section(where: str, segment: Segment) -> Iterator[UsualRange]:
+def _section_ranges(where: str, segment: Segment) -> Iterator[UsualRange]:
     name, length, section = repr(segment.name), segment.length, segment.section
     low, high = length / 500.0, length / 5.0
     if section is None:
@@ -150,10 +151,10 @@ def _of_section(where: str, segment: Segment) -> Iterator[UsualRange]:
         yield UsualRange(where, what, given, "m^4", 0.5 * own, 2.0 * own, 50.0)
 
 
-def _of_joint(case: Case, boom: Boom, number: int) -> Iterator[UsualRange]:
+def _joint_ranges(case: Case, boom: Boom, number: int) -> Iterator[UsualRange]:
     table, joint, where = case.joints[number], boom.joints[number], f"joint[{number + 1}]"
     inner = boom.segments[joint.inner]
-    yield from _of_contacts(where, table)
+    yield from _contact_ranges(where, table)
     if not joint.tied:
         key = "" if table.extension is None else ".extension"
         what, least = f"the overlap of {inner.name!r}", 0.03 * inner.length
@@ -162,10 +163,10 @@ def _of_joint(case: Case, boom: Boom, number: int) -> Iterator[UsualRange]:
         yield UsualRange(where + key, what, boom.overlap_left(joint), "m", least, np.inf, 100.0)
     if joint.drive is not None:
         what = f"the largest speed at which {inner.name!r} moves"
-        yield UsualRange(f"{where}.drive", what, fastest(joint.drive), "m/s", 0.0, 5.0, 200.0)
+        yield UsualRange(f"{where}.drive", what, max_speed(joint.drive), "m/s", 0.0, 5.0, 200.0)
 
 
-def _of_contacts(where: str, table: JointTable) -> Iterator[UsualRange]:
+def _contact_ranges(where: str, table: JointTable) -> Iterator[UsualRange]:
     tables: dict[str, Any] = {where: table, f"{where}.pad": table.pad}
     tables |= {f"{where}.pads[{i}]": pad for i, pad in enumerate(table.pads, start=1)}
     tables[f"{where}.drive"] = table.drive

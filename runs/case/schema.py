@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Schema of a case file, in SI units by default; an unknown key is an error.
 
-The string below a key appears in the JSON Schema and in the message for a missing key.
+The string below a key is its description in the JSON Schema and in messages.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ from runs.case.limits import (
     Exponent,
     Part,
     Text,
-    errors_in,
+    validation_error,
 )
 from runs.case.segment import SegmentTable
 from runs.case.turning import LuffTable, SlewTable
@@ -218,8 +218,8 @@ Velocity = Annotated[
 ]
 
 
-# Key to which a plain number belongs if it replaces a table.
-PLAIN = {Support: "x", VelocityTable: "z"}
+# Key of the table that a plain number in place of the table sets.
+PLAIN_NUMBER_KEYS = {Support: "x", VelocityTable: "z"}
 
 
 class StartTable(CaseTable):
@@ -328,11 +328,11 @@ class LoadCaseTable(CaseTable):
 
 
 def _factor(given: Any) -> Any:
-    """Return a plain number as a product of one number."""
+    """Return a plain number as a tuple of one factor."""
     return (given,) if is_number(given) else given
 
 
-# A factor, as the numbers whose product it is.
+# The numbers whose product is the factor.
 Factor = Annotated[
     tuple[NotNegative, ...],
     In("1"),
@@ -498,7 +498,7 @@ class Case(CaseKeys, CaseHeading):
                 for key in ("outer", "inner", "segment"):
                     name = getattr(part, key, "")
                     if not isinstance(name, str):
-                        raise errors_in(self, "string_type", ((group, number, key), name))
+                        raise validation_error(self, "string_type", ((group, number, key), name))
         return self
 
     @model_validator(mode="after")
@@ -517,10 +517,10 @@ class Case(CaseKeys, CaseHeading):
 
     @property
     def regular(self) -> bool:
-        """True if dry friction keeps motions comparable at all times.
+        """True if dry friction makes the motion regular, so that runs do not diverge.
 
-        This needs friction with given normal forces at each station, and no stops. Friction of
-        contact forces does not suffice.
+        This needs friction under given normal forces at each station, and no stops. Friction
+        under the contact forces alone does not suffice.
         """
         return not self.stops and all(
             joint.tied or (joint.friction > 0.0 and min(joint.normal_forces, default=0.0) > 0.0)
@@ -529,7 +529,7 @@ class Case(CaseKeys, CaseHeading):
 
     @property
     def driven(self) -> dict[str, str]:
-        """The result name and the segment of each joint with a drive."""
+        """The name of the inner segment of each drive, by the suffix of the drive's results."""
         return {
             "" if number == 1 else f"-{number}": joint.inner
             for number, joint in enumerate(self.joints, start=1)

@@ -10,12 +10,12 @@ from pydantic import BeforeValidator, model_validator
 from geometry.fields import End, Few, In, Length, Name, NotNegative, Number, Positive, is_number
 from geometry.segment import Collar, Diaphragm, Material, PointMass
 from geometry.support import Support
-from runs.case.limits import CaseTable, error_at, superfluous
+from runs.case.limits import CaseTable, error_at, superfluous_error
 from runs.case.sections import AnySection
 
 
 def _support(given: Any) -> Any:
-    """Return a plain x as a pinned support there."""
+    """Return a plain x as the table of a pinned support at x."""
     return {"x": given} if isinstance(given, str) or is_number(given) else given
 
 
@@ -81,5 +81,5 @@ class SegmentTable(CaseTable):
         if self.span is None and self.length is None:
             raise error_at(self, "missing", "span")
         if self.span is not None and self.length is not None:
-            raise superfluous(self, "span", "length")
+            raise superfluous_error(self, "span", "length")
         return self

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Writer of cases as TOML, from which the same case can be read again."""
+"""Writer of cases as TOML. Reading the text gives the same case."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def dumps(case: Case) -> str:
-    """Return the whole case as TOML, with defaults; omit values that are not given."""
+    """Return the case as TOML, defaults included; values that are None are omitted."""
     data = case.model_dump(by_alias=True, exclude_none=True)
     return "\n".join(_table(data, "")) + "\n"
 
@@ -26,7 +26,7 @@ def digest(case: Case) -> str:
 
 
 def _table(table: Mapping[str, Any], path: str) -> Iterator[str]:
-    """Yield the lines of a table: plain values first, as TOML requires, then inner tables."""
+    """Yield the lines of a table: plain values first, as TOML requires, then nested tables."""
     nested = {key: value for key, value in table.items() if _is_nested(value)}
     for key, value in table.items():
         if key not in nested:
@@ -40,7 +40,7 @@ def _table(table: Mapping[str, Any], path: str) -> Iterator[str]:
 
 
 def _key(name: str) -> str:
-    """Return a valid TOML key: names of segments, the keys of velocities, may need quotes."""
+    """Return a key as TOML, quoted if needed. Names of segments occur as keys of velocities."""
     return name if _BARE.fullmatch(name) else _value(name)
 
 

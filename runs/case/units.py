@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
-# A dimension: the exponents of length, mass and time.
+# Exponents of length, mass and time.
 Dimension = tuple[float, float, float]
 
 _NONE, _LENGTH, _MASS, _TIME = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -38,7 +38,7 @@ _PLAIN = str.maketrans("¹²³⁴⁻μ·*", "1234-µ  ")
 class Unit:
     """A unit of measurement."""
 
-    factor: float  #: number of SI units in one unit
+    factor: float  #: size of the unit in SI units
     dimension: Dimension  #: the exponents of length, mass and time
 
     @classmethod
@@ -67,7 +67,7 @@ class Unit:
         return cls(float(size), (exponents[0], exponents[1], exponents[2]))
 
 
-# Systems of units: the unit that replaces each SI unit.
+# In each system of units, the units that replace SI units.
 SystemName = Literal["SI", "mm-t-s", "N-mm"]
 _MILLIMETRES = {"m": "mm", "kg": "t", "Pa": "MPa"}
 _SYSTEMS: Mapping[SystemName, Mapping[str, str]] = {
@@ -92,23 +92,23 @@ class System:
         return re.sub("[A-Za-z]+", lambda found: symbols.get(found[0], found[0]), si)
 
     def size(self, si: str) -> Fraction:
-        """Return the number of SI units in one unit of the system."""
+        """Return the size in SI units of the system's unit."""
         return Fraction(repr(Unit.of(self.unit(si)).factor / Unit.of(si).factor))
 
     def of(self, value: float, si: str) -> float:
-        """Return a value in an SI unit, converted to the system's unit."""
-        return scaled(value, 1 / self.size(si))
+        """Return a value, given in an SI unit, in the system's unit."""
+        return scale(value, 1 / self.size(si))
 
     def label(self, si: str) -> str:
         """Return the system's unit as text for headings, for example ``mm⁴``."""
         return self.unit(si).replace("^", "").translate(_RAISED)
 
     def text(self, value: float, si: str, digits: int = 4) -> str:
-        """Return a value in an SI unit as text in the system's unit, such as ``12.5 mm``."""
+        """Return a value, given in an SI unit, as text in the system's unit: ``12.5 mm``."""
         return f"{self.of(value, si):.{digits}g} {self.label(si)}"
 
 
-def scaled(value: float, size: Fraction) -> float:
+def scale(value: float, size: Fraction) -> float:
     """Return value times size in decimal arithmetic, so that 9.7 mm are exactly 0.0097 m.
 
     Raises:

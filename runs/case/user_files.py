@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Checks of the user's files before reading, and of folders before replacement."""
+"""Reader of the user's text files, and a check of folders that a run replaces."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from pathlib import Path
 from runs.case.messages import BadInput
 from runs.folder.files import real
 
-# Maximum size of a text in bytes; a case with the most tabulated times is smaller.
-LARGEST = 16_000_000
+# Maximum size of a text file; a case with the largest permitted tables is smaller.
+MAX_BYTES = 16_000_000
 
 
 def check_regular(path: Path) -> None:
-    """Check that a path is a regular file: pipes may block, and devices have no end.
+    """Check that a path is a regular file. Reading a pipe may block, and a device may never end.
 
     Raises:
         OSError: the file is missing, or is no regular file.
@@ -29,17 +29,18 @@ def check_regular(path: Path) -> None:
         raise OSError(errno.EINVAL, "not a regular file", str(path))
 
 
-def check_left(folder: Path, file: str, key: str) -> None:
+def check_not_working_folder(folder: Path, file: str, key: str) -> None:
     """Check that a folder to replace is not the working folder.
 
-    The user's shell would stay in the old folder, which is then empty.
+    After the replacement the user's shell would be in the old folder, which is empty.
 
     Args:
         folder: the folder to replace.
-        file, key: names in messages.
+        file: path in the message.
+        key: key in the message.
 
     Raises:
-        BadInput: it is the working folder of this process.
+        BadInput: the folder, or a folder within it, is the working folder.
     """
     if Path.cwd().is_relative_to(real(folder)):
         raise BadInput(
@@ -58,7 +59,7 @@ def read_text(path: Path) -> str:
 
 
 def read_any_text(path: Path) -> str:
-    """Return the text of a file like :func:`read_text`, also in the encodings of spreadsheets.
+    """Return the text of a file, also in the encodings that spreadsheets write.
 
     A byte order mark identifies UTF-16. Text that is not UTF-8 is read as Windows-1252.
     """
@@ -74,7 +75,7 @@ def read_any_text(path: Path) -> str:
 def _read(path: Path) -> bytes:
     check_regular(path)
     with path.open("rb") as file:
-        data = file.read(LARGEST + 1)
-    if len(data) > LARGEST:
-        raise OSError(errno.EFBIG, f"larger than {LARGEST // 1_000_000} MB", str(path))
+        data = file.read(MAX_BYTES + 1)
+    if len(data) > MAX_BYTES:
+        raise OSError(errno.EFBIG, f"larger than {MAX_BYTES // 1_000_000} MB", str(path))
     return data

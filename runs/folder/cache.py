@@ -177,7 +177,7 @@ class Cache:
         return self.folder / f"{key}{_SUFFIX}"
 
 
-def remembered(
+def load_or_compute(
     cache: Cache,
     content: Sequence[Any],
     comm: MPI.Comm,

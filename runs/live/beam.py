@@ -59,7 +59,7 @@ def beam_results(checked: CheckedCase, check_current: Callable[[], None]) -> Ite
         NumericsError: the beam has no equilibrium, or its motion cannot be computed.
     """
     case, boom, (model,) = checked.case, checked.boom, checked.case.models
-    built = build_on(checked.joined(model), case, model)
+    built = build_on(checked.model_boom(model), case, model)
     loaded = LoadedModel.of(boom, model, built)
     duration = case.time.duration
     check_current()

@@ -17,7 +17,7 @@ from scipy.special import stdtrit
 
 from geometry.arrays import Array, Mask
 from runs.case.kinds.kantorovich import Kantorovich
-from runs.case.kinds.model import of_kind
+from runs.case.kinds.model import select_kind
 from runs.case.schema import Model
 from runs.paper.run_query import MissingData, RunQuery, apart_at_the_end, options, peaks_apart
 from runs.paper.statements import STATEMENTS
@@ -363,7 +363,7 @@ def _s11(run: RunQuery) -> Finding:
     if count < SEGMENTS:
         raise MissingData(f"This case has {count} segments; it takes the case of three segments.")
     series = max(
-        of_kind(Kantorovich, run.case.models),
+        select_kind(Kantorovich, run.case.models),
         key=lambda model: sum(model.terms),
         default=None,
     )
@@ -452,5 +452,5 @@ def _range(curve: Array) -> float:
 
 def _exponents(run: RunQuery, model: Model) -> list[set[float]]:
     """Return the contact exponents n of a model's joints."""
-    joints = model.joined(run.results.boom).boom.joints
+    joints = model.model_boom(run.results.boom).boom.joints
     return [{term.exponent for term in joint.contact.terms} for joint in joints]

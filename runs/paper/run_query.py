@@ -11,7 +11,7 @@ import numpy as np
 
 from geometry.arrays import Array, Mask
 from runs.case.kinds.kantorovich import Kantorovich
-from runs.case.kinds.model import of_kind
+from runs.case.kinds.model import select_kind
 from runs.case.schema import Case, Model
 from runs.pipeline.low_pass import slow_peaks
 from runs.pipeline.results import Results
@@ -176,7 +176,7 @@ def _require(model: Model, what: str, value: _Found | None) -> _Found:
 
 def terms(model: Model) -> tuple[int, ...]:
     """Return the numbers of functions of a series; empty for other models."""
-    return next((series.terms for series in of_kind(Kantorovich, [model])), ())
+    return next((series.terms for series in select_kind(Kantorovich, [model])), ())
 
 
 def options(model: Model, *ignored: str) -> dict[str, Any]:

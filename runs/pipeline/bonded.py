@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Models with bonded contacts, without play.
 
-Contacts under pressure at rest are bonded in the position without play. At stations without such
-contacts, all contacts are bonded. Local compliance remains, for example that of a shell's walls.
+Contacts that are closed in the static state are bonded without play. At a station without closed
+contacts all contacts are bonded. Local compliance remains, for example that of a shell's walls.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from scipy.linalg import eigh, null_space
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 
-# Fraction of the least ω² of the segments, below which a motion is rigid.
-_RIGID = 1.0e-6
+# Modes with ω² below this fraction of the least positive ω² of the segments count as rigid.
+_RIGID_FRACTION = 1.0e-6
 
 
 def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, Array]:
-    """Return the bonded system and its shapes (num_modes, num_bonded_modes).
+    """Return the bonded system, and its modes (num_modes, num_bonded_modes) in the old coordinates.
 
-    The bonded system keeps only the stations on the ground.
+    Of the stations only those on the ground remain.
 
     >>> from runs.pipeline.bonded import bonded_system
     >>> pair = replace(ball, omega2=np.array([0.0, 4.0]), load=np.zeros(2), stations=[1.0],
@@ -35,7 +35,7 @@ def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem,
 
     Args:
         system: gap system with its contacts.
-        rests: equilibria (num_modes,) under the loads that decide which contacts press.
+        rests: equilibria (num_modes,) in which contacts are closed or open.
     """
     on_ground = np.isin(system.station_of_row, system.grounded)
     pressing = np.zeros(len(system.laws), dtype=bool)
@@ -46,7 +46,7 @@ def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem,
     held = system.rows[~on_ground & (pressing | ~pressed)]
     free = null_space(held) if held.size else np.eye(system.num_modes)
     omega2, shapes = eigh(free.T @ system.stiffness @ free)
-    least = _RIGID * min(system.omega2[system.omega2 > 0.0], default=0.0)
+    least = _RIGID_FRACTION * min(system.omega2[system.omega2 > 0.0], default=0.0)
     omega2[np.abs(omega2) <= least] = 0.0
     basis = free @ shapes
     grounded = list(system.grounded)

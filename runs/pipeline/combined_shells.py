@@ -20,18 +20,18 @@ from geometry.boom import Boom
 from geometry.load import Load
 from runs.case.build import build_boom
 from runs.case.combinations import CombinedCase, combined_cases
-from runs.case.kinds.model import Built, Joined, Workshop
+from runs.case.kinds.model import BuildContext, BuiltModel, ModelBoom
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
 from runs.pipeline.combinations import CombinationState
 from runs.pipeline.largest_loads import StaticBeam
 from runs.pipeline.model_output import force_places
-from runs.pipeline.section_forces import with_cylinders
+from runs.pipeline.section_forces import with_cylinder_forces
 from runs.pipeline.strength import wall_stresses
 from runs.pipeline.wall_buckling import buckled_shell
 
 
-def shell_states(case: Case, model: Shell, workshop: Workshop) -> list[CombinationState]:
+def shell_states(case: Case, model: Shell, workshop: BuildContext) -> list[CombinationState]:
     """Return the static states of all combinations by a shell, on rank 0. Collective.
 
     With a table ``buckling`` the segments' buckling factors are those of the state with the
@@ -43,7 +43,7 @@ def shell_states(case: Case, model: Shell, workshop: Workshop) -> list[Combinati
         workshop: the context of the shell.
     """
     combined = list(combined_cases(case))
-    booms = [_without_drives(model.joined(build_boom(one.case)).boom) for one in combined]
+    booms = [_without_drives(model.model_boom(build_boom(one.case)).boom) for one in combined]
     groups: dict[str, list[int]] = {}
     for number, boom in enumerate(booms):
         places = [segment.ends for segment in boom.segments]
@@ -51,7 +51,7 @@ def shell_states(case: Case, model: Shell, workshop: Workshop) -> list[Combinati
     found: dict[int, CombinationState] = {}
     for numbers in groups.values():
         shared = _shared([booms[number] for number in numbers])
-        built = model.build(Joined(shared[0]), workshop)
+        built = model.build(ModelBoom(shared[0]), workshop)
         states = [
             _state(combined[number], boom, model, built)
             for number, boom in zip(numbers, shared[1:], strict=True)
@@ -117,7 +117,7 @@ def _by_kind(boom: Boom) -> dict[str, Load]:
     return found
 
 
-def _state(combined: CombinedCase, boom: Boom, model: Shell, built: Built) -> CombinationState:
+def _state(combined: CombinedCase, boom: Boom, model: Shell, built: BuiltModel) -> CombinationState:
     """Return the static states of a combination, on rank 0."""
     from shell_model.standard import with_plays_and_loads
     from shell_model.stress.history import stress_near_places
@@ -126,7 +126,7 @@ def _state(combined: CombinedCase, boom: Boom, model: Shell, built: Built) -> Co
     assert built.shell is not None
     own = with_plays_and_loads(built.shell, boom)
     system = own.system.gather_loads()
-    along = with_cylinders(boom, system, model.lines(boom, replace(built, shell=own)))
+    along = with_cylinder_forces(boom, system, model.lines(boom, replace(built, shell=own)))
     try:
         with np.errstate(all="ignore"):
             beam = StaticBeam.at_rest(boom, system, along, combined.case.time.duration)
@@ -147,8 +147,8 @@ def _buckled(
     shared: Sequence[Boom],
     states: Sequence[CombinationState],
     model: Shell,
-    built: Built,
-    workshop: Workshop,
+    built: BuiltModel,
+    workshop: BuildContext,
 ) -> list[CombinationState]:
     """Return the states with the buckling of the one with the farthest tip. Collective."""
     from shell_model.buckling import StaticState

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Comparison of two models of one boom at three levels: instants, peaks, distributions."""
+"""Comparison of two models of a boom at three levels: instants, peaks, distributions."""
 
 from __future__ import annotations
 
@@ -17,19 +17,20 @@ from runs.pipeline.low_pass import Number, Numbers, SlowPeaks
 
 @dataclass(frozen=True, slots=True)
 class PeakDifferences:
-    """Differences between the peaks of two slow motions, the second less the first, in order.
+    """Differences (num_peaks,) between the peaks of two slow motions, second minus first.
 
-    A combined spread is the sum of both spreads. If a difference exceeds it, no member of one model
-    has the same peak as a member of the other.
+    A combined spread is the sum of the spreads of both ensembles. If a difference exceeds it, the
+    peak differs between all members of the two models.
 
     Args:
-        time, time_spread: differences and combined spreads (num_peaks,) of the times in s.
-        height, height_spread: differences and combined spreads (num_peaks,) of the heights, in the
-            signal's unit.
-        explained: (num_peaks,) true where no difference exceeds its spread.
+        time: differences of the times in s.
+        time_spread: combined spreads of the times in s.
+        height: differences of the heights, in the unit of the signal.
+        height_spread: combined spreads of the heights, in the unit of the signal.
+        explained: true where neither difference exceeds its combined spread.
     """
 
-    decides: ClassVar[str] = (
+    scope: ClassVar[str] = (
         "Shows which common peaks of the slow motion differ by more than chaos explains; it "
         "cannot tell differences of the ripple, or of peaks that some members lack."
     )
@@ -42,7 +43,7 @@ class PeakDifferences:
 
     @classmethod
     def of(cls, one: SlowPeaks, other: SlowPeaks) -> PeakDifferences:
-        """Compare the peaks that both models have."""
+        """Return the differences between the peaks that both models have."""
         common = slice(min(one.time.size, other.time.size))
         time, height = (
             other.time[common] - one.time[common],
@@ -56,18 +57,21 @@ class PeakDifferences:
 
 @dataclass(frozen=True, slots=True)
 class Distributions:
-    """Distributions of the values of two models' members, once both are unpredictable.
+    """Distributions of the values of two ensembles after both horizons.
+
+    The statistics of each model are NaN if a model stays predictable.
 
     Args:
-        since: later one of both horizons at the last of ``SHARES`` in s.
-        range, mean, deviation: range, mean and standard deviation of each model, in the signal's
-            unit; NaN if one stays predictable.
+        since: later of both horizons of the largest differences, in s.
+        range: range of each model, in the unit of the signal.
+        mean: mean of each model, in the unit of the signal.
+        deviation: standard deviation of each model, in the unit of the signal.
         distance: Kolmogorov-Smirnov distance, the largest difference of the cumulative
-            distributions, 0 to 1. It gives no significance, since values of one member at close
-            times are not independent.
+            distributions, 0 to 1. It is no test of significance, since successive values are
+            correlated.
     """
 
-    decides: ClassVar[str] = (
+    scope: ClassVar[str] = (
         "Shows whether the models have the same distribution of values after the horizons; it "
         "cannot tell differences of time and order."
     )
@@ -80,9 +84,9 @@ class Distributions:
 
     @classmethod
     def of(cls, one: Array, other: Array, time: Array, since: float) -> Distributions:
-        """Compare all values (num_members, num_times) of one quantity; times in s.
+        """Compare the values (num_members, num_times) of two ensembles after a time ``since`` in s.
 
-        Values from ``since`` on count; it is NaN if a model stays predictable.
+        If a model stays predictable, ``since`` is NaN.
         """
         # Imported here, since most runs have no ensemble and the import takes half a second.
         from scipy.stats import ks_2samp
@@ -113,8 +117,8 @@ def compare(one: xr.Dataset, other: xr.Dataset, cutoff: float, observer: str = "
     """Compare the ensembles of two models.
 
     Args:
-        one, other: ensembles of :func:`dynamics.predictability.ensemble.integrate_ensemble`, at the
-            same times.
+        one: ensemble of :func:`dynamics.predictability.ensemble.integrate_ensemble`.
+        other: ensemble of the other model at the same times.
         cutoff: cut-off of the slow motion in Hz.
         observer: name of the compared output.
 
@@ -129,7 +133,7 @@ def compare(one: xr.Dataset, other: xr.Dataset, cutoff: float, observer: str = "
         [ensemble_horizons(ensemble, SHARES, observer) for ensemble in (one, other)]
     )
     until = float(np.nan_to_num(horizons[:, 0], nan=time[-1]).min())
-    # The maximum is NaN if a horizon is NaN, that is, if a model is predictable to the end.
+    # A horizon is NaN if the model is predictable to the end; then the maximum is NaN, too.
     since = float(horizons[:, -1].max())
     return Comparison(
         PointwiseDifferences.from_curves(members[0][0], members[1][0], time, until),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Context of a run: ranks, progress and cache."""
+"""Context of a run: ranks, progress reporter, caches and helper process."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
 
-def silent(model: str, stage: str, part: float) -> None:
-    """Ignore the progress; a :data:`runs.process.progress.Progress` without display."""
+def ignore_progress(model: str, stage: str, part: float) -> None:
+    """Ignore a progress report; the reporter of runs without display."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunContext:
-    """Context of a run: ranks, folders and progress.
+    """Ranks, progress reporter, caches and helper process of a run.
 
     Args:
         comm: ranks that share the shells and the ensembles; None for a case without shells.
-        progress: receives the progress of every stage.
+        progress: callback that receives model, stage and completed fraction.
         cache: cache of reduced shells.
-        motions: store of completed motions, of this run and earlier ones.
-        helper: second process for shells and pictures, where there is only one rank.
+        motions: cache of completed motions.
+        helper: second process for shells and pictures if there is only one rank.
     """
 
     comm: MPI.Intracomm | None = None
-    progress: Progress = silent
+    progress: Progress = ignore_progress
     cache: Cache | None = None
     motions: Cache | None = None
     helper: Executor | None = None

@@ -26,22 +26,22 @@ class ModelDesignResults:
     Args:
         static: static states under the loads at t = 0 and, if loads vary, under their extreme
             values; empty without an equilibrium.
-        static_extended: static states at the largest and least extension, under the loads at that
-            time and the extreme loads at that extension.
-        static_bonded: static states without play, at the instants with the initial extension.
+        static_extended: static states at the largest and least extension, under the loads at the
+            time of that extension and the extreme loads while it lasts.
+        static_bonded: static states without play, at times with the initial extension.
         modes: the first modes about the equilibrium under the loads at t = 0; empty without an
             equilibrium.
-        modes_bonded: modes of the boom without play, without shapes.
+        modes_bonded: modes of the boom without play; their shapes are not stored.
         motion: extreme values of the motion.
         motion_bonded: extreme values without play, except wall stresses of shells; None for a model
             without play, or if they cannot be computed.
-        life: fatigue damage of each segment with a known section, where cycles can be counted.
+        life: fatigue damage of each segment with a known section.
         life_bonded: fatigue damage without play.
         buckling: buckling of the walls of each segment of a shell, in the static state with the
-            farthest tip; empty for beams, and unless the case requests it.
+            largest tip deflection; empty for beams and without the table ``buckling``.
         panels: estimates of the lowest buckling factors by panel formulas, in the same state.
-        residual_vibration: vibration during telescoping; None without telescoping, if the run ends
-            before its drives, or without an equilibrium.
+        residual_vibration: residual vibration of telescoping; None without telescoping, without an
+            equilibrium, or if the run ends before the drives stop.
     """
 
     static: list[StaticResult] = field(default_factory=list)
@@ -72,9 +72,10 @@ class PlayDifference:
     Args:
         what: name of the result, as in :class:`Peak`, or ``deflection at rest``, ``first
             frequency``, ``stress``.
-        where: place of the result; empty for the whole boom.
+        where: location of the result; empty for the whole boom.
         unit: SI unit.
-        with_play, bonded: absolute values of the result with play and without.
+        with_play: absolute value of the result with play.
+        bonded: absolute value of the result without play.
     """
 
     what: str
@@ -85,12 +86,12 @@ class PlayDifference:
 
     @property
     def increase(self) -> float:
-        """The increase by play, in the unit."""
+        """The increase by play, in the unit of the result."""
         return self.with_play - self.bonded
 
     @property
     def share(self) -> float | None:
-        """The increase as a fraction of the value without play; None if that is zero."""
+        """The increase as a fraction of the value without play; None if this value is zero."""
         return self.increase / self.bonded if self.bonded else None
 
 
@@ -100,7 +101,7 @@ class PlayEffect:
 
     Args:
         model: name of the model with play.
-        numbers: results at rest, of modes and of motions, with and without play.
+        numbers: static, modal and dynamic results, with and without play.
     """
 
     model: str
@@ -109,11 +110,11 @@ class PlayEffect:
 
 @dataclass(frozen=True, slots=True)
 class QualityNote:
-    """Note of one line on the accuracy of the results.
+    """Note on the accuracy of the results.
 
     Args:
         what: subject: ``agreement``, ``horizon``, ``reduction``, ``mesh``, ``energy`` or ``step``.
-        line: the note.
+        line: text of the note.
     """
 
     what: str
@@ -126,9 +127,9 @@ class DesignResults:
 
     Args:
         models: design results of each model, by its name.
-        reactions: support reactions of beam elements at rest under the loads at t = 0, as in
+        reactions: static support reactions under the loads at t = 0, of beam elements as in
             ``check``; empty without an equilibrium.
-        reactions_bonded: support reactions without play.
+        reactions_bonded: static support reactions without play.
         modes: comparison of the modes of all models; None if fewer than two models have modes.
         play: effect of play in each model with play.
         quality_notes: notes on the accuracy.
@@ -154,14 +155,14 @@ def play_effects(models: list[Model], design: Mapping[str, ModelDesignResults]) 
         design: design results of the models.
     """
     return [
-        PlayEffect(model.name, [*_at_rest(own), *_in_motion(own)])
+        PlayEffect(model.name, [*_static_differences(own), *_motion_differences(own)])
         for model in models
         if not model.bonded
         for own in [design[model.name]]
     ]
 
 
-def _at_rest(own: ModelDesignResults) -> Iterator[PlayDifference]:
+def _static_differences(own: ModelDesignResults) -> Iterator[PlayDifference]:
     tied = {rest.time: rest for rest in own.static_bonded}
     both = [(rest, tied[rest.time]) for rest in own.static if rest.time in tied]
     if both:
@@ -175,7 +176,7 @@ def _at_rest(own: ModelDesignResults) -> Iterator[PlayDifference]:
         )
 
 
-def _in_motion(own: ModelDesignResults) -> Iterator[PlayDifference]:
+def _motion_differences(own: ModelDesignResults) -> Iterator[PlayDifference]:
     if own.motion is None or own.motion_bonded is None:
         return
     others = {(peak.what, peak.where): peak.largest for peak in own.motion_bonded.peaks}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Descriptions of the drives of a boom, and the prediction of stick-slip."""
+"""Descriptions of drives, predictions of stick-slip, and cautions on lagging segments."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from dynamics.drive.travel import Travel
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
 from geometry.typography import TO_KILO, TO_PERCENT
-from runs.case.drive import fastest
+from runs.case.drive import max_speed
 from runs.case.elastic_drive import elastic_drives, with_elastic_drives
 from runs.case.schema import Case
 from runs.case.units import System
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
 
 # Upper limit of (R_s − R)/(v √(k m)) in the search for the critical speed.
-_FARTHEST = 1.0e6
+_MAX_DROP = 1.0e6
 
-# Fraction of the smallest overlap. The pads of a segment with a larger lag are at other places.
-FAR_BEHIND = 0.01
+# Fraction of the smallest overlap: with a larger lag the pads of a segment are at other stations.
+MAX_LAG = 0.01
 
 
 def drive_lines(boom: Boom, system: System) -> Iterator[str]:
@@ -38,7 +38,7 @@ def drive_lines(boom: Boom, system: System) -> Iterator[str]:
 
     Args:
         boom: boom whose joints may have drives.
-        system: units of the sentences.
+        system: units of the numbers.
     """
     for joint in boom.joints:
         if joint.drive is None:
@@ -51,41 +51,41 @@ def drive_lines(boom: Boom, system: System) -> Iterator[str]:
         ]
         yield (
             f"A drive {' and '.join(travels)} from {max(0.0, min(kinks)):g} to {max(kinks):g} s, "
-            f"at {system.text(fastest(joint.drive), 'm/s')} at most; the least overlap is "
+            f"at {system.text(max_speed(joint.drive), 'm/s')} at most; the least overlap is "
             f"{system.text(boom.overlap_left(joint), 'm')}."
         )
 
 
 @dataclass(frozen=True, slots=True)
 class StickSlipEstimate:
-    """The stick-slip behaviour of a drive of finite stiffness, estimated before the motion.
+    """Data of an elastic drive from which its stick-slip is predicted.
 
     Args:
-        inner: name of the moving segment.
+        inner: name of the inner segment.
         elastic: data of the elastic drive.
-        friction: largest friction R at rest in N.
-        fastest: largest commanded speed in m/s.
+        friction: largest sliding friction R in the static states, in N.
+        max_speed: largest commanded speed in m/s.
     """
 
     inner: str
     elastic: ElasticDrive
     friction: float
-    fastest: float
+    max_speed: float
 
     @property
-    def critical(self) -> float:
-        """The speed in m/s above which the segment does not stick again once it slips."""
+    def critical_speed(self) -> float:
+        """The critical speed of the drive in m/s, see :func:`critical_speed`."""
         return critical_speed(self.elastic, self.friction)
 
 
 def critical_speed(drive: ElasticDrive, friction: float) -> float:
-    """Return the constant speed in m/s above which a segment slips without sticking again.
+    """Return the speed in m/s above which a slipping segment does not stick again.
 
-    It is infinite without damping.
+    Without damping it is infinite.
 
     Args:
-        drive: data of the drive.
-        friction: R of sliding in N.
+        drive: data of the elastic drive.
+        friction: sliding friction R in N.
     """
     drop = (drive.sticking - 1.0) * friction
     if drop == 0.0 or drive.damping_ratio >= 1.0:
@@ -97,7 +97,7 @@ def critical_speed(drive: ElasticDrive, friction: float) -> float:
 
 
 def _critical_drop(ratio: float) -> float:
-    """Return the limit of (R_s − R)/(v √(k m)) below which a slip does not end, for a ratio ζ.
+    """Return the limit of (R_s − R)/(v √(k m)) below which slip continues, for a damping ratio ζ.
 
     A slip begins with ż/v = 1 and the slope −D, in units of 1/ω, and vibrates freely. For all ζ
     below 1 its next maximum is √(1 − 2ζD + D²) e^{−ζ(θ + π)/√(1 − ζ²)}, θ = arg((ζD − 1)/√(1 − ζ²)
@@ -112,13 +112,13 @@ def _critical_drop(ratio: float) -> float:
         grown = 0.5 * np.log1p(drop * (drop - 2.0 * ratio))
         return float(grown - ratio * (angle + np.pi) / beat)
 
-    if beyond(_FARTHEST) < 0.0:
+    if beyond(_MAX_DROP) < 0.0:
         return np.inf
-    return float(brentq(beyond, 2.0 * ratio, _FARTHEST, xtol=1e-14))
+    return float(brentq(beyond, 2.0 * ratio, _MAX_DROP, xtol=1e-14))
 
 
 def stick_slip_estimates(case: Case, boom: Boom) -> Iterator[StickSlipEstimate]:
-    """Yield the estimate for each drive of finite stiffness, from pad forces at rest."""
+    """Yield the estimate for each elastic drive, from static pad forces."""
     joints = elastic_drives(case, boom)
     if not joints or statics(case, boom) is None:
         return
@@ -128,7 +128,7 @@ def stick_slip_estimates(case: Case, boom: Boom) -> Iterator[StickSlipEstimate]:
         joint = boom.joints[number]
         assert joint.drive is not None
         name, friction = boom.segments[joint.inner].name, _friction(system, travel, case)
-        yield StickSlipEstimate(name, elastic, friction, fastest(joint.drive))
+        yield StickSlipEstimate(name, elastic, friction, max_speed(joint.drive))
 
 
 def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
@@ -145,14 +145,14 @@ def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
 
 
 def stick_slip_lines(found: Iterable[StickSlipEstimate], system: System) -> Iterator[str]:
-    """Yield a sentence for each drive of finite stiffness."""
+    """Yield a sentence on the stick-slip of each elastic drive."""
     for one in found:
-        if one.critical == 0.0:
+        if one.critical_speed == 0.0:
             slips = "does not stick again once it slips"
-        elif one.critical == np.inf:
+        elif one.critical_speed == np.inf:
             slips = "sticks and slips at any speed"
         else:
-            slips = f"sticks and slips below {system.text(one.critical, 'm/s', 3)}"
+            slips = f"sticks and slips below {system.text(one.critical_speed, 'm/s', 3)}"
         yield (
             f"The drive of {one.inner!r} moves {system.text(one.elastic.mass, 'kg')}, with a "
             f"frequency of {one.elastic.frequency:.3g} Hz and a damping ratio of "
@@ -162,39 +162,39 @@ def stick_slip_lines(found: Iterable[StickSlipEstimate], system: System) -> Iter
 
 
 def stick_slip_cautions(found: Iterable[StickSlipEstimate], system: System) -> Iterator[str]:
-    """Yield a caution for each drive with stick-slip along the whole travel."""
+    """Yield a caution for each drive with stick-slip over its whole travel."""
     for one in found:
-        if one.critical <= one.fastest:
+        if one.critical_speed <= one.max_speed:
             continue
         remedy = "has no damping; give it a dashpot"
-        if one.critical < np.inf:
+        if one.critical_speed < np.inf:
             remedy = (
-                f"moves smoothly from {system.text(one.critical, 'm/s', 3)} on; increase the "
+                f"moves smoothly from {system.text(one.critical_speed, 'm/s', 3)} on; increase the "
                 "speed, the stiffness or the damping"
             )
         yield (
             f"caution: the drive of {one.inner!r} sticks and slips along its whole travel: it "
-            f"moves at {system.text(one.fastest, 'm/s', 3)} at most, and {remedy}"
+            f"moves at {system.text(one.max_speed, 'm/s', 3)} at most, and {remedy}"
         )
 
 
 def lag_cautions(boom: Boom, data: xr.Dataset, system: System) -> Iterator[str]:
-    """Yield a caution for each segment whose lag moves its pads to other places.
+    """Yield a caution for each segment that lags so far that its pads are at other stations.
 
     Args:
-        boom: boom of a case.
+        boom: boom of the case.
         data: trajectories of its models.
-        system: units of the cautions.
+        system: units of the numbers.
     """
     for number, joint in enumerate(boom.joints, start=1):
         name = "drive_lag" if number == 1 else f"drive_lag-{number}"
         if name not in data:
             continue
         lag, overlap = float(np.abs(data[name]).max()), boom.overlap_left(joint)
-        if lag > FAR_BEHIND * overlap:
+        if lag > MAX_LAG * overlap:
             yield (
                 f"caution: {boom.segments[joint.inner].name!r} lags up to "
                 f"{system.text(lag, 'm')} behind its drive, more than "
-                f"{TO_PERCENT * FAR_BEHIND:g} % of the {system.text(overlap, 'm')} of overlap: "
+                f"{TO_PERCENT * MAX_LAG:g} % of the {system.text(overlap, 'm')} of overlap: "
                 "the motion across the boom follows the drive and neglects the lag"
             )

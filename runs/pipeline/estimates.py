@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Estimates of the memory and time of a run before it starts.
 
-Memory is never too low, and too high by a factor of at most about four. Time is right within a
-factor of two on an AMD EPYC without other load (tests/runs/test_estimates.py). Beams are built; a
-shell is not meshed yet, and a beam stands for it.
+The memory is an upper bound, about four times too high at most. The time is right within a factor
+of two on an idle AMD EPYC (tests/runs/test_estimates.py). Beams are built for the estimate; a shell
+is not meshed, and a beam replaces it.
 """
 
 from __future__ import annotations
@@ -25,27 +25,27 @@ from runs.pipeline.models import build_on, initial_motion
 # Memory in bytes and time in s of runs that need no confirmation.
 MAX_MEMORY, MAX_TIME = 4.0e9, 3600.0
 
-# Memory in bytes of the libraries for a beam and for a shell, including just-in-time compilation.
+# Memory in bytes of the libraries of a beam and of a shell, with just-in-time compilation.
 _LIBRARIES, _SHELL_LIBRARIES = 1.3e9, 1.6e9
 
-# Numbers of 8 bytes per output and model: fixed columns, per coordinate, per station.
+# Numbers (of 8 bytes) per output time and model: constant part, per coordinate, per station.
 _NUMBERS, _OF_COORDINATE, _OF_STATION = 160.0, 1.5, 12.0
-# Time in s per output and model for files and figures, and per travel for results of drives.
-_WRITING, _OF_TRAVEL = 3.0e-5, 4.0e-4
-# Numbers of 8 bytes per output and member of an ensemble, and per step of an output interval.
+# Time in s per output time and model for files and figures, and per drive for its results.
+_WRITE_TIME, _OF_TRAVEL = 3.0e-5, 4.0e-4
+# Numbers (of 8 bytes) per output time and member of an ensemble, and per step between two outputs.
 _OF_MEMBER, _OF_STEP = 22.0, 24.0
 
-# Time in s of results and the loading of compiled code per model, and of the report of a run.
+# Time in s for the design results of a model, and for the report of a run without and with shells.
 _RESULTS, _REPORT, _SHELL_REPORT = 1.0, 5.0, 15.0
-# Time in s per step, per coordinate of a step, and per row of a step.
+# Time in s of a step: constant part, per coordinate, per contact.
 _STEP, _OF_MODE, _OF_ROW = 0.5e-6, 1.0e-8, 0.5e-6
-# With error control: steps per output interval without impacts, fraction of the largest number of
-# steps with impacts, at a tolerance, and computed steps per step of the motion.
-_SUBSTEPS, _OF_MOST, _TOLERANCE, _AGAIN = 4.0, 0.5, 1.0e-3, 2.5
-# Number of motions that measure the horizons.
+# With error control: steps per output interval without impacts; with impacts the fraction of the
+# largest number of steps, at this tolerance; computed steps per accepted step.
+_SUBSTEPS, _OF_MOST, _TOLERANCE, _REPEATED = 4.0, 0.5, 1.0e-3, 2.5
+# Number of motions for the horizons of a model.
 _HORIZONS = 24
 
-# Number of points of a sweep that are estimated; the cost of the others is extrapolated.
+# Number of points of a sweep whose cost is estimated; the others are extrapolated.
 _SAMPLE = 20
 
 
@@ -69,21 +69,21 @@ class Cost:
 
 @dataclass(frozen=True, slots=True)
 class Preview:
-    """Motions of the models of a case for estimates, each model built once as beams.
+    """Initial motions of the models of a case, as beams, from which the cost is estimated.
 
     Args:
-        declared: case with its boom and models.
+        checked: checked case. Each of its models is built once.
     """
 
-    declared: CheckedCase
+    checked: CheckedCase
     _motions: list[tuple[ModelTable, Motion]] = field(default_factory=list, init=False, repr=False)
 
     def motion(self, model: Model, beam: ModelTable) -> Motion:
-        """Return the motion of a model as the case defines it.
+        """Return the initial motion of a model.
 
         Args:
             model: a model of the case.
-            beam: the model itself, or the beam that stands for it.
+            beam: the model itself, or its surrogate.
 
         Raises:
             NumericsError: there is no equilibrium to start from.
@@ -91,8 +91,8 @@ class Preview:
         for known, motion in self._motions:
             if known == beam:
                 return motion
-        case, joined = self.declared.case, self.declared.joined(model)
-        motion = initial_motion(build_on(joined, case, beam).system, case)
+        case, model_boom = self.checked.case, self.checked.model_boom(model)
+        motion = initial_motion(build_on(model_boom, case, beam).system, case)
         self._motions.append((beam, motion))
         return motion
 
@@ -103,20 +103,20 @@ def run_cost(case: Case) -> Cost:
 
 
 def preview_cost(preview: Preview) -> Cost:
-    """Return the cost of a run; models that are already built as beams are used again."""
-    shell = any(model.needs_shell for model in preview.declared.case.models)
+    """Return the cost of a run, from the motions of its preview."""
+    shell = any(model.needs_shell for model in preview.checked.case.models)
     return models_cost(preview) + Cost(0.0, _SHELL_REPORT if shell else _REPORT)
 
 
 def models_cost(preview: Preview) -> Cost:
     """Return the cost of a run without its report."""
-    case = preview.declared.case
+    case = preview.checked.case
     shell = any(model.needs_shell for model in case.models)
     total = Cost(_SHELL_LIBRARIES if shell else _LIBRARIES, 0.0)
     # Overflow is ignored here: the run detects it.
     with np.errstate(all="ignore"):
         for model in case.models:
-            total += _of_model(preview, model)
+            total += _model_cost(preview, model)
     return total
 
 
@@ -144,24 +144,24 @@ def refuse_large(cost: Cost, file: str) -> None:
         )
 
 
-def _of_model(preview: Preview, model: Model) -> Cost:
-    case, stand_in = preview.declared.case, model.stand_in(preview.declared.boom)
-    before = Cost(stand_in.memory, _RESULTS + stand_in.seconds)
+def _model_cost(preview: Preview, model: Model) -> Cost:
+    case, surrogate = preview.checked.case, model.surrogate(preview.checked.boom)
+    before = Cost(surrogate.memory, _RESULTS + surrogate.seconds)
     try:
-        motion = preview.motion(model, stand_in.beam)
+        motion = preview.motion(model, surrogate.beam)
     except NUMERICAL_ERRORS:
-        # The run meets the same error and reports it.
+        # The run will fail with the same error and report it.
         return before
     system, time = motion.system, case.time
-    outputs, coordinates = time.duration / time.output_step, stand_in.coordinates
+    outputs, coordinates = time.duration / time.output_step, surrogate.coordinates
     step = model.step or time.step
     steps = time.duration / step if step else _SUBSTEPS * outputs
-    # Contacts of a flat boom that starts at rest stay closed, others open and close.
-    if not step and system.laws and (preview.declared.boom.spatial or not case.start.at_rest):
+    # Only contacts of a planar boom that starts in equilibrium stay closed.
+    if not step and system.laws and (preview.checked.boom.spatial or not case.start.at_rest):
         steps = max(steps, _OF_MOST * MOST_STEPS * np.sqrt(_TOLERANCE / time.tolerance))
     members = case.ensemble.members if case.ensemble is not None and system.laws else 0
     doubled = bool(system.frictions) and case.regular
-    alone = 1.0 + 0.5 * doubled if step else _AGAIN
+    alone = 1.0 + 0.5 * doubled if step else _REPEATED
     motions = alone + members + (_HORIZONS if members else 0)
     rows = len(system.laws) + len(system.frictions) + len(system.dashpots)
     each = _STEP + _OF_MODE * coordinates + _OF_ROW * rows
@@ -169,5 +169,5 @@ def _of_model(preview: Preview, model: Model) -> Cost:
     of_interval = _OF_STEP + 2 * len(system.excitations) + len(system.travels)
     return before + Cost(
         8.0 * (outputs * (numbers + _OF_MEMBER * members) + steps / outputs * of_interval),
-        outputs * (_WRITING + _OF_TRAVEL * len(system.travels)) + motions * steps * each,
+        outputs * (_WRITE_TIME + _OF_TRAVEL * len(system.travels)) + motions * steps * each,
     )

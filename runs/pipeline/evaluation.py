@@ -19,7 +19,7 @@ from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.telescoping import travel
-from runs.case.kinds.model import Built
+from runs.case.kinds.model import BuiltModel
 from runs.case.schema import Case, Model
 from runs.pipeline.bonded import bonded_system
 from runs.pipeline.combinations import combination_states
@@ -27,12 +27,12 @@ from runs.pipeline.design_results import DesignResults, ModelDesignResults, play
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.model_quality import quality_notes, reference_of
 from runs.pipeline.models import MotionPlan
-from runs.pipeline.modes import ModeComparison, matched, modes
-from runs.pipeline.motion_results import Motions, evaluate_motion
+from runs.pipeline.modes import ModeComparison, match_modes, modes
+from runs.pipeline.motion_results import MotionAndStatics, evaluate_motion
 from runs.pipeline.panels import weakest_panels
 from runs.pipeline.proofs import prove
 from runs.pipeline.residual_vibration import residual_vibration
-from runs.pipeline.section_forces import with_cylinders
+from runs.pipeline.section_forces import with_cylinder_forces
 from runs.pipeline.static_results import (
     extended_positions,
     instants,
@@ -40,27 +40,32 @@ from runs.pipeline.static_results import (
     static_result,
 )
 from runs.pipeline.statics import reactions, statics
-from runs.pipeline.strength import COUNTS, life, wall_stresses
+from runs.pipeline.strength import HAS_RAINFLOW, life, wall_stresses
 from runs.pipeline.summary import Summary
 
 
 class LoadedModel(NamedTuple):
-    """A model of a boom and its lines; the load of its system includes all constant loads."""
+    """A model with its lines; the load of its system includes all constant loads."""
 
     boom: Boom
     system: GapSystem
     lines: Sequence[Line]
 
     @classmethod
-    def of(cls, boom: Boom, model: Model, built: Built) -> LoadedModel:
-        """Return a built model of the boom of a case."""
+    def of(cls, boom: Boom, model: Model, built: BuiltModel) -> LoadedModel:
+        """Return a built model with its lines."""
         system, shown = built.system.gather_loads(), boom.bonded if model.bonded else boom
-        return cls(shown, system, with_cylinders(shown, system, model.lines(boom, built)))
+        return cls(shown, system, with_cylinder_forces(shown, system, model.lines(boom, built)))
 
     def at_rest(
         self, found: Mapping[float, Array], extended: Mapping[float, Array] = MappingProxyType({})
     ) -> ModelDesignResults:
-        """Return the modes, and the static states at equilibria (num_modes,) given by time in s."""
+        """Return modes and static states at equilibria.
+
+        Args:
+            found: equilibria (num_modes,) by time in s.
+            extended: equilibria at the largest and least extension by time in s.
+        """
         static, static_extended = (
             [static_result(*self, time, position) for time, position in positions.items()]
             for positions in (found, extended)
@@ -76,12 +81,12 @@ class LoadedModel(NamedTuple):
         case: Case,
         model: Model,
     ) -> ModelDesignResults:
-        """Return the static results, extended by those of the motion and the fatigue life."""
+        """Return the static results together with those of the motion and the fatigue life."""
         still = np.array([*found.values()]).reshape(-1, self.system.num_modes)
         static, jumps = [*own.static, *own.static_extended], not model.smooth
-        motions = Motions(self.boom, self.lines, trajectory, still, static, jumps)
+        motions = MotionAndStatics(self.boom, self.lines, trajectory, still, static, jumps)
         motion, varying = evaluate_motion(motions)
-        lives = [life(one, case.life) for one in varying] if COUNTS else []
+        lives = [life(one, case.life) for one in varying] if HAS_RAINFLOW else []
         return replace(own, motion=motion, life=lives)
 
 
@@ -99,7 +104,7 @@ class ModelEvaluation:
     boom: Boom
     case: Case
     model: Model
-    built: Built
+    built: BuiltModel
 
     @cached_property
     def _played(self) -> LoadedModel:
@@ -118,7 +123,7 @@ class ModelEvaluation:
 
         Args:
             trajectory: motion of the model.
-            shell: further output of a shell; None for a beam.
+            shell: fields and stresses of a shell; None for a beam.
         """
         played, case = self._played, self.case
         system, found = played.system, self._found
@@ -142,47 +147,47 @@ class ModelEvaluation:
             # The boom without play has no rope.
             return own
         try:
-            bonded = _bonded(boom, model, self._played, self._found)
+            bonded = _bonded_model(boom, model, self._played, self._found)
             found = positions(bonded.system, self._times)
             other = bonded.at_rest(found)
         except NUMERICAL_ERRORS:
-            # For example, rigid segments without play have no degree of freedom.
+            # Rigid segments without play, for example, have no degree of freedom.
             return own
         own = replace(
             own,
             static_bonded=[
                 state for state in other.static if _at_initial_extension(boom, state.time)
             ],
-            # Their shapes hardly differ from those of the boom with play.
+            # Shapes are left out, since they hardly differ from those of the boom with play.
             modes_bonded=[replace(mode, shapes=[]) for mode in other.modes],
         )
         if boom.driven:
-            # The boom without play cannot telescope.
+            # A boom without play cannot telescope.
             return own
         try:
             motion = MotionPlan.of(bonded.system, case, model).trajectory()
             other = bonded.with_motion(other, found, motion, case, model)
         except NUMERICAL_ERRORS:
-            # The static states are still available.
+            # The static results remain valid.
             return own
         return replace(own, motion_bonded=other.motion, life_bonded=other.life)
 
 
-def _bonded(
+def _bonded_model(
     boom: Boom, model: Model, played: LoadedModel, found: Mapping[float, Array]
 ) -> LoadedModel:
     """Return the same model without play."""
     without = boom.bonded
-    if (own := model.without_play(boom)) is not None:
+    if (own := model.system_without_play(boom)) is not None:
         system = own[0].gather_loads()
-        return LoadedModel(without, system, with_cylinders(without, system, own[1]))
+        return LoadedModel(without, system, with_cylinder_forces(without, system, own[1]))
     initial = [position for time, position in found.items() if _at_initial_extension(boom, time)]
     system, basis = bonded_system(played.system.at_time(0.0), initial)
     return LoadedModel(without, system, [line.transform(basis) for line in played.lines])
 
 
 def _at_initial_extension(boom: Boom, time: float) -> bool:
-    """Return whether all driven segments are in their initial positions at a time in s."""
+    """Return True if all driven segments are in their initial positions at a time in s."""
     return not any(travel(boom, segment, time) for segment in range(len(boom.segments)))
 
 
@@ -198,13 +203,13 @@ def evaluate_run(
         models: design results of the models that did not fail.
     """
     found = statics(case, boom)
-    ran = [model for model in case.models if model.name in models]
+    completed = [model for model in case.models if model.name in models]
     design = DesignResults(
         models=dict(models),
         reactions=[] if found is None else reactions(found.with_play),
         reactions_bonded=[] if found is None else reactions(found.bonded),
-        modes=_compared_modes(boom, ran, models),
-        play=play_effects(ran, models) if boom.joints else [],
+        modes=_compare_modes(boom, completed, models),
+        play=play_effects(completed, models) if boom.joints else [],
     )
     if case.load_cases or case.combinations:
         states = combination_states(case)
@@ -215,14 +220,14 @@ def evaluate_run(
     return replace(design, quality_notes=[*quality_notes(summary, design, case.time.duration)])
 
 
-def _compared_modes(
-    boom: Boom, ran: Sequence[Model], models: Mapping[str, ModelDesignResults]
+def _compare_modes(
+    boom: Boom, completed: Sequence[Model], models: Mapping[str, ModelDesignResults]
 ) -> ModeComparison | None:
-    with_modes = [model for model in ran if models[model.name].modes]
+    with_modes = [model for model in completed if models[model.name].modes]
     reference = reference_of(with_modes)
     others = [m.name for m in with_modes if not m.bonded and m.name != reference]
     if reference is None or not others:
         return None
     own = models[reference].modes
-    matches = {name: matched(boom, own, models[name].modes) for name in others}
+    matches = {name: match_modes(boom, own, models[name].modes) for name in others}
     return ModeComparison(reference, matches)

@@ -21,7 +21,7 @@ from runs.case.schema import Case
 from runs.pipeline.largest_loads import StaticBeam
 from runs.pipeline.section_forces import section_forces
 from runs.pipeline.statics import boom_with_play
-from runs.pipeline.strength import COUNTS, MEGA, Fibres, counted, endurance
+from runs.pipeline.strength import HAS_RAINFLOW, MEGA, Fibres, count_stress_ranges, endurance
 
 # Number of cross-sections of a segment at which its worst weld may be.
 _SECTIONS = 41
@@ -76,7 +76,7 @@ def detail_damages(case: Case) -> list[tuple[Detail, Damage]]:
     Raises:
         NumericsError: a load case has no equilibrium.
     """
-    if not (case.spectra and COUNTS):
+    if not (case.spectra and HAS_RAINFLOW):
         return []
     found: dict[str, tuple[Detail, Damage]] = {}
     tables = {one.name: one for one in case.load_cases}
@@ -123,7 +123,7 @@ def _damage(case: Case, category: float, stress: Mapping[str, Array]) -> Damage:
         of_fibres = []
         for one in sequence:
             start = int(np.abs(one).argmax())
-            sizes, counts = counted([*np.roll(one, -start), one[start]])
+            sizes, counts = count_stress_ranges([*np.roll(one, -start), one[start]])
             raised = case.life.partial_factor * sizes
             of_fibres.append(float((counts / endurance(raised, MEGA * category)).sum()))
         shares.append(spectrum.repeats * np.array(of_fibres))

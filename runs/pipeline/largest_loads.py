@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Statics, stresses and utilisations of a boom at t = 0 and under its largest loads.
 
-The boom consists of beam elements whose walls bend under pads; drives stay where they are at t = 0.
+The model has beam elements and the compliance of walls under pads, at the initial extension.
 """
 
 from __future__ import annotations
@@ -22,27 +22,27 @@ from geometry.axial import foot_thrust
 from geometry.boom import Boom
 from runs.case.schema import Case
 from runs.case.units import System
-from runs.pipeline.section_forces import section_forces, with_cylinders
+from runs.pipeline.section_forces import section_forces, with_cylinder_forces
 from runs.pipeline.static_results import StaticResult, instants, positions, static_result
 from runs.pipeline.strength import Fibres, largest_stresses
 from runs.pipeline.utilisation import Utilisation
 from runs.report.formatting import amount, number
 from runs.report.tables import Column, Table
 
-# Elements of the longest segment: stresses under a uniform load are within 0.1 %.
+# Elements of the longest segment. The error of stresses under a uniform load is below 0.1 %.
 _ELEMENTS = 20
 
 
 class StaticExtreme(NamedTuple):
-    """A number at rest at t = 0 and where it is largest, under the loads of a time.
+    """A static result at t = 0, and its extreme value under the loads of other times.
 
     Args:
-        name: its name, with the part of the boom to which it belongs.
-        what: its name, with the place.
+        name: name of the result, with the part of the boom.
+        what: name of the result, with its location.
         unit: SI unit.
         initial: value at t = 0.
-        largest: value with the largest absolute value.
-        time: its time in s.
+        largest: value with the largest magnitude.
+        time: time of the loads of this value in s.
         utilisation: utilisation of a strength by the largest value; None without a strength.
     """
 
@@ -76,18 +76,18 @@ class StaticBeam(NamedTuple):
 
         Args:
             case: a checked case.
-            boom: as its first model with play sees it, or without play if all models are.
+            boom: the boom with the contact laws of the first model with play, or bonded.
 
         Raises:
-            NumericsError: it has no rest at t = 0.
+            NumericsError: there is no equilibrium at t = 0.
         """
         boom = replace(boom, joints=tuple(replace(joint, drive=None) for joint in boom.joints))
         elements = Elements(boom, _ELEMENTS)
         system = static_state(boom, elements).system
         own = lines(boom, elements.segments)
-        # Springs of walls follow the coordinates of the segments.
+        # The coordinates of wall springs come after those of the segments.
         basis = np.eye(own[0].rows["deflection"].shape[1], system.num_modes)
-        along = with_cylinders(boom, system, [line.transform(basis) for line in own])
+        along = with_cylinder_forces(boom, system, [line.transform(basis) for line in own])
         return cls.at_rest(boom, system, along, case.time.duration)
 
     @classmethod
@@ -115,14 +115,14 @@ class StaticBeam(NamedTuple):
         """Return the extremes of tip, stresses, pads, contacts and cylinders.
 
         Args:
-            system: units of places in names.
+            system: units of positions in names.
         """
         boom, rests = self.boom, self.rests
-        extremes = [_extreme("tip", "tip", "m", rests, [rest.tip for rest in rests])]
+        extremes = [_static_extreme("tip", "tip", "m", rests, [rest.tip for rest in rests])]
         if boom.spatial:
             lateral = [rest.tip_lateral or 0.0 for rest in rests]
             name = "tip to the side"
-            extremes.append(_extreme(name, name, "m", rests, lateral))
+            extremes.append(_static_extreme(name, name, "m", rests, lateral))
         time = np.array([rest.time for rest in rests])
         for number_of, (segment, line) in enumerate(zip(boom.segments, self.lines, strict=True)):
             if (fibres := Fibres.of(segment, line)) is None:
@@ -140,7 +140,7 @@ class StaticBeam(NamedTuple):
         for name in rests[0].cylinders:
             values = [rest.cylinders[name] for rest in rests]
             shown = name.replace("_", " ")
-            extremes.append(_extreme(shown, shown, "N", rests, values))
+            extremes.append(_static_extreme(shown, shown, "N", rests, values))
         return extremes
 
     def foot_extremes(self, system: System) -> Iterator[StaticExtreme]:
@@ -161,7 +161,7 @@ class StaticBeam(NamedTuple):
             whole = np.linalg.norm([*parts, thrust + along], axis=0)
             name = f"foot, {segment.name}"
             what = f"foot force at {system.text(x, 'm', 5)}"
-            yield _extreme(name, what, "N", self.rests, whole.tolist())
+            yield _static_extreme(name, what, "N", self.rests, whole.tolist())
 
     def _at_stations(self, system: System) -> Iterator[StaticExtreme]:
         boom, rests = self.boom, self.rests
@@ -175,7 +175,7 @@ class StaticBeam(NamedTuple):
             loads = [rest.stations[number_of] for rest in rests]
             to_side = " to the side" if station.direction == "y" else ""
             where = f"{system.text(station.x, 'm', 5)}{to_side}"
-            # Stops follow the stations of joints.
+            # Stops come after the stations of joints.
             name, part = where, ""
             if number_of < len(boom.directions) * len(stations):
                 inner, number = stations[number_of % len(stations)]
@@ -184,17 +184,17 @@ class StaticBeam(NamedTuple):
             if station.pressure is None:
                 forces = [load.force for load in loads]
                 what = f"contact force at {where}"
-                yield _extreme(f"contact, {name}", what, "N", rests, forces)
+                yield _static_extreme(f"contact, {name}", what, "N", rests, forces)
                 continue
             pressures = [load.pressure or 0.0 for load in loads]
             used = [
                 Utilisation("pad", part, load.x, load.pressure or 0.0, load.utilisation)
                 for load in loads
             ]
-            yield _extreme(f"pad, {name}", f"pad at {where}", "Pa", rests, pressures, used)
+            yield _static_extreme(f"pad, {name}", f"pad at {where}", "Pa", rests, pressures, used)
 
 
-def _extreme(
+def _static_extreme(
     name: str,
     what: str,
     unit: str,
@@ -208,11 +208,12 @@ def _extreme(
 
 
 def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> Table:
-    """Return the table of extremes at rest, in the units of the case.
+    """Return the table of static extremes, in the units of the case.
 
     Args:
-        case, boom: those of :meth:`StaticBeam.of`.
-        extremes: the extremes of that beam.
+        case: a checked case.
+        boom: the boom of :meth:`StaticBeam.of`.
+        extremes: the extremes of this boom.
     """
     used = [one.utilisation.value if one.utilisation else None for one in extremes]
     vary = any(one.time > 0.0 for one in extremes)
@@ -235,7 +236,7 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
 
 
 def beam_note(boom: Boom) -> str:
-    """Return a sentence that names the model of the statics of a boom."""
+    """Return a sentence on the model of the statics."""
     theory = "Timoshenko" if static_theory(boom) == "timoshenko" else "Euler-Bernoulli"
     walls = ", on walls that bend under pads" if any(one.padded for one in boom.joints) else ""
     return f"`check` computes these values with its own {theory} beam{walls}."
@@ -249,7 +250,7 @@ def in_units(value: float, unit: str, system: System) -> str:
 
 
 def overload_cautions(extremes: Sequence[StaticExtreme]) -> list[str]:
-    """Return a caution for each strength that the boom exceeds at rest."""
+    """Return a caution for each utilisation above 1 in the static states."""
     return [
         f"caution: at rest under the loads of t = {one.time:.4g} s the utilisation is {used}"
         for one in extremes

@@ -18,15 +18,15 @@ class Limit:
 
     quantity: Metric
     permitted: float  #: permitted value in SI units
-    least: bool = False  #: whether larger values are permitted
+    least: bool = False  #: True for a smallest permitted value
 
     @property
     def sign(self) -> str:
-        """The sign before the permitted value."""
+        """The relation, ≥ or ≤."""
         return "≥" if self.least else "≤"
 
     def __str__(self) -> str:
-        """Return quantity, sign and permitted value: ``tip deflection ≤ 900 mm``."""
+        """Return quantity, relation and permitted value: ``tip deflection ≤ 900 mm``."""
         return f"{self.quantity.title} {self.sign} {self.shown(self.permitted)}"
 
     def shown(self, value: float | None) -> str:
@@ -35,29 +35,29 @@ class Limit:
         return "" if value is None else f"{self.quantity.factor * value:.4g} {unit}"
 
     def permits(self, value: float) -> bool:
-        """Return whether a value in SI units is within the limit."""
+        """Return True if a value in SI units is within the limit."""
         return value >= self.permitted if self.least else value <= self.permitted
 
 
 @dataclass(frozen=True, slots=True)
 class LimitCheck:
-    """Limit with the numbers of models in SI units; the decisive model comes first."""
+    """Limit and the values of the models in SI units. The first model with a value decides."""
 
     limit: Limit
     values: Mapping[str, float]
 
     @property
     def decisive(self) -> tuple[str, float] | None:
-        """The first model with its number; None if no model has one."""
+        """The first model with a value, and the value; None if no model has one."""
         return next(iter(self.values.items()), None)
 
     @property
     def holds(self) -> bool:
-        """True if the decisive number is within the limit; False without a number."""
+        """True if the decisive value is within the limit; False without a value."""
         return self.decisive is not None and self.limit.permits(self.decisive[1])
 
 
-def limits_of(table: LimitsTable | None) -> list[Limit]:
+def case_limits(table: LimitsTable | None) -> list[Limit]:
     """Return the limits of a case."""
     given = {} if table is None else table.model_dump(exclude_none=True)
     least = LimitsTable.LEAST
@@ -67,9 +67,9 @@ def limits_of(table: LimitsTable | None) -> list[Limit]:
 
 
 def check_limits(results: Results) -> Iterator[LimitCheck]:
-    """Yield the limits of a run's case with the numbers of its leading models."""
-    limits = limits_of(results.case.limits)
-    found = {name: measure(results, name) for name in results.leading_models if limits}
+    """Yield the limits of the case with the values of the main models of the run."""
+    limits = case_limits(results.case.limits)
+    found = {name: measure(results, name) for name in results.main_models if limits}
     for limit in limits:
         numbers = {name: one[limit.quantity.name] for name, one in found.items()}
         yield LimitCheck(limit, {name: one for name, one in numbers.items() if one is not None})

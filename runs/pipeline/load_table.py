@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The table of the loads of a case, with their histories and largest values."""
+"""Table of the loads of a case, with their histories and largest values."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from geometry.boom import Boom
 from geometry.load import Load, PartialLoad
 from runs.case.actions import thrusts
 from runs.case.drive import resolving_times
-from runs.case.history import HistoryTable, history_of
+from runs.case.history import HistoryTable, build_history
 from runs.case.schema import Case, LoadTable
 from runs.case.units import System
 from runs.report.formatting import number
@@ -24,7 +24,7 @@ _AXIAL = "to the base"
 
 
 class _Row(NamedTuple):
-    """Row of a load: key, place, direction, history, largest value in an SI unit, time in s."""
+    """Row of a load, with its largest value in an SI unit and the time of this value in s."""
 
     key: str
     place: str
@@ -40,7 +40,7 @@ def load_table(case: Case, boom: Boom) -> Table:
 
     Args:
         case: a checked case.
-        boom: that of the case.
+        boom: boom of the case.
     """
     rows, system = list(_rows(case, boom)), case.system
     columns = [
@@ -48,13 +48,13 @@ def load_table(case: Case, boom: Boom) -> Table:
         Column("on", [row.place for row in rows]),
         Column("direction", [row.direction for row in rows]),
         Column("history", [row.history for row in rows]),
-        Column("maximum", [_in_units(row.largest, row.unit, system) for row in rows]),
+        Column("maximum", [_format_value(row.largest, row.unit, system) for row in rows]),
         Column("maximum\nat s", ["" if row.time is None else f"{row.time:.4g}" for row in rows]),
     ]
     return Table("Loads", columns)
 
 
-def _in_units(value: float, unit: str, system: System) -> str:
+def _format_value(value: float, unit: str, system: System) -> str:
     return f"{number(system.of(value, unit), 4)} {system.label(unit)}"
 
 
@@ -75,13 +75,13 @@ def _rows(case: Case, boom: Boom) -> Iterator[_Row]:
     for i, (table, load) in enumerate(zip(case.loads, boom.loads, strict=False), start=1):
         place = _place(boom, load, case.system)
         direction = f"{table.direction}, moment" if table.moment else table.direction
-        yield _varying(f"load[{i}]", place, direction, table, case.time.duration)
+        yield _history_row(f"load[{i}]", place, direction, table, case.time.duration)
     if case.payload is not None and case.gravity is None and case.payload.gravity != 0.0:
         weight = boom.loads[len(case.loads)]
         place = _place(boom, weight, case.system)
         yield _Row("payload", place, "z", _CONSTANT, weight.magnitude, "N")
     for i, base in enumerate(case.base, start=1):
-        yield _varying(f"base[{i}]", _ALL, base.direction, base, case.time.duration)
+        yield _history_row(f"base[{i}]", _ALL, base.direction, base, case.time.duration)
     for i, thrust in enumerate(thrusts(case, boom.segments), start=1):
         name = boom.segments[thrust.segment].name
         place = f"{name} at {case.system.text(thrust.x, 'm', 5)}"
@@ -96,10 +96,12 @@ def _place(boom: Boom, load: Load, system: System) -> str:
     return name if load.x is None else f"{name} at {system.text(load.x, 'm', 5)}"
 
 
-def _varying(key: str, place: str, direction: str, table: HistoryTable, duration: float) -> _Row:
-    """Return a load with a history, at its largest value within the run of a duration in s."""
+def _history_row(
+    key: str, place: str, direction: str, table: HistoryTable, duration: float
+) -> _Row:
+    """Return the row of a load with a history, for a run of a duration in s."""
     unit, full = table.declared_units(table.amount)[0], getattr(table, table.amount)
-    history = history_of(key, table)
+    history = build_history(key, table)
     times = resolving_times([history], duration)
     values = history(times)
     step = int(np.abs(values).argmax())

@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, PlainSerializer, PlainValidator
 from dynamics.arrays import Array
 from dynamics.trajectory import prominent_peaks
 
-# Types of arrays and numbers in JSON, which has neither NaN nor infinity.
+# Types of arrays and numbers; JSON has neither NaN nor infinity, and gets null.
 Numbers = Annotated[
     Array, PlainValidator(np.asarray), PlainSerializer(lambda values: np.asarray(values).tolist())
 ]
@@ -23,20 +23,20 @@ Number = Annotated[
     PlainSerializer(lambda value: value if math.isfinite(value) else None),
 ]
 
-# Cut-off as a fraction of the lowest elastic frequency with closed contacts. With play the boom
-# vibrates more slowly than the closed structure; ripple of impacts is faster.
+# Cut-off over the first frequency with closed contacts. Play makes the boom slower than that; the
+# vibrations that impacts excite are faster.
 CUTOFF_SHARE = 0.8
-# Order of the filter, which is applied twice, forwards and backwards.
+# Order of the filter, which runs forwards and backwards.
 ORDER = 4
-# Least prominence of a peak as a fraction of the range; it excludes shoulders.
+# Least prominence of a peak as a fraction of the range of the signal. It excludes shoulders.
 PROMINENCE = 0.2
 
 
 def filter_low_pass(signal: Array, output_step: float, cutoff: float) -> Array:
     """Return the part of a signal below a cut-off, without phase shift.
 
-    A Butterworth filter is applied forwards and backwards; its gain at the cut-off is ½. Within
-    half a period of the cut-off of either end the result depends on the mirrored signal.
+    A Butterworth filter runs forwards and backwards; its gain at the cut-off is ½. The signal is
+    mirrored at its ends, which affects the result within half a period of the cut-off.
 
     Args:
         signal: (..., num_times).
@@ -65,9 +65,12 @@ def filter_low_pass(signal: Array, output_step: float, cutoff: float) -> Array:
 
 
 def slow_peaks(signal: Array, time: Array, cutoff: float) -> tuple[Array, Array]:
-    """Return times in s and heights (num_peaks,) of the slow motion's peaks, for a cut-off in Hz.
+    """Return times in s and heights (num_peaks,) of the peaks of the slow motion.
 
-    The times of the signal (num_times,) are evenly spaced.
+    Args:
+        signal: (num_times,).
+        time: evenly spaced times (num_times,) in s.
+        cutoff: cut-off in Hz.
     """
     from scipy.signal import find_peaks
 
@@ -77,11 +80,11 @@ def slow_peaks(signal: Array, time: Array, cutoff: float) -> tuple[Array, Array]
 
 
 def mean_period(time: Array, tip: Array) -> float:
-    """Return the mean time between main peaks in s; NaN for fewer than two peaks.
+    """Return the mean time between the main peaks of the tip in s; NaN for fewer than two peaks.
 
     Args:
         time: (num_times,) in s.
-        tip: tip deflection (num_times,) in m; the motion starts from its first value.
+        tip: tip deflection (num_times,) in m.
     """
     if tip.size < 3:
         return float("nan")
@@ -93,10 +96,9 @@ def mean_period(time: Array, tip: Array) -> float:
 
 @dataclass(frozen=True, slots=True)
 class SlowPeaks:
-    """Peaks that all members of an ensemble have.
+    """Peaks of the slow motion that all members of an ensemble have, as means over the members.
 
-    Values are means over the members. A spread is half the difference between the largest and the
-    smallest member, as in :func:`dynamics.predictability.horizon.horizon`.
+    A spread is half the difference between the largest and the smallest member.
 
     Args:
         time: times (num_peaks,) in s.
@@ -118,8 +120,13 @@ class SlowPeaks:
     def of(cls, members: Array, time: Array, cutoff: float) -> SlowPeaks:
         """Return the peaks of an ensemble, in order, up to the first that a member lacks.
 
-        A member (num_times,) has a peak of member 0 if one of its peaks is nearer than half a
-        period of the cut-off in Hz. Two peaks of one filtered motion are farther apart.
+        Peaks of two members match if they are nearer than half a period of the cut-off, since two
+        peaks of one filtered motion are farther apart.
+
+        Args:
+            members: curves (num_members, num_times).
+            time: (num_times,) in s.
+            cutoff: cut-off in Hz.
         """
         found = [slow_peaks(member, time, cutoff) for member in members]
         times, heights = [], []

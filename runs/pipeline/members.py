@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Predictability of a model's motion: ensemble, horizons, and the necessary number of steps."""
+"""Predictability of the motion of a model: ensemble, horizons, and necessary number of steps."""
 
 from __future__ import annotations
 
@@ -32,28 +32,28 @@ from runs.pipeline.summary import (
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-# Elements of the retracted boom, which give its lowest frequency to four digits.
+# Length of beam elements in m that gives the first frequency to four digits.
 ELEMENT_LENGTH = 0.5
-# Deflections that are stored for every member.
+# Outputs that are stored for every member.
 PLACES = ("tip", "head")
-# Relative changes whose growth determines horizons and growth rates.
+# Relative changes of the data; their growth determines horizons and growth rates.
 CHANGES = (1.0e-12, 1.0e-10, 1.0e-8, 1.0e-6)
-# Number of peaks; at later ones the spread of the slow motion hides the differences.
+# Number of compared peaks. At later peaks the spread of the ensemble exceeds the differences.
 PEAKS = 3
-# Tolerance of a peak, beyond the spread of an ensemble of fully resolved runs: in time as a
-# fraction of the period, in height as a fraction of the height.
-WITHIN = 0.01
+# Permitted difference of a peak from the ensemble, in addition to the spread: as a fraction of the
+# period for its time, and of its height.
+PEAK_TOLERANCE = 0.01
 
-# The first step is the output step over 2 to this power. The last one is below this fraction of a
-# period at the cut-off, which the filter can still resolve.
-_FINEST, _OF_PERIOD = -4, 0.25
+# The first step is the output step times 2 to this power. The last step is below this fraction of a
+# period of the cut-off, so that the filter can resolve it.
+_FIRST_POWER, _MAX_STEP_SHARE = -4, 0.25
 
 
 @contextmanager
 def rank_executor(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
-    """Yield the executor of an ensemble, made of all ranks but the first. Collective.
+    """Yield an executor that uses all ranks but the first. Collective.
 
-    It is None for local threads. Other ranks than the first get None after their work.
+    It yields None without several ranks, and on the other ranks after their work.
     """
     if comm is None or comm.size == 1:
         yield None
@@ -64,11 +64,10 @@ def rank_executor(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
         yield ranks
 
 
-def slow_below(boom: Boom, time: TimeTable) -> float | None:
-    """Return the cut-off of the slow motion in Hz, a fraction of the lowest frequency without play.
+def slow_cutoff(boom: Boom, time: TimeTable) -> float | None:
+    """Return the cut-off of the slow motion in Hz, a fraction of the first frequency without play.
 
-    Return None if the run is too short, its output too coarse, or the boom invalid for every model;
-    each model then reports the error.
+    Return None if the run is too short, its output too coarse, or the boom has no such frequency.
     """
     try:
         with np.errstate(all="ignore"):
@@ -86,11 +85,11 @@ def slow_below(boom: Boom, time: TimeTable) -> float | None:
 
 
 def summarise_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> EnsembleSummary:
-    """Return the summary of one model's ensemble.
+    """Return the summary of the ensemble of a model.
 
     Args:
         ensemble: ensemble of :func:`dynamics.predictability.ensemble.integrate_ensemble`.
-        peaks: peaks of the tip's slow motion that all members have; None without a cut-off.
+        peaks: peaks of the slow motion of the tip; None without a cut-off.
     """
     shares = zip(SHARES, ensemble_horizons(ensemble), strict=True)
     return EnsembleSummary(
@@ -101,11 +100,10 @@ def summarise_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> Ensembl
 
 
 def gather_ensembles(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
-    """Gather tip and head of all ensembles in one dataset, in single precision.
+    """Return tip and head of all ensembles in one dataset, in single precision; None for none.
 
     Args:
-        ensembles: ensembles by the model's name, with the same members and times. Without ensembles
-            the result is None.
+        ensembles: ensembles by model name, with the same members and times.
     """
     if not ensembles:
         return None
@@ -127,14 +125,14 @@ def measure_predictability(
     executor: Executor | None,
     progress: Callable[[float], None],
 ) -> Predictability:
-    """Return the horizons and growth rates of changes of several sizes, and those of the time step.
+    """Return horizons and growth rates of changes of several sizes, and of a changed time step.
 
     Args:
         motion: motion of the model.
-        integrator: integrator of its system.
-        vary: name of the varied data.
+        integrator: integrator of the motion.
+        vary: data to change: ``load`` or ``clearance``.
         unchanged: trajectory without change.
-        executor: executor of the runs; by default threads of this process.
+        executor: executor of the runs; None for threads of this process.
         progress: callback that receives the completed fraction.
     """
     found = measure_horizons(
@@ -158,11 +156,11 @@ def measure_predictability(
 
 
 def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsForPeaks | None:
-    """Integrate with increasing time steps, and find those that preserve the first slow peaks.
+    """Return trials with increasing time steps, and the fewest steps that preserve the first peaks.
 
     Args:
-        motion: motion from rest, of which the part up to the last peak is integrated.
-        peaks: peaks of the ensemble.
+        motion: motion of the model, which is integrated up to the last compared peak.
+        peaks: peaks of the slow motion of the ensemble.
         cutoff: cut-off of the slow motion in Hz.
 
     Returns:
@@ -173,9 +171,9 @@ def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsFor
     # The filter needs half of its own period after the last peak.
     lasting = peaks.time[PEAKS - 1] + 1.0 / cutoff
     # Every output interval has at least one step.
-    steps = motion.output_step * 2.0 ** np.arange(_FINEST, 64)
+    steps = motion.output_step * 2.0 ** np.arange(_FIRST_POWER, 64)
     trials = []
-    for step in steps[steps < _OF_PERIOD / cutoff]:
+    for step in steps[steps < _MAX_STEP_SHARE / cutoff]:
         output_step = max(step, motion.output_step)
         duration = output_step * round(lasting / output_step)
         trial = FixedStep(step)(replace(motion, duration=duration, output_step=output_step))
@@ -184,27 +182,27 @@ def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsFor
                 step=step,
                 steps=trial.data.attrs["steps"],
                 energy_residual=trial.energy_residual,
-                holds=_holds(trial, peaks, cutoff),
+                holds=_peaks_agree(trial, peaks, cutoff),
             )
         )
-    # A single failed trial may be chance, as with a member of the ensemble.
+    # A single trial may fail by chance.
     return StepsForPeaks(
         peaks=PEAKS,
-        within=WITHIN,
+        within=PEAK_TOLERANCE,
         duration=lasting,
         fewest=min((trial.steps for trial in trials if trial.holds), default=None),
         trials=trials,
     )
 
 
-def _holds(trajectory: Trajectory, peaks: SlowPeaks, cutoff: float) -> bool:
-    """Return whether the first slow peaks agree with those of the ensemble."""
+def _peaks_agree(trajectory: Trajectory, peaks: SlowPeaks, cutoff: float) -> bool:
+    """Return True if the first slow peaks agree with those of the ensemble."""
     times, heights = slow_peaks(trajectory.data["tip"].values, trajectory.time, cutoff)
     if times.size < PEAKS:
         return False
     first = slice(None, PEAKS)
     late = np.abs(times[first] - peaks.time[first])
     apart = np.abs(heights[first] - peaks.height[first])
-    in_time = WITHIN * peaks.period + peaks.time_spread[first]
-    in_height = WITHIN * np.abs(peaks.height[first]) + peaks.height_spread[first]
+    in_time = PEAK_TOLERANCE * peaks.period + peaks.time_spread[first]
+    in_height = PEAK_TOLERANCE * np.abs(peaks.height[first]) + peaks.height_spread[first]
     return bool((late <= in_time).all() and (apart <= in_height).all())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Metrics: display formats of a model's results, annotations of the fields of records.
+"""Names, units and display formats of the results of a model, as annotations of record fields.
 
 >>> from runs.pipeline.residual_vibration import ResidualVibration
 >>> metrics(ResidualVibration)["tip"].title
@@ -15,26 +15,26 @@ from typing import ClassVar, get_args, get_type_hints
 
 @dataclass(frozen=True, slots=True)
 class Metric:
-    """Display format of one number of a model, as an annotation of its field."""
+    """Name, unit and display format of a result, as an annotation of its field."""
 
-    name: str  #: name in the files of sweeps, which omit the number if it is empty
+    name: str  #: name in the files of sweeps; empty to omit the result there
     unit: str  #: SI unit in files
     title: str  #: a lower-case phrase for display
-    factor: float  #: factor from the SI unit to the displayed one
-    shown_unit: str  #: title in tables and charts
-    logarithmic: bool = False  #: whether charts have a logarithmic scale
-    charted: bool = True  #: whether the number is smooth enough for a chart
-    heading: str = ""  #: heading in tables of reports, which omit the number if it is empty
+    factor: float  #: conversion factor from the SI unit to the displayed unit
+    shown_unit: str  #: displayed unit
+    logarithmic: bool = False  #: True for a logarithmic scale in charts
+    charted: bool = True  #: True if the result is smooth enough for a chart
+    heading: str = ""  #: heading in tables of reports; empty to omit the result there
     form: str = ".4g"  #: number format in tables of reports
 
     @property
     def unit_of_heading(self) -> str:
-        """The unit below the heading; empty for dimensionless numbers."""
+        """The displayed unit as part of the heading; empty for dimensionless numbers."""
         return "" if self.unit == "1" else self.shown_unit
 
 
 class Record:
-    """Numbers of one model that reports show as a table, with a row for each model."""
+    """Results of one model that reports show as a row of a table."""
 
     __slots__ = ()
     title: ClassVar[str]
@@ -53,7 +53,7 @@ def metrics(kind: type) -> dict[str, Metric]:
 
 
 def records(kind: type) -> dict[str, type[Record]]:
-    """Return the record classes of a class's fields of type :class:`Record` or None, by name."""
+    """Return the record class of each field of a class whose type is a :class:`Record` or None."""
     return {
         name: one
         for name, hint in get_type_hints(kind).items()

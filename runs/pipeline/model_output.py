@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Further output of models: fields, stresses and meshes of shells, deflections of beams."""
+"""Output of models for pictures: fields, stresses and meshes of shells, deflections of beams."""
 
 from __future__ import annotations
 
@@ -32,23 +32,23 @@ if TYPE_CHECKING:
 STRESSES = "stress.nc"
 SERIES = "fields"
 
-# Number of frames of a film.
+# Number of frames of an animation.
 FRAMES = 61
 
 
 @dataclass(frozen=True, slots=True)
 class ShellOutput:
-    """Output of one shell, which is written to its own files.
+    """Output of a shell, which has files of its own.
 
     Args:
         fields: points, triangles, segment, modes and stresses of the mesh, ``state`` (time,
             mode), and ``contact_mode_shape`` (contact_mode in Hz, mode) of the boom
             with closed contacts.
         stresses: von Mises stresses near stations and supports over time.
-        largest: maximum of these stresses, and the section forces of the walls at its time.
+        largest: largest of these stresses, with the section forces of the walls at that time.
         meshes: mesh of each segment, by name.
-        buckling: buckling of its walls, with the shapes in ``fields``; None unless the case
-            requests it.
+        buckling: buckling of the walls; its shapes are in ``fields``, too. None without the table
+            ``buckling``.
     """
 
     fields: xr.Dataset
@@ -59,7 +59,7 @@ class ShellOutput:
 
     @property
     def modes(self) -> xr.Dataset | None:
-        """The fields of the modes, by their frequencies in Hz; None without modes."""
+        """The fields of the modes with closed contacts, by frequency in Hz; None without modes."""
         if "contact_mode" not in self.fields.dims:
             return None
         return self.fields.drop_vars(["state", "time"]).assign(
@@ -83,12 +83,12 @@ class ShellOutput:
             name: name of the model.
             reduced: the reduced shell.
             trajectory: motion of the shell.
-            buckling: buckling of its walls.
+            buckling: buckling of the walls.
         """
         assert reduced.fields is not None
         names, states = [segment.name for segment in boom.segments], trajectory.states
         fields = reduced.fields.assign(
-            # A hoisted load has a coordinate of its own besides.
+            # A hoisted load adds a coordinate, which is left out.
             state=(("time", "mode"), states[:, : reduced.system.num_modes].astype(np.float32)),
             time=("time", trajectory.time, {"units": "s"}),
             **_modes(reduced),
@@ -101,16 +101,16 @@ class ShellOutput:
         return cls(fields, stresses, summarise(shell, stresses), meshes, buckling)
 
     def write_files(self, folder: Path, prefix: str) -> None:
-        """Write stresses, series and meshes to a run's folder, which already has the fields.
+        """Write stresses, field series and meshes; the folder already has the fields.
 
         Args:
-            folder: the run's folder.
+            folder: folder of the run.
             prefix: prefix of the file names.
         """
         self.stresses.assign_attrs(Conventions=CONVENTIONS).to_netcdf(
             folder / f"{prefix}{STRESSES}", engine="scipy"
         )
-        # Names of models and segments, joined by a hyphen, may coincide.
+        # A folder for each model, since names joined by a hyphen may coincide.
         meshes, series = folder / "mesh" / prefix.removesuffix("-"), folder / SERIES
         for place in (meshes, series):
             place.mkdir(parents=True, exist_ok=True)
@@ -124,22 +124,22 @@ class ShellOutput:
 
 
 class SegmentMotion(NamedTuple):
-    """Quantities (num_frames, num_places) of one segment, at ascending x (num_places,) in m."""
+    """Quantities (num_frames, num_places) of a segment at ascending x (num_places,) in m."""
 
     x: Array
     read: Mapping[Quantity, Array]
 
 
 class BeamOutput(NamedTuple):
-    """Deflections and section forces of a beam model's segments at times (num_frames,) in s."""
+    """Deflections and section forces of the segments of a beam at times (num_frames,) in s."""
 
     time: Array
     segments: list[SegmentMotion]
 
     @classmethod
     def of(cls, lines: Sequence[Line], trajectory: Trajectory) -> BeamOutput:
-        """Return the output of a beam after its motion; at a jump, take the value behind it."""
-        steps = frames(trajectory.time.size)
+        """Return the output of a beam after its motion; at a jump, the value nearer the tip."""
+        steps = frame_indices(trajectory.time.size)
         moved = []
         for line in lines:
             last = np.append(np.diff(line.x) > 0.0, True)
@@ -150,13 +150,13 @@ class BeamOutput(NamedTuple):
         return cls(trajectory.time[steps], moved)
 
 
-def frames(num_times: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
-    """Return the indices of the output times of a film, evenly spaced, with first and last."""
+def frame_indices(num_times: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+    """Return evenly spaced indices of output times for an animation, from first to last."""
     return np.unique(np.linspace(0, num_times - 1, FRAMES).round().astype(np.intp))
 
 
 def force_places(boom: Boom) -> list[float]:
-    """Return the x of all concentrated forces on a segment, in ascending order."""
+    """Return the x in m of all point forces on the segments, in ascending order."""
     places = {x for number in range(len(boom.segments)) for x in boom.stations_of(number)}
     places |= {support.x for segment in boom.segments for support in segment.supports}
     return sorted(places)

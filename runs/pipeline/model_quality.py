@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Accuracy of the results of a run: comparison of models, notes on accuracy, cautions.
 
-Every model is compared with one reference. Ensembles allow comparisons at three levels, each with
-its own scope. With friction, the comparison covers the whole run: friction dissipates differences
-that impacts would otherwise amplify.
+Every model is compared with one reference. Ensembles are compared at three levels. Motions that
+friction makes regular are compared over the whole run.
 """
 
 from __future__ import annotations
@@ -28,30 +27,30 @@ from runs.pipeline.proportions import (
     proportion_cautions,
     tip_cautions,
 )
-from runs.pipeline.summary import Comparisons, Summary, Whole
+from runs.pipeline.summary import Comparisons, Summary, WholeRun
 from runs.pipeline.turning import pendulum_frequency, swing_cautions, turning_cautions
 
-# Difference of members, as a fraction of the tip's range, beyond which their motions diverge.
-_PARTED = 0.2
+# Members whose tips differ by more than this fraction of the range have diverged.
+_DIVERGED = 0.2
 
 # Factor above the frequency of a pendulum from which modes are those of the boom.
 _APART = 1.2
 
-# Part of a lateral play that causes a caution where bulging walls close it.
+# Fraction of a lateral play: a caution is given if bulging walls close more of it.
 BULGED = 0.1
-# Relative error of a reduction or a mesh that causes a caution.
-POOR = 0.01
+# Relative error of a reduction or a mesh above which a caution is given.
+MAX_RELATIVE_ERROR = 0.01
 
-# Fraction of the boom's length beyond which a displacement is not small.
-MOST = 0.1
+# Fraction of the length of the boom above which a displacement is not small.
+LARGE_DISPLACEMENT = 0.1
 
-# End times in s of intervals for which differences are given, besides the whole run.
+# Differences are given up to this time in s, and over the whole run.
 HALFWAY = 5.0
 # Scope of each level of comparison.
-DECIDES: Mapping[str, str] = {
-    "pointwise": PointwiseDifferences.decides,
-    "peaks": PeakDifferences.decides,
-    "distributions": Distributions.decides,
+SCOPES: Mapping[str, str] = {
+    "pointwise": PointwiseDifferences.scope,
+    "peaks": PeakDifferences.scope,
+    "distributions": Distributions.scope,
 }
 
 
@@ -63,10 +62,10 @@ def reference_of(models: Iterable[Model]) -> str | None:
     return candidates[-1].name if candidates else None
 
 
-def leading(case: Case, models: Sequence[str]) -> set[str]:
-    """Return the main models: the last shell, the last beam with play, the first without.
+def main_models(case: Case, models: Sequence[str]) -> set[str]:
+    """Return the main models: the last shell, the last with play, and the first without play.
 
-    Up to three models are all main models.
+    With three or fewer models, all are main.
     """
     if len(models) <= 3:
         return set(models)
@@ -87,9 +86,9 @@ def compare_models(
     """Return the differences between models; None without two comparable models.
 
     Args:
-        case: the case with the models.
-        trajectories: dims ``model``, ``time``; ``tip`` in m.
-        ensembles: dims ``model``, ``member``, ``time``; ``tip`` in m.
+        case: case of the run.
+        trajectories: ``tip`` (model, time) in m.
+        ensembles: ``tip`` (model, member, time) in m; None without ensembles.
         cutoff: cut-off of the slow motion in Hz.
     """
     ran = trajectories["model"].values
@@ -114,7 +113,7 @@ def compare_models(
                 PointwiseDifferences.from_curves(tips[reference], tips[name], time, end)
                 for end in ends
             ]
-            whole[name] = Whole(
+            whole[name] = WholeRun(
                 until=[part.until for part in parts],
                 largest=[part.largest for part in parts],
                 rms=[part.rms for part in parts],
@@ -133,7 +132,7 @@ def quality_notes(
     """Yield notes on the accuracy of a run.
 
     Args:
-        summary: summary of the run.
+        summary: summary of the run without design results.
         design: design results of the run.
         duration: duration of the motion in s.
     """
@@ -184,7 +183,7 @@ def _agreement(design: DesignResults) -> Iterator[str]:
     own = design.models[reference]
     for name, matches in design.modes.matches.items():
         other, parts = design.models[name], []
-        if (off := off_at_rest(own, other)) is not None:
+        if (off := static_deviation(own, other)) is not None:
             parts.append(f"{_signed_percent(off)} in the static tip deflection")
         if (first := matches[0]) is not None:
             parts.append(f"{_signed_percent(first.off)} in the first frequency")
@@ -195,8 +194,8 @@ def _agreement(design: DesignResults) -> Iterator[str]:
             yield f"{name} differs from {reference} by {listed(parts)}."
 
 
-def off_at_rest(own: ModelDesignResults, other: ModelDesignResults) -> float | None:
-    """Return the relative difference of static tips under the largest loads, or None."""
+def static_deviation(own: ModelDesignResults, other: ModelDesignResults) -> float | None:
+    """Return the relative difference of the static tips under the largest loads, or None."""
     tips = [max((rest.tip for rest in one.static), key=abs, default=None) for one in (own, other)]
     if tips[1] is None or not tips[0]:
         return None
@@ -204,9 +203,9 @@ def off_at_rest(own: ModelDesignResults, other: ModelDesignResults) -> float | N
 
 
 def _horizon(summary: Summary, duration: float) -> Iterator[str]:
-    """Yield the horizons of the ensembles."""
+    """Yield a note on the horizons of the ensembles."""
     times = {
-        name: model.ensemble.horizon(_PARTED)
+        name: model.ensemble.horizon(_DIVERGED)
         for name, model in summary.models.items()
         if model.ensemble is not None
     }
@@ -215,7 +214,7 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
         which = listed([f"{name} {time:.2f} s" for name, time in parted.items()])
         yield (
             "The motion is chaotic: runs whose data differ immeasurably are "
-            f"{_percent(_PARTED)} of the tip's range apart after these times: {which}. A later "
+            f"{_percent(_DIVERGED)} of the tip's range apart after these times: {which}. A later "
             "curve is one of many possible motions; slow peaks are predictable for longer."
         )
     regular = [name for name, time in times.items() if time is None]
@@ -224,12 +223,12 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
 
 
 def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[str]:
-    """Return the limits of validity of the results.
+    """Return cautions on the validity of the results.
 
     Args:
         case: case of the run.
         boom: boom of the case.
-        data: trajectories of its models.
+        data: trajectories of all models.
         summary: summary of the run, with all failures.
     """
     return [
@@ -269,7 +268,7 @@ def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
 
 
 def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
-    """Yield cautions on wall stresses of shells where axial forces vary along the boom."""
+    """Yield cautions on wall stresses of shells if axial forces vary along a segment."""
     numbers = range(len(boom.joints))
     if any(moving_force(boom.segments, boom.joints, number) for number in numbers):
         for name in (name for name, one in summary.models.items() if one.stress is not None):
@@ -281,7 +280,7 @@ def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
 
 
 def bulge_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
-    """Yield cautions on lateral plays of shells that walls close at rest as they bulge."""
+    """Yield cautions on lateral plays of shells that bulging walls close in the static state."""
     plays = {x: one.lateral_play or 0.0 for one in boom.joints for x in one.stations}
     for name, own in summary.design.models.items():
         found = [
@@ -299,7 +298,7 @@ def bulge_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
 def _large_displacements(boom: Boom, data: xr.Dataset) -> Iterator[str]:
     largest = np.abs(data["tip"].values).max(axis=1)
     for name, move in zip(data["model"].values, largest, strict=True):
-        if move > MOST * boom.length:
+        if move > LARGE_DISPLACEMENT * boom.length:
             yield (
                 f"caution: in {name} the tip moves by {float(move):.3g} m, more than a tenth of "
                 "the boom's length: small displacements do not hold; check units and loads"
@@ -307,15 +306,15 @@ def _large_displacements(boom: Boom, data: xr.Dataset) -> Iterator[str]:
 
 
 def _numerical(summary: Summary) -> Iterator[str]:
-    """Yield cautions on reductions and meshes."""
+    """Yield cautions on errors of reductions and meshes."""
     for name, model in summary.models.items():
-        if (error := model.reduction_errors.get("contact_compliance") or 0.0) > POOR:
+        if (error := model.reduction_errors.get("contact_compliance") or 0.0) > MAX_RELATIVE_ERROR:
             yield (
                 f"caution: the {model.modes} coordinates of {name} err by {TO_PERCENT * error:.2g} "
                 "% where the segments touch; allow more modes, or --modes auto"
             )
     for name, model in summary.models.items():
-        if (error := model.mesh_error or 0.0) > POOR:
+        if (error := model.mesh_error or 0.0) > MAX_RELATIVE_ERROR:
             yield (
                 f"caution: the mesh of {name} errs by {TO_PERCENT * error:.2g} % of the local "
                 "compliance where the segments touch; give a smaller mesh_size"

@@ -18,7 +18,7 @@ from dynamics.predictability.ensemble import integrate_ensemble
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Segment
 from runs.case import toml
-from runs.case.kinds.model import Built, Workshop
+from runs.case.kinds.model import BuildContext, BuiltModel
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case, Model
 from runs.folder.cache import key
@@ -38,12 +38,12 @@ from runs.pipeline.summary import (
 from runs.pipeline.wall_buckling import wall_buckling
 from shell_model.stages import Stages
 
-# Wall of the outer segment that presses, by direction and sign of the inner one's force.
+# Loaded wall of the outer segment, by direction and sign of the force of the inner segment.
 _WALLS = {("z", 1): "top", ("z", -1): "bottom", ("y", 1): "right", ("y", -1): "left"}
 
 
 class SharedFailure(Exception):
-    """Failure of one of several ranks, while the others may wait for it."""
+    """Failure of one of several ranks, for which the others may wait."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,10 +57,10 @@ class CompletedMotion:
 
 @dataclass(frozen=True, slots=True)
 class ModelRun:
-    """A built model, its motion, further output of a shell, and wall times."""
+    """A built model with its motion, the output of a shell, and wall times."""
 
     model: Model
-    built: Built
+    built: BuiltModel
     motion: CompletedMotion
     shell: ShellOutput | None
     stages: Stages
@@ -81,8 +81,7 @@ def run_model(
 ) -> ModelRun | None:
     """Build, integrate and summarise a model; return None except on rank 0. Collective.
 
-    A motion that an earlier run completed is read from the store of motions. A new motion is stored
-    as soon as it ends, so that a later run need not repeat it.
+    A motion of an earlier run is read from the cache of motions. A new motion is cached at once.
 
     Args:
         boom: boom of the case.
@@ -99,7 +98,7 @@ def run_model(
     stages = Stages(partial(context.progress, model.name))
     if model.needs_shell or context.first_rank:
         helper = context.helper if context.alone else None
-        tools = None if comm is None else Workshop(comm, stages.progress, context.cache, helper)
+        tools = None if comm is None else BuildContext(comm, stages.progress, context.cache, helper)
         try:
             built = build(case, boom, model, tools)
         except NUMERICAL_ERRORS as error:
@@ -122,7 +121,7 @@ def run_model(
         motion = store.load(name, CompletedMotion) if store else None
         if motion is None:
             moving = Stages(stages.progress)
-            motion = _move(built, model, case, cutoff, executor, moving)
+            motion = _integrate(built, model, case, cutoff, executor, moving)
             # The first model of a process compiles the time loop for the others.
             begin += moving.seconds["compilation"]
             if store is not None:
@@ -132,7 +131,7 @@ def run_model(
         summary.critical_factor = built.critical_factor
     if built.calibration is not None:
         summary.calibration = calibration_card(boom, system, built.calibration)
-    # A stored motion keeps the wall times of its computation.
+    # A cached motion keeps the wall times of its computation.
     stages.seconds |= summary.seconds
     shell = None
     if reduced is not None:
@@ -146,15 +145,15 @@ def run_model(
     return ModelRun(model, built, motion, shell, stages)
 
 
-def _move(
-    built: Built,
+def _integrate(
+    built: BuiltModel,
     model: Model,
     case: Case,
     cutoff: float | None,
     executor: Executor | None,
     stages: Stages,
 ) -> CompletedMotion:
-    """Integrate a model; measure its step error, its ensemble and its horizons."""
+    """Integrate a model; add step error, ensemble and horizons if the case requests them."""
     plan, table = MotionPlan.of(built.system, case, model), case.ensemble
     motion, system = plan.motion, plan.motion.system
     with stages.stage("compilation"):
@@ -199,11 +198,11 @@ def summarise_motion(
     """Return the summary of a model's motion.
 
     Args:
-        model: of the case.
-        system: that of the model, with all constant loads in its ``load``.
-        trajectory: its motion.
-        num_dofs: before any reduction.
-        static_tip: of :func:`runs.pipeline.proportions.static_tip`.
+        model: a model of the case.
+        system: system of the model; its ``load`` includes all constant loads.
+        trajectory: motion of the model.
+        num_dofs: number of degrees of freedom before any reduction.
+        static_tip: static tip deflection in m.
     """
     attributes = trajectory.data.attrs
     peaks = np.abs(trajectory.data["contact_force_peak"].values)
@@ -238,12 +237,12 @@ def calibration_card(boom: Boom, system: GapSystem, calibration: Calibration) ->
 
     Args:
         boom: boom of the case.
-        system: system of the model, with the contact rows of the calibration.
+        system: system of the model, whose contacts are those of the calibration.
         calibration: calibration of the model.
     """
     return CalibrationCard(
         segments=[
-            _beam(segment, stiffness)
+            _beam_stiffness(segment, stiffness)
             for segment, stiffness in zip(boom.segments, calibration.segments, strict=True)
         ],
         springs=[
@@ -259,7 +258,7 @@ def calibration_card(boom: Boom, system: GapSystem, calibration: Calibration) ->
     )
 
 
-def _beam(segment: Segment, stiffness: Stiffness) -> BeamStiffness:
+def _beam_stiffness(segment: Segment, stiffness: Stiffness) -> BeamStiffness:
     planes = (
         (segment, segment.turned())[: len(stiffness.bending)] if segment.lateral else (segment,)
     )

@@ -18,42 +18,42 @@ from geometry.boom import Boom
 from runs.case.build import build_boom
 from runs.case.elastic_drive import with_elastic_drives
 from runs.case.hoist import hanging_load, with_hanging_load
-from runs.case.kinds.model import Built, Joined, ModelTable, Workshop
+from runs.case.kinds.model import BuildContext, BuiltModel, ModelBoom, ModelTable
 from runs.case.schema import Case, Model
 
 if TYPE_CHECKING:
     from dynamics.integrator import AdaptiveStep, FixedStep
 
-# Maximum number of steps, which takes days: a case with more is an input error.
+# Maximum number of steps: more would take days, and are an input error.
 MOST_STEPS = 1.0e10
 
 
-def build(case: Case, boom: Boom, model: Model, workshop: Workshop | None = None) -> Built:
+def build(case: Case, boom: Boom, model: Model, context: BuildContext | None = None) -> BuiltModel:
     """Build a model of a case. Collective for a meshed model.
 
     Args:
         case: the case, with the contact laws of the joints.
         boom: boom of the case.
         model: a model of the case.
-        workshop: the context for a meshed model.
+        context: ranks, progress reporter and cache, for a meshed model.
 
     Raises:
         BoomError: the boom lacks what the model needs.
     """
-    return build_on(model.joined(boom), case, model, workshop)
+    return build_on(model.model_boom(boom), case, model, context)
 
 
 def build_on(
-    joined: Joined, case: Case, model: ModelTable, workshop: Workshop | None = None
-) -> Built:
-    """Build a model on the boom of a case; arguments and errors as in :func:`build`."""
-    built = model.build(joined, workshop)
-    system = with_elastic_drives(built.system, case, joined.boom)
-    return replace(built, system=with_hanging_load(system, case, joined.boom))
+    model_boom: ModelBoom, case: Case, model: ModelTable, context: BuildContext | None = None
+) -> BuiltModel:
+    """Build a model like :func:`build`, from a boom that has its contact laws already."""
+    built = model.build(model_boom, context)
+    system = with_elastic_drives(built.system, case, model_boom.boom)
+    return replace(built, system=with_hanging_load(system, case, model_boom.boom))
 
 
 def initial_motion(system: GapSystem, case: Case) -> Motion:
-    """Return the initial motion of a system as the case defines it.
+    """Return the motion of a system that is to be integrated, from the data of a case.
 
     Raises:
         NumericsError: there is no equilibrium to start from.
@@ -75,8 +75,8 @@ class MotionPlan:
 
     Args:
         motion: motion of the system under the loads from t = 0 on.
-        integrator: integrator with the step of the model or the case, or else with error control.
-        load: the load that the boom hoists.
+        integrator: integrator with the step of the model or the case, or with error control.
+        load: hoisted load; None for none.
     """
 
     motion: Motion
@@ -85,7 +85,7 @@ class MotionPlan:
 
     @classmethod
     def of(cls, system: GapSystem, case: Case, model: ModelTable) -> MotionPlan:
-        """Return the plan of a model of a case.
+        """Return motion and integrator of a model of a case.
 
         Raises:
             NumericsError: there is no equilibrium to start from, or the motion needs too many
@@ -105,19 +105,19 @@ class MotionPlan:
         return cls(motion, FixedStep(step), load)
 
     def warm(self) -> None:
-        """Compile the time loop by one output, so that later wall times exclude compilation."""
+        """Compile the time loop by a run to the first output, so that wall times exclude it."""
         from dynamics.kernels.compiled import compilation_lock
 
         with compilation_lock():
             self.integrator(replace(self.motion, duration=self.motion.output_step))
 
     def trajectory(self, progress: Callable[[float], None] | None = None) -> Trajectory:
-        """Return the motion."""
+        """Return the integrated motion."""
         found = self.integrator(self.motion, progress)
         return found if self.load is None else self.load.separate_rope(found)
 
     def step_error(self, trajectory: Trajectory, progress: Callable[[float], None]) -> float:
-        """Return the change of the tip for a doubled fixed step, as a fraction of its range."""
+        """Return the change of the tip by a doubled fixed step, as a fraction of its range."""
         from dynamics.integrator import FixedStep
 
         coarser = FixedStep(2.0 * trajectory.data.attrs["step"])

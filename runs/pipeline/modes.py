@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Modes of the boom, linearised at rest: each closed contact is a spring, in all models."""
+"""Modes of the boom, linearised in the static state: each closed contact is a spring."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from dynamics.gap_system import GapSystem
 from dynamics.line import Line, Quantity
 from geometry.arrays import Array
 from geometry.boom import Boom, Segment
-from runs.pipeline.section_forces import rounded
+from runs.pipeline.section_forces import round_values
 
 # Number of modes of each model.
 MODES = 8
 
-# Number of points per segment at which mode shapes are compared and stored.
+# Number of points of a segment at which mode shapes are compared and stored.
 _PLACES = 21
 
 # Kinds of motion in a mode, with their names.
@@ -28,8 +28,8 @@ _MOTIONS: Mapping[Quantity, str] = {
     "twist": "twist",
 }
 
-# Least modal assurance criterion of matching modes (Allemang 2003).
-ALIKE = 0.5
+# Modes match if the modal assurance criterion is at least this (Allemang 2003).
+MIN_ASSURANCE = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,12 +43,12 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """Mode of the boom with the contacts that are closed at rest.
+    """Mode of the boom with the contacts that are closed in the static state.
 
     Args:
         frequency: frequency in Hz.
         motion: dominant motion: ``bending in z``, ``bending in y`` or ``twist``.
-        number: number among the model's modes with this dominant motion, from 1 on.
+        number: number among the modes of the model with this dominant motion, from 1 on.
         share: fraction of the kinetic energy in the dominant motion, from 0 to 1.
         shapes: mode shapes of each segment; the dominant motion has a maximum of 1 m or 1 rad.
     """
@@ -65,9 +65,9 @@ class Match:
     """Mode of another model that matches a mode of the reference.
 
     Args:
-        number: number among the other model's modes, from 1 on.
+        number: number of the mode in the other model, from 1 on.
         frequency: frequency in Hz.
-        off: relative difference from the reference's frequency.
+        off: relative difference from the frequency of the reference.
         alike: modal assurance criterion of both shapes, from 0 to 1.
     """
 
@@ -83,8 +83,8 @@ class ModeComparison:
 
     Args:
         reference: name of the reference model.
-        matches: for each other model with play, its modes in the order of the reference's modes;
-            None for a mode without a match.
+        matches: for each other model with play, the mode that matches each mode of the reference;
+            None without a match.
     """
 
     reference: str
@@ -94,8 +94,8 @@ class ModeComparison:
 def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> list[Mode]:
     """Return the first modes, in ascending order of frequency.
 
-    The dominant motion of a mode has the largest fraction of the kinetic energy, without rotary
-    inertia of cross-sections and without point masses.
+    The dominant motion of a mode has the largest share of the kinetic energy, in which rotary
+    inertia and point masses are neglected.
 
     Args:
         boom: boom of the model.
@@ -131,8 +131,8 @@ def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> 
                 shapes=[
                     Shape(
                         segment.name,
-                        rounded(np.linspace(segment.start, segment.end, _PLACES)),
-                        {name: rounded(scale * curve) for name, curve in of.items()},
+                        round_values(np.linspace(segment.start, segment.end, _PLACES)),
+                        {name: round_values(scale * curve) for name, curve in of.items()},
                     )
                     for segment, of in zip(boom.segments, curves, strict=True)
                 ],
@@ -149,17 +149,20 @@ def inertia(segment: Segment, motion: Quantity) -> float:
     return segment.lateral.polar_inertia
 
 
-def matched(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) -> list[Match | None]:
-    """Return another model's best match for each mode of the reference; None without a match.
+def match_modes(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) -> list[Match | None]:
+    """Return the best match in another model for each mode of the reference; None without a match.
 
-    Each mode is used once. The criterion is the modal assurance criterion of the deflections and
+    Each mode matches once. The criterion is the modal assurance criterion of the deflections and
     twists along the segments, weighted by inertia (Allemang 2003).
 
     Args:
         boom: boom of both models.
-        reference, other: modes of the reference and of the other model.
+        reference: modes of the reference.
+        other: modes of the other model.
     """
-    here, there = (np.array([_vector(boom, mode) for mode in of]) for of in (reference, other))
+    here, there = (
+        np.array([_weighted_shape(boom, mode) for mode in of]) for of in (reference, other)
+    )
     if not (here.size and there.size):
         return [None for _ in reference]
     lengths = np.outer(np.linalg.norm(here, axis=1), np.linalg.norm(there, axis=1))
@@ -168,7 +171,7 @@ def matched(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) -> lis
     left = alike.copy()
     for number, mode in enumerate(reference):
         k = int(left[number].argmax())
-        if left[number, k] < ALIKE:
+        if left[number, k] < MIN_ASSURANCE:
             found.append(None)
             continue
         off = other[k].frequency / mode.frequency - 1.0
@@ -177,7 +180,7 @@ def matched(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) -> lis
     return found
 
 
-def _vector(boom: Boom, mode: Mode) -> Array:
+def _weighted_shape(boom: Boom, mode: Mode) -> Array:
     """Return the mass-weighted shape in √kg·m."""
     parts = [
         np.sqrt(inertia(segment, name) * segment.length / _PLACES) * np.array(shape.curves[name])

@@ -16,9 +16,9 @@ from geometry.axial import foot_thrust
 from geometry.boom import Boom, Segment
 from geometry.cylinder import forces
 from geometry.section import Direction
-from runs.pipeline.section_forces import rounded, section_forces
+from runs.pipeline.section_forces import round_values, section_forces
 from runs.pipeline.static_results import StaticResult, place_names
-from runs.pipeline.strength import Fibres, FibreStress, Varying, WallStress, largest_stresses
+from runs.pipeline.strength import Fibres, FibreStress, StressHistory, WallStress, largest_stresses
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,8 +27,9 @@ class Envelope:
 
     Args:
         segment: name of the segment.
-        x: (num_places) in m; a place with a jump occurs twice.
-        low, high: minimum and maximum of each curve over the run, as in :class:`Diagram`.
+        x: positions (num_places) in m; a position with a jump occurs twice.
+        low: minimum of each curve over the run, named as in :class:`Diagram`.
+        high: maximum of each curve over the run.
     """
 
     segment: str
@@ -39,20 +40,19 @@ class Envelope:
 
 @dataclass(frozen=True, slots=True)
 class Peak:
-    """Maximum absolute value of a quantity in motion, and its static value.
+    """Largest magnitude of a quantity in motion, and its static value.
 
     Args:
         what: name of the quantity: ``deflection``, ``contact force``, ``cylinder force``,
-            ``rope force`` (at rest the weight of the load), ``reaction``, with axial loads also
-            ``reaction along the boom`` and ``reaction, across and along``, ``moment at the
-            support`` or ``bending moment``; in space the same for y, marked ``lateral``, and
-            ``torque at the support``.
-        where: name of the place in the results or the case.
+            ``rope force``, ``reaction``, with axial loads also ``reaction along the boom`` and
+            ``reaction, across and along``, ``moment at the support``, ``bending moment``; in space
+            also ``torque at the support``, and the same names with ``lateral`` for y.
+        where: location in the results or the case.
         unit: SI unit.
         largest: maximum of the motion; for contacts the maximum of the means over output intervals,
-            which is the design load of a pad, and not the peak of an impact.
+            which is the design load of a pad, not the peak of an impact.
         time: time of the maximum in s.
-        at_rest: maximum at rest under the extreme loads, at any extension; None without an
+        at_rest: static maximum under the extreme loads, at any extension; None without an
             equilibrium.
     """
 
@@ -65,19 +65,19 @@ class Peak:
 
     @property
     def factor(self) -> float | None:
-        """The dynamic factor; None without a value at rest."""
+        """The dynamic factor; None without a static value."""
         return self.largest / self.at_rest if self.at_rest else None
 
 
 @dataclass(frozen=True, slots=True)
 class MotionResult:
-    """Extreme values of a model's motion.
+    """Extreme values of the motion of a model.
 
     Args:
         envelopes: envelope of each segment.
         peaks: maxima of all quantities, with their static values.
-        fibres: stress of each elastic segment with a known section.
-        walls: wall stresses of shells.
+        fibres: largest stress of each elastic segment with a known section.
+        walls: largest wall stresses of a shell.
     """
 
     envelopes: list[Envelope]
@@ -87,7 +87,7 @@ class MotionResult:
 
 
 class _Plane(NamedTuple):
-    """Names of the section forces of a plane of bending."""
+    """Names of the section forces in a plane of bending."""
 
     direction: Direction
     name: str
@@ -102,7 +102,7 @@ _PLANES = (
 
 
 @dataclass(frozen=True, slots=True)
-class Motions:
+class MotionAndStatics:
     """A motion with the static states for comparison.
 
     Args:
@@ -111,7 +111,7 @@ class Motions:
         trajectory: the motion.
         positions: equilibria (num_rests, num_modes).
         rests: static states at the equilibria.
-        jumps: whether section forces jump at point forces; those of series are smooth.
+        jumps: True if section forces jump at point forces; False for a series, which is smooth.
     """
 
     boom: Boom
@@ -122,20 +122,24 @@ class Motions:
     jumps: bool
 
 
-def evaluate_motion(motions: Motions) -> tuple[MotionResult, list[Varying]]:
-    """Return the extreme values of a motion, without those of walls.
+def evaluate_motion(motions: MotionAndStatics) -> tuple[MotionResult, list[StressHistory]]:
+    """Return the extreme values of a motion except wall stresses, and stress histories for fatigue.
 
-    The second result is the stress history of each segment at the place where it varies most.
+    The stress history of a segment is that of the point where the stress varies most.
     """
-    boom, envelopes, peaks = motions.boom, [], list(_observed(motions))
+    boom, envelopes, peaks = motions.boom, [], list(_output_peaks(motions))
     fibres, varying = [], []
     time, rest_times = motions.trajectory.time, np.array([rest.time for rest in motions.rests])
     for number, (segment, line) in enumerate(zip(boom.segments, motions.lines, strict=True)):
         curves = section_forces(boom, number, line, motions.trajectory.states, time)
         still = section_forces(boom, number, line, motions.positions, rest_times)
-        low: dict[str, list[float]] = {n: rounded(one.min(axis=0)) for n, one in curves.items()}
-        high: dict[str, list[float]] = {n: rounded(one.max(axis=0)) for n, one in curves.items()}
-        envelopes.append(Envelope(segment.name, rounded(line.x), low, high))
+        low: dict[str, list[float]] = {
+            n: round_values(one.min(axis=0)) for n, one in curves.items()
+        }
+        high: dict[str, list[float]] = {
+            n: round_values(one.max(axis=0)) for n, one in curves.items()
+        }
+        envelopes.append(Envelope(segment.name, round_values(line.x), low, high))
         if "moment" in curves:
             peaks += _bending_moments(segment, curves, still, time)
             if motions.jumps:
@@ -150,14 +154,14 @@ def evaluate_motion(motions: Motions) -> tuple[MotionResult, list[Varying]]:
 def _peak(
     what: str, where: str, unit: str, time: Array, values: Array, still: Sequence[float] | Array
 ) -> Peak:
-    """Return the maximum over time (num_times,), with the maximum at rest (num_rests,)."""
+    """Return the peak of values (num_times,) in motion, with that of static values (num_rests,)."""
     step = int(np.abs(values).argmax())
     at_rest = max((float(abs(value)) for value in still), default=None)
     return Peak(what, where, unit, float(abs(values[step])), float(time[step]), at_rest)
 
 
-def _observed(motions: Motions) -> Iterator[Peak]:
-    """Yield the maxima of the quantities in the trajectories."""
+def _output_peaks(motions: MotionAndStatics) -> Iterator[Peak]:
+    """Yield the peaks of the outputs in the trajectory."""
     data, rests, time = motions.trajectory.data, motions.rests, motions.trajectory.time
     tips = [rest.tip for rest in rests]
     yield _peak("deflection", "tip", "m", time, data["tip"].values, tips)
@@ -190,13 +194,13 @@ def _bending_moments(
             yield _peak(f"{plane.name}bending moment", segment.name, "N m", time, most, at_rest)
 
 
-def _reactions(motions: Motions, number: int) -> Iterator[Peak]:
-    """Yield the maxima of a segment's support reactions, which are jumps of its section forces."""
+def _reactions(motions: MotionAndStatics, number: int) -> Iterator[Peak]:
+    """Yield the peaks of the support reactions of a segment, from jumps of its section forces."""
     segment, line = motions.boom.segments[number], motions.lines[number]
     states, time = (motions.trajectory.states, motions.positions), motions.trajectory.time
 
     def jump(name: Quantity, x: float) -> list[Array]:
-        """Return a section force's jumps at x, in motion (num_times,) and at rest (num_rests,)."""
+        """Return the jump of a section force at x, in motion and in the static states."""
         row = np.zeros(states[0].shape[1])
         if name in line.rows:
             row = line.one_sided_row(name, x, -1) - line.one_sided_row(name, x, 1)

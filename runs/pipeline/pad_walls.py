@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Compliance of walls under slide pads: their share of the tip deflection, and remedies."""
+"""Share of wall compliance under slide pads in the tip deflection, and remedies."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from geometry.joint import PadSize
 from geometry.typography import TO_MILLI
 from runs.report.formatting import number
 
-# Share of the tip deflection that makes remedies useful, and the fraction of it that remains after
-# an effective remedy.
+# Remedies are given above this share of the tip deflection, if they reduce the tip deflection to
+# this fraction.
 LARGE_SHARE, HELPFUL = 0.1, 0.98
 
 
@@ -22,7 +22,7 @@ def pad_wall_lines(boom: Boom, tip: float) -> Iterator[str]:
     """Yield the share of walls under pads in the tip deflection, and remedies if it is large.
 
     Args:
-        boom: boom of the first model with play.
+        boom: boom with the contact laws of the first model with play.
         tip: static tip deflection in m.
 
     Raises:
@@ -68,12 +68,11 @@ def _sizes(joint: Joint) -> tuple[PadSize, ...]:
 
 
 def _with_pads(boom: Boom, changes: Callable[[PadSize, float], dict[str, Any]]) -> Boom:
-    """Return the boom with changes of all pads.
+    """Return the boom with changed pads.
 
     Args:
-        boom: with pads.
-        changes: returns the changed fields of a pad; half of the overlap in m is its second
-            argument.
+        boom: boom with pads.
+        changes: function of a pad and half the overlap in m that returns the changed fields.
     """
     joints = []
     for joint in boom.joints:
@@ -88,18 +87,18 @@ def _with_pads(boom: Boom, changes: Callable[[PadSize, float], dict[str, Any]]) 
 def _with_collars(boom: Boom) -> Boom:
     """Return the boom with collars at all pads.
 
-    A new collar is as thick as the wall, and reaches half the height of the section beyond the
-    station. An existing collar becomes thicker.
+    A new collar is as thick as the wall and extends half the height of the section on both sides
+    of the station. The thickness of the wall is added to an existing collar.
     """
     segments = list(boom.segments)
     for joint in (joint for joint in boom.joints if joint.padded):
         for index in (joint.outer, joint.inner):
             for x in joint.stations:
-                segments[index] = _thickened(segments[index], x)
+                segments[index] = _thicken(segments[index], x)
     return replace(boom, segments=tuple(segments))
 
 
-def _thickened(segment: Segment, x: float) -> Segment:
+def _thicken(segment: Segment, x: float) -> Segment:
     section = segment.section_at(x)
     reach, thickness = 0.5 * section.size("z"), section.face("z", 1).thickness
     start, end = max(segment.start, x - reach), min(segment.end, x + reach)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Forces and pressures of slide pads, at rest and in motion."""
+"""Static and dynamic forces and pressures of slide pads."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ if TYPE_CHECKING:
 SIGNS: tuple[Side, Side] = (1, -1)
 
 # Name of each side, by direction.
-_ON = {on: side for side, on in SIDES.items()}
+_SIDE_NAMES = {on: side for side, on in SIDES.items()}
 
 
 @dataclass(frozen=True, slots=True)
 class PadLoad:
-    """Governing slide pad of a station's side, in one model.
+    """Governing slide pad on one side of a station, in one model.
 
-    ``x`` is the position of the station in m, ``force`` in N, ``pressure`` in Pa; ``utilisation``
-    is None if the case has no permitted pressure.
+    ``x`` is the position of the station in m, ``force`` in N, ``pressure`` in Pa. ``utilisation``
+    is None without an allowable pressure.
     """
 
     model: str
@@ -47,18 +47,18 @@ class PadLoad:
 
 
 def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
-    """Yield the governing pads of each station with play, in each model.
+    """Yield the governing pad on each side of each station with play, in each model.
 
     Args:
         case: case of the run.
         boom: boom of the case.
-        data: the trajectories of its models.
+        data: trajectories of all models.
     """
     if not any(table.pad or table.pads for table in case.joints):
         return
     with_play = (model for model in case.models if not model.bonded)
     for model in (model for model in with_play if model.name in data["model"].values):
-        seen = model.joined(boom).boom
+        seen = model.model_boom(boom).boom
         station, own = count(), data["contact_force_peak"].sel(model=model.name)
         ends = np.stack([own.min("time").values, own.max("time").values], axis=1)
         for direction in boom.directions:
@@ -70,19 +70,19 @@ def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
                         largest = max(pushed, key=abs)
                         force = abs(float(largest))
                         if not model.needs_shell:
-                            force = _of_a_side(force, law)
-                        side = _ON[direction, 1 if largest > 0.0 else -1]
-                        yield _pressed(model, table, table.pad, x, side, force)
-                    forces = _of_each(joint, direction, law, pushed)
+                            force = _larger_side_force(force, law)
+                        side = _SIDE_NAMES[direction, 1 if largest > 0.0 else -1]
+                        yield _pad_load(model, table, table.pad, x, side, force)
+                    forces = _pair_forces(joint, direction, law, pushed)
                     pads = [pad for pad in table.pads if SIDES[pad.side][0] == direction]
                     for pad, force in zip(pads, forces, strict=True):
-                        yield _pressed(model, table, pad, x, pad.side, force)
+                        yield _pad_load(model, table, pad, x, pad.side, force)
 
 
-def _pressed(
+def _pad_load(
     model: Model, joint: JointTable, pad: PadSize, x: float, side: str, both: float
 ) -> PadLoad:
-    """Return a pad of a pair that shares a force in N evenly."""
+    """Return the load of a pad, which carries half of the force ``both`` in N on its pair."""
     force, allowable = both / PADS_OF_SIDE, pad.allowable_pressure
     pressure = force / pad.area
     return PadLoad(
@@ -97,15 +97,15 @@ def _pressed(
     )
 
 
-def _of_each(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array) -> list[float]:
-    """Return the largest force in N of each pair of pads.
+def _pair_forces(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array) -> list[float]:
+    """Return the largest force in N on each pair of pads.
 
     Args:
         joint: the joint of the pads.
         direction: direction of the forces.
         law: contact law of a station.
-        pushed: forces (num_pushes,) in N on the side with the larger force, negative on the side
-            −1. The approach of this side determines the force on the other side.
+        pushed: forces (num_pushes,) in N on the side with the larger force, negative for side −1.
+            The approach on this side determines the force on the opposite side.
     """
     laws, sides = [], []
     for pad in (pad for pad in joint.pads if SIDES[pad.side][0] == direction):
@@ -136,10 +136,10 @@ def _of_each(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array)
     return [float(most) for most in found]
 
 
-def _of_a_side(both: float, law: ContactLaw) -> float:
-    """Return the force in N on one side of a beam's station.
+def _larger_side_force(both: float, law: ContactLaw) -> float:
+    """Return the force in N on the more loaded side of a beam's station.
 
-    The contact law of the station has the net force of both sides, which shims may preload.
+    ``both`` is the net force of both sides. Without preload by shims, one side carries it alone.
     """
     sides = (law.one_sided(side) for side in (1, -1))
     at_rest = max(float(abs(law.force(np.zeros(())))) for law in sides if law is not None)
@@ -149,21 +149,21 @@ def _of_a_side(both: float, law: ContactLaw) -> float:
 def loaded_pads(
     joint: Joint, direction: Direction, sides: Sequence[float]
 ) -> list[tuple[PadSize, float]]:
-    """Return each pad of a given size at a station, and the force in N on it.
+    """Return the pads of a station that have a size, each with the force on it in N.
 
     Args:
         joint: the joint of the station.
         direction: direction of the forces.
-        sides: forces of both sides in N, not negative.
+        sides: forces on both sides in N, not negative.
     """
     found = []
     for side, force in zip(SIGNS, sides, strict=True) if joint.padded else ():
-        # Pairs with more shim close first.
+        # Pairs with thicker shims close first.
         pairs = sorted(joint.pads_of(direction, side), key=lambda pair: -pair[2])
         shares, shims = (np.array([pair[k] for pair in pairs]) for k in (1, 2))
         own = [pad.stiffness for pad in joint.pads if pad.touches(direction, side)]
         stiffness = PADS_OF_SIDE * sum(own) or 1.0
-        # Each further pair in contact reduces the compression of the pairs before it.
+        # Each pair that closes reduces the compression of those that closed before.
         ways = (force / stiffness - np.cumsum(shares * shims)) / np.cumsum(shares)
         forces = stiffness * (shares * np.maximum(ways.min() + shims, 0.0)) / PADS_OF_SIDE
         found += [(pair[0], float(one)) for pair, one in zip(pairs, forces, strict=True)]
@@ -171,6 +171,6 @@ def loaded_pads(
 
 
 def side_force(law: ContactLaw, side: int, gap: float) -> float:
-    """Return the contact force on a side in N, positive in compression."""
+    """Return the contact force in N on one side at a gap in m, positive in compression."""
     depths = [(term, max(side * gap - term.onset, 0.0)) for term in law.terms if term.side == side]
     return float(sum(term.stiffness * depth**term.exponent for term, depth in depths))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Stresses of walls from section forces, and buckling of walls by formulas for long panels.
 
-Each wall is a long plate, simply supported at its folds, under a linear stress along the boom and a
-mean shear stress. The estimate neglects the restraint by adjacent walls and the local load of pads.
+Each wall is a long plate, simply supported at its folds. Across its width the axial stress is
+linear and the shear stress constant. Restraint by adjacent walls and pad forces are neglected.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ SHEAR = 5.34
 
 @dataclass(frozen=True, slots=True)
 class PanelBuckling:
-    """Wall of a segment that buckles first by panel formulas.
+    """Wall of a segment with the lowest buckling factor by panel formulas.
 
     Args:
         segment: name of the segment.
@@ -66,20 +66,20 @@ class WallStresses(NamedTuple):
 
 
 def normal_coefficient(ratio: float | Array) -> Array:
-    """Return k of long plates for the ratio ψ of the stresses at their edges.
+    """Return the buckling coefficients k of long plates for the stress ratio ψ of their edges.
 
-    ψ is the stress at the other edge over the largest compression (EN 1993-1-5, table 4.1): 4.0 in
-    compression, 23.9 in bending.
+    ψ is the stress at the other edge over the largest compression. k is 4.0 in compression and
+    23.9 in bending (EN 1993-1-5, table 4.1).
     """
     ratio = np.asarray(ratio)
     compressed, bent = 8.2 / (1.05 + np.maximum(ratio, 0.0)), 7.81 - 6.29 * ratio + 9.78 * ratio**2
-    # The table ends at −3, beyond which tension is neglected.
+    # The table ends at ψ = −3. More tension at the other edge is neglected.
     beyond = 5.98 * (1.0 - np.maximum(ratio, -3.0)) ** 2
     return np.asarray(np.select([ratio >= 0.0, ratio > -1.0], [compressed, bent], beyond))
 
 
 def stress_ratio(edges: Array) -> Array:
-    """Return ψ, at least −3, for the axial stresses (2, ...) at two edges; 1 without compression.
+    """Return the stress ratio ψ of two edges (2, ...), at least −3; 1 without compression.
 
     Args:
         edges: axial stresses in Pa, positive in tension.
@@ -117,7 +117,7 @@ def panel_factor(
 
 
 def weakest_panels(segments: Sequence[Segment], rest: StaticResult) -> list[PanelBuckling]:
-    """Return the wall of each segment with a known section that buckles first in a static state."""
+    """Return the first wall to buckle in a static state, for each segment with a known section."""
     found: dict[str, PanelBuckling] = {}
     for wall in nominal_wall_stresses(segments, rest):
         name = wall.segment.name

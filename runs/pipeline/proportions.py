@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Sanity checks of proportions of a case or a boom, which find errors of unit or sign."""
+"""Sanity checks of the proportions of a case, which reveal errors of unit or sign."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from runs.case.sanity import usual_ranges
 from runs.case.schema import Case
 
 # Angle in degrees up to which a boom is horizontal.
-LEVEL = 0.1
+LEVEL_ANGLE = 0.1
 
-# Fraction of the critical force above which second-order effects are not small.
-CLOSE = 1.0 / 3.0
+# Fraction of the buckling load above which second-order effects are not small.
+NEAR_BUCKLING = 1.0 / 3.0
 
-# Fraction of the boom's length beyond which a static deflection is not small.
-FAR = 0.05
+# Fraction of the length of the boom above which a static deflection is not small.
+LARGE_DEFLECTION = 0.05
 
 
-# Fractions of the boom's weight: smaller loads have no effect, larger ones exceed any capacity.
-LIGHT, HEAVY = 1.0e-3, 1.0e2
+# Fractions of the weight of the boom: smaller loads have no effect, larger ones no boom can carry.
+MIN_LOAD, MAX_LOAD = 1.0e-3, 1.0e2
 
-# Fraction of the boom's weight: larger upward loads are probably weights with the wrong sign.
-LIFTING = 0.3
+# Fraction of the weight of the boom: larger upward loads probably have the wrong sign.
+MAX_LIFT = 0.3
 
 # Number of periods of the boom beyond which a run is too long for a design.
 MANY_PERIODS = 1000.0
@@ -40,19 +40,19 @@ MANY_PERIODS = 1000.0
 # number is that of steel.
 STEEL, STEEL_WITHIN = (2.1e11, 7850.0), (0.06, 0.1)
 
-# Relative difference up to which two loads, or a mass and a force, count as the same.
-SAME, ALIKE = 0.01, 0.05
+# Relative differences up to which two loads, and a force and a weight, count as the same.
+SAME_LOAD, SAME_WEIGHT = 0.01, 0.05
 
 
 def proportion_cautions(case: Case, boom: Boom) -> list[str]:
-    """Return a line for each suspicious input."""
+    """Return a caution for each suspicious input."""
     unusual = (one for one in usual_ranges(case, boom) if one.unusual)
     found = [f"{one.key}: {one.text(case.system)}" for one in unusual]
     found += [
         *_sizes(case, boom),
-        *_given_twice(case, boom),
-        *_without_gravity(case, boom),
-        *_in_vain(case),
+        *_repeated_loads(case, boom),
+        *_payload_without_gravity(case, boom),
+        *_ineffective_inputs(case),
         *_materials(case),
         *_cylinders(case, boom),
         *_pads(case, boom),
@@ -61,8 +61,8 @@ def proportion_cautions(case: Case, boom: Boom) -> list[str]:
     return [f"caution: {line}" for line in found]
 
 
-def _in_vain(case: Case) -> Iterator[str]:
-    """Yield inputs that have no effect, or less than the user may intend."""
+def _ineffective_inputs(case: Case) -> Iterator[str]:
+    """Yield cautions on inputs that have no effect, or less than the user may intend."""
     duration = case.time.duration
     ramps = [(f"load[{i}].ramp", load.ramp) for i, load in enumerate(case.loads, start=1)]
     ramps += [(f"base[{i}].ramp", base.ramp) for i, base in enumerate(case.base, start=1)]
@@ -79,12 +79,12 @@ def _in_vain(case: Case) -> Iterator[str]:
                 "nothing; give friction, usual is 0.05 to 0.3, or leave them out"
             )
     angle = 0.0 if case.gravity is None else case.gravity.angle
-    if LEVEL < abs(angle) <= 0.5 * np.pi:
+    if LEVEL_ANGLE < abs(angle) <= 0.5 * np.pi:
         yield (
             f"gravity.angle: {angle:g} degrees is nearly level; if it is in radians, give "
             f"{np.rad2deg(angle):.4g}"
         )
-    if case.cylinders and angle < -LEVEL:
+    if case.cylinders and angle < -LEVEL_ANGLE:
         yield (
             f"gravity.angle: {angle:g} degrees: the boom on its cylinder points down; upward "
             "angles are positive"
@@ -134,9 +134,9 @@ def _cylinders(case: Case, boom: Boom) -> Iterator[str]:
 
 
 def _pads(case: Case, boom: Boom) -> Iterator[str]:
-    """Yield a caution for each contact that is softer than the bending of the inner segment."""
+    """Yield a caution for each contact that is more compliant than its inner segment in bending."""
     for model in (model for model in case.models if not model.bonded):
-        for joint in model.joined(boom).boom.joints:
+        for joint in model.model_boom(boom).boom.joints:
             inner = boom.segments[joint.inner]
             bending = 3.0 * inner.bending_stiffness / inner.length**3
             force = 0.5 * STANDARD_GRAVITY * inner.mass
@@ -173,7 +173,7 @@ def _sizes(case: Case, boom: Boom) -> Iterator[str]:
     forces = [segment.load * segment.length for segment in boom.segments]
     forces += [load.resultant(boom.segments[load.segment].length) for load in added]
     payload = case.payload
-    if payload is not None and STANDARD_GRAVITY * payload.mass < LIGHT * weight:
+    if payload is not None and STANDARD_GRAVITY * payload.mass < MIN_LOAD * weight:
         yield (
             f"the payload of {payload.mass:g} kg is less than a thousandth of the boom's "
             f"{weight / STANDARD_GRAVITY:.4g} kg; check the units"
@@ -186,14 +186,14 @@ def _sizes(case: Case, boom: Boom) -> Iterator[str]:
                 f"is in N, give {round_mass:g} kg"
             )
     largest = max(map(abs, forces))
-    if largest > HEAVY * weight:
+    if largest > MAX_LOAD * weight:
         yield (
             f"a load of {largest:.4g} N is more than a hundred times the boom's weight of "
             f"{weight:.4g} N; check the units"
         )
     for number, load in enumerate(boom.loads[: len(case.loads)], start=1):
         force = abs(load.resultant(boom.segments[load.segment].length))
-        if 0.0 < force < LIGHT * weight and load in added:
+        if 0.0 < force < MIN_LOAD * weight and load in added:
             yield (
                 f"load[{number}]: {force:.4g} N is less than a thousandth of the boom's weight of "
                 f"{weight:.4g} N; check the units"
@@ -204,8 +204,8 @@ def _sizes(case: Case, boom: Boom) -> Iterator[str]:
                 f"load[{number}].x: {load.x:g} m on {boom.segments[load.segment].name!r} lies "
                 f"inside {boom.segments[outer].name!r}; usual is the head"
             )
-    lift, turn = np.sum(list(_lasting(boom)), axis=0)
-    if lift > LIFTING * weight:
+    lift, turn = np.sum(list(_constant_loads(boom)), axis=0)
+    if lift > MAX_LIFT * weight:
         yield (
             f"the loads pull upwards, by {lift:.4g} N in all; those that pull down, as weights "
             "do, are negative"
@@ -224,8 +224,8 @@ def _sizes(case: Case, boom: Boom) -> Iterator[str]:
             )
 
 
-def _lasting(boom: Boom) -> Iterator[tuple[float, float]]:
-    """Yield the force in N and the moment in N m about the base of each load along z that lasts."""
+def _constant_loads(boom: Boom) -> Iterator[tuple[float, float]]:
+    """Yield force in N and moment about the base in N m of each constant load along z."""
     base = boom.segments[0].start
     for segment in boom.segments:
         force = segment.load * segment.length
@@ -238,8 +238,8 @@ def _lasting(boom: Boom) -> Iterator[tuple[float, float]]:
             yield force, force * (float(middle) - base)
 
 
-def _given_twice(case: Case, boom: Boom) -> Iterator[str]:
-    """Yield loads that repeat another load or a weight, and masses that look like forces."""
+def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
+    """Yield cautions on loads that repeat a load or a weight, and on masses in place of forces."""
     for name, tables in (("load", case.loads), ("axial", case.axial)):
         for number, table in enumerate(tables):
             if table in tables[:number]:
@@ -248,7 +248,7 @@ def _given_twice(case: Case, boom: Boom) -> Iterator[str]:
     weighing = (STANDARD_GRAVITY, *([] if case.gravity is None else [case.gravity.across]))
 
     def weighs(force: float, mass: float) -> bool:
-        return any(isclose(-force, g * mass, rel_tol=SAME) for g in weighing)
+        return any(isclose(-force, g * mass, rel_tol=SAME_LOAD) for g in weighing)
 
     for number, segment in enumerate(boom.segments, start=1):
         if case.gravity is not None and weighs(segment.load, segment.mass_per_length):
@@ -266,15 +266,15 @@ def _given_twice(case: Case, boom: Boom) -> Iterator[str]:
                 f"{where}: {force:g} N at the tip is the weight of the payload, which acts "
                 "already; leave it out"
             )
-        if isclose(-force, mass, rel_tol=ALIKE):
+        if isclose(-force, mass, rel_tol=SAME_WEIGHT):
             yield (
                 f"{where}: {force:g} N at the tip is a tenth of the weight of the payload of "
                 f"{mass:g} kg; if it is in kg, give {force * STANDARD_GRAVITY:.4g} N"
             )
 
 
-def _without_gravity(case: Case, boom: Boom) -> Iterator[str]:
-    """Yield a caution for a payload on a boom without gravity or other downward load."""
+def _payload_without_gravity(case: Case, boom: Boom) -> Iterator[str]:
+    """Yield a caution if a payload has no weight and no other downward load acts."""
     payload, weights = case.payload, [-segment.load for segment in boom.segments]
     weights += [-load.magnitude for load in boom.loads if load.x is None and load.direction == "z"]
     if payload and case.gravity is None and payload.gravity is None and max(weights) <= 0.0:
@@ -289,9 +289,9 @@ def period_cautions(where: str, frequency: float, case: Case) -> list[str]:
     """Return a caution if the run is shorter than one period of the boom, or has very many.
 
     Args:
-        where: source of the frequency, for example ``in MODEL``.
+        where: model or source of the frequency in the text, for example ``in MODEL``.
         frequency: first frequency in Hz, with closed contacts.
-        case: case with the duration.
+        case: case with the duration of the run.
     """
     periods = case.time.duration * frequency
     if periods > MANY_PERIODS:
@@ -320,14 +320,14 @@ def static_tip(system: GapSystem) -> float:
 
 
 def buckling_cautions(name: str, critical_factor: float | None) -> list[str]:
-    """Return a caution if the axial forces of a model are too large.
+    """Return a caution if the axial forces of a model are close to buckling.
 
     Args:
         name: name of the model.
         critical_factor: buckling factor of its axial forces; None without axial forces, or if it is
             not computed.
     """
-    if critical_factor is None or critical_factor * CLOSE >= 1.0:
+    if critical_factor is None or critical_factor * NEAR_BUCKLING >= 1.0:
         return []
     return [
         f"caution: in {name} the axial forces are {100.0 / critical_factor:.3g} % of those under "
@@ -339,11 +339,11 @@ def tip_cautions(where: str, tip: float | None, boom: Boom) -> list[str]:
     """Return a caution if a static deflection is too large.
 
     Args:
-        where: source of the deflection, for example ``in MODEL``.
+        where: model or source of the deflection in the text, for example ``in MODEL``.
         tip: tip deflection in m; NaN or None without an equilibrium.
-        boom: the boom, whose length counts from its first end to its tip.
+        boom: the boom, for its length.
     """
-    if tip is None or not abs(tip) > FAR * boom.length:
+    if tip is None or not abs(tip) > LARGE_DEFLECTION * boom.length:
         return []
     return [
         f"caution: {where} the tip rests at {tip:.3g} m, {100.0 * abs(tip) / boom.length:.2g} % of "

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Quantities of each model for the charts of sweeps and the limits of cases."""
+"""Quantities of each model for sweeps and limits."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from runs.pipeline.summary import ModelSummary
 if TYPE_CHECKING:
     from runs.pipeline.results import Results
 
-# Type of quantities by name in SI units; None if a model has no value.
-Measured = dict[str, float | None]
+# Quantities in SI units by name; None if a model has no value.
+Quantities = dict[str, float | None]
 
-# Half-width of the settling band as a fraction of the initial amplitude.
+# Half-width of the settling band over the initial amplitude.
 BAND = 0.05
-# Final fraction of the run that gives the final mean, and in which the tip must stay in the band.
+# Last fraction of the run. It gives the final mean, and the tip must stay in the band during it.
 FINAL = 0.2
-# Fraction below which the motion of a tip is round-off, for example from equilibrium.
+# Relative motion of the tip that counts as round-off, for example in equilibrium.
 ROUND_OFF = 1.0e-12
 # Fraction of the initial vibration that remains after the decay time.
-TENTH = 0.1
+DECAYED_SHARE = 0.1
 
-# Further sources of a model's numbers: results that are records, and its summary.
-_DECLARING: list[type] = [*records(ModelDesignResults).values(), ModelSummary]
+# Classes whose annotated fields are quantities, too.
+_RECORD_CLASSES: list[type] = [*records(ModelDesignResults).values(), ModelSummary]
 
-# Quantities of the boom at rest, of its motion, and of its accuracy.
+# Static, dynamic and accuracy quantities.
 QUANTITIES = (
     Metric("tip_at_rest", "m", "tip at rest", TO_MILLI, "mm"),
     Metric("tip", "m", "tip deflection", TO_MILLI, "mm"),
@@ -49,11 +49,11 @@ QUANTITIES = (
     Metric("settling_time", "s", "settling time", 1.0, "s"),
     Metric("drive_force", "N", "largest force of an elastic drive", TO_KILO, "kN"),
     Metric("drive_slip", "m", "longest slip on a drive", TO_MILLI, "mm"),
-    *(one for kind in _DECLARING for one in metrics(kind).values() if one.name),
+    *(one for kind in _RECORD_CLASSES for one in metrics(kind).values() if one.name),
 )
 
 
-def measure(results: Results, model: str) -> Measured:
+def measure(results: Results, model: str) -> Quantities:
     """Return the quantities of one model of a run.
 
     The static tip is the deflection under the largest loads, at any extension; the tip is the
@@ -93,33 +93,35 @@ def measure(results: Results, model: str) -> Measured:
         "damage": max(damages, default=None),
         "first_frequency": frequency,
         "decay_time": decay_time(results.case.damping.modal, frequency),
-        # Of all segments and the masses that they carry.
+        # The mass of a segment includes point masses, collars and diaphragms.
         "mass": sum(segment.mass for segment in results.boom.segments),
         "drive_force": max((one.peak for one in summary.stick_slip.values()), default=None),
         "drive_slip": max((one.slip for one in summary.stick_slip.values()), default=None),
         "settling_time": settling_time(time, tip),
     } | {
         metric.name: getattr(record, field, None)
-        for record, kind in zip(declaring, _DECLARING, strict=True)
+        for record, kind in zip(declaring, _RECORD_CLASSES, strict=True)
         for field, metric in metrics(kind).items()
         if metric.name
     }
 
 
 def decay_time(ratio: float, frequency: float | None) -> float | None:
-    """Return the time in s in which a vibration decays to a tenth; None without damping."""
-    return log(1.0 / TENTH) / (2.0 * pi * ratio * frequency) if ratio and frequency else None
+    """Return the time in s in which modal damping reduces a vibration to 10 %; None without it."""
+    return (
+        log(1.0 / DECAYED_SHARE) / (2.0 * pi * ratio * frequency) if ratio and frequency else None
+    )
 
 
 def settling_time(time: Array, tip: Array) -> float | None:
-    """Return the time from which the tip stays within 5 % of its initial amplitude.
+    """Return the time in s after which the tip stays within ±5 % of its initial amplitude.
 
-    The centre of the band is the mean over the last fifth of the run; the initial amplitude is the
-    largest distance from it. The result is None if the tip leaves the band within the last fifth,
-    which should be longer than the slowest oscillation.
+    The centre of the band is the mean over the last fifth of the run. The initial amplitude is the
+    largest distance from the centre. The result is None if the tip leaves the band during the last
+    fifth, which should be longer than the slowest oscillation.
 
     Args:
-        time: (num_times,) in s, rising.
+        time: ascending times (num_times,) in s.
         tip: (num_times,) in m.
     """
     last = time >= time[-1] - FINAL * (time[-1] - time[0])

@@ -25,13 +25,12 @@ from runs.case.schema import Case, Model
 from runs.pipeline.metrics import Metric, Record
 from runs.pipeline.models import MotionPlan
 
-# Numbers of equilibria along all changes, with linear interpolation, and between two reversals;
-# maximum number of reversals, beyond which no equilibria are computed.
+# Number of equilibria over all changes and between two reversals; maximum number of reversals.
 _RESTS, _BETWEEN_TURNS, _MOST_TURNS = 60, 4, 100
 
 _TIP = ("tip", "tip_lateral")
 
-# Formats of a length, and of a length that is constant during the run.
+# Metrics of a length, with and without a chart.
 _metres = partial(Metric, unit="m", factor=TO_MILLI, shown_unit="mm")
 _level = partial(_metres, charted=False)
 
@@ -43,8 +42,9 @@ class ResidualVibration(Record):
     Args:
         tip: largest distance of the tip from equilibrium in m.
         time: time of this distance in s.
-        initial, final: largest distances in m at constant initial and constant final extension,
-            under the same loads; None if they cannot be computed.
+        initial: largest distance in m at constant initial extension, under the same loads; None if
+            it cannot be computed.
+        final: largest distance in m at constant final extension, likewise.
         speed: mean speed in m/s of the fastest drive while it moves.
     """
 
@@ -89,21 +89,22 @@ def residual_vibration(
     """Return the residual vibration; None without telescoping or without equilibria.
 
     Args:
-        system: system of the model; its ``load`` has all constant loads.
+        system: system of the model; its ``load`` includes all constant loads.
         trajectory: motion of the model.
         case: case of the model.
         model: the model.
     """
     ends = [time for travel in system.travels for time in travel.history.kinks]
     if not ends or max(ends) > trajectory.time[-1]:
-        # A motion that ends before its drives may not contain the largest vibration.
+        # The largest vibration may come after the end of the run.
         return None
     try:
         tip, time = farthest_from_rest(system, trajectory)
     except NUMERICAL_ERRORS:
         return None
     stands = [
-        _standing(system.at_time(when).in_own_modes(), case, model) for when in (0.0, max(ends))
+        _vibration_at_constant_extension(system.at_time(when).in_own_modes(), case, model)
+        for when in (0.0, max(ends))
     ]
     speed = max(_speed(travel) for travel in system.travels)
     return ResidualVibration(tip, time, speed, *stands)
@@ -123,8 +124,8 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
     changes = [x.history for x in system.excitations] + [x.history for x in system.travels]
     times = resolving_times(changes, float(time[-1]))
     values = np.array([change(times) for change in changes]).reshape(len(changes), times.size)
-    passed = _passed(values)
-    steps = _rest_steps(values, passed)
+    passed = _accumulated_change(values)
+    steps = _equilibrium_steps(values, passed)
     rests = [equilibrium_at(system, t) for t in times[steps].tolist()]
     off = np.zeros(time.size)
     for name in _TIP:
@@ -136,13 +137,13 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
     return float(off[step]), float(time[step])
 
 
-def _rest_steps(values: Array, passed: Array) -> Indices:
+def _equilibrium_steps(values: Array, passed: Array) -> Indices:
     """Return the steps (num_rests,) at which equilibria are computed, in ascending order.
 
-    They are evenly spaced along the accumulated change, and between successive reversals of the
-    values (num_changes, num_times).
+    They divide the accumulated change ``passed`` (num_times,) evenly, and each interval between
+    two reversals of the values (num_changes, num_times).
     """
-    turns = sorted({step for change in values for step in _turns(change).tolist()})
+    turns = sorted({step for change in values for step in _reversals(change).tolist()})
     if len(turns) > _MOST_TURNS:
         raise NumericsError(f"loads turn back {len(turns)} times, too often")
     ends = passed[[0, *turns, -1]]
@@ -153,7 +154,7 @@ def _rest_steps(values: Array, passed: Array) -> Indices:
     return np.unique(np.array([*turns, *steps], dtype=np.int64))
 
 
-def _turns(values: Array) -> Indices:
+def _reversals(values: Array) -> Indices:
     """Return the steps (num_turns,) at which values (num_times,) reverse or become constant."""
     ways = np.diff(values)
     moves = np.flatnonzero(ways)
@@ -162,7 +163,7 @@ def _turns(values: Array) -> Indices:
 
 
 def _speed(travel: Travel) -> float:
-    """Return the mean speed in m/s while a drive moves; 0 for a sum of several travels."""
+    """Return the mean speed in m/s of a drive while it moves; 0 for a sum of several drives."""
     if travel.suffix is None:
         return 0.0
     times = resolving_times([travel.history], max(travel.history.kinks))
@@ -170,15 +171,15 @@ def _speed(travel: Travel) -> float:
     return float(ways.sum() / np.diff(times)[ways > 0.0].sum())
 
 
-def _passed(values: Array) -> Array:
-    """Return the accumulated change (num_times,) of values (num_changes, num_times)."""
+def _accumulated_change(values: Array) -> Array:
+    """Return the accumulated relative change (num_times,) of values (num_changes, num_times)."""
     sizes = np.abs(values).max(axis=1, keepdims=True)
     ways = np.abs(np.diff(values, axis=1)) / np.where(sizes > 0.0, sizes, 1.0)
     return np.concatenate([[0.0], np.cumsum(ways.sum(axis=0))])
 
 
-def _standing(system: GapSystem, case: Case, model: Model) -> float | None:
-    """Return the largest distance from equilibrium in m at constant extension."""
+def _vibration_at_constant_extension(system: GapSystem, case: Case, model: Model) -> float | None:
+    """Return the largest distance of the tip from equilibrium in m at constant extension."""
     try:
         plan = MotionPlan.of(system, case, model)
         changes = system.excitations or system.released_load.any() or plan.motion.velocity.any()

@@ -23,10 +23,10 @@ from runs.case import toml
 from runs.case.build import build_boom
 from runs.case.messages import BadInput, first_error
 from runs.case.schema import Case, Model
-from runs.case.user_files import check_left, check_regular
+from runs.case.user_files import check_not_working_folder, check_regular
 from runs.folder.files import MANIFEST, damaged, real, scratch_folder, whole_folder, write_whole
 from runs.pipeline.design_results import PlayEffect
-from runs.pipeline.model_quality import cautions, leading, reference_of
+from runs.pipeline.model_quality import cautions, main_models, reference_of
 from runs.pipeline.motion_results import MotionResult
 from runs.pipeline.pads import pad_loads
 from runs.pipeline.static_results import place_names
@@ -56,14 +56,14 @@ class Results:
 
     Args:
         case: the case of the run, with all defaults.
-        trajectories: dims ``model`` (names, in the case's order), ``time`` in s, ``station`` in
-            m, with the ``direction`` of its contact, and its name ``place``; deflections
-            ``tip``, ``head``, ``tail`` in m (``head-2`` and so forth from the second joint on),
+        trajectories: dimensions ``model`` (names, in the order of the case), ``time`` in s,
+            ``station`` in m with its ``direction`` and name ``place``; deflections ``tip``,
+            ``head``, ``tail`` in m (``head-2`` and so forth from the second joint on),
             ``contact_force``, ``contact_force_peak`` and ``friction_force`` in N, ``gap`` in m,
-            energies in J; NaN where a model has none.
+            energies in J; NaN if a model has no value.
         summary: the content of ``summary.json``.
-        ensembles: dims ``model`` (models with play), ``member`` (the first one unchanged),
-            ``time``; ``tip``, ``head`` in m; None if the case has no ensembles.
+        ensembles: dimensions ``model`` (models with play), ``member`` (the first one unchanged),
+            ``time``; ``tip``, ``head`` in m. None if the case has no ensembles.
     """
 
     case: Case
@@ -76,7 +76,7 @@ class Results:
         """Read a run's folder.
 
         Raises:
-            BadInput: it is not the folder of a run, or it is incomplete.
+            BadInput: the folder is not that of a run, or is incomplete.
         """
         folder = Path(folder)
         if not folder.is_dir():
@@ -110,7 +110,7 @@ class Results:
         return results
 
     def conclude(self) -> None:
-        """Complete the summary with numbers that follow from the motion and from other numbers."""
+        """Add pad loads and cautions to the summary."""
         case, boom, data, summary = self.case, self.boom, self.trajectories, self.summary
         summary.pads = list(pad_loads(case, boom, data))
         summary.cautions = cautions(case, boom, data, summary)
@@ -126,7 +126,7 @@ class Results:
 
     def write(self, folder: Path) -> None:
         """Write the files of :meth:`save` into an empty folder."""
-        # netCDF 3 has no empty dimensions: without joints the stations are left out.
+        # netCDF 3 has no empty dimensions, such as the stations of a boom without joints.
         empty = [name for name, size in self.trajectories.sizes.items() if size == 0]
         self.trajectories.drop_dims(empty).to_netcdf(folder / TRAJECTORIES, engine="scipy")
         if self.ensembles is not None:
@@ -135,7 +135,7 @@ class Results:
         write_whole(folder / SUMMARY, str(self.summary))
 
     @property
-    def ran(self) -> list[Model]:
+    def completed_models(self) -> list[Model]:
         """The models that did not fail."""
         return [model for model in self.case.models if model.name in self.summary.models]
 
@@ -147,7 +147,7 @@ class Results:
     @cached_property
     def reference(self) -> str | None:
         """The reference model, with which the others are compared."""
-        return reference_of(self.ran)
+        return reference_of(self.completed_models)
 
     @property
     def play(self) -> PlayEffect | None:
@@ -156,10 +156,10 @@ class Results:
         return next((one for one in known if one.model == self.reference), None)
 
     @cached_property
-    def leading_models(self) -> list[str]:
-        """The most important models, starting with the reference."""
+    def main_models(self) -> list[str]:
+        """The names of the main models, starting with the reference."""
         names = list(self.summary.models)
-        first = leading(self.case, names)
+        first = main_models(self.case, names)
         return sorted(first, key=lambda name: (name != self.reference, names.index(name)))
 
     @property
@@ -194,11 +194,11 @@ class Results:
 
     @property
     def motions(self) -> dict[str, MotionResult]:
-        """The extreme values of the motions of the most important models."""
+        """The extreme values of the motions of the main models."""
         own = self.summary.design.models
         return {
             name: moved
-            for name in self.leading_models
+            for name in self.main_models
             if name in own and (moved := own[name].motion) is not None
         }
 
@@ -233,12 +233,12 @@ def prepare(out: str, file: str) -> Path:
         raise BadInput(
             file, key, "holds files that are not a run's; give a new folder or an earlier run's"
         )
-    check_left(folder, file, key)
+    check_not_working_folder(folder, file, key)
     return folder
 
 
 def read_fields(path: Path) -> xr.Dataset:
-    """Read the fields of a shell from a run's folder, with all data that pictures need.
+    """Read a file of the fields of a shell, and check that pictures can be made from it.
 
     Raises:
         BadInput: the file is damaged, or written by another version.
@@ -253,11 +253,11 @@ def read_netcdf(path: Path) -> xr.Dataset:
 
 
 def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
-    """Gather the trajectories of all models in one dataset; they have the same times.
+    """Return the trajectories of all models in one dataset with named dimensions.
 
     Args:
         boom: boom whose stations become the dimension ``station``.
-        trajectories: trajectories by the model's name.
+        trajectories: trajectories by model name, with the same times.
     """
     stations = [x for x, _ in boom.stations]
     everything = [trajectory.data for trajectory in trajectories.values()]
@@ -309,7 +309,7 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
 
 
 def _read(path: Path, how: Callable[[Path], Any]) -> Any:
-    """Read a file of a run's folder.
+    """Read a file of a run with a given reader.
 
     Raises:
         BadInput: the file is missing, damaged, or written by another version.

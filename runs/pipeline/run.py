@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The run of a case: build, integrate and summarise every model."""
+"""The run of a case: construction, integration and summary of every model."""
 
 from __future__ import annotations
 
@@ -36,15 +36,15 @@ from runs.pipeline.summary import Ensembles, Summary, check_finite
 
 @dataclass(frozen=True)
 class Run:
-    """A run: its results, and the integrated models by name."""
+    """Results of a run, and its models with their motions by name."""
 
     results: Results
-    ran: dict[str, ModelRun]
+    model_runs: dict[str, ModelRun]
 
     @property
     def shells(self) -> dict[str, ShellOutput]:
         """The output of each shell."""
-        return {name: one.shell for name, one in self.ran.items() if one.shell is not None}
+        return {name: one.shell for name, one in self.model_runs.items() if one.shell is not None}
 
     @cached_property
     def beams(self) -> dict[str, BeamOutput]:
@@ -52,17 +52,17 @@ class Run:
         boom = self.results.boom
         return {
             name: BeamOutput.of(one.model.lines(boom, one.built), one.motion.trajectory)
-            for name, one in self.ran.items()
+            for name, one in self.model_runs.items()
             if one.shell is None
         }
 
     def evaluate(self) -> None:
         """Add the design results and the cautions to the summary.
 
-        ``failures`` also names models whose design results cannot be computed.
+        A model whose design results cannot be computed becomes one of the ``failures``.
 
         Raises:
-            NumericsError: a common result of all models, such as their comparison, is not finite.
+            NumericsError: a comparison of the models is not finite.
         """
         case, boom, summary = self.results.case, self.results.boom, self.results.summary
         design = self._evaluate_models(lambda one, own: one.add_bonded(own))
@@ -83,7 +83,7 @@ class Run:
         """Return the design results of each model, which a function completes."""
         case, boom, summary = self.results.case, self.results.boom, self.results.summary
         design = {}
-        for name, ran in self.ran.items():
+        for name, ran in self.model_runs.items():
             own = summary.models[name]
             with ran.stages.stage("design results"), np.errstate(all="ignore"):
                 try:
@@ -102,24 +102,24 @@ class Run:
 
 
 def run_case(case: Case, file: str, context: RunContext) -> Run | None:
-    """Run all models of a case; :meth:`Run.evaluate` adds the design results. Collective.
+    """Run all models of a case; return None except on rank 0. Collective.
 
-    Return None except on rank 0. ``failures`` of the summary names each model that cannot be
-    computed, with the reason.
+    :meth:`Run.evaluate` adds the design results. ``failures`` in the summary has the models that
+    cannot be computed, with the reasons.
 
     Args:
         case: a checked case.
         file: name of the case in messages.
-        context: the context of the run.
+        context: ranks, progress reporter, caches and helper process.
 
     Raises:
         NumericsError: no model can be computed, or a shell fails that several ranks share.
     """
     boom = build_boom(case)
-    cutoff = None if case.ensemble is None else members.slow_below(boom, case.time)
+    cutoff = None if case.ensemble is None else members.slow_cutoff(boom, case.time)
 
     def attempt(model: Model) -> ModelRun | Exception | None:
-        # Overflow is detected and reported later, where it matters.
+        # Results are checked for overflow at the end.
         with np.errstate(all="ignore"):
             try:
                 found = run_model(boom, model, case, cutoff, context)
@@ -153,7 +153,7 @@ def _results(
     motions: Mapping[str, CompletedMotion],
     failures: dict[str, str],
 ) -> Results:
-    """Return the results of the motions of a case."""
+    """Return the results of a run from the motions of its models."""
     summary = Summary(
         title=case.title,
         case_hash=toml.digest(case),
@@ -161,7 +161,7 @@ def _results(
         models={name: one.summary for name, one in motions.items()},
         failures=failures,
     )
-    # Every file contains its case, so that files of two runs in one folder are detected.
+    # Every file has the hash of its case, so that files of another run are detected.
     trajectories = {name: one.trajectory for name, one in motions.items()}
     data = label(boom, trajectories).assign_attrs(case_hash=summary.case_hash)
     ensembles = members.gather_ensembles(
@@ -184,8 +184,8 @@ def _attempt_all(
 ) -> dict[str, ModelRun | Exception | None]:
     """Return the result or the failure of each model, in the order of the models.
 
-    Without other ranks, beams are integrated while shells are built: the compiled loops release the
-    interpreter.
+    On a single rank a thread runs the beams while shells are built, since the compiled time loop
+    releases the interpreter lock.
     """
     if not alone or not any(model.needs_shell for model in models):
         return {model.name: attempt(model) for model in models}
@@ -194,7 +194,7 @@ def _attempt_all(
         try:
             made = {model.name: attempt(model) for model in models if model.needs_shell}
         except BaseException:
-            # After an interrupt, the remaining beams are not awaited.
+            # After an interrupt, remaining beams are cancelled.
             thread.shutdown(cancel_futures=True)
             raise
         return {m.name: made[m.name] if m.needs_shell else moving[m.name].result() for m in models}

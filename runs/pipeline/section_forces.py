@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Section forces of a segment: those of its line, and the normal force.
+"""Section forces of a segment, including the normal force.
 
-The normal force N has contributions of given axial forces, and of luffing cylinders between their
-lugs and the foot of the boom.
+The normal force N follows from given axial forces, and from the forces of luffing cylinders between
+their lugs and the foot of the boom.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from geometry.axial import carried
 from geometry.boom import Boom
 from geometry.cylinder import force_name
 
-# Distance on both sides of a jump, as a fraction of the distance from the start.
+# Distance of the two positions at a jump from the jump, as a fraction of the distance from start.
 _ASIDE = 1.0e-9
 
 _ACROSS: tuple[tuple[Quantity, Quantity], ...] = (
@@ -32,17 +32,17 @@ _ACROSS: tuple[tuple[Quantity, Quantity], ...] = (
 _DIGITS = 5
 
 
-def rounded(values: Array | Iterable[float]) -> list[float]:
-    """Return values rounded to the number of digits in files."""
+def round_values(values: Array | Iterable[float]) -> list[float]:
+    """Return values rounded to the number of digits of stored curves."""
     return [float(f"{value:.{_DIGITS}g}") for value in values]
 
 
-def with_cylinders(boom: Boom, system: GapSystem, lines: Sequence[Line]) -> list[Line]:
-    """Return lines with the axial forces of cylinders as normal forces.
+def with_cylinder_forces(boom: Boom, system: GapSystem, lines: Sequence[Line]) -> list[Line]:
+    """Return the lines with normal forces by the cylinders.
 
     Args:
         boom: boom of the system.
-        system: the system, whose observers give the cylinders' forces.
+        system: system whose outputs include the cylinder forces.
         lines: lines along the segments.
     """
     found = list(lines)
@@ -58,23 +58,23 @@ def with_cylinders(boom: Boom, system: GapSystem, lines: Sequence[Line]) -> list
 def section_forces(
     boom: Boom, number: int, line: Line, states: Array, time: Array
 ) -> dict[Quantity, Array]:
-    """Return the values (..., num_places) of a line at states (..., num_modes), with N in N.
+    """Return deflections and section forces (..., num_places) of a segment.
 
     Args:
-        boom: the boom, which may extend.
+        boom: the boom, which may telescope.
         number: index of the segment.
         line: line along the segment.
-        states: modal coordinates of the model.
+        states: modal coordinates (..., num_modes) of the model.
         time: times (...) of the states in s.
     """
     read = line.read(states)
-    # Double places are moved slightly to both sides.
+    # The two positions at a jump are moved slightly apart.
     jump = np.diff(line.x) == 0.0
     aside = _ASIDE * max(1.0, float(np.ptp(line.x)))
     x = line.x + aside * (np.append(False, jump).astype(float) - np.append(jump, False))
     pressed = carried(boom.segments, boom.joints, number, x, time)
     if boom.driven:
-        # Lines include the shear force at the start that axial forces cause.
+        # Lines already include the shear force at the start due to axial forces.
         more = pressed - boom.segments[number].compression(x)
         for deflection, shear in _ACROSS:
             if shear in read:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Static states of a model at the instants of extreme loads.
 
-Section forces act from the part behind the section on the part before it. A positive normal force
-is tension. A positive moment causes tension at the top, a positive lateral moment at larger y.
+Section forces act on the part nearer the base. A positive normal force is tension. A positive
+moment causes tension at the top, a positive lateral moment tension at larger y.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ from geometry.cylinder import forces
 from geometry.telescoping import places, travel
 from runs.case.drive import resolving_times
 from runs.pipeline.pads import SIGNS, loaded_pads, side_force
-from runs.pipeline.section_forces import rounded, section_forces
+from runs.pipeline.section_forces import round_values, section_forces
 
-# Distance from the largest extension, as a fraction of it, that counts as zero.
-_SAME_WAY = 1.0e-12
+# Extensions that differ by less than this fraction count as equal.
+_SAME_EXTENSION = 1.0e-12
 
 
 @dataclass(frozen=True, slots=True)
 class Diagram:
-    """Section forces and deflections of a segment at rest, from its start to its end.
+    """Static section forces and deflections of a segment, from its start to its end.
 
     Args:
         segment: name of the segment.
-        x: (num_places) in m; a place with a jump occurs twice.
+        x: positions (num_places) in m; a position with a jump occurs twice.
         normal: normal force in N.
         curves: other available quantities of :data:`dynamics.line.Quantity`: ``deflection`` in m,
             ``shear`` in N, ``moment`` in N·m; in space ``lateral`` in m, ``twist`` in rad,
@@ -57,7 +57,8 @@ class Tilt:
     """Rotation of a joint by its play and the compression of its contacts.
 
     Args:
-        inner, outer: names of the segments.
+        inner: name of the inner segment.
+        outer: name of the outer segment.
         rotation: rotation in rad of the inner segment in the outer one, positive for a larger
             slope.
         tip: tip displacement in m by this rotation.
@@ -71,20 +72,20 @@ class Tilt:
 
 @dataclass(frozen=True, slots=True)
 class StationLoad:
-    """Contact force and compression of a station at rest.
+    """Static contact force and compression of a station.
 
     Args:
         place: name of the station in trajectories.
         x: position in m.
         direction: z or y.
-        force: force in N, positive where the inner segment presses up (along y: towards larger y).
+        force: force in N, positive if the inner segment presses up (along y: towards larger y).
         pad: largest force on a pad of the station in N, not negative; stiffness and shims determine
             the distribution over the pads of a side. None without pads.
         depth: largest compression of a contact of the station in m.
         pressure: largest pressure on a pad of the station in Pa; None without pads.
-        utilisation: largest utilisation of the allowable pressure; None where none is given.
-        closed: part of the lateral play in m that walls close as they bulge, negative where they
-            open it; 0 along z, and for beams.
+        utilisation: largest utilisation of the allowable pressure; None without such a pressure.
+        closed: part of the lateral play in m that bulging walls close, negative if they open it;
+            0 along z, and for beams.
     """
 
     place: str
@@ -107,8 +108,8 @@ class StaticResult:
         tip: tip deflection in m.
         tip_lateral: tip deflection along y in m, in space.
         diagrams: diagram of each segment.
-        tilts: tilts of the joints with play and at least two stations.
-        stations: stations of joints with play, and stops.
+        tilts: rotations of the joints with play and at least two stations.
+        stations: loads of stations with play, and of stops.
         cylinders: axial forces of cylinders in N, by their names in the results.
     """
 
@@ -122,9 +123,9 @@ class StaticResult:
 
 
 def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:
-    """Return a name for each station: its x in m, followed by ``y`` for a lateral station.
+    """Return the name of each station: its x in m, followed by ``y`` for a lateral station.
 
-    The suffixes ``#2``, ``#3`` ... distinguish stations at the same place.
+    The suffixes ``#2``, ``#3`` … distinguish stations with the same x and direction.
     """
     names = [f"{x:g}" + ("y" if direction == "y" else "") for x, direction in stations]
     before = [names[:i].count(name) for i, name in enumerate(names)]
@@ -134,48 +135,48 @@ def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:
 
 
 def instants(system: GapSystem, duration: float) -> list[float]:
-    """Return 0 and the times in s at which a variable load or a hoist has an extreme value.
+    """Return 0 and the times in s at which a variable load or a hoist has its extreme values.
 
     Args:
         system: gap system whose ``load`` includes all constant loads.
         duration: duration of the motion in s.
     """
     winches = [travel for travel in system.travels if travel.shifts]
-    times, values = _over_time([*system.excitations, *winches], system, duration)
-    return _distinct(times, values, [0, *values.argmax(axis=1), *values.argmin(axis=1)])
+    times, values = _sample_histories([*system.excitations, *winches], system, duration)
+    return _distinct_times(times, values, [0, *values.argmax(axis=1), *values.argmin(axis=1)])
 
 
 def extended_instants(system: GapSystem, duration: float) -> list[float]:
-    """Return the times in s of the largest and least extension, and of extreme loads during these.
+    """Return the times in s of the largest and least extension, and of extreme loads at these.
 
     Args:
         system: gap system whose ``load`` includes all constant loads.
         duration: duration of the motion in s.
     """
     drives = [travel for travel in system.travels if not travel.shifts]
-    times, ways = _over_time(drives, system, duration)
-    _, loads = _over_time(system.excitations, system, duration)
+    times, ways = _sample_histories(drives, system, duration)
+    _, loads = _sample_histories(system.excitations, system, duration)
     found: list[int] = []
     for way in ways:
         for end in (way.max(), way.min()):
-            there = np.flatnonzero(np.abs(way - end) <= _SAME_WAY * abs(end))
+            there = np.flatnonzero(np.abs(way - end) <= _SAME_EXTENSION * abs(end))
             of_loads = loads[:, there]
             steps = [0, *of_loads.argmax(axis=1), *of_loads.argmin(axis=1)]
             found += there[steps].tolist() if end else []
-    return _distinct(times, np.vstack([loads, ways]), found)
+    return _distinct_times(times, np.vstack([loads, ways]), found)
 
 
-def _over_time(
+def _sample_histories(
     changes: Sequence[Excitation | Travel], system: GapSystem, duration: float
 ) -> tuple[Array, Array]:
-    """Return times in s that resolve all histories, and values (num_changes, num_times) at them."""
+    """Return times in s that resolve all histories, and the values (num_changes, num_times)."""
     loads, ways = ([change.history for change in of] for of in (system.excitations, system.travels))
     times = resolving_times([*loads, *ways], duration)
     values = np.array([change.history(times) for change in changes])
     return times, values.reshape(-1, times.size)
 
 
-def _distinct(times: Array, values: Array, steps: Sequence[int]) -> list[float]:
+def _distinct_times(times: Array, values: Array, steps: Sequence[int]) -> list[float]:
     """Return the first time in s of each distinct value at the given steps."""
     found: dict[tuple[float, ...], float] = {}
     for step in steps:
@@ -184,9 +185,9 @@ def _distinct(times: Array, values: Array, steps: Sequence[int]) -> list[float]:
 
 
 def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float, Array]:
-    """Return the equilibria (num_modes,) under the loads of each instant, by time in s.
+    """Return the equilibria (num_modes,) under the loads at given times, by time in s.
 
-    Instants without an equilibrium are left out. The result is empty if the first has none.
+    Times without an equilibrium are left out. The result is empty if the first has none.
 
     Args:
         system: gap system of a model, whose ``load`` includes all constant loads.
@@ -204,7 +205,7 @@ def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float,
 
 
 def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]:
-    """Return the equilibria at the largest and least extension, in addition to :func:`positions`.
+    """Return the equilibria (num_modes,) at the largest and least extension, by time in s.
 
     Args:
         system: gap system of a model, whose ``load`` includes all constant loads.
@@ -234,9 +235,11 @@ def static_result(
     system, diagrams = system.at_time(time), []
     for number, line in enumerate(lines):
         carried = section_forces(boom, number, line, position, np.array(time))
-        curves: dict[str, list[float]] = {name: rounded(values) for name, values in carried.items()}
+        curves: dict[str, list[float]] = {
+            name: round_values(values) for name, values in carried.items()
+        }
         name, normal = boom.segments[number].name, curves.pop("normal")
-        diagrams.append(Diagram(name, rounded(line.x), normal, curves))
+        diagrams.append(Diagram(name, round_values(line.x), normal, curves))
     seen = {name: float(one.row @ position) for name, one in system.observers.items()}
     return StaticResult(
         time=time,
@@ -250,14 +253,14 @@ def static_result(
 
 
 def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[StationLoad]:
-    """Yield the stations of joints with play, and the stops, at a position (num_modes,)."""
+    """Yield the loads of stations with play and of stops, at an equilibrium (num_modes,)."""
     gaps = system.rows @ position
     loose = [joint for joint in boom.joints if not joint.tied]
     joints = [joint for _ in boom.directions for joint in loose for _ in joint.stations]
     for k, ((x, direction), name, joint) in enumerate(
         zip_longest(boom.stations, place_names(boom.stations), joints)
     ):
-        # A model without play has stations, but no contact rows at them.
+        # The stations of a model without play have no contacts.
         here = np.flatnonzero(system.station_of_row == k)
         sides = [
             sum(side_force(system.laws[row], side, gaps[row]) for row in here) for side in SIGNS
@@ -277,12 +280,12 @@ def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[St
             depth=max((system.laws[row].depth(float(gaps[row])) for row in here), default=0.0),
             pressure=max((force / pad.area for pad, force in pads), default=None),
             utilisation=max(used, default=None),
-            closed=_closed(system, gaps, here) if direction == "y" else 0.0,
+            closed=_closed_play(system, gaps, here) if direction == "y" else 0.0,
         )
 
 
-def _closed(system: GapSystem, gaps: Array, rows: Indices) -> float:
-    """Return the mean approach in m on the right less that on the left, which beams share."""
+def _closed_play(system: GapSystem, gaps: Array, rows: Indices) -> float:
+    """Return the play in m that walls close: mean approach on the right minus that on the left."""
     right, left = (
         [gaps[row] for row in rows if np.isfinite(system.laws[row].onset(side))] for side in SIGNS
     )
@@ -290,7 +293,14 @@ def _closed(system: GapSystem, gaps: Array, rows: Indices) -> float:
 
 
 def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> Iterator[Tilt]:
-    """Yield the tilts of joints with play and several stations, at a position and a time in s."""
+    """Yield the rotations of joints with play and several stations.
+
+    Args:
+        boom: the boom, with the play of the system.
+        system: system of the model.
+        position: equilibrium (num_modes,).
+        time: time in s of the extension.
+    """
     gaps, numbers = system.rows @ position, count()
     for joint in (joint for joint in boom.joints if not joint.tied):
         own = [float(gaps[system.station_of_row == next(numbers)].mean()) for _ in joint.stations]
@@ -298,7 +308,7 @@ def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> 
             before = travel(boom, joint.outer, time)
             extension = travel(boom, joint.inner, time) - before
             on_outer = [x for x, _ in places(joint, extension)] if joint.drive else joint.stations
-            # The resultant force of a pad acts at its middle.
+            # The resultant force of a pad acts at its centre.
             middles = contact_centres(boom, joint)
             on_outer = [
                 x + sum(middles[at]) / len(middles[at]) - at

@@ -44,9 +44,9 @@ class Reaction:
 
 
 class Statics(NamedTuple):
-    """Static states of the boom under the loads at t = 0 as beam elements, with and without play.
+    """Static states under the loads at t = 0 of beam elements, with and without play.
 
-    Both are without play if no model of the case has play.
+    ``with_play`` is without play, too, if no model of the case has play.
     """
 
     with_play: StaticState
@@ -68,21 +68,21 @@ def statics(case: Case, boom: Boom) -> Statics | None:
 
 
 def boom_with_play(case: Case, boom: Boom) -> Boom:
-    """Return the boom of the first model with play."""
+    """Return the boom with the contact laws of the first model with play, or the bonded boom."""
     with_play = next((model for model in case.models if not model.bonded), case.models[0])
-    return with_play.joined(boom).boom
+    return with_play.model_boom(boom).boom
 
 
 def reactions(state: StaticState) -> list[Reaction]:
     """Return the support reactions."""
-    between = _between_segments(state.boom)
+    between = _joint_contacts(state.boom)
     return [
         one for place, one in contact_and_support_reactions(state).items() if place not in between
     ]
 
 
-def _between_segments(boom: Boom) -> set[tuple[int, float]]:
-    """Return the places where joints can press, by inner segment and x in m."""
+def _joint_contacts(boom: Boom) -> set[tuple[int, float]]:
+    """Return inner segment and x in m of all contacts of joints."""
     return {
         (joint.inner, x)
         for joint in boom.joints
@@ -92,9 +92,9 @@ def _between_segments(boom: Boom) -> set[tuple[int, float]]:
 
 
 def contact_and_support_reactions(state: StaticState) -> dict[tuple[int, float], Reaction]:
-    """Return the reactions of ground and joints by segment and x in m; round-off counts as zero."""
-    boom, depths, along = state.boom, _depths(state), _along(state)
-    places = _between_segments(boom)
+    """Return support reactions and contact forces by segment and x in m, without round-off."""
+    boom, depths, along = state.boom, _depths(state), _axial_forces(state)
+    places = _joint_contacts(boom)
     places |= {(number, one.x) for number, s in enumerate(boom.segments) for one in s.supports}
     places |= {(stop.segment, stop.x) for stop in boom.stops}
     places |= {(cylinder.segment, cylinder.x) for cylinder in boom.cylinders}
@@ -115,7 +115,7 @@ def contact_and_support_reactions(state: StaticState) -> dict[tuple[int, float],
     }
 
 
-def _along(state: StaticState) -> dict[tuple[int, float], float]:
+def _axial_forces(state: StaticState) -> dict[tuple[int, float], float]:
     """Return the axial forces of feet and cylinders in N, by segment and x in m."""
     boom = state.boom
     found: dict[tuple[int, float], float] = defaultdict(float)
@@ -132,7 +132,7 @@ def _along(state: StaticState) -> dict[tuple[int, float], float]:
 
 
 def _depths(state: StaticState) -> dict[tuple[int, float], float]:
-    """Return the compression in m of stations along z, by inner segment and x in m."""
+    """Return the compression in m of stations and stops along z, by segment and x in m."""
     boom = state.boom
     joints = [joint for joint in boom.joints if not joint.tied]
     inner = [
@@ -152,5 +152,5 @@ def _depths(state: StaticState) -> dict[tuple[int, float], float]:
 
 
 def cylinder_force(state: StaticState, number: int) -> float:
-    """Return the force of a cylinder's spring in N; the first cylinder has number 1."""
+    """Return the axial force of a cylinder in N; numbers start at 1."""
     return float(state.system.observers[force_name(number)].row @ state.position)

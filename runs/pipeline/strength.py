@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Stresses of a motion in outer fibres and in walls of shells, and their fatigue damage.
+"""Dynamic stresses in outer fibres and in walls of shells, and their fatigue damage.
 
-σ = N/A + M z/J + M_y y/J_y (Navier 1826). Section forces of a shell are the integrals of its wall
-stresses, so that beams and shells give the same nominal stress of a section.
+σ = N/A + M z/J + M_y y/J_y (Navier 1826). Section forces of a shell are integrals of its wall
+stresses, so that beams and shells give the same nominal stress.
 
 Cycles are counted by the rainflow method (Matsuishi and Endo 1968; ASTM E1049). Miner's sum uses
 the S-N curve of the detail category (EN 1993-1-9, 7.1): N = 2e6 (C/Δσ)³ up to 5e6 cycles, slope 5
-beyond, and no damage below the cut-off limit at 1e8.
+from there on, and no damage below the cut-off limit at 1e8 cycles.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Segment
 from geometry.section import Section
 from runs.case.schema import LifeTable
-from runs.pipeline.section_forces import rounded
+from runs.pipeline.section_forces import round_values
 
 if TYPE_CHECKING:
     import xarray as xr
 
-# Numbers of cycles: reference of a category, constant-amplitude limit, cut-off limit.
-NAMED, LIMIT, CUT_OFF = 2.0e6, 5.0e6, 1.0e8
+# Numbers of cycles at the detail category, the constant-amplitude limit and the cut-off limit.
+CATEGORY_CYCLES, LIMIT, CUT_OFF = 2.0e6, 5.0e6, 1.0e8
 STEEP, FLAT = 3.0, 5.0
 
-# Debian has no package with this counter; without it a run omits the fatigue assessment.
-COUNTS = find_spec("rainflow") is not None
+# Debian has no package rainflow. Without it the fatigue assessment is left out.
+HAS_RAINFLOW = find_spec("rainflow") is not None
 
-# Unit in Pa of the numbers that name detail categories.
+# Unit of detail categories in Pa.
 MEGA = 1.0e6
 
-# Number of classes of stored ranges.
+# Number of classes of stored stress ranges.
 _CLASSES = 20
 
 
@@ -49,12 +49,14 @@ class FibreStress:
 
     Args:
         segment: name of the segment.
-        x, y, z: position in m; y is 0 in a flat boom.
+        x: position along the boom in m.
+        y: lateral position in m, 0 for a planar boom.
+        z: vertical position in m.
         stress: stress in Pa, positive in tension.
         time: time of the stress in s.
         utilisation: utilisation of the yield strength; None if the case has no yield strength.
-        at_rest: largest |stress| in Pa of the segment at rest under the extreme loads; None without
-            an equilibrium.
+        at_rest: largest |stress| in Pa of the segment in the static states; None without an
+            equilibrium.
     """
 
     segment: str
@@ -74,10 +76,10 @@ class WallStress:
     Args:
         segment: name of the segment.
         x: position in m of the station or support near the patch.
-        patch: mean over a patch of a wall in Pa, which converges with mesh refinement.
-        time: time of the stress in s.
-        triangle: largest stress of a triangle in Pa, which may grow with mesh refinement.
-        utilisation: utilisation of the patch, as in :class:`FibreStress`.
+        patch: largest mean over a patch of a wall in Pa; it converges with mesh refinement.
+        time: time of this mean in s.
+        triangle: largest stress of a triangle in Pa; it may grow with mesh refinement.
+        utilisation: utilisation of the yield strength by the mean over the patch, or None.
     """
 
     segment: str
@@ -90,18 +92,20 @@ class WallStress:
 
 @dataclass(frozen=True, slots=True)
 class Life:
-    """Fatigue damage of a detail at the outer fibre of a segment where the stress varies most.
+    """Fatigue damage of a detail at the outer fibre of a segment whose stress varies most.
 
     Args:
         segment: name of the segment.
-        x, y, z: position in m.
-        cycles: number of all cycles in the run.
+        x: position along the boom in m.
+        y: lateral position in m.
+        z: vertical position in m.
+        cycles: number of cycles in the run.
         largest: largest stress range in Pa.
-        equivalent: stress range in Pa of a single cycle with the same damage, for the slope 3.
+        equivalent: stress range in Pa of a single cycle with the same damage at slope 3.
         ranges: centres (num_classes) of the classes of stress ranges in Pa, ascending.
         counts: number of cycles in each class.
-        damage: damage of the run for the case's detail category; None without a category.
-        life_damage: damage of all repetitions that the case specifies.
+        damage: damage of the run for the detail category of the case; None without a category.
+        life_damage: damage of all repetitions in the service life; None without a category.
     """
 
     segment: str
@@ -117,7 +121,7 @@ class Life:
     life_damage: float | None
 
 
-class Varying(NamedTuple):
+class StressHistory(NamedTuple):
     """Stress history (num_times,) of a segment in Pa at (x, y, z) in m."""
 
     segment: str
@@ -127,13 +131,14 @@ class Varying(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Fibres:
-    """The outer fibres of a segment.
+    """Outer fibres of a segment, and their stresses under unit section forces.
 
     Args:
-        x: (num_places,) in m.
-        y, z: (num_fibres, num_places) in m.
-        of_moment, of_lateral: stress (num_fibres, num_places) in Pa for a moment of 1 N·m, vertical
-            and lateral.
+        x: positions along the boom (num_places,) in m.
+        y: lateral positions (num_fibres, num_places) in m.
+        z: vertical positions (num_fibres, num_places) in m.
+        of_moment: stress (num_fibres, num_places) in Pa for a vertical moment of 1 N·m.
+        of_lateral: stress (num_fibres, num_places) in Pa for a lateral moment of 1 N·m.
         of_normal: stress (num_places,) in Pa for a normal force of 1 N.
     """
 
@@ -157,7 +162,7 @@ class Fibres:
         return cls(line.x, y, z, of_moment, of_lateral, 1.0 / _each(there, "section.area"))
 
     def stress(self, fibre: int, curves: Mapping[Quantity, Array]) -> Array:
-        """Return the stress (..., num_places) in Pa of section forces (..., num_places)."""
+        """Return the stress (..., num_places) in Pa of a fibre under section forces."""
         stress = self.of_moment[fibre] * curves["moment"] + self.of_normal * curves["normal"]
         if "lateral_moment" in curves:
             stress += self.of_lateral[fibre] * curves["lateral_moment"]
@@ -169,9 +174,9 @@ def _each(segments: Sequence[Segment], number: str) -> Array:
 
 
 def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
-    """Return y and z (num_fibres, num_places) of the corners in m.
+    """Return y and z (num_fibres, num_places) in m of the outer corners of a segment.
 
-    For a flat boom they are the corners of different z, at y = 0.
+    For a planar boom y is 0, and corners with the same z count once.
     """
     different = x.tolist() if segment.head_section is not None else [float(x[0])]
     corners = np.array([outer_corners(segment.section_at(place)) for place in different])
@@ -186,13 +191,14 @@ def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
 def outer_corners(section: Section) -> tuple[Array, Array]:
     """Return y and z (num_corners,) in m of the outer corners of the plates, from the centroid.
 
-    For y and for z, the plate counts at a corner whose normal is nearer to that direction.
+    Half the thickness is added to the mid-line: in each direction that of the plate at the corner
+    whose normal is nearer to the direction.
     """
     places, beyond = [], []
     for before, after in zip(
         section.plates[-1:] + section.plates[:-1], section.plates, strict=True
     ):
-        # The normal has the components of the tangent, exchanged.
+        # The components of the normal are those of the tangent, exchanged.
         normals = [0.5 * plate.thickness * np.abs(plate.tangent[::-1]) for plate in (before, after)]
         places.append(after.start)
         beyond.append(np.maximum(*normals))
@@ -206,13 +212,14 @@ def largest_stresses(
     curves: Mapping[Quantity, Array],
     still: Mapping[Quantity, Array],
     time: Array,
-) -> tuple[FibreStress, Varying]:
-    """Return the largest stress of a segment, and the stress history where it varies most.
+) -> tuple[FibreStress, StressHistory]:
+    """Return the largest stress of a segment, and the stress history at the fibre that varies most.
 
     Args:
-        segment, fibres: the segment and its fibres.
+        segment: the segment.
+        fibres: outer fibres of the segment.
         curves: section forces (num_times, num_places) in motion.
-        still: section forces (num_rests, num_places) at rest.
+        still: section forces (num_rests, num_places) in the static states.
         time: (num_times,) in s.
     """
     largest, where = 0.0, (0, 0, 0)
@@ -224,7 +231,7 @@ def largest_stresses(
             largest, where = float(stress[step, place]), (fibre, int(step), int(place))
         widest = int(np.ptp(stress, axis=0).argmax())
         at = float(fibres.x[widest]), float(fibres.y[fibre, widest]), float(fibres.z[fibre, widest])
-        found.append(Varying(segment.name, at, stress[:, widest].copy()))
+        found.append(StressHistory(segment.name, at, stress[:, widest].copy()))
         at_rest.append(np.abs(fibres.stress(fibre, still)).max(initial=0.0))
     fibre, at_step, at_place = where
     largest_stress = FibreStress(
@@ -274,13 +281,13 @@ def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
 
 
 class Ranges(NamedTuple):
-    """Stress ranges (num_ranges,) in Pa and the number of cycles of each, in halves."""
+    """Stress ranges (num_ranges,) in Pa, and the number of cycles of each: 0.5 or 1."""
 
     sizes: Array
     counts: Array
 
 
-def counted(stress: Sequence[float] | Array) -> Ranges:
+def count_stress_ranges(stress: Sequence[float] | Array) -> Ranges:
     """Return the stress ranges of a stress history in Pa, by rainflow counting."""
     import rainflow
 
@@ -290,27 +297,27 @@ def counted(stress: Sequence[float] | Array) -> Ranges:
 
 
 def endurance(sizes: Array, category: float) -> Array:
-    """Return the cycles to failure (num_ranges,) of stress ranges; infinite below the cut-off.
+    """Return the cycles to failure (num_ranges,), which are infinite below the cut-off limit.
 
     Args:
         sizes: stress ranges in Pa.
         category: detail category in Pa.
     """
-    limit = category * (NAMED / LIMIT) ** (1.0 / STEEP)
+    limit = category * (CATEGORY_CYCLES / LIMIT) ** (1.0 / STEEP)
     cut_off = limit * (LIMIT / CUT_OFF) ** (1.0 / FLAT)
     relative = np.maximum(sizes, cut_off) / limit
     cycles = LIMIT * np.where(relative >= 1.0, relative**-STEEP, relative**-FLAT)
     return np.asarray(np.where(sizes >= cut_off, cycles, np.inf))
 
 
-def life(varying: Varying, table: LifeTable) -> Life:
-    """Return the fatigue damage of a segment where its stress varies most.
+def life(varying: StressHistory, table: LifeTable) -> Life:
+    """Return the fatigue damage of a segment at the fibre whose stress varies most.
 
     Args:
-        varying: stress history there.
-        table: table of the case with the data of the assessment.
+        varying: stress history of the fibre.
+        table: table ``life`` of the case.
     """
-    sizes, counts = counted(varying.stress)
+    sizes, counts = count_stress_ranges(varying.stress)
     damage = None
     if table.detail_category is not None:
         raised = table.partial_factor * sizes
@@ -323,8 +330,8 @@ def life(varying: Varying, table: LifeTable) -> Life:
         cycles=float(counts.sum()),
         largest=largest,
         equivalent=float((counts @ sizes**STEEP) ** (1.0 / STEEP)),
-        ranges=rounded(0.5 * (edges[1:] + edges[:-1])),
-        counts=rounded(kept),
+        ranges=round_values(0.5 * (edges[1:] + edges[:-1])),
+        counts=round_values(kept),
         damage=damage,
         life_damage=None if damage is None else table.repeats * damage,
     )

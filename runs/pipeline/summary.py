@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Content of ``summary.json``: results of a run and of each model, in SI units.
 
-Fields are the keys of the file, in its order. A field that was never set has no key; None becomes
+Fields are the keys of the file, in this order. A field that is not set has no key. None becomes
 null.
 """
 
@@ -26,8 +26,8 @@ from runs.pipeline.metrics import Metric
 from runs.pipeline.pads import PadLoad
 from shell_model.stress.history import StressSummary
 
-# Type of numbers in JSON: None replaces NaN and infinity.
-Known = Annotated[
+# Number in JSON: None replaces NaN and infinity.
+FiniteNumber = Annotated[
     float | None,
     BeforeValidator(lambda n: None if isinstance(n, float) and not math.isfinite(n) else n),
 ]
@@ -40,20 +40,20 @@ class SummaryTable(BaseModel):
 
 
 class FirstPeak(NamedTuple):
-    """First peak: time in s and height in m; both None without a peak."""
+    """Time in s and height in m of the first peak; both None without a peak."""
 
-    time: Known
-    height: Known
+    time: FiniteNumber
+    height: FiniteNumber
 
 
 class EnsembleSummary(SummaryTable):
-    """Summary of a model's ensemble.
+    """Summary of the ensemble of a model.
 
-    ``horizons`` has the times in s from which members differ by a share of the tip's range, by
-    share; ``energy_residual`` is the largest one of all members.
+    ``horizons`` has the times in s after which the tips of members differ by a share of the range,
+    by share. ``energy_residual`` is the maximum over the members.
     """
 
-    horizons: dict[str, Known]
+    horizons: dict[str, FiniteNumber]
     energy_residual: float
     slow_peaks: SlowPeaks | None
 
@@ -63,23 +63,24 @@ class EnsembleSummary(SummaryTable):
 
 
 class Predictability(SummaryTable):
-    """Times at which changes of several sizes have grown to shares of the tip's range.
+    """Times until small changes of the data grow to shares of the range of the tip.
 
-    ``times`` (relatives, shares) and ``of_step`` (shares) in s; ``rate`` (shares) in 1/s;
-    ``limits`` (shares) as in :class:`dynamics.predictability.horizon.Horizons`.
+    ``times`` (relatives, shares) in s for relative changes of the data and ``of_step`` (shares)
+    in s for a change of the time step; growth ``rate`` (shares) in 1/s; ``limits`` (shares) as in
+    :class:`dynamics.predictability.horizon.Horizons`.
     """
 
     relatives: list[float]
     shares: list[float]
-    times: list[list[Known]]
-    of_step: list[Known]
-    rate: list[Known]
-    step_change: Known
+    times: list[list[FiniteNumber]]
+    of_step: list[FiniteNumber]
+    rate: list[FiniteNumber]
+    step_change: FiniteNumber
     limits: list[str]
 
 
 class Trial(SummaryTable):
-    """Motion with longer steps: ``step`` in s, and whether it preserves the slow peaks."""
+    """Motion with longer steps of ``step`` s; ``holds`` is true if it preserves the slow peaks."""
 
     step: float
     steps: int
@@ -88,9 +89,9 @@ class Trial(SummaryTable):
 
 
 class StepsForPeaks(SummaryTable):
-    """Fewest steps that preserve a number of slow peaks ``within`` a tolerance.
+    """Fewest steps that preserve the first slow peaks ``within`` a tolerance.
 
-    ``duration`` in s; ``fewest`` is None if no trial preserves them.
+    ``duration`` in s is the time of the last peak; ``fewest`` is None if no trial preserves them.
     """
 
     peaks: int
@@ -101,31 +102,32 @@ class StepsForPeaks(SummaryTable):
 
 
 class BeamStiffness(SummaryTable):
-    """Stiffness of a segment as a beam, determined from its shell.
+    """Beam stiffness of a segment, determined from its shell.
 
-    E I in N·m² and G A_s in N, along z and in space along y, and G J_t in N·m² in space. ``part``
-    fields are ratios to the stiffness that follows from the section.
+    ``bending`` is E I in N·m² and ``shear`` is G A_s in N, along z and in space along y;
+    ``torsion`` is G J_t in N·m² in space. Fields with ``part`` are ratios to the stiffness of the
+    section.
     """
 
     segment: str
     bending: list[float]
     shear: list[float]
-    torsion: Known = None
+    torsion: FiniteNumber = None
     bending_part: list[float]
     shear_part: list[float]
-    torsion_part: Known = None
+    torsion_part: FiniteNumber = None
 
 
 class StationSpring(SummaryTable):
-    """Spring of a station: the local compliance of walls, in series with the contact.
+    """Spring of a station in series with its contact: the local compliance of walls.
 
-    ``x`` is the position of the station in m, ``side`` the loaded wall of the outer segment,
-    ``stiffness`` in N/m; None for rigid walls.
+    ``x`` is the position of the station in m, ``side`` the loaded wall of the outer segment, and
+    ``stiffness`` in N/m is None for rigid walls.
     """
 
     x: float
     side: str
-    stiffness: Known
+    stiffness: FiniteNumber
 
 
 class CalibrationCard(SummaryTable):
@@ -136,15 +138,15 @@ class CalibrationCard(SummaryTable):
 
 
 class ModelSummary(SummaryTable):
-    """Results of one model: ``frequencies`` in Hz, ``seconds`` of wall time by the stage.
+    """Results of one model: ``frequencies`` in Hz, wall times in ``seconds`` by stage.
 
-    ``wall_time`` in s excludes the compilation of the time loop. A stage whose results come from an
-    earlier run has the time of that run. ``first_peak`` by place; ``peak_contact_force`` in N is
-    the mean over a step if the step does not resolve the impact, and ``resolving_step`` in s would
-    resolve it; ``step_error`` is the error of the tip by the time step, as a fraction of its range;
-    ``static_tip`` in m is the tip deflection under the constant loads; ``critical_factor``
-    multiplies the axial forces up to buckling with closed joints; ``stick_slip`` has the results of
-    elastic drives, by the names of their forces in trajectories. Shells have ``reduction_errors``
+    ``wall_time`` in s excludes the compilation of the time loop; a stage with results of an earlier
+    run has the time of that run. ``first_peak`` has the first peak by output. If the step does not
+    resolve an impact, ``peak_contact_force`` in N is a mean over a step, and ``resolving_step`` in
+    s would resolve it. ``step_error`` is the error of the tip by the time step, as a fraction of
+    its range. ``static_tip`` in m is the tip deflection under the constant loads. The axial forces
+    times ``critical_factor`` cause buckling with closed joints. ``stick_slip`` has the results of
+    elastic drives by the names of their forces in trajectories. Shells have ``reduction_errors``
     by kind, ``local_compliance`` in m/N, ``mesh_error`` as a fraction of it, and ``stress``.
     """
 
@@ -155,7 +157,7 @@ class ModelSummary(SummaryTable):
     seconds: dict[str, float]
     step: float
     steps: int
-    first_contact: Annotated[Known, Metric("first_contact", "s", "first contact", 1.0, "s")]
+    first_contact: Annotated[FiniteNumber, Metric("first_contact", "s", "first contact", 1.0, "s")]
     contact_changes: int
     energy_residual: Annotated[
         float,
@@ -172,54 +174,60 @@ class ModelSummary(SummaryTable):
     ]
     first_peak: dict[str, FirstPeak]
     peak_contact_force: Annotated[
-        Known,
+        FiniteNumber,
         Metric("peak_contact_force", "N", "peak of a blow", TO_KILO, "kN", charted=False),
     ]
     wall_time: Annotated[
         float | None, Metric("", "s", "wall time", 1.0, "s", heading="wall time", form=".1f")
     ] = None
     step_error: Annotated[
-        Known,
+        FiniteNumber,
         Metric("step_error", "1", "error by the time step", TO_PERCENT, "%", charted=False),
     ] = None
-    resolving_step: Known = None
+    resolving_step: FiniteNumber = None
     ensemble: EnsembleSummary | None = None
     horizons: Predictability | None = None
     steps_for_peaks: StepsForPeaks | None = None
-    static_tip: Known = None
-    critical_factor: Known = None
-    reduction_errors: dict[str, Known] = {}
-    local_compliance: list[Known] = []
-    mesh_error: Known = None
+    static_tip: FiniteNumber = None
+    critical_factor: FiniteNumber = None
+    reduction_errors: dict[str, FiniteNumber] = {}
+    local_compliance: list[FiniteNumber] = []
+    mesh_error: FiniteNumber = None
     stress: StressSummary | None = None
     calibration: CalibrationCard | None = None
     stick_slip: dict[str, StickSlip] = {}
 
 
-class Whole(SummaryTable):
-    """Differences between two tips until several times in s, as fractions of the larger range."""
+class WholeRun(SummaryTable):
+    """Differences between the tips of two models, as fractions of the larger range.
+
+    ``largest`` and ``rms`` are those up to each of the times ``until`` in s.
+    """
 
     until: list[float]
-    largest: list[Known]
-    rms: list[Known]
+    largest: list[FiniteNumber]
+    rms: list[FiniteNumber]
 
 
 class Comparisons(SummaryTable):
-    """Comparisons of models with the reference, by name; ``whole`` with friction."""
+    """Comparisons of models with the reference, by model name.
+
+    ``ensembles`` has chaotic motions, ``whole`` motions that friction makes regular.
+    """
 
     reference: str
     ensembles: dict[str, Comparison] = {}
-    whole: dict[str, Whole] = {}
+    whole: dict[str, WholeRun] = {}
 
 
 class Ensembles(EnsembleTable):
-    """Data of the ensembles in the case, and the cut-off of the slow motion in Hz."""
+    """Table ``ensemble`` of the case, with the cut-off ``slow_below`` of the slow motion in Hz."""
 
     slow_below: float | None
 
 
 class Snapshots(SummaryTable):
-    """Names of the pictures, or the reason why there are none."""
+    """Names of the ``written`` pictures, or the reason why they are ``skipped``."""
 
     written: list[str]
     skipped: str | None
@@ -228,8 +236,8 @@ class Snapshots(SummaryTable):
 class Summary(SummaryTable):
     """Content of ``summary.json``.
 
-    ``models`` has the models that ran, ``failures`` the reasons why others failed; ``pads`` has the
-    pads of all models and stations, ``cautions`` lines on the limits of the results.
+    ``models`` has the completed models, ``failures`` the reasons why others failed, ``pads`` the
+    governing pads of all models and stations, ``cautions`` texts on the validity of the results.
     """
 
     title: str
@@ -254,7 +262,7 @@ class Summary(SummaryTable):
         return cls.model_validate_json(path.read_bytes())
 
     def __str__(self) -> str:
-        """Return the content of the file."""
+        """Return the summary as JSON."""
         content = self.model_dump(exclude_unset=True)
         return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Utilisation of steel, slide pads and fatigue details in the motion of a model."""
+"""Utilisation of sections, walls, slide pads and fatigue details in the motion of a model."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from geometry.typography import signed
 if TYPE_CHECKING:
     from runs.pipeline.results import Results
 
-# Kind of part → strength of it.
+# Strength of each kind of part.
 LIMITS: Mapping[str, str] = {
     "plate": "yield",
     "outer fibre": "yield",
@@ -21,13 +21,13 @@ LIMITS: Mapping[str, str] = {
 
 
 class Utilisation(NamedTuple):
-    """Largest load on a kind of part, compared with its strength.
+    """Largest load of a kind of part, compared with its strength.
 
     Args:
         part: kind of the part, a key of :data:`LIMITS`; plates are walls of shells near pads.
         segment: name of the segment.
         x: position in m.
-        load: stress or pressure in Pa, or damage of a detail.
+        load: stress or pressure in Pa, or fatigue damage.
         value: utilisation; None if the case gives no strength.
     """
 
@@ -38,7 +38,7 @@ class Utilisation(NamedTuple):
     value: float | None
 
     def __str__(self) -> str:
-        """Return value, place and comparison with 1; not to be called without a value."""
+        """Return value, location and comparison with 1 as text. The value must not be None."""
         assert self.value is not None
         relation = "exceeds" if self.value > 1.0 else "below"
         return (
@@ -48,7 +48,7 @@ class Utilisation(NamedTuple):
 
 
 def utilisations(results: Results, model: str) -> dict[str, Utilisation]:
-    """Return the governing utilisation of each kind of part, or without strengths the load."""
+    """Return the governing part of each kind, by utilisation, or by load without a strength."""
     found: dict[str, Utilisation] = {}
     for one in _loads(results, model):
         other = found.setdefault(one.part, one)

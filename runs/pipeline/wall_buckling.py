@@ -13,7 +13,7 @@ import xarray as xr
 from dynamics.failure import NumericsError
 from geometry.boom import Boom
 from geometry.telescoping import travel
-from runs.case.kinds.model import Built
+from runs.case.kinds.model import BuiltModel
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
 from runs.pipeline.static_results import extended_positions, instants, positions
@@ -31,10 +31,10 @@ class WallBuckling:
 
     Args:
         segment: name of the segment.
-        factors: factors of all loads in ascending order; empty if no wall is in compression.
-        mesh_errors: relative error of each factor on the finer of two meshes.
-        walls: wall with the largest displacement of each mode.
-        x: x of this displacement in m.
+        factors: buckling factors of all loads, ascending; empty if no wall is in compression.
+        mesh_errors: estimated relative discretisation error of each factor.
+        walls: wall with the largest displacement in each mode.
+        x: position of this displacement in m.
     """
 
     segment: str
@@ -52,7 +52,7 @@ class BuckledShell:
         segments: buckling factors of each segment.
         shapes: first mode of each segment with a factor: ``buckling_points`` (buckling_point,
             component) in m and their ``buckling_shape``, whose largest magnitude in a segment is
-            about 1; ``buckling_triangles`` (buckling_triangle, corner) and their
+            about 1; ``buckling_triangles`` (buckling_triangle, corner) with their
             ``buckling_segment``; ``buckling_factor`` (buckled). None if no segment has a factor.
     """
 
@@ -61,7 +61,7 @@ class BuckledShell:
 
 
 def wall_buckling(
-    boom: Boom, case: Case, model: Shell, built: Built, comm: MPI.Intracomm
+    boom: Boom, case: Case, model: Shell, built: BuiltModel, comm: MPI.Intracomm
 ) -> BuckledShell | None:
     """Return the buckling of a shell's walls, on rank 0; None elsewhere. Collective.
 
@@ -69,14 +69,14 @@ def wall_buckling(
         boom: boom of the case.
         case: case with a ``buckling`` table.
         model: a shell of the case.
-        built: this shell before time integration.
+        built: the built shell.
         comm: ranks that share the shell.
 
     Raises:
         NumericsError: the boom has no static state, or the modes of a segment cannot be computed.
     """
     assert case.buckling is not None
-    joined = model.joined(boom).boom
+    joined = model.model_boom(boom).boom
     state = _static_state(joined, case, built) if comm.rank == 0 else None
     return buckled_shell(joined, model, built, state, case.buckling.modes, comm)
 
@@ -84,7 +84,7 @@ def wall_buckling(
 def buckled_shell(
     boom: Boom,
     model: Shell,
-    built: Built,
+    built: BuiltModel,
     state: StaticState | None,
     count: int,
     comm: MPI.Comm,
@@ -94,7 +94,7 @@ def buckled_shell(
     Args:
         boom: boom with the contacts of the model.
         model: a shell of the case.
-        built: this shell before time integration.
+        built: the built shell.
         state: the static state, on rank 0.
         count: number of modes of each segment.
         comm: ranks that share the shell.
@@ -113,12 +113,12 @@ def buckled_shell(
     if comm.rank != 0:
         return None
     names = [segment.name for segment in boom.segments]
-    segments = [_located(name, one) for name, one in zip(names, found, strict=True)]
+    segments = [_with_locations(name, one) for name, one in zip(names, found, strict=True)]
     return BuckledShell(segments, _first_shapes(found))
 
 
-def _static_state(boom: Boom, case: Case, built: Built) -> StaticState | None:
-    """Return the static state with the farthest tip; None without an equilibrium."""
+def _static_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | None:
+    """Return the static state with the largest tip deflection; None without an equilibrium."""
     from shell_model.buckling import StaticState
 
     system, duration = built.system.gather_loads(), case.time.duration
@@ -137,15 +137,15 @@ def _static_state(boom: Boom, case: Case, built: Built) -> StaticState | None:
     return StaticState.of(built.shell.fields, system.at_time(time), found[time], extensions)
 
 
-def _located(name: str, found: SegmentBuckling) -> WallBuckling:
-    """Return the factors of a segment, and the place of the largest displacement of each mode."""
+def _with_locations(name: str, found: SegmentBuckling) -> WallBuckling:
+    """Return the factors of a segment and the location of the largest displacement of each mode."""
     mesh, shapes = found.mesh, found.shapes
     assert mesh is not None
     assert shapes is not None
     walls, places = [], []
     for shape in shapes:
         point = int(np.linalg.norm(shape, axis=1).argmax())
-        # A point of a fold belongs to two walls.
+        # A point on a fold belongs to two walls.
         wall = int(mesh.walls[(mesh.triangles == point).any(axis=1)].min())
         walls.append(mesh.plates[wall] if wall < len(mesh.plates) else "diaphragm")
         places.append(float(mesh.points[point, 0]))

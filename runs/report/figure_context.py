@@ -90,7 +90,7 @@ class FigureContext:
             if model.bonded
         }
         self.design = results.summary.design.models
-        self.leading = results.leading_models
+        self.main_models = results.main_models
 
     def of(self, name: str, variable: str) -> Array:
         """Return a result (num_times,) of a model, at stations (num_times, num_stations)."""
@@ -119,7 +119,7 @@ class FigureContext:
     ) -> None:
         """Draw a curve of one model; it has no dashes if it is alone in its panel."""
         stroke = self.strokes[name]
-        behind = not alone and name not in self.leading
+        behind = not alone and name not in self.main_models
         axes.plot(
             x,
             y,
@@ -135,7 +135,7 @@ class FigureContext:
     def curve(self, name: str, values: Array, panel: int = 0, **more: Any) -> Curve:
         """Return a model's curve for a chart; values are in the unit of the axis."""
         stroke = self.strokes[name]
-        dashes, shown = CHART_DASHES[stroke.linestyle], name in self.leading
+        dashes, shown = CHART_DASHES[stroke.linestyle], name in self.main_models
         return Curve(self.labels[name], values, stroke.color, dashes, shown, panel, **more)
 
     def plot(

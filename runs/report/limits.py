@@ -21,9 +21,9 @@ def limit_table(results: Results) -> Table | None:
     ]
     columns += [
         Column(name, [check.limit.shown(check.values.get(name)) for check in checks])
-        for name in results.leading_models
+        for name in results.main_models
     ]
-    notes = [f"The number of {results.leading_models[0]} decides, where it has one."]
+    notes = [f"The number of {results.main_models[0]} decides, where it has one."]
     return Table("Limits of the case", columns, notes, "limits", ["✗"])
 
 

@@ -147,11 +147,11 @@ def law_table(results: Results) -> Table | None:
     """Return the table of the contact laws of joints in each model, with the first peak."""
     found = [
         (model.name, joint, seen.contact)
-        for model in results.ran
+        for model in results.completed_models
         if not model.bonded
         for joint, seen in zip(
             results.case.joints,
-            model.joined(results.boom).boom.joints,
+            model.model_boom(results.boom).boom.joints,
             strict=True,
         )
         if not joint.tied

@@ -26,7 +26,7 @@ from geometry.contact_places import Pad, pads
 from geometry.typography import choices
 from runs.case.build import build_boom
 from runs.case.kinds.finite_element import BeamElements
-from runs.case.kinds.model import Joined, Workshop, of_kind
+from runs.case.kinds.model import BuildContext, ModelBoom, select_kind
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.folder.cache import Cache
@@ -67,20 +67,22 @@ class Part(NamedTuple):
         return [[int(n), *map(float, pairs[n])] for n in np.flatnonzero(pairs.any(axis=1))]
 
 
-def script(case: Case, joined: Joined, model: BeamElements, calibration: Calibration | None) -> str:
+def script(
+    case: Case, model_boom: ModelBoom, model: BeamElements, calibration: Calibration | None
+) -> str:
     """Return the script.
 
     Args:
         case: a checked case.
-        joined: planar boom of the case with its contacts.
+        model_boom: planar boom of the case with its contacts.
         model: model of the case.
         calibration: calibration of a model that a shell calibrates.
 
     Raises:
         BoomError: the boom has a feature that the script does not support.
     """
-    _check(case, joined)
-    boom = joined.boom
+    _check(case, model_boom)
+    boom = model_boom.boom
     touching = _touching(boom, calibrated=calibration is not None)
     stiff = boom if calibration is None else stiffened(boom, calibration.segments)
     parts = [_part(stiff, number, model, touching) for number in range(len(boom.segments))]
@@ -89,7 +91,7 @@ def script(case: Case, joined: Joined, model: BeamElements, calibration: Calibra
         "DURATION": case.time.duration,
         "OUTPUT_STEP": case.time.output_step,
         "SEGMENTS": [_segment(stiff, n, part, model) for n, part in enumerate(parts)],
-        "CONTACTS": list(_contacts(joined, parts, calibration)),
+        "CONTACTS": list(_contacts(model_boom, parts, calibration)),
         "FRICTIONS": list(_frictions(boom, parts, calibrated=calibration is not None)),
         "LOADS": list(_loads(case, boom, parts)),
     }
@@ -97,9 +99,9 @@ def script(case: Case, joined: Joined, model: BeamElements, calibration: Calibra
     return TEMPLATE.read_text(encoding="utf-8").replace("# DATA\n", f"{lines}\n")
 
 
-def _check(case: Case, joined: Joined) -> None:
+def _check(case: Case, model_boom: ModelBoom) -> None:
     """Check that the script supports all features of the case."""
-    boom = joined.boom
+    boom = model_boom.boom
     segments = boom.segments
     for key, present in (
         ("joint.lateral_play", boom.spatial),
@@ -191,10 +193,10 @@ def _segment(boom: Boom, number: int, part: Part, model: BeamElements) -> dict[s
 
 
 def _contacts(
-    joined: Joined, parts: Sequence[Part], calibration: Calibration | None
+    model_boom: ModelBoom, parts: Sequence[Part], calibration: Calibration | None
 ) -> Iterator[dict[str, object]]:
     """Yield two nodes and the points (m, N) of the contact law, for each contact row."""
-    boom, row = joined.boom, 0
+    boom, row = model_boom.boom, 0
 
     def points(law: ContactLaw) -> list[list[float]]:
         nonlocal row
@@ -279,7 +281,7 @@ def exported(case: Case, file: str, name: str | None = None) -> BeamElements:
     Raises:
         BadInput: the model does not exist.
     """
-    of = {m.name: m for m in of_kind(BeamElements, case.models) if not m.tied}
+    of = {m.name: m for m in select_kind(BeamElements, case.models) if not m.tied}
     if not of:
         raise BadInput(file, "--model", "must be beam elements with play, and there are none")
     if name is not None and name not in of:
@@ -309,9 +311,9 @@ def write(
     calibration = None
     if model.needs_shell:
         assert comm is not None
-        calibration = build(case, boom, model, Workshop(comm, cache=cache)).calibration
+        calibration = build(case, boom, model, BuildContext(comm, cache=cache)).calibration
     try:
-        text = script(case, model.joined(boom), model, calibration)
+        text = script(case, model.model_boom(boom), model, calibration)
     except BoomError as error:
         raise BadInput.from_boom(file, error) from None
     write_whole(path, text)

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from runs.case.user_files import check_left
+from runs.case.user_files import check_not_working_folder
 from runs.client import judge
 from runs.folder.files import changed_folder, exclusive, write_whole
 from runs.pipeline.results import FIELDS, SUMMARY, TRAJECTORIES, Results
@@ -49,7 +49,7 @@ def rendered_again(
     path = Path(folder)
     with exclusive(path):
         results = Results.load(path)
-        check_left(path, folder, "folder")
+        check_not_working_folder(path, folder, "folder")
         judged = judge(results)
         with changed_folder(path) as part:
             yield results, judged, part

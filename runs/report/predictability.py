@@ -12,13 +12,13 @@ from dynamics.predictability.horizon import SHARES
 from geometry.typography import TO_MILLI, signed
 from runs.pipeline.comparison import Comparison, PeakDifferences
 from runs.pipeline.low_pass import SlowPeaks
-from runs.pipeline.model_quality import DECIDES
+from runs.pipeline.model_quality import SCOPES
 from runs.pipeline.results import Results
 from runs.pipeline.summary import (
     Ensembles,
     ModelSummary,
     Predictability,
-    Whole,
+    WholeRun,
 )
 from runs.report.formatting import NONE, fixed, number, percent, scientific
 from runs.report.model_tables import horizon_column
@@ -172,12 +172,12 @@ def _level_tables(reference: str, levels: Mapping[str, Comparison]) -> list[Tabl
     every = f"All values of all members after the horizons: the model / {reference}."
     of = f"against {reference}"
     return [
-        Table(f"Tip {of}, pointwise", pointwise, [DECIDES["pointwise"]], "pointwise"),
-        Table(f"Slow peaks {of}", peaks, [later, DECIDES["peaks"]], "peaks-against"),
+        Table(f"Tip {of}, pointwise", pointwise, [SCOPES["pointwise"]], "pointwise"),
+        Table(f"Slow peaks {of}", peaks, [later, SCOPES["peaks"]], "peaks-against"),
         Table(
             f"Distribution of the tip {of}",
             distributions,
-            [every, DECIDES["distributions"]],
+            [every, SCOPES["distributions"]],
             "distributions",
         ),
     ]
@@ -190,7 +190,7 @@ def _both(values: Sequence[float]) -> str:
     return " / ".join(fixed(value, 1, TO_MILLI) for value in reversed(values))
 
 
-def _whole_table(reference: str, whole: Mapping[str, Whole]) -> Table:
+def _whole_table(reference: str, whole: Mapping[str, WholeRun]) -> Table:
     columns = [Column("model", list(whole))]
     for i, end in enumerate(next(iter(whole.values())).until):
         largest = [found.largest[i] for found in whole.values()]

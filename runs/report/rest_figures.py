@@ -122,7 +122,7 @@ def mode_shapes(run: FigureContext) -> list[Figure]:
 
 def _read_first(run: FigureContext) -> Iterator[tuple[str, ModelDesignResults]]:
     for name in run.models:
-        if name in run.leading and name in run.design:
+        if name in run.main_models and name in run.design:
             yield name, run.design[name]
 
 

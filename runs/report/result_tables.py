@@ -457,7 +457,7 @@ def life_table(results: Results) -> Table | None:
     rows = [
         (name, life)
         for name, own in models.items()
-        if name in results.leading_models
+        if name in results.main_models
         for life in own.life
     ]
     if not rows:

@@ -18,7 +18,7 @@ from PIL import Image
 
 from dynamics.trajectory import Trajectory
 from geometry.typography import TO_MILLI, signed
-from runs.case.kinds.model import of_kind
+from runs.case.kinds.model import select_kind
 from runs.case.kinds.shell import Shell
 from runs.case.messages import BadInput
 from runs.case.schema import Case
@@ -321,7 +321,7 @@ def describe_one(results: Results, path: Path) -> Figure:
         path: path with a name of :func:`render_stills`, after the name of the shell if the case has
             several shells.
     """
-    lines = {m.name: m.contact_line for m in of_kind(Shell, results.case.models)}
+    lines = {m.name: m.contact_line for m in select_kind(Shell, results.case.models)}
     shells = list(lines)
     several = [shell for shell in shells if path.name.startswith(f"{shell}-")]
     model = max(several, key=len) if len(shells) > 1 and several else shells[0]

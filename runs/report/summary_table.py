@@ -11,7 +11,7 @@ from geometry.arrays import Array
 from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
 from runs.pipeline.design_results import ModelDesignResults, PlayDifference
 from runs.pipeline.low_pass import mean_period
-from runs.pipeline.model_quality import off_at_rest
+from runs.pipeline.model_quality import static_deviation
 from runs.pipeline.motion_results import Peak
 from runs.pipeline.pads import PadLoad
 from runs.pipeline.quantities import decay_time
@@ -28,7 +28,7 @@ NEAR = 0.9
 
 def summary_table(results: Results) -> Table | None:
     """Return the table of the leading models' design results, starting with the reference."""
-    names, design = results.leading_models, results.summary.design.models
+    names, design = results.main_models, results.summary.design.models
     if not design:
         return None
     own = [design[name] for name in names]
@@ -92,8 +92,12 @@ def deviation_note(results: Results) -> str:
     design, reference = results.summary.design.models, results.reference
     if not design or reference is None:
         return ""
-    loose = [model.name for model in results.ran if not model.bonded and model.name != reference]
-    offs = {name: off_at_rest(design[reference], design[name]) for name in loose}
+    loose = [
+        model.name
+        for model in results.completed_models
+        if not model.bonded and model.name != reference
+    ]
+    offs = {name: static_deviation(design[reference], design[name]) for name in loose}
     deviations = [
         f"{name} {signed(f'{TO_PERCENT * off:+.2g}')} %"
         for name, off in offs.items()
@@ -101,7 +105,7 @@ def deviation_note(results: Results) -> str:
     ]
     if not deviations:
         return ""
-    behind = [name for name in results.summary.models if name not in results.leading_models]
+    behind = [name for name in results.summary.models if name not in results.main_models]
     more = f" For {listed(behind)} see the tables and figures below." if behind else ""
     return (
         f"Deviation of the static tip deflection (maximum load) from {reference}: "
@@ -136,7 +140,7 @@ def utilisation_verdict(results: Results, model: str | None = None) -> str:
     The model is by default the leading one. The text is empty if the case gives no strengths,
     allowable pressures or fatigue life.
     """
-    model = model or results.leading_models[0]
+    model = model or results.main_models[0]
     known = [one for one in utilisations(results, model).values() if one.value is not None]
     if not known:
         return ""
@@ -206,8 +210,8 @@ def _used(part: float | None, limit: str) -> str:
 def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]:
     """Yield notes that explain the table's numbers."""
     models = sorted(
-        (model for model in results.ran if model.name in results.leading_models),
-        key=lambda model: results.leading_models.index(model.name),
+        (model for model in results.completed_models if model.name in results.main_models),
+        key=lambda model: results.main_models.index(model.name),
     )
     described = (
         f"{model.name}: {model.kind}, {model.describe()}"

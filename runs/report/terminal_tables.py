@@ -86,7 +86,7 @@ def print_results(results: Results, console: Console) -> None:
     for table in filter(None, (result_table(results), limit_table(results))):
         table.show(console)
     for line in filter(None, (play_effect(results), utilisation_verdict(results))):
-        text = f"{results.leading_models[0]}: {line[0].lower()}{line[1:]}"
+        text = f"{results.main_models[0]}: {line[0].lower()}{line[1:]}"
         console.print(text, markup=False, highlight=False)
 
 

@@ -22,8 +22,8 @@ from scipy.spatial.transform import Rotation
 from geometry.arrays import Array
 from geometry.telescoping import drives_below
 from geometry.typography import TO_MEGA
-from runs.pipeline.model_output import frames
-from runs.pipeline.model_quality import leading
+from runs.pipeline.model_output import frame_indices
+from runs.pipeline.model_quality import main_models
 from runs.pipeline.run import Run
 from runs.report import theme
 from runs.report.charts import compressed, pack_plotly
@@ -109,9 +109,9 @@ def _view(run: Run) -> View | None:
         motion = results.trajectories.sel(model=name)
         scene = Scene.views(shell.fields, motion, results.case)[0]
         times = np.asarray(shell.fields["time"].values, dtype=float)
-        return View.of_shell(name, scene, times[frames(times.size)])
-    first = leading(results.case, list(run.beams))
-    with_play = [m.name for m in results.ran if m.name in first and not m.bonded]
+        return View.of_shell(name, scene, times[frame_indices(times.size)])
+    first = main_models(results.case, list(run.beams))
+    with_play = [m.name for m in results.completed_models if m.name in first and not m.bonded]
     name = [*first, *with_play][-1]
     beam, motion = run.beams[name], results.trajectories.sel(model=name)
     scene, stress = Scene.of_beam(results.case, results.boom, beam, motion)

@@ -19,12 +19,12 @@ from dynamics.predictability.horizon import SHARES, horizon
 from geometry.arrays import Array
 from geometry.typography import TO_PERCENT
 from runs.case.build import build_boom
-from runs.case.kinds.model import Workshop
+from runs.case.kinds.model import BuildContext
 from runs.case.schema import Case, Model
 from runs.pipeline.low_pass import mean_period
 from runs.pipeline.metrics import Metric
 from runs.pipeline.models import MotionPlan, build
-from runs.pipeline.quantities import Measured
+from runs.pipeline.quantities import Quantities
 from runs.pipeline.results import Results
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ class Features:
             np.nan if stress is None else stress,
         )
 
-    def distances_from(self, reference: Features) -> Measured:
+    def distances_from(self, reference: Features) -> Quantities:
         """Return the distances from the reference; None where either has no value."""
         span = float(np.ptp(reference.tip)) if reference.tip.size else 0.0
         apart = float(np.abs(self.tip - reference.tip).max()) / span if span else np.nan
@@ -124,7 +124,7 @@ def comparable_until(
     end = float(time[-1])
     if model.bonded or case.regular:
         return end
-    tools = None if comm is None else Workshop(comm, cache=cache)
+    tools = None if comm is None else BuildContext(comm, cache=cache)
     plan = MotionPlan.of(build(case, build_boom(case), model, tools).system, case, model)
     vary: Vary = "load" if plan.motion.system.largest_load.any() else "velocity"
     try:

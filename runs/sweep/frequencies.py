@@ -20,10 +20,10 @@ from dynamics.failure import NUMERICAL_ERRORS
 from dynamics.motion import initial_state
 from geometry.arrays import Array
 from runs.case.build import build_boom
-from runs.case.kinds.model import Joined, Workshop
+from runs.case.kinds.model import BuildContext, ModelBoom
 from runs.case.schema import Case, Model
 from runs.folder.files import changed_folder, exclusive, whole
-from runs.pipeline.context import silent
+from runs.pipeline.context import ignore_progress
 from runs.pipeline.results import CONVENTIONS
 from runs.process.progress import Progress
 from runs.report.tables import Column, Table
@@ -54,12 +54,12 @@ def first_frequencies(
         cache: cache of reduced shells.
     """
     boom = build_boom(case)
-    with_play = model.joined(boom)
+    with_play = model.model_boom(boom)
     found = np.full((len(JOINTS), MODES), np.nan)
-    for row, booms in enumerate((with_play, Joined(boom.bonded))):
+    for row, booms in enumerate((with_play, ModelBoom(boom.bonded))):
         if row == 0 and model.bonded:
             continue
-        tools = None if comm is None else Workshop(comm, cache=cache)
+        tools = None if comm is None else BuildContext(comm, cache=cache)
         try:
             with np.errstate(all="ignore"):
                 system, _, _ = initial_state(model.build(booms, tools).system, case.start.at_rest)
@@ -74,7 +74,7 @@ def measure(
     cases: Sequence[Case],
     comm: MPI.Intracomm | None,
     cache: Cache | None,
-    progress: Progress = silent,
+    progress: Progress = ignore_progress,
 ) -> Array:
     """Return first frequencies (num_cases, num_models, 2, MODES) in Hz. Collective.
 

@@ -27,7 +27,7 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.sections import SectionTable
-from runs.pipeline.limits import Limit, limits_of
+from runs.pipeline.limits import Limit, case_limits
 from runs.sweep.variation import UNUSED, Tables, Variation, parse, unit_of
 
 Setting = tuple[Variation, float]
@@ -137,7 +137,7 @@ def plan_case(
         what = f"nothing is run beside {reference!r}; run another model, too"
         raise BadInput(file, "--against", what)
     bonded = [model.name for model in run if model.bonded]
-    limits = limits_of(whole.limits)
+    limits = case_limits(whole.limits)
     return Plan(file, whole.title, variations, units, bonded, points, reference, limits)
 
 

@@ -19,10 +19,10 @@ from dynamics.failure import NumericsError
 from runs.case import toml
 from runs.case.messages import BadInput
 from runs.case.schema import Case
-from runs.case.user_files import check_left
+from runs.case.user_files import check_not_working_folder
 from runs.folder.cache import Cache, key
 from runs.pipeline.context import RunContext
-from runs.pipeline.quantities import Measured, measure
+from runs.pipeline.quantities import Quantities, measure
 from runs.pipeline.run import run_case
 from runs.process.ending import when_interrupted
 from runs.process.progress import Progress
@@ -41,10 +41,10 @@ POINTS = "points"
 class Outcome:
     """Results of a point, by the model's name."""
 
-    models: dict[str, Measured]  #: quantities of the models that ran
+    models: dict[str, Quantities]  #: quantities of the models that ran
     failures: dict[str, str]  #: reasons why other models failed, a sentence each
     #: Distances from the reference, if there is one.
-    off: dict[str, Measured] = field(default_factory=dict)
+    off: dict[str, Quantities] = field(default_factory=dict)
     until: float | None = None  #: end of the comparison of tips in s; None without a comparison
 
 
@@ -64,7 +64,7 @@ def prepare(folder: Path, file: str) -> None:
         raise BadInput(
             file, key, "holds files that are not a sweep's; give a new folder or an earlier sweep's"
         )
-    check_left(folder, file, key)
+    check_not_working_folder(folder, file, key)
     (folder / POINTS).mkdir(parents=True, exist_ok=True)
 
 
@@ -118,7 +118,7 @@ def run_points(
 
 def run_point(case: Case, cache: Cache | None = None, reference: str | None = None) -> Outcome:
     """Run the models of a case one by one, since one may fail alone; shells on this process."""
-    models: dict[str, Measured] = {}
+    models: dict[str, Quantities] = {}
     failures: dict[str, str] = {}
     runs: dict[str, Results] = {}
     comm = None

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from geometry.typography import choices
 from runs.case.messages import BadInput
-from runs.case.units import scaled
+from runs.case.units import scale
 from runs.pipeline.limits import Limit
 from runs.pipeline.quantities import QUANTITIES
 from runs.report.tables import Table
@@ -51,7 +51,7 @@ def parse_bound(text: str, plan: Plan) -> Limit:
         if len(several) > 1:
             raise BadInput(plan.file, OPTION, f"{len(several)} {what}; {remedy}")
     quantity = known[found[1]]
-    si = scaled(value, plan.points[0].case.system.size(quantity.unit))
+    si = scale(value, plan.points[0].case.system.size(quantity.unit))
     return Limit(quantity, si, least=found[2] == ">")
 
 

@@ -20,8 +20,8 @@ import numpy as np
 from geometry.fields import names_of
 from runs.case.limits import is_table, units_of
 from runs.case.messages import BadInput
-from runs.case.schema import PLAIN, Case
-from runs.case.units import scaled
+from runs.case.schema import PLAIN_NUMBER_KEYS, Case
+from runs.case.units import scale
 
 # Type of a case file as plain tables and lists.
 Tables = dict[str, Any]
@@ -60,7 +60,7 @@ class Place:
         for step in self.steps[:-1]:
             here = here.setdefault(step, {}) if isinstance(step, str) else here[step]
         if isinstance(value, float):
-            value = scaled(value, self.size)
+            value = scale(value, self.size)
         # An integer is valid for keys of both kinds.
         whole = isinstance(value, float) and value.is_integer()
         here[self.steps[-1]] = int(value) if whole else value
@@ -133,8 +133,8 @@ def unit_of(place: Place, case: Case) -> str:
             units, here = units_of(here, name), getattr(here, name)
         else:
             here = here[step]
-    if type(here) in PLAIN:
-        units = units_of(here, PLAIN[type(here)])
+    if type(here) in PLAIN_NUMBER_KEYS:
+        units = units_of(here, PLAIN_NUMBER_KEYS[type(here)])
     return units[0] if len(units) == 1 and units[0] != "1" else ""
 
 

@@ -23,7 +23,7 @@ from dynamics.motion import Motion
 from geometry.arrays import Array
 from runs.case.build import build_boom
 from runs.case.kinds.finite_element import BeamElements
-from runs.case.kinds.model import of_kind
+from runs.case.kinds.model import select_kind
 from runs.report.tables import Cell, Table
 from studies.cost.timing import time_in_turns
 from studies.motions import OUTPUT_STEP, friction_case, gap_system, model_of, without_friction
@@ -96,7 +96,7 @@ class Problem:
 def telescoped_beams() -> Problem:
     """Return two beams of the paper without friction, until their motion becomes chaotic."""
     duration, case = 0.3, friction_case()
-    boom, (model,) = build_boom(case), of_kind(BeamElements, [model_of(case, "beam-fe")])
+    boom, (model,) = build_boom(case), select_kind(BeamElements, [model_of(case, "beam-fe")])
     system = without_friction(gap_system(case, boom, model))
     (joint,) = boom.joints
     assert model.contact is not None

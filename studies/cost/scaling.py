@@ -27,7 +27,7 @@ from dynamics.motion import Motion
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.kinds.model import of_kind
+from runs.case.kinds.model import select_kind
 from runs.case.kinds.shell import Shell
 from runs.process.terminal import show_notices
 from runs.report.tables import Table, wide_console
@@ -164,7 +164,7 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
     comm = MPI.COMM_WORLD
     case = case_file.load(str(CASES / SIZED[name]))
     boom = build_boom(case)
-    model = of_kind(Shell, case.models)[0]
+    model = select_kind(Shell, case.models)[0]
     options = ShellOptions(float(size), contact_line=model.contact_line)
     idle = comm.allreduce(_peak())
     peaks: dict[str, float] = {}
@@ -174,7 +174,7 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
 
     comm.barrier()
     start = perf_counter()
-    reduced = reduce_boom(model.joined(boom).boom, options, comm, progress)
+    reduced = reduce_boom(model.model_boom(boom).boom, options, comm, progress)
     comm.barrier()
     total = perf_counter() - start
     peaks["fields"] = _peak()

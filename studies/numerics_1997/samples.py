@@ -24,7 +24,7 @@ from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.paper.rules import CONFORMITY, DIVERGENCE
 from runs.paper.run_query import peaks_apart
-from runs.pipeline.members import slow_below
+from runs.pipeline.members import slow_cutoff
 from runs.pipeline.models import MotionPlan
 from studies.motions import gap_system, model_of, run_parallel
 from studies.numerics_1997.schemes import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
@@ -166,7 +166,7 @@ class Example:
         boom = build_boom(case)
         names = (*SERIES, ELEMENTS, TIED)
         systems = {name: gap_system(case, boom, model_of(case, name)) for name in names}
-        cutoff = slow_below(boom, case.time)
+        cutoff = slow_cutoff(boom, case.time)
         assert cutoff is not None
         runs = run_parallel(
             # As a run of the case moves the model.

@@ -20,7 +20,7 @@ from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.build import build_boom
-from runs.case.kinds.model import Built, Workshop
+from runs.case.kinds.model import BuildContext, BuiltModel
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
 from runs.folder.cache import Cache
@@ -78,11 +78,11 @@ def _case(tmp_path_factory: pytest.TempPathFactory) -> Case:
 
 
 @pytest.fixture(name="built", scope="module")
-def _built(case: Case, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Built]:
+def _built(case: Case, tmp_path_factory: pytest.TempPathFactory) -> dict[str, BuiltModel]:
     boom, cache = build_boom(case), Cache(tmp_path_factory.mktemp("cache"))
     wanted = ("timoshenko", "series", "shell", "sprung", "fielded", "sprung-series")
     return {
-        model.name: build(case, boom, model, Workshop(MPI.COMM_SELF, cache=cache))
+        model.name: build(case, boom, model, BuildContext(MPI.COMM_SELF, cache=cache))
         for model in case.models
         if model.name in wanted
     }
@@ -94,7 +94,7 @@ def tip(system: GapSystem) -> Array:
     return np.asarray(move(point, 1.5).data["tip"].values)
 
 
-def test_a_calibrated_beam_gives_way_as_the_shell(built: dict[str, Built]) -> None:
+def test_a_calibrated_beam_gives_way_as_the_shell(built: dict[str, BuiltModel]) -> None:
     """Reference: other code, the shell's static compliance where it touches and rubs."""
     shell = elastic_compliance(built["shell"].system)
     sizes = np.sqrt(np.outer(np.diag(shell), np.diag(shell)))
@@ -107,7 +107,7 @@ def test_a_calibrated_beam_gives_way_as_the_shell(built: dict[str, Built]) -> No
     assert error("fielded") < 1e-9
 
 
-def test_it_moves_as_the_shell(built: dict[str, Built]) -> None:
+def test_it_moves_as_the_shell(built: dict[str, BuiltModel]) -> None:
     """Reference: other code, the shell's tip as a part of its range, which textbook beams miss by
     several times as much. A series has no shear but that of its springs.
     """
@@ -124,7 +124,7 @@ def test_it_moves_as_the_shell(built: dict[str, Built]) -> None:
     assert errors["series"] > 1.5 * errors["sprung-series"], errors
 
 
-def test_all_read_the_same_shell(built: dict[str, Built]) -> None:
+def test_all_read_the_same_shell(built: dict[str, BuiltModel]) -> None:
     """Reference: non-regression, one entry of the cache."""
     assert "reduction" in built["shell"].seconds
     for name in ("sprung", "fielded", "sprung-series"):

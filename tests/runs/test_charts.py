@@ -12,7 +12,7 @@ import pytest
 
 from runs import CASES
 from runs.case.reading import load
-from runs.pipeline.model_quality import leading
+from runs.pipeline.model_quality import main_models
 from runs.report.charts import MOST, Chart, Curve, extremes, pack_charts, pack_plotly
 
 
@@ -86,4 +86,4 @@ def test_the_library_comes_whole() -> None:
 def test_shell_beam_and_tied_are_read_first(name: str, first: set[str]) -> None:
     """Reference: the case files."""
     case = load(str(CASES / f"{name}.toml"))
-    assert leading(case, [model.name for model in case.models]) == first
+    assert main_models(case, [model.name for model in case.models]) == first

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from runs.case.checked_case import CheckedCase
-from runs.case.conversion import in_si
+from runs.case.conversion import convert_to_si
 from runs.check import print_check
 from runs.pipeline.combinations import combination_results, combination_tables
 from runs.pipeline.largest_loads import StaticExtreme
@@ -170,7 +170,7 @@ def test_load_cases_in_millimetres_and_from_files(tmp_path: Path) -> None:
         plain["tip"].largest, rel=1e-12
     )
     case = read_case(tmp_path, LIFT + CASES)
-    level = in_si(case.model_copy(update={"units": "mm-t-s"})).load_cases[1]
+    level = convert_to_si(case.model_copy(update={"units": "mm-t-s"})).load_cases[1]
     assert level.extension == {"fly": 0.002}
     assert level.payload == 1.0e3 * PEOPLE
 

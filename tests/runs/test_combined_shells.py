@@ -13,13 +13,13 @@ from mpi4py import MPI
 
 from runs import cli
 from runs.case.build import build_boom
-from runs.case.kinds.model import Workshop
+from runs.case.kinds.model import BuildContext
 from runs.case.kinds.shell import Shell
 from runs.pipeline.combinations import CombinationState
 from runs.pipeline.combined_shells import shell_states
 from runs.pipeline.largest_loads import StaticBeam
 from runs.pipeline.proofs import prove
-from runs.pipeline.section_forces import with_cylinders
+from runs.pipeline.section_forces import with_cylinder_forces
 from tests.runs.case_texts import read_case
 from tests.runs.test_combinations import CASES, FACTORS, LIFT
 
@@ -48,7 +48,7 @@ def states(tmp_path_factory: pytest.TempPathFactory) -> list[CombinationState]:
     case = read_case(tmp_path_factory.mktemp("shell"), TEXT)
     shell = case.models[1]
     assert isinstance(shell, Shell)
-    return shell_states(case, shell, Workshop(MPI.COMM_WORLD))
+    return shell_states(case, shell, BuildContext(MPI.COMM_WORLD))
 
 
 def test_one_shell_serves_combinations_of_a_geometry(states: list[CombinationState]) -> None:
@@ -57,10 +57,10 @@ def test_one_shell_serves_combinations_of_a_geometry(states: list[CombinationSta
     for state in (states[0], states[2]):
         case = state.combined.case
         shell, boom = case.models[1], build_boom(case)
-        joined = shell.joined(boom)
-        built = shell.build(joined, Workshop(MPI.COMM_WORLD))
+        joined = shell.model_boom(boom)
+        built = shell.build(joined, BuildContext(MPI.COMM_WORLD))
         system = built.system.gather_loads()
-        lines = with_cylinders(joined.boom, system, shell.lines(joined.boom, built))
+        lines = with_cylinder_forces(joined.boom, system, shell.lines(joined.boom, built))
         alone = StaticBeam.at_rest(joined.boom, system, lines, case.time.duration)
         expected = {one.name: one.largest for one in alone.extremes(case.system)}
         for one in state.result.extremes:

@@ -106,6 +106,6 @@ def test_times_must_agree() -> None:
 
 def test_every_level_says_what_it_decides() -> None:
     for level in (PointwiseDifferences, PeakDifferences, Distributions):
-        assert level.decides.count(".") == 1
-        assert "cannot tell" in level.decides
+        assert level.scope.count(".") == 1
+        assert "cannot tell" in level.scope
     assert list(Comparison.__slots__) == ["pointwise", "peaks", "distributions"]

@@ -27,7 +27,7 @@ from runs.sweep.distances import (
     DISTANCES,
     HELD,
     Features,
-    Measured,
+    Quantities,
     comparable_until,
     sustained_force,
 )
@@ -157,7 +157,7 @@ def test_only_tips_are_compared_no_longer_than_that(against: Plan) -> None:
 
 def invented(factor: float, until: float = 0.9) -> Outcome:
     """Return two models with tips off by a distance and by a tenth of it, and equal first peaks."""
-    parts: Measured = {one.name: None for one in DISTANCES} | {"first_peak_off": 0.002}
+    parts: Quantities = {one.name: None for one in DISTANCES} | {"first_peak_off": 0.002}
     tips = {"kantorovich-4": factor, "beam-fe-tied": 0.1 * factor}
     return Outcome({}, {}, {name: {**parts, "tip_off": tip} for name, tip in tips.items()}, until)
 

@@ -16,7 +16,7 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.checked_case import CheckedCase
-from runs.case.kinds.model import of_kind
+from runs.case.kinds.model import select_kind
 from runs.case.kinds.shell import Shell
 from runs.case.messages import BadInput
 from runs.check import print_check
@@ -150,7 +150,7 @@ def test_dofs_of_a_graded_mesh_are_estimated(name: str, mesh_size: float, tolera
     from shell_model.boom_shell import segment_mesh
 
     case = case_file.load(str(CASES / f"{name}.toml"))
-    (shell,) = of_kind(Shell, case.models)
+    (shell,) = select_kind(Shell, case.models)
     shell = shell.model_copy(update={"mesh_size": mesh_size, "contact_tolerance": tolerance})
     boom = build_boom(case)
     meshes = [segment_mesh(boom, i, shell.options()) for i in range(len(boom.segments))]

@@ -128,7 +128,7 @@ def test_a_calibrated_beam_rests_and_peaks_elsewhere_on_its_springs(tmp_path: Pa
     pytest.importorskip("dolfinx", reason="a shell calibrates it")
     from mpi4py import MPI
 
-    from runs.case.kinds.model import Workshop
+    from runs.case.kinds.model import BuildContext
     from runs.folder.cache import Cache
     from studies.calibrated_beams import calibrated_beam
 
@@ -139,7 +139,7 @@ def test_a_calibrated_beam_rests_and_peaks_elsewhere_on_its_springs(tmp_path: Pa
     cache = Cache(tmp_path / "cache")
     script = tmp_path / "boom.py"
     write(case, "", MPI.COMM_SELF, script, cache)
-    tools = Workshop(MPI.COMM_SELF, cache=cache)
+    tools = BuildContext(MPI.COMM_SELF, cache=cache)
     system = build(case, build_boom(case), model, tools).system
     rest = float(system.observers["tip"].row @ equilibrium(system, system.load))
     plain = case.model_copy(update={"models": (model_of(friction_case(), "timoshenko"),)})

@@ -135,7 +135,7 @@ def test_each_level_says_what_it_decides() -> None:
     for table, level in zip(
         tables, (PointwiseDifferences, PeakDifferences, Distributions), strict=True
     ):
-        assert level.decides in table.notes
+        assert level.scope in table.notes
         assert "against shell" in table.title
     pointwise, peaks, distributions = (table.rows for table in tables)
     assert pointwise == [("kantorovich-4", "0.80", "18.29", "7.93")]

@@ -9,7 +9,7 @@ import pytest
 
 from runs.case.build import build_boom
 from runs.case.checked_case import CheckedCase
-from runs.case.conversion import in_si
+from runs.case.conversion import convert_to_si
 from runs.check import print_check
 from runs.pipeline.largest_loads import (
     StaticBeam,
@@ -149,7 +149,9 @@ def test_a_payload_weighs_alone_without_gravity(tmp_path: Path) -> None:
 
 def test_tables_are_in_the_units_of_the_case(tmp_path: Path) -> None:
     """Reference: the same boom in SI units."""
-    case = in_si(read_case(tmp_path, boom_of(RAMP)).model_copy(update={"shown_units": "mm-t-s"}))
+    case = convert_to_si(
+        read_case(tmp_path, boom_of(RAMP)).model_copy(update={"shown_units": "mm-t-s"})
+    )
     boom = boom_with_play(case, build_boom(case))
     assert load_table(case, boom).rows == [
         ("load[1]", "fly at 14000 mm", "z", "ramp of 0.1 s", "−2000 N", "0.1")

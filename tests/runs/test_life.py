@@ -9,14 +9,14 @@ import pytest
 pytest.importorskip("rainflow", reason="the cycles are counted by it")
 
 from runs.case.schema import LifeTable
-from runs.pipeline.strength import Varying, counted, endurance, life
+from runs.pipeline.strength import StressHistory, count_stress_ranges, endurance, life
 
 
 def test_cycles_are_those_of_the_standard() -> None:
     """Reference: external. The example of ASTM E1049-85, figure 6: one half and three halves of 3
     and 4, a half of 6, one of 8, a half of 9.
     """
-    found = counted([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0])
+    found = count_stress_ranges([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0])
     expected = {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
     assert dict(zip(found.sizes.tolist(), found.counts.tolist(), strict=True)) == expected
 
@@ -37,7 +37,7 @@ def test_a_sine_does_what_its_cycles_do() -> None:
     time = np.linspace(0.0, 10.0, 10 * 400 + 1)
     stress = 50e6 * np.cos(2.0 * np.pi * time)
     table = LifeTable(detail_category=71.0, partial_factor=1.15, repeats=20_000)
-    found = life(Varying("arm", (2.0, 0.0, 0.1), stress), table)
+    found = life(StressHistory("arm", (2.0, 0.0, 0.1), stress), table)
     assert (found.segment, found.x, found.z) == ("arm", 2.0, 0.1)
     assert found.cycles == pytest.approx(10.0)
     assert found.damage == pytest.approx(10.0 / 2e6 * (115.0 / 71.0) ** 3, rel=1e-9)
@@ -48,5 +48,5 @@ def test_a_sine_does_what_its_cycles_do() -> None:
 
 
 def test_without_a_category_ranges_are_counted_alone() -> None:
-    still = life(Varying("arm", (2.0, 0.0, 0.1), np.zeros(5)), LifeTable())
+    still = life(StressHistory("arm", (2.0, 0.0, 0.1), np.zeros(5)), LifeTable())
     assert (still.cycles, still.largest, still.equivalent, still.damage) == (0.0, 0.0, 0.0, None)

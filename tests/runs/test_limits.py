@@ -14,7 +14,7 @@ from protractile.cases import run_case
 from runs import cli
 from runs.case import reading
 from runs.case.messages import BadInput
-from runs.pipeline.limits import Limit, check_limits, limits_of
+from runs.pipeline.limits import Limit, case_limits, check_limits
 from runs.pipeline.quantities import decay_time, measure
 from runs.report.limits import limit_faults, limit_table
 from runs.sweep import output
@@ -77,7 +77,7 @@ def test_limits_are_in_the_units_of_the_case() -> None:
         assert f"= {given}" in text
         text = text.replace(f"= {given}", f"= {converted}")
     case = reading.load(write("tip = 900\nstress = 160.0", text))
-    assert {limit.quantity.name: limit.permitted for limit in limits_of(case.limits)} == {
+    assert {limit.quantity.name: limit.permitted for limit in case_limits(case.limits)} == {
         "tip": 0.9,
         "stress": 160.0e6,
     }
@@ -135,7 +135,7 @@ def test_a_sweep_draws_and_counts_limits(sheets: list[Sheet]) -> None:
 
 
 def test_permitted_values_themselves_are_permitted() -> None:
-    (limit,) = limits_of(reading.load(write("first_frequency = 2.0")).limits)
+    (limit,) = case_limits(reading.load(write("first_frequency = 2.0")).limits)
     assert isinstance(limit, Limit)
     assert limit.permits(2.0)
     assert not limit.permits(1.99)

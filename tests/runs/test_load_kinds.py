@@ -13,7 +13,7 @@ from mpi4py import MPI
 from dynamics.excitation import Sine
 from runs.case import toml
 from runs.case.build import build_boom
-from runs.case.kinds.model import Workshop
+from runs.case.kinds.model import BuildContext
 from runs.case.schema import Case
 from runs.pipeline.models import build
 from tests.runs.case_texts import read_case, refusal
@@ -28,7 +28,7 @@ BOX = "section = { height = 0.47, width = 0.41, flange = 0.006, web = 0.006 }\n"
 
 def tip_at_rest(case: Case) -> float:
     """Deflection of the tip in m under all loads at the value 1 of their histories."""
-    tools = Workshop(MPI.COMM_SELF)
+    tools = BuildContext(MPI.COMM_SELF)
     system = build(case, build_boom(case), case.models[0], tools).system
     load = system.load + np.sum([x.load for x in system.excitations], axis=0)
     return float(system.observers["tip"].row @ system.static_response(load))

@@ -22,7 +22,7 @@ from runs.case.build import build_boom
 from runs.case.schema import Case, EnsembleTable
 from runs.pipeline.context import RunContext
 from runs.pipeline.low_pass import SlowPeaks, slow_peaks
-from runs.pipeline.members import PEAKS, slow_below, steps_for_peaks
+from runs.pipeline.members import PEAKS, slow_cutoff, steps_for_peaks
 from runs.pipeline.models import build
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
@@ -99,9 +99,9 @@ def test_progress_of_the_ensembles_is_told(run: Run, told: list[tuple[str, str, 
 def test_slow_is_below_the_closed_boom(case: Case) -> None:
     """Reference: other code, the play-free beam's lowest frequency of 2.0852 Hz."""
     boom = build_boom(case)
-    assert slow_below(boom, case.time) == pytest.approx(0.8 * 2.0852, rel=1e-3)
+    assert slow_cutoff(boom, case.time) == pytest.approx(0.8 * 2.0852, rel=1e-3)
     for change in ({"duration": 0.5}, {"output_step": 0.5}):
-        assert slow_below(boom, case.time.model_copy(update=change)) is None
+        assert slow_cutoff(boom, case.time.model_copy(update=change)) is None
 
 
 def test_a_boom_out_of_proportion_has_no_slow_motion(case: Case) -> None:
@@ -109,7 +109,7 @@ def test_a_boom_out_of_proportion_has_no_slow_motion(case: Case) -> None:
     heavy = case.segments[0].model_copy(update={"mass_per_length": 1e300})
     segments = heavy.model_copy(update={"height_to_width": None}), *case.segments[1:]
     changed = case.model_copy(update={"segments": segments, "models": case.models[:1]})
-    assert slow_below(build_boom(changed), case.time) is None
+    assert slow_cutoff(build_boom(changed), case.time) is None
 
 
 def test_ensembles_say_what_they_are(run: Run) -> None:
@@ -255,7 +255,7 @@ def five_terms() -> tuple[GapSystem, float]:
     boom = build_boom(case)
     model = next(model for model in case.models if model.name == "kantorovich-5")
     assert model.kind == "kantorovich"
-    cutoff = slow_below(boom, case.time)
+    cutoff = slow_cutoff(boom, case.time)
     assert cutoff is not None
     return build(case, boom, model).system, cutoff
 

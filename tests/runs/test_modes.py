@@ -19,7 +19,7 @@ from dynamics.damping import closed_contact_modes
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, Material, Segment, Support
 from geometry.section import BoxSection
-from runs.pipeline.modes import Mode, matched, modes
+from runs.pipeline.modes import Mode, match_modes, modes
 
 BOX = BoxSection(height=0.30, width=0.20, flange=0.006, web=0.006)
 
@@ -70,7 +70,7 @@ def test_a_mode_is_found_again_whatever_its_place(arm: Boom) -> None:
     series = kantorovich_segments(arm, [12, 4], "complete", rotary_inertia=False)
     here, there = found(arm, models), found(arm, series)
     moved = list(reversed(there))
-    for mode, match in zip(here, matched(arm, here, moved), strict=True):
+    for mode, match in zip(here, match_modes(arm, here, moved), strict=True):
         assert match is not None
         other = moved[match.number - 1]
         assert (other.motion, other.number) == (mode.motion, mode.number)
@@ -78,7 +78,7 @@ def test_a_mode_is_found_again_whatever_its_place(arm: Boom) -> None:
         assert match.off == pytest.approx(0.0, abs=2e-3)
     sideways = [mode for mode in there if mode.motion == "bending in y"]
     upright = [mode for mode in here if mode.motion == "bending in z"]
-    assert matched(arm, upright, sideways) == [None] * len(upright)
+    assert match_modes(arm, upright, sideways) == [None] * len(upright)
 
 
 def test_rigid_segments_swing_on_their_springs(steel: Material) -> None:

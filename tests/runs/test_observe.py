@@ -12,7 +12,7 @@ from protractile.cases import run_case
 from runs import CASES
 from runs.case import reading, toml
 from runs.case.build import build_boom
-from runs.case.kinds.model import Workshop
+from runs.case.kinds.model import BuildContext
 from runs.pipeline.models import build
 from runs.pipeline.results import Results
 from tests.runs.case_texts import read_case, refusal
@@ -97,7 +97,7 @@ def test_segments_in_space_turn_in_both_planes(tmp_path: Path, kind: str) -> Non
         pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
         from mpi4py import MPI
 
-        tools = Workshop(MPI.COMM_SELF)
+        tools = BuildContext(MPI.COMM_SELF)
     system = build(case, build_boom(case), model, tools).system
     rates = {
         name: float(seen.row @ system.initial_impulse) for name, seen in system.observers.items()

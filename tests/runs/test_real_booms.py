@@ -121,7 +121,7 @@ def level(name: str) -> Case:
 def rest_of(case: Case, boom: Boom) -> tuple[StaticState, list[float]]:
     """At rest on rigid walls, and the stiffness of each joint's contacts along z."""
     model = next(model for model in case.models if not model.bonded)
-    found = model.joined(boom)
+    found = model.model_boom(boom)
     stiffness = [joint.contact.terms[0].stiffness for joint in found.boom.joints]
     return static_state(found.boom, walls=0.0), stiffness
 

@@ -17,7 +17,7 @@ from runs.pipeline.design_results import DesignResults, PlayDifference, PlayEffe
 from runs.pipeline.pads import PadLoad
 from runs.pipeline.results import Results
 from runs.pipeline.statics import Reaction
-from runs.pipeline.strength import COUNTS, Life, WallStress
+from runs.pipeline.strength import HAS_RAINFLOW, Life, WallStress
 from runs.report.result_tables import (
     mode_table,
     play_table,
@@ -245,7 +245,7 @@ def test_every_answer_has_its_table(results: Results) -> None:
     """Reference: what a beam with play leaves."""
     titles = [table.name for table in result_tables(results)]
     expected = ["play", "tilts", "pressed", "reactions", "modes", "peaks", "stress"]
-    assert titles == [*expected, *(["life"] if COUNTS else [])]
+    assert titles == [*expected, *(["life"] if HAS_RAINFLOW else [])]
     modes = cells(mode_table(results))
     own = results.summary.design
     assert own is not None

@@ -21,7 +21,7 @@ from runs.case import reading, toml
 from runs.case.build import build_boom
 from runs.case.checked_case import CheckedCase
 from runs.case.contact import ContactTable, JointTable
-from runs.case.conversion import in_si
+from runs.case.conversion import convert_to_si
 from runs.case.messages import BadInput
 from runs.case.schema import Case, case_schema
 from runs.case.units import System, Unit
@@ -241,7 +241,9 @@ def test_a_stiffness_has_the_unit_of_its_own_law(own: str, sides: str, power: fl
     """Reference: analytic, N/mmⁿ times 1000ⁿ, with the exponent that the law presses by."""
     laws = tomllib.loads(f"{own}\n{sides}")
     joint = JointTable("base", "fly", stations=(1.0,), play=1.0, lateral_play=1.0, **laws)
-    (found,) = in_si(in_mm().model_copy(update={"units": "mm-t-s", "joints": (joint,)})).joints
+    (found,) = convert_to_si(
+        in_mm().model_copy(update={"units": "mm-t-s", "joints": (joint,)})
+    ).joints
     stiffness = found.lateral_stiffness if sides else found.stiffness
     assert stiffness == pytest.approx(1e3 * 1000.0**power, rel=1e-15)
 
@@ -252,7 +254,7 @@ def test_a_models_own_contact_has_an_exponent_of_its_own() -> None:
     joint = replace(case.joints[0], exponent=1.0)
     model = case.models[0].model_copy(update={"contact": ContactTable(stiffness=1e3)})
     update = {"units": "mm-t-s", "joints": (joint,), "models": (model,)}
-    contact = in_si(case.model_copy(update=update)).models[0].contact
+    contact = convert_to_si(case.model_copy(update=update)).models[0].contact
     assert contact is not None
     assert contact.stiffness == pytest.approx(1e9, rel=1e-15)
 

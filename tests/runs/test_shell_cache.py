@@ -19,11 +19,11 @@ from dynamics.excitation import Ramp
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.kinds.model import Workshop
+from runs.case.kinds.model import BuildContext
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case, LoadTable
 from runs.case.sections import SectionTable
-from runs.folder.cache import Cache, remembered
+from runs.folder.cache import Cache, load_or_compute
 from runs.pipeline.models import build
 from runs.process.terminal import shorten
 from shell_model.reduced_shell import ReducedShell, reduce_boom
@@ -37,7 +37,7 @@ def case() -> Case:
 
 
 def reduce(case: Case, cache: Cache | None) -> ReducedShell:
-    tools = Workshop(MPI.COMM_SELF, cache=cache)
+    tools = BuildContext(MPI.COMM_SELF, cache=cache)
     shell = build(case, build_boom(case), case.models[0], tools).shell
     assert shell is not None
     return shell
@@ -103,7 +103,7 @@ def test_another_play_and_load_are_the_same_entry(case: Case, tmp_path: Path) ->
     assert len(entries(cache)) == 1
     boom, (model,) = build_boom(other), other.models
     assert isinstance(model, Shell)
-    contacts = model.joined(boom)
+    contacts = model.model_boom(boom)
     own = reduce_boom(contacts.boom, model.options(), MPI.COMM_SELF).system
     assert found.laws == own.laws
     assert [x.history for x in found.excitations] == [Ramp(0.1)]
@@ -123,13 +123,15 @@ def test_of_two_at_a_time_one_reduces(case: Case, tmp_path: Path) -> None:
     other = os.fork()
     if other == 0:
         try:
-            remembered(cache, ("the same",), MPI.COMM_SELF, lambda: sleep(0.5) or shell)
+            load_or_compute(cache, ("the same",), MPI.COMM_SELF, lambda: sleep(0.5) or shell)
         finally:
             os._exit(0)
     while not (cache.folder / ".lock").exists():
         sleep(0.01)
     sleep(0.1)
-    found = remembered(cache, ("the same",), MPI.COMM_SELF, lambda: pytest.fail("reduced again"))
+    found = load_or_compute(
+        cache, ("the same",), MPI.COMM_SELF, lambda: pytest.fail("reduced again")
+    )
     os.waitpid(other, 0)
     assert np.array_equal(found.system.omega2, shell.system.omega2)
     assert len(entries(cache)) == 1

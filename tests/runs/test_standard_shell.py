@@ -14,7 +14,7 @@ from mpi4py import MPI
 
 from dynamics.equilibrium import equilibrium
 from runs.case.build import build_boom
-from runs.case.kinds.model import Workshop
+from runs.case.kinds.model import BuildContext
 from runs.case.reading import load
 from runs.pipeline.models import build
 from tests.runs.case_texts import STEEL, box
@@ -47,7 +47,7 @@ def test_a_boom_that_its_weight_holds_down_becomes_a_shell(tmp_path: Path) -> No
     path.write_text(RESTING, encoding="utf-8")
     case = load(str(path))
     boom = build_boom(case)
-    tools = Workshop(MPI.COMM_SELF)
+    tools = BuildContext(MPI.COMM_SELF)
     system = build(case, boom, case.models[0], tools).system.gather_loads()
     (gap,) = system.rows @ equilibrium(system, system.load)
     weight = 9.80665 * boom.segments[0].mass_per_length * 6.0
@@ -89,7 +89,7 @@ def test_axial_forces_turn_a_shared_shell_about_its_lowered_pin(tmp_path: Path) 
     case = load(str(path))
     boom = build_boom(case)
     assert boom.segments[0].mass_per_length == pytest.approx(80.0)
-    system = build(case, boom, case.models[0], Workshop(MPI.COMM_SELF)).system.gather_loads()
+    system = build(case, boom, case.models[0], BuildContext(MPI.COMM_SELF)).system.gather_loads()
     position = equilibrium(system, system.load)
     force = system.observers["cylinder_force"].row @ position
     assert force == pytest.approx(55.89e3, rel=1e-3)

@@ -11,7 +11,7 @@ import pytest
 
 from runs.case.messages import BadInput
 from runs.case.reading import load
-from runs.case.user_files import LARGEST, check_left
+from runs.case.user_files import MAX_BYTES, check_not_working_folder
 from runs.folder.files import MANIFEST
 from runs.pipeline.results import prepare
 from tests.runs.coarse_case import COARSE
@@ -37,7 +37,7 @@ def complaint(file: str) -> str:
         ("/dev/zero", lambda path: None, "not a regular file"),
         (
             "huge",
-            lambda path: os.truncate(os.open(path, os.O_CREAT | os.O_RDWR), LARGEST + 1),
+            lambda path: os.truncate(os.open(path, os.O_CREAT | os.O_RDWR), MAX_BYTES + 1),
             "larger than 16 MB",
         ),
     ],
@@ -89,7 +89,7 @@ def test_nobody_s_folder_is_replaced_around_them(
         (folder / name).touch()
     monkeypatch.chdir(folder / inside)
     for other in (folder / "other", tmp_path / "other", tmp_path / "ou"):
-        check_left(other, "case.toml", "--out other")
+        check_not_working_folder(other, "case.toml", "--out other")
     with pytest.raises(BadInput) as refused:
         prepare(str(folder), "case.toml")
     assert str(refused.value) == (

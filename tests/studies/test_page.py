@@ -120,8 +120,8 @@ def test_rows_are_those_of_the_study(name: str, monkeypatch: pytest.MonkeyPatch)
     """Reference: the study itself, all that takes long one; what is measured holds."""
     if name == "design_results":
         pytest.importorskip("rainflow", reason="the cycles are counted by it")
-    for what, stand_in in STAND_INS[name].items():
-        monkeypatch.setattr(f"studies.{name}.{what}", stand_in)
+    for what, surrogate in STAND_INS[name].items():
+        monkeypatch.setattr(f"studies.{name}.{what}", surrogate)
     monkeypatch.setattr(plates.PressedPlate, "shell", one)
     study: Study = import_module(f"studies.{name}").study(lambda what: None)
     assert sections()[study.title] == [row(cells) for cells in proof_table(study).rows]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Kinds of models, a module for each."""
+"""Kinds of models, one module for each."""
 
 from collections.abc import Mapping
 
@@ -9,7 +9,7 @@ from runs.case.kinds.model import ModelTable
 from runs.case.kinds.rigid import Rigid
 from runs.case.kinds.shell import Shell
 
-# The kinds by their names in a case file.
+# Class of each kind by its name in a case file.
 KINDS: Mapping[str, type[ModelTable]] = {
     "kantorovich": Kantorovich,
     "finite-element": BeamElements,

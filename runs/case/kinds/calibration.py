@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Keys of beam models that a shell of the same boom may calibrate."""
+"""Keys of beam models that a shell model of the same boom can calibrate."""
 
 from __future__ import annotations
 
@@ -14,7 +14,14 @@ from pydantic import Discriminator, Tag
 
 from geometry.boom import Boom, BoomError
 from geometry.fields import Name
-from runs.case.kinds.model import BeamTable, Built, Joined, ModelTable, StandIn, Workshop
+from runs.case.kinds.model import (
+    BeamTable,
+    BuildContext,
+    BuiltModel,
+    ModelBoom,
+    ModelTable,
+    Surrogate,
+)
 from runs.case.kinds.shell import Shell
 
 if TYPE_CHECKING:
@@ -23,7 +30,7 @@ if TYPE_CHECKING:
     from shell_model.reduced_shell import ReducedShell
 
 
-# Keys that a calibrating shell does not need: the beam is integrated instead.
+# Keys of the motion, which a calibrating shell must not have: only the beam is integrated.
 _OF_MOTION = ("contact", "step")
 
 
@@ -31,7 +38,7 @@ def _named_or_table(given: Any) -> str:
     return "name" if isinstance(given, str) else "shell"
 
 
-# Messages identify the keys of the table by its tag, which is its kind.
+# The tag of the table is its kind, which error paths contain.
 _Shell = Annotated[
     Annotated[Name, Tag("name")] | Annotated[Shell, Tag("shell")],
     Discriminator(_named_or_table),
@@ -75,10 +82,10 @@ class CalibratedTable(BeamTable):
         unused: dict[str, object] = dict.fromkeys(_OF_MOTION)
         return self.model_copy(update={"calibrated_by": shell.model_copy(update=unused)})
 
-    def check(self, where: str, joined: Joined) -> None:
+    def check(self, where: str, model_boom: ModelBoom) -> None:
         key = f"{where}.calibrated_by"
         if self.calibrated_by is None:
-            super().check(where, joined)
+            super().check(where, model_boom)
             return
         if not isinstance(self.calibrated_by, Shell):
             raise BoomError(
@@ -101,60 +108,60 @@ class CalibratedTable(BeamTable):
                     f"of no use: the shell does not move, the beam does; give {where}.{unused}, or "
                     "leave it out",
                 )
-        self.calibrated_by.check(key, joined)
-        super().check(where, joined)
+        self.calibrated_by.check(key, model_boom)
+        super().check(where, model_boom)
 
-    def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
+    def build(self, model_boom: ModelBoom, context: BuildContext | None = None) -> BuiltModel:
         if not isinstance(self.calibrated_by, Shell):
-            return super().build(joined, workshop)
+            return super().build(model_boom, context)
         from beam_model.calibration import calibrate
 
-        made = self.calibrated_by.build(joined, workshop)
+        made = self.calibrated_by.build(model_boom, context)
         assert made.shell is not None
         begin = perf_counter()
-        boom = joined.boom
+        boom = model_boom.boom
         beam, calibration = calibrate(
             boom, made.shell.system, made.shell.probe_responses, self.segments
         )
-        built = Built(
+        built = BuiltModel(
             beam,
             beam.num_modes,
             made.seconds,
-            self.critical_factor(joined),
+            self.critical_factor(model_boom),
             calibration=calibration,
         )
-        moving = self.moving(built, made.shell, boom)
+        moving = self.motion_model(built, made.shell, boom)
         seconds = {"calibration": perf_counter() - begin}
         return replace(moving, seconds=made.seconds | seconds)
 
-    def moving(self, built: Built, shell: ReducedShell, boom: Boom) -> Built:
-        """Return the model that is integrated: by default the beam with springs."""
+    def motion_model(self, built: BuiltModel, shell: ReducedShell, boom: Boom) -> BuiltModel:
+        """Return the model whose motion is integrated: by default the calibrated beam."""
         from beam_model.calibration import stiffened
         from beam_model.lines import lines
 
         assert built.calibration is not None
         stiff = stiffened(boom, built.calibration.segments)
         along = lines(stiff, self.segments(stiff))
-        # The coordinates of the springs follow those of the beam, and have no axial motion.
+        # The coordinates of the springs come after those of the beam, and do not affect its lines.
         own = along[0].rows["deflection"].shape[1]
         basis = np.eye(own, built.system.num_modes)
-        return replace(built, along=[line.transform(basis) for line in along])
+        return replace(built, lines=[line.transform(basis) for line in along])
 
-    def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
-        # Only contacts of this model include the compliance of its springs.
-        return super().without_play(boom) if self.calibrated_by is None else None
+    def system_without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
+        # The springs of a calibrated beam act in its contacts: these are bonded instead.
+        return super().system_without_play(boom) if self.calibrated_by is None else None
 
     @abstractmethod
-    def beam_stand_in(self, boom: Boom) -> StandIn:
-        """Return the stand-in of the beam, from which the time of its motion is estimated."""
+    def beam_surrogate(self, boom: Boom) -> Surrogate:
+        """Return the surrogate of the beam without its calibration."""
 
-    def stand_in(self, boom: Boom) -> StandIn:
-        own = self.beam_stand_in(boom)
+    def surrogate(self, boom: Boom) -> Surrogate:
+        own = self.beam_surrogate(boom)
         if not isinstance(self.calibrated_by, Shell):
             return own
-        shell = self.calibrated_by.stand_in(boom)
+        shell = self.calibrated_by.surrogate(boom)
         beam = own.beam.model_copy(update={"calibrated_by": None})
-        return StandIn(
+        return Surrogate(
             beam,
             own.coordinates,
             own.memory + shell.memory,

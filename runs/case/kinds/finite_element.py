@@ -14,7 +14,7 @@ from beam_model.finite_element import finite_element_segments
 from geometry.boom import Boom, BoomError
 from geometry.fields import Flag, Length
 from runs.case.kinds.calibration import CalibratedTable
-from runs.case.kinds.model import Built, Joined, StandIn
+from runs.case.kinds.model import BuiltModel, ModelBoom, Surrogate
 from runs.case.kinds.shell import Shell
 
 if TYPE_CHECKING:
@@ -27,9 +27,9 @@ MOST_ELEMENTS = 5_000
 # Maximum number of coordinates of each segment with section fields.
 FIELDS = 40
 
-# Cost of a dense eigenproblem of n coordinates: s for each n³, numbers for each n² (measured).
+# Measured cost of a dense eigenproblem of n coordinates: time in s over n³, numbers stored over n².
 _EIGEN_TIME, _EIGEN_ROOM = 5.0e-9, 6.0
-# Estimates and checks replace a beam of more coordinates by a coarser one.
+# Maximum number of coordinates of the beams that estimates and checks build.
 _BUILT = 400
 
 
@@ -63,14 +63,14 @@ class BeamElements(CalibratedTable):
         return self.theory == "timoshenko" or super().needs_plates
 
     @property
-    def instead_of_plates(self) -> str:
+    def plates_remedy(self) -> str:
         return "" if super().needs_plates else ", or theory = 'euler-bernoulli' in the model"
 
     @property
     def bonded(self) -> bool:
         return self.tied
 
-    def check(self, where: str, joined: Joined) -> None:
+    def check(self, where: str, model_boom: ModelBoom) -> None:
         if self.section_fields and self.calibrated_by is None:
             raise BoomError(
                 f"{where}.section_fields",
@@ -78,14 +78,14 @@ class BeamElements(CalibratedTable):
             )
         if self.tied and self.contact:
             raise BoomError(f"{where}.contact", "a tied model has no contact; leave it out")
-        length = max(segment.length for segment in joined.boom.segments)
+        length = max(segment.length for segment in model_boom.boom.segments)
         if length / self.element_length > MOST_ELEMENTS:
             raise BoomError(
                 f"{where}.element_length",
                 f"{self.element_length:g} m makes more than {MOST_ELEMENTS} elements of a "
                 f"segment; it must be at least {length / MOST_ELEMENTS:.3g} m",
             )
-        super().check(where, joined)
+        super().check(where, model_boom)
 
     def describe(self) -> str:
         if isinstance(self.calibrated_by, Shell):
@@ -101,27 +101,27 @@ class BeamElements(CalibratedTable):
             return finite_element_segments(boom, self.element_length, "timoshenko", True)
         return finite_element_segments(boom, self.element_length, self.theory, self.rotary_inertia)
 
-    def moving(self, built: Built, shell: ReducedShell, boom: Boom) -> Built:
+    def motion_model(self, built: BuiltModel, shell: ReducedShell, boom: Boom) -> BuiltModel:
         from beam_model.section_fields import condense
 
         if not self.section_fields:
-            return super().moving(built, shell, boom)
+            return super().motion_model(built, shell, boom)
         system, shapes = condense(shell.system, FIELDS * len(boom.segments))
         along: list[Line] = []
         if shell.fields is not None:
             from shell_model.stress.lines import lines
 
             along = [line.transform(shapes) for line in lines(shell.fields, boom)]
-        return replace(built, system=system, num_dofs=system.num_modes, along=along)
+        return replace(built, system=system, num_dofs=system.num_modes, lines=along)
 
-    def coarsened(self, boom: Boom) -> Self:
+    def coarsen(self, boom: Boom) -> Self:
         length = self.element_length * max(1.0, self._coordinates(boom) / _BUILT)
         return self.model_copy(update={"element_length": length})
 
-    def beam_stand_in(self, boom: Boom) -> StandIn:
+    def beam_surrogate(self, boom: Boom) -> Surrogate:
         coordinates = self._coordinates(boom)
-        return StandIn(
-            self.coarsened(boom),
+        return Surrogate(
+            self.coarsen(boom),
             coordinates,
             memory=8.0 * _EIGEN_ROOM * coordinates**2,
             seconds=_EIGEN_TIME * coordinates**3,

@@ -10,10 +10,10 @@ from beam_model.kantorovich import check_base, kantorovich_segments
 from geometry.boom import Boom, BoomError
 from geometry.fields import Few, Flag
 from runs.case.kinds.calibration import CalibratedTable
-from runs.case.kinds.model import Joined, StandIn
+from runs.case.kinds.model import ModelBoom, Surrogate
 from runs.case.limits import Count
 
-# Maximum number of terms: round-off in more polynomials exceeds 1e-6 of the lowest frequencies.
+# Maximum number of terms: with more, round-off changes the lowest frequencies by more than 1e-6.
 MOST_TERMS = 60
 
 
@@ -36,8 +36,8 @@ class Kantorovich(CalibratedTable):
     rotary_inertia: Flag = False
     """whether the rotary inertia is kept"""
 
-    def check(self, where: str, joined: Joined) -> None:
-        segments = joined.boom.segments
+    def check(self, where: str, model_boom: ModelBoom) -> None:
+        segments = model_boom.boom.segments
         if len(self.terms) != len(segments):
             raise BoomError(
                 f"{where}.terms",
@@ -51,10 +51,10 @@ class Kantorovich(CalibratedTable):
                 f"{list(self.terms)}; use finite elements",
             )
         try:
-            check_base(joined.boom, self.base)
+            check_base(model_boom.boom, self.base)
         except BoomError as error:
             raise BoomError(f"{where}.base", error.what) from None
-        super().check(where, joined)
+        super().check(where, model_boom)
 
     def describe(self) -> str:
         return f"terms {' + '.join(map(str, self.terms))}, base {self.base}"
@@ -63,5 +63,5 @@ class Kantorovich(CalibratedTable):
         rotary_inertia = self.rotary_inertia or self.calibrated_by is not None
         return kantorovich_segments(boom, self.terms, self.base, rotary_inertia)
 
-    def beam_stand_in(self, boom: Boom) -> StandIn:
-        return StandIn(self, sum(self.terms) * (3 if boom.spatial else 1))
+    def beam_surrogate(self, boom: Boom) -> Surrogate:
+        return Surrogate(self, sum(self.terms) * (3 if boom.spatial else 1))

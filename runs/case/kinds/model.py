@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Interface of the kinds of models, and the keys that all of them have in the case file."""
+"""Interface of the kinds of models, and their common keys in the case file."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Beams:
-    """Segments of a boom as beams, and the buckling factor, each computed on first use."""
+class BeamSegments:
+    """Segments of a beam model and their buckling factor, each computed once, on first use."""
 
-    boom: Boom  #: boom of a case
-    model: BeamTable  #: model whose segments are beams
+    boom: Boom  #: boom with the contact laws of the model
+    model: BeamTable  #: beam model
 
     @cached_property
     def segments(self) -> list[SegmentModel]:
@@ -53,7 +53,7 @@ class Beams:
 
     @cached_property
     def critical_factor(self) -> float | None:
-        """The buckling factor of the boom's axial forces, as in :class:`Built`."""
+        """The buckling factor of the boom's axial forces, as in :class:`BuiltModel`."""
         from beam_model.boom_modes import critical_factor
 
         if not self.boom.compressed:
@@ -62,35 +62,35 @@ class Beams:
             with np.errstate(all="ignore"):
                 return critical_factor(self.boom, self.segments)
         except (ArithmeticError, np.linalg.LinAlgError, ValueError):
-            # Extreme numbers make the factor fail. The run meets the same error and reports it.
+            # With extreme numbers the computation fails. The run fails likewise and reports it.
             return None
 
 
 @dataclass(frozen=True, slots=True)
-class Joined:
-    """The boom of a case with the contacts of one model, and its beams."""
+class ModelBoom:
+    """The boom of a case with the contact laws of one model, and the beams computed from it."""
 
     boom: Boom  #: boom of the case, with the model's contact laws in its joints
-    _beams: list[Beams] = field(default_factory=list, init=False, repr=False, compare=False)
+    _beams: list[BeamSegments] = field(default_factory=list, init=False, repr=False, compare=False)
 
-    def beams(self, model: BeamTable) -> Beams:
-        """Return the beams of a model; equal models share one object."""
+    def beams(self, model: BeamTable) -> BeamSegments:
+        """Return the beam segments of a model; equal models share one object."""
         for known in self._beams:
             if known.model == model:
                 return known
-        self._beams.append(Beams(self.boom, model))
+        self._beams.append(BeamSegments(self.boom, model))
         return self._beams[-1]
 
 
 @dataclass(frozen=True, slots=True)
-class Workshop:
-    """The context for building a meshed model.
+class BuildContext:
+    """Ranks, progress reporter and cache for building a meshed model.
 
     Args:
         comm: the ranks that share the work.
         progress: callback that receives the stage and its completed fraction.
         cache: cache of reduced shells; without one, every shell is computed.
-        helper: a second process, which takes part in reductions where there is only one rank.
+        helper: second process that shares the reduction if there is only one rank.
     """
 
     comm: MPI.Comm
@@ -98,18 +98,20 @@ class Workshop:
     cache: Cache | None = None
     helper: Executor | None = None
 
-    def remember(self, content: Sequence[Any], compute: Callable[[], ReducedShell]) -> ReducedShell:
-        """Return the reduced shell for this input from the cache, or compute it. Collective."""
-        from runs.folder.cache import remembered
+    def cached_shell(
+        self, content: Sequence[Any], compute: Callable[[], ReducedShell]
+    ) -> ReducedShell:
+        """Return the reduced shell for this content from the cache, or compute it. Collective."""
+        from runs.folder.cache import load_or_compute
 
         if self.cache is None:
             return compute()
-        return remembered(self.cache, content, self.comm, compute)
+        return load_or_compute(self.cache, content, self.comm, compute)
 
 
 @dataclass(frozen=True, slots=True)
-class Built:
-    """A model before time integration."""
+class BuiltModel:
+    """A model that is built, before time integration."""
 
     system: GapSystem  #: gap system of all segments
     num_dofs: int  #: number of degrees of freedom before any reduction
@@ -119,19 +121,18 @@ class Built:
     critical_factor: float | None = float("inf")
     shell: ReducedShell | None = None  #: other data of a reduced shell
     calibration: Calibration | None = None  #: calibration of a beam by its shell
-    along: Sequence[Line] = ()  #: lines along the segments, on the first rank
-    beams: Beams | None = None  #: the beams of a model without calibration
+    lines: Sequence[Line] = ()  #: lines along the segments, on the first rank
+    beams: BeamSegments | None = None  #: beam segments of a model without calibration
 
 
 @dataclass(frozen=True, slots=True)
-class StandIn:
-    """A beam model that stands for another model in estimates of time steps."""
+class Surrogate:
+    """A cheap beam model that replaces a model in estimates of its cost."""
 
-    beam: ModelTable  #: the beam model, which is fast to build
-    coordinates: int  #: number of coordinates of the model itself
-    #: Memory in bytes and time in s before time integration.
-    memory: float = 0.0
-    seconds: float = 0.0
+    beam: ModelTable  #: the beam model
+    coordinates: int  #: number of coordinates of the replaced model
+    memory: float = 0.0  #: memory in bytes to build the replaced model
+    seconds: float = 0.0  #: time in s to build the replaced model
 
 
 class ModelTable(CaseTable):
@@ -152,7 +153,7 @@ class ModelTable(CaseTable):
 
         Args:
             boom: the boom of the model.
-            keys: keys of its table in a case file; the default name is the kind.
+            keys: keys of the model in a case file; the default name is the kind.
 
         Raises:
             ValidationError: an unknown key, or an invalid value.
@@ -161,14 +162,14 @@ class ModelTable(CaseTable):
         super().__init__(**{"name": kind, "kind": kind, **keys})
         self._boom = boom
 
-    # This private mark of pydantic makes validation bypass __init__: a table of a case file must
-    # give name and kind.
+    # With this private attribute pydantic validates without __init__: a case file must give name
+    # and kind.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
-    # Whether the model has a mesh of the plates and writes fields.
+    # True if the model has a mesh of the plates and writes fields.
     meshed: ClassVar[bool] = False
 
-    # Whether the section forces are smooth where point forces act, as those of a series are.
+    # True if section forces are smooth at point loads, as with a series of smooth functions.
     smooth: ClassVar[bool] = False
 
     @property
@@ -178,7 +179,7 @@ class ModelTable(CaseTable):
 
     @property
     def needs_shell(self) -> bool:
-        """True if the model needs FEniCSx and a workshop."""
+        """True if the model needs FEniCSx and a build context."""
         return self.meshed
 
     @property
@@ -187,33 +188,33 @@ class ModelTable(CaseTable):
         return self.meshed
 
     @property
-    def instead_of_plates(self) -> str:
-        """Another remedy where sections are missing, as the end of a sentence; empty for none."""
+    def plates_remedy(self) -> str:
+        """The end of a message on missing sections: a remedy other than to give them."""
         return ""
 
     def with_shells(self, update: Mapping[str, object]) -> Self:
-        """Return the model with an update of its shell, or of the shell that calibrates it."""
+        """Return the model with changed keys of its shell, or of the shell that calibrates it."""
         return self.model_copy(update=update) if self.meshed else self
 
     def resolve_shell(self, models: Mapping[str, ModelTable]) -> Self:
         """Return the model with the table of its calibrating shell in place of the name.
 
         Args:
-            models: models of its case, by their names.
+            models: models of the case, by their names.
         """
         return self
 
-    def coarsened(self, boom: Boom) -> Self:
-        """Return the model, or a coarser one that suffices for the checks and is fast.
+    def coarsen(self, boom: Boom) -> Self:
+        """Return a model that is coarse enough for fast checks; the model itself if it is.
 
         Args:
-            boom: boom of its case.
+            boom: boom of the case.
         """
         return self
 
     @property
     def bonded(self) -> bool:
-        """True if the segments are joined without play."""
+        """True if the segments are model_boom without play."""
         return False
 
     @property
@@ -223,27 +224,27 @@ class ModelTable(CaseTable):
             return f"{self.name!r} is tied, and cannot telescope; leave the model out"
         return None
 
-    def check(self, where: str, joined: Joined) -> None:
+    def check(self, where: str, model_boom: ModelBoom) -> None:
         """Check that the model is valid for this boom.
 
         Args:
             where: key of the model, for example ``model[2]``.
-            joined: the boom and its contacts.
+            model_boom: the boom with the contact laws of the model.
 
         Raises:
             BoomError: the model is not valid for the boom.
         """
-        for number, segment in enumerate(joined.boom.segments, start=1):
+        for number, segment in enumerate(model_boom.boom.segments, start=1):
             if self.needs_plates and segment.section is None:
                 raise BoomError(
                     f"segment[{number}].section",
                     f"missing, and {self.name!r} needs it; give section or height_to_width"
-                    f"{self.instead_of_plates}",
+                    f"{self.plates_remedy}",
                 )
-        driven = [i for i, j in enumerate(joined.boom.joints, start=1) if j.drive is not None]
+        driven = [i for i, j in enumerate(model_boom.boom.joints, start=1) if j.drive is not None]
         if driven and self.cannot_telescope is not None:
             raise BoomError(where, f"{self.cannot_telescope}, or joint[{driven[0]}].drive")
-        factor = self.coarsened(joined.boom).critical_factor(joined)
+        factor = self.coarsen(model_boom.boom).critical_factor(model_boom)
         if factor is not None and factor <= 1.0:
             raise BoomError(
                 where,
@@ -257,22 +258,22 @@ class ModelTable(CaseTable):
         """Return a short description of the discretisation, for a table."""
 
     @abstractmethod
-    def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
-        """Return the gap system. Collective for a meshed model.
+    def build(self, model_boom: ModelBoom, context: BuildContext | None = None) -> BuiltModel:
+        """Return the built model. Collective for a meshed model.
 
         Args:
-            joined: the boom and its contacts.
-            workshop: the context for a meshed model.
+            model_boom: the boom with the contact laws of the model.
+            context: ranks, progress reporter and cache, for a meshed model.
 
         Raises:
             BoomError: the boom lacks what the model needs.
         """
 
-    def joined(self, boom: Boom) -> Joined:
-        """Return the boom with the model's contact laws, if the model has any.
+    def model_boom(self, boom: Boom) -> ModelBoom:
+        """Return the boom with the contact laws of the model in place of those of the joints.
 
         Raises:
-            BoomError: a joint has no contact, or its law does not admit shims.
+            BoomError: a joint has no contact law, or its law does not admit shims.
         """
         if self.contact is not None:
             along_z, along_y = self.contact.law("z"), self.contact.law("y")
@@ -294,10 +295,10 @@ class ModelTable(CaseTable):
                     f"contact on both sides of a joint at once needs a law of the exponent 1, and "
                     f"model {self.name!r} has another; give it one, or leave interference out",
                 ) from None
-        return Joined(boom)
+        return ModelBoom(boom)
 
     def system(self) -> GapSystem:
-        """Return the gap system of its boom.
+        """Return the gap system of the model.
 
         >>> pt.BeamElements(boom).system().num_modes
         66
@@ -307,16 +308,16 @@ class ModelTable(CaseTable):
         """
         if self._boom is None:
             raise BoomError(self.name, "missing; give the boom that it is a model of")
-        joined = self.joined(self._boom)
-        self.check(self.name, joined)
-        workshop = None
+        model_boom = self.model_boom(self._boom)
+        self.check(self.name, model_boom)
+        context = None
         if self.needs_shell:
             from mpi4py import MPI
 
             from runs.folder.cache import Cache
 
-            workshop = Workshop(MPI.COMM_SELF, cache=Cache.of_user())
-        return self.build(joined, workshop).system
+            context = BuildContext(MPI.COMM_SELF, cache=Cache.of_user())
+        return self.build(model_boom, context).system
 
     def simulate(
         self,
@@ -328,15 +329,18 @@ class ModelTable(CaseTable):
         rayleigh: tuple[float, float] = (0.0, 0.0),
         tolerance: float = 1.0e-3,
     ) -> Trajectory:
-        """Return the motion of its boom, as the run of a case file computes it.
+        """Return the motion of the model, as the run of a case file computes it.
 
         >>> motion = pt.BeamElements(boom).simulate(0.5)
         >>> print(f"{motion.first_contact:.3f} s")
         0.032 s
 
         Args:
-            duration, output_step, at_rest, damping_ratio, rayleigh: data of the motion, as in
-                :func:`dynamics.motion.begin`.
+            duration: simulated time in s.
+            output_step: output interval in s.
+            at_rest: True to start in static equilibrium.
+            damping_ratio: ratio of modal damping.
+            rayleigh: mass and stiffness factors of Rayleigh damping in 1/s and s.
             tolerance: permitted error of the deflections by the time step, as a fraction of their
                 range; not used if the model has a ``step``.
 
@@ -353,56 +357,56 @@ class ModelTable(CaseTable):
         return (AdaptiveStep(tolerance) if self.step is None else FixedStep(self.step))(motion)
 
     @abstractmethod
-    def critical_factor(self, joined: Joined) -> float | None:
-        """Return the buckling factor, as in :class:`Built`; approximate for a meshed model."""
+    def critical_factor(self, model_boom: ModelBoom) -> float | None:
+        """Return the buckling factor (see :class:`BuiltModel`), estimated for a meshed model."""
 
     @abstractmethod
-    def lines(self, boom: Boom, built: Built) -> list[Line]:
+    def lines(self, boom: Boom, built: BuiltModel) -> list[Line]:
         """Return the lines along the segments of the built model, on the first rank."""
 
-    def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
-        """Return gap system and lines without play; None if contacts are to be bonded instead."""
+    def system_without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
+        """Return gap system and lines of the bonded boom; None to bond the contacts instead."""
         return None
 
     @abstractmethod
-    def stand_in(self, boom: Boom) -> StandIn:
-        """Return the stand-in that estimates the time of the motion."""
+    def surrogate(self, boom: Boom) -> Surrogate:
+        """Return the cheap beam model from which the cost of the model is estimated."""
 
 
 class BeamTable(ModelTable):
-    """Keys of a model whose segments are beams, series or rigid bodies."""
+    """Keys of a model whose segments are elements, series or rigid bodies along one axis."""
 
     @abstractmethod
     def segments(self, boom: Boom) -> list[SegmentModel]:
-        """Return each segment in its own coordinates."""
+        """Return the matrices of each segment in its own coordinates."""
 
-    def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
+    def build(self, model_boom: ModelBoom, context: BuildContext | None = None) -> BuiltModel:
         from beam_model.segment_model import gap_system
 
         start = perf_counter()
-        beams = joined.beams(self)
-        boom = joined.boom.bonded if self.bonded else joined.boom
+        beams = model_boom.beams(self)
+        boom = model_boom.boom.bonded if self.bonded else model_boom.boom
         system = gap_system(boom, beams.segments)
         factor, seconds = beams.critical_factor, {"build": perf_counter() - start}
-        return Built(system, system.num_modes, seconds, factor, beams=beams)
+        return BuiltModel(system, system.num_modes, seconds, factor, beams=beams)
 
-    def lines(self, boom: Boom, built: Built) -> list[Line]:
-        return list(built.along) if built.beams is None else built.beams.lines
+    def lines(self, boom: Boom, built: BuiltModel) -> list[Line]:
+        return list(built.lines) if built.beams is None else built.beams.lines
 
-    def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
+    def system_without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
         from beam_model.lines import lines
         from beam_model.segment_model import gap_system
 
         segments = self.segments(boom)
         return gap_system(boom.bonded, segments), lines(boom.bonded, segments)
 
-    def critical_factor(self, joined: Joined) -> float | None:
-        return joined.beams(self).critical_factor
+    def critical_factor(self, model_boom: ModelBoom) -> float | None:
+        return model_boom.beams(self).critical_factor
 
 
 _Kind = TypeVar("_Kind", bound=ModelTable)
 
 
-def of_kind(kind: type[_Kind], models: Iterable[ModelTable]) -> list[_Kind]:
+def select_kind(kind: type[_Kind], models: Iterable[ModelTable]) -> list[_Kind]:
     """Return the models of one kind."""
     return [model for model in models if isinstance(model, kind)]

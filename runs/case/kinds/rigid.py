@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, Literal
 from beam_model.component import SegmentModel
 from beam_model.rigid import freedom, rigid_segment
 from geometry.boom import Boom, BoomError
-from runs.case.kinds.model import BeamTable, Joined, StandIn
+from runs.case.kinds.model import BeamTable, ModelBoom, Surrogate
 
 
 class Rigid(BeamTable):
-    """Rigid bodies, which move only in play, contacts and elastic supports."""
+    """Rigid segments, which move only by play and by the compliance of contacts and supports."""
 
     if TYPE_CHECKING:
 
@@ -21,14 +21,14 @@ class Rigid(BeamTable):
     kind: Literal["rigid"]
     """the kind of model"""
 
-    def check(self, where: str, joined: Joined) -> None:
-        if not any(freedom(segment) for segment in joined.boom.segments):
+    def check(self, where: str, model_boom: ModelBoom) -> None:
+        if not any(freedom(segment) for segment in model_boom.boom.segments):
             raise BoomError(
                 f"{where}.kind",
                 "every segment is held, and no rigid one could move; give another kind, or elastic "
                 "supports",
             )
-        super().check(where, joined)
+        super().check(where, model_boom)
 
     def describe(self) -> str:
         return "rigid segments"
@@ -36,5 +36,5 @@ class Rigid(BeamTable):
     def segments(self, boom: Boom) -> list[SegmentModel]:
         return [rigid_segment(segment) for segment in boom.segments]
 
-    def stand_in(self, boom: Boom) -> StandIn:
-        return StandIn(self, (5 if boom.spatial else 2) * len(boom.segments))
+    def surrogate(self, boom: Boom) -> Surrogate:
+        return Surrogate(self, (5 if boom.spatial else 2) * len(boom.segments))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Keys of shell models. FEniCSx is imported only to build one."""
+"""Keys of shell models. FEniCSx is imported only when a model is built."""
 
 from __future__ import annotations
 
@@ -15,7 +15,14 @@ from geometry.boom import Boom, BoomError
 from geometry.contact_places import pads, stop_patches
 from geometry.fields import In, Length, Positive
 from geometry.refinement import refinement_zones
-from runs.case.kinds.model import BeamTable, Built, Joined, ModelTable, StandIn, Workshop
+from runs.case.kinds.model import (
+    BeamTable,
+    BuildContext,
+    BuiltModel,
+    ModelBoom,
+    ModelTable,
+    Surrogate,
+)
 from runs.case.limits import ContactTolerance, Count, Modes, Part
 
 if TYPE_CHECKING:
@@ -23,25 +30,25 @@ if TYPE_CHECKING:
     from shell_model.boom_shell import ShellOptions
     from shell_model.reduction.krylov import KrylovOptions
 
-# Maximum number of triangles: the factorisation of more of them is an input error.
+# Maximum number of triangles: a finer mesh is an input error.
 MOST_TRIANGLES = 20_000_000
-# Maximum number of contact points: each is an input of the reduction and a row of the time loop.
+# Maximum number of contact points on half a wall: each costs time in reduction and time loop.
 MOST_POINTS = 256
 
-# Default number of coordinates of each segment, in the plane and in space.
+# Typical number of coordinates of each reduced segment, in the plane and in space.
 _FLAT, _SPATIAL = 60, 210
-# Measured costs: dofs per mesh size squared of a uniform mesh, of a graded one outside its
-# refinement zones, and inside them; bytes per dof and per coordinate of a dof; s.
+# Measured costs. Number of dofs over area / (mesh size)²: of a uniform mesh, of a graded mesh
+# outside and inside its refinement zones. Bytes per dof, and per dof and coordinate; s per dof.
 _DOFS, _GRADED_DOFS, _DOFS_AT_ZONES = 21.0, 42.0, 35.0
 _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 2000.0, 5.0, 0.8e-4
-# One process reduces a shell of so many dofs in a few seconds.
+# A single process reduces a shell of fewer dofs in a few seconds.
 _SMALL = 5.0e4
-# Number of elements of the longest segment, for the beam that stands for a shell.
+# Number of elements of the longest segment in the surrogate of a shell.
 _ELEMENTS = 20
 
 
-class _BeamOfShell(BeamTable):
-    """Shear-flexible beam elements that stand for a shell in estimates."""
+class _ShellSurrogate(BeamTable):
+    """Shear-flexible beam elements that replace a shell in estimates of its cost."""
 
     kind: Literal["beam of a shell"] = "beam of a shell"
     """the kind of model"""
@@ -54,12 +61,12 @@ class _BeamOfShell(BeamTable):
     def segments(self, boom: Boom) -> list[SegmentModel]:
         return finite_element_segments(boom, self.element_length, "timoshenko", True)
 
-    def stand_in(self, boom: Boom) -> StandIn:
-        return StandIn(self, 0)
+    def surrogate(self, boom: Boom) -> Surrogate:
+        return Surrogate(self, 0)
 
 
 class Shell(ModelTable):
-    """Flat facet shells on the folded box, reduced for the contact forces."""
+    """Flat facet shell elements on the folded box, reduced for contact forces and loads."""
 
     meshed: ClassVar[bool] = True
 
@@ -91,11 +98,11 @@ class Shell(ModelTable):
     """the number of contact points along the overlap, and across each half of a wall; 8 and 4
     unless given"""
 
-    def check(self, where: str, joined: Joined) -> None:
-        super().check(where, joined)
-        check_mesh_size(f"{where}.mesh_size", self.mesh_size, joined.boom)
-        self._check_contact(where, joined)
-        for number, segment in enumerate(joined.boom.segments, start=1):
+    def check(self, where: str, model_boom: ModelBoom) -> None:
+        super().check(where, model_boom)
+        check_mesh_size(f"{where}.mesh_size", self.mesh_size, model_boom.boom)
+        self._check_contact(where, model_boom)
+        for number, segment in enumerate(model_boom.boom.segments, start=1):
             if segment.viscous_damping > 0.0:
                 raise BoomError(
                     f"segment[{number}].viscous_damping",
@@ -119,28 +126,28 @@ class Shell(ModelTable):
     def describe(self) -> str:
         return f"mesh {self.mesh_size:g} m, contact {self.contact_line}"
 
-    def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
+    def build(self, model_boom: ModelBoom, context: BuildContext | None = None) -> BuiltModel:
         from shell_model.reduced_shell import reduce_boom
         from shell_model.standard import standard_boom, with_plays_and_loads
 
-        assert workshop is not None
-        boom, options = standard_boom(joined.boom), self.options()
-        # Imported here, since the libraries take a second or two to load.
-        helper = workshop.helper if self.estimate_dofs(boom) > _SMALL else None
-        made = workshop.remember(
+        assert context is not None
+        boom, options = standard_boom(model_boom.boom), self.options()
+        # A small shell does not repay the seconds that a second process takes to load FEniCSx.
+        helper = context.helper if self.estimate_dofs(boom) > _SMALL else None
+        made = context.cached_shell(
             (boom, options),
-            partial(reduce_boom, boom, options, workshop.comm, workshop.progress, helper),
+            partial(reduce_boom, boom, options, context.comm, context.progress, helper),
         )
-        shell = with_plays_and_loads(made, joined.boom)
+        shell = with_plays_and_loads(made, model_boom.boom)
         factor = shell.critical_factor
         if boom.driven and factor is not None:
-            # At other extensions, only beams give the buckling factor.
-            on_the_way = self.critical_factor(replace(joined, boom=boom))
+            # The reduced shell gives the factor at one extension, the beam over the whole travel.
+            on_the_way = self.critical_factor(replace(model_boom, boom=boom))
             factor = min(factor, on_the_way or factor)
-        return Built(shell.system, shell.num_dofs, shell.seconds, factor, shell)
+        return BuiltModel(shell.system, shell.num_dofs, shell.seconds, factor, shell)
 
     def options(self) -> ShellOptions:
-        """Return the options of the boom's shells."""
+        """Return mesh size, contact line and reduction for the shell model of the boom."""
         from shell_model.boom_shell import ShellOptions
         from shell_model.contact.surface import POINTS, SurfaceOptions
 
@@ -152,7 +159,7 @@ class Shell(ModelTable):
             contact_tolerance=None if self.contact_tolerance == "any" else self.contact_tolerance,
         )
 
-    def lines(self, boom: Boom, built: Built) -> list[Line]:
+    def lines(self, boom: Boom, built: BuiltModel) -> list[Line]:
         from shell_model.stress.lines import lines
 
         assert built.shell is not None
@@ -163,22 +170,22 @@ class Shell(ModelTable):
     def longest_edge(self) -> float:
         return self.mesh_size
 
-    def critical_factor(self, joined: Joined) -> float | None:
-        return self.stand_in(joined.boom).beam.critical_factor(joined)
+    def critical_factor(self, model_boom: ModelBoom) -> float | None:
+        return self.surrogate(model_boom.boom).beam.critical_factor(model_boom)
 
-    def stand_in(self, boom: Boom) -> StandIn:
+    def surrogate(self, boom: Boom) -> Surrogate:
         dofs = self.estimate_dofs(boom)
         coordinates = (_SPATIAL if boom.spatial else _FLAT) * len(boom.segments)
         if isinstance(self.modes, int):
             coordinates = min(coordinates, self.modes * len(boom.segments))
-        beam = _BeamOfShell(
+        beam = _ShellSurrogate(
             name=self.name,
             contact=self.contact,
             step=self.step,
             element_length=max(segment.length for segment in boom.segments) / _ELEMENTS,
         )
         memory = dofs * (_OF_DOF + _OF_DOF_AND_COORDINATE * coordinates)
-        return StandIn(beam, coordinates, memory, _REDUCTION * dofs)
+        return Surrogate(beam, coordinates, memory, _REDUCTION * dofs)
 
     def estimate_dofs(self, boom: Boom) -> float:
         """Return the approximate total number of dofs, without meshing."""
@@ -200,16 +207,16 @@ class Shell(ModelTable):
             return KrylovOptions(tolerance=self.tolerance)
         return KrylovOptions(most=self.modes)
 
-    def _check_contact(self, where: str, joined: Joined) -> None:
-        """Check that contact places suit the boom, and that no key belongs to another contact."""
+    def _check_contact(self, where: str, model_boom: ModelBoom) -> None:
+        """Check that the contact line suits the boom, and that no key is for another line."""
         line = self.contact_line
-        if joined.boom.spatial and line == "across":
+        if model_boom.boom.spatial and line == "across":
             raise BoomError(
                 f"{where}.contact_line",
                 "'across' is for a flat boom; in space the segments touch 'near webs' or by "
                 "'surface'",
             )
-        for number, joint in enumerate(joined.boom.joints, start=1):
+        for number, joint in enumerate(model_boom.boom.joints, start=1):
             if joint.padded and line != "near webs":
                 raise BoomError(
                     f"{where}.contact_line",
@@ -217,7 +224,7 @@ class Shell(ModelTable):
                     "or leave pad out",
                 )
         if line == "surface":
-            self._check_surface(where, joined)
+            self._check_surface(where, model_boom)
             return
         for key in ("surface_stiffness", "surface_points"):
             if getattr(self, key) is not None:
@@ -227,8 +234,8 @@ class Shell(ModelTable):
                     "contact_line = 'surface'",
                 )
 
-    def _check_surface(self, where: str, joined: Joined) -> None:
-        """Check the number of contact points, and that the stiffness suits the contact laws."""
+    def _check_surface(self, where: str, model_boom: ModelBoom) -> None:
+        """Check the number of contact points, and that all laws admit one surface stiffness."""
         if self.surface_points is not None:
             along, across = self.surface_points
             if along * across > MOST_POINTS:
@@ -237,7 +244,7 @@ class Shell(ModelTable):
                     f"{along} times {across} points on half a wall are more than {MOST_POINTS}, "
                     "which a reduced model can bear; give fewer",
                 )
-        boom = joined.boom
+        boom = model_boom.boom
         laws = [joint.law(along) for along in boom.directions for joint in boom.joints]
         exponents = sorted({term.exponent for law in laws for term in law.terms})
         if self.surface_stiffness is not None and len(exponents) > 1:
