@@ -393,28 +393,34 @@ def live(
 @app.command()
 def export(
     case: CaseFile,
-    to: Annotated[str, typer.Option(metavar="opensees", help="The other program.")],
+    to: Annotated[str, typer.Option(metavar="opensees|calculix", help="The other program.")],
     model: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="A model of beam elements.  \\[default: the last one]"),
+        typer.Option(
+            metavar="NAME",
+            help="A model of beam elements, or a shell for CalculiX.  \\[default: the last one]",
+        ),
     ] = None,
     out: Annotated[
-        str | None, typer.Option(metavar="FILE.py", help="Output file.  \\[default: CASE.py]")
+        str | None,
+        typer.Option(metavar="FILE", help="Output file.  \\[default: CASE.py, CASE.inp]"),
     ] = None,
 ) -> int:
-    """Write a model of beam elements, calibrated or not, as a script for another program."""
+    """Write beam elements as a script for OpenSees, or a shell at rest as a deck for CalculiX."""
+    from geometry.typography import choices
     from runs.case import reading
     from runs.case.messages import BadInput
     from runs.folder.cache import Cache
-    from runs.report.opensees import exported, write
 
-    if to != "opensees":
-        raise BadInput(case, "--to", f"must be 'opensees', got {to!r}")
+    suffixes = {"opensees": "py", "calculix": "inp"}
+    if to not in suffixes:
+        raise BadInput(case, "--to", f"must be {choices([*suffixes])}, got {to!r}")
+    program = import_module(f"runs.report.{to}")
     checked = reading.load(case)
-    chosen = reading.select(checked, case, [exported(checked, case, model).name])
-    path = Path(out or f"{Path(case).stem}.py")
+    chosen = reading.select(checked, case, [program.exported(checked, case, model).name])
+    path = Path(out or f"{Path(case).stem}.{suffixes[to]}")
     comm = ranks.enter_mpi(chosen, case, "export another one with --model")
-    write(chosen, case, comm, path, Cache.of_user())
+    program.write(chosen, case, comm, path, Cache.of_user())
     print(printable(str(path)))
     return 0
 

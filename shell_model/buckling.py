@@ -57,7 +57,7 @@ _VECTORS, _BESIDES = 2, 20
 _ROUND_OFF = 1.0e-6
 
 # Gap in m below which a contact counts as closed.
-_TOUCHING = 1.0e-6
+TOUCHING = 1.0e-6
 
 # Order of convergence of the factors in the edge length.
 _ORDER = 2.0
@@ -196,7 +196,7 @@ class StaticState:
         still = fields.assign(state=(("time", "mode"), position[None]), time=("time", [0.0]))
         stress = ShellStress.of(still)
         forces = stress.thickness[:, None] * stress.at(0.0).membrane.astype(np.float64)
-        near = (system.rows @ position)[:, None] + [-_TOUCHING, _TOUCHING]
+        near = (system.rows @ position)[:, None] + [-TOUCHING, TOUCHING]
         slopes = [law.slope(gaps).max() for law, gaps in zip(system.laws, near, strict=True)]
         parts = np.flatnonzero(np.diff(stress.segment)) + 1
         return cls(np.split(forces, parts), np.array(slopes), extensions)
@@ -283,16 +283,14 @@ def _modes_on(
     ]
     lines = [line for line in ground_lines(boom, shells) if line.stiffness > 0.0]
     for number, shell in enumerate(shells):
-        rigid = RIGID_TURN * shell.segment.material.youngs_modulus * shell.segment.area
-        rigid /= shell.segment.length
         springs = [
             *(
-                (shell.row(one[number]), k or rigid)
+                (shell.row(one[number]), k or rigid(shell))
                 for one, k in joined
                 if number in one and k != 0.0
             ),
             *((one.push, one.stiffness) for one in lines if one.segment == number),
-            *_sideways(boom, number, shell, rigid),
+            *sideways(boom, number, shell),
         ]
         rows, stiffness = (np.array(one) for one in zip(*springs, strict=True))
         held = replace(shell, springs=with_springs(shell.springs, rows.T, stiffness))
@@ -304,12 +302,16 @@ def _modes_on(
         yield modes.factors, shapes
 
 
-def _sideways(
-    boom: Boom, number: int, shell: SegmentShell, rigid: float
-) -> Iterator[tuple[Array, float]]:
+def rigid(shell: SegmentShell) -> float:
+    """Return the stiffness in N/m of a spring that is practically rigid for a segment."""
+    segment = shell.segment
+    return RIGID_TURN * segment.material.youngs_modulus * segment.area / segment.length
+
+
+def sideways(boom: Boom, number: int, shell: SegmentShell) -> Iterator[tuple[Array, float]]:
     """Yield the springs that fix a segment sideways, in twist and along the boom. Collective.
 
-    Each is a row (num_owned,) and its stiffness: ``rigid`` in N/m, or in N·m/rad.
+    Each is a row (num_owned,) and its stiffness: :func:`rigid` in N/m, or in N·m/rad.
     """
     segment = boom.segments[number]
     places = {x for one in boom.joints if number in (one.outer, one.inner) for x in one.stations}
@@ -319,6 +321,6 @@ def _sideways(
     for x in sorted(places):
         outline = shell.outline(x)
         torsion = segment.material.shear_modulus * outline.section.torsion_constant
-        yield shell.row(outline.wall_deflection("y")), rigid
+        yield shell.row(outline.wall_deflection("y")), rigid(shell)
         yield shell.row(outline.twist()), RIGID_TURN * torsion / segment.length
-    yield shell.row(outline.mean_displacement(0)), rigid
+    yield shell.row(outline.mean_displacement(0)), rigid(shell)

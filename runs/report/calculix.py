@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Export of the shells of a boom at rest as an input deck for CalculiX, in the form of Abaqus.
+
+Each triangle is an S6 element with the nodes of the shell's quadratic displacement. Elastic
+supports, cylinders and pads act on readings of sections: a reading is a node with an equation for
+its displacement, and a spring to the ground. A contact that presses at rest is a spring with the
+tangent stiffness of its law, and a force that makes it press as in this static state; open contacts
+are left out. So the deck is linear: the state of contact is given, and pad forces and displacements
+come from the elements of the other program. Friction and the softening by axial forces are left
+out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from dynamics.excitation import InitialImpulse, ReleasedLoad
+from geometry.arrays import Array
+from geometry.typography import choices
+from runs.case.build import build_boom
+from runs.case.kinds.model import Workshop, of_kind
+from runs.case.kinds.shell import Shell
+from runs.case.messages import BadInput
+from runs.case.schema import Case
+from runs.folder.cache import Cache
+from runs.folder.files import write_whole
+from runs.pipeline.models import build
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from shell_model.segment.cross_section import Row
+    from shell_model.segment.segment_shell import SegmentShell
+
+# Stiffness in N/m of a reading without a spring, which the program cannot leave free.
+_FREE = 1.0e-3
+
+# Number of terms in a line of an equation.
+_TERMS = 4
+
+
+class SpringRow(NamedTuple):
+    """Spring to the ground on a reading of segments.
+
+    Args:
+        name: comment in the deck.
+        parts: row (num_owned,) of each segment that is read, by its number.
+        stiffness: stiffness in N/m, or in N·m/rad.
+        force: force in N on the reading.
+    """
+
+    name: str
+    parts: Mapping[int, Array]
+    stiffness: float = _FREE
+    force: float = 0.0
+
+
+def deck(
+    title: str,
+    shells: Sequence[SegmentShell],
+    springs: Sequence[SpringRow],
+    loads: Sequence[Array],
+    step: str = "*STATIC",
+) -> str:
+    """Return the deck of shells on one process.
+
+    Args:
+        title: heading.
+        shells: shells of the segments, with their own springs.
+        springs: further springs; the program prints the displacements of their readings.
+        loads: load (num_owned,) of each segment in N.
+        step: lines of the step's procedure.
+    """
+    *first, reading = np.cumsum([1, *(len(shell.nodes) for shell in shells)]).tolist()
+    meshes = [shell.mesh for shell in shells if shell.mesh is not None]
+    *elements, spring = np.cumsum([1, *(len(mesh.triangles) for mesh in meshes)]).tolist()
+    own = [
+        SpringRow("support", {n: row}, factor)
+        for n, shell in enumerate(shells)
+        for row, factor in zip(shell.springs.rows.T, shell.springs.factors, strict=True)
+    ]
+    rows = [row for row in (*springs, *own) if any(part.any() for part in row.parts.values())]
+    lines = ["*HEADING", title, "** SI units; x along the boom, z in its plane."]
+    for n, shell in enumerate(shells):
+        lines += _segment(n + 1, shell, first[n], elements[n])
+    lines += ["*NODE, NSET=READINGS"]
+    lines += [f"{reading + i}, 0, 0, 0" for i in range(len(rows))]
+    lines += ["*BOUNDARY", "READINGS, 2, 3"]
+    for i, row in enumerate(rows):
+        terms = [(reading + i, 1, -1.0)]
+        for n, part in row.parts.items():
+            terms += _nodal(shells[n], part, first[n])
+        lines += [f"** {row.name}", "*EQUATION", str(len(terms))]
+        for start in range(0, len(terms), _TERMS):
+            some = terms[start : start + _TERMS]
+            lines.append(", ".join(f"{node}, {dof}, {weight:.10e}" for node, dof, weight in some))
+        lines += [f"*ELEMENT, TYPE=SPRING1, ELSET=SPRING-{i + 1}", f"{spring + i}, {reading + i}"]
+        lines += [f"*SPRING, ELSET=SPRING-{i + 1}", "1", f"{row.stiffness:.10e}"]
+    lines += ["*STEP", step, "*CLOAD"]
+    for n, load in enumerate(loads):
+        lines += [
+            f"{node}, {dof}, {force:.10e}" for node, dof, force in _nodal(shells[n], load, first[n])
+        ]
+    lines += [f"{reading + i}, 1, {row.force:.10e}" for i, row in enumerate(rows) if row.force]
+    lines += ["*NODE PRINT, NSET=READINGS", "U", "*NODE FILE", "U", "*END STEP"]
+    return "\n".join(lines) + "\n"
+
+
+def _segment(number: int, shell: SegmentShell, first: int, element: int) -> Iterator[str]:
+    """Yield nodes, elements, sections and rigid supports of a segment."""
+    mesh, material = shell.mesh, shell.segment.material
+    assert mesh is not None
+    yield f"*NODE, NSET=SEGMENT-{number}"
+    for i, (x, y, z) in enumerate(shell.nodes, start=first):
+        yield f"{i}, {x:.10e}, {y:.10e}, {z:.10e}"
+    corners = mesh.points[mesh.triangles]
+    # Neighbours whose normals are opposite would meet at a fold.
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    outwards = corners.mean(axis=1) * [0.0, 1.0, 1.0]
+    outwards[~mesh.on_walls] = [1.0, 0.0, 0.0]
+    inside = (normals * outwards).sum(axis=1) < 0.0
+    corners[inside] = corners[inside, ::-1]
+    middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
+    _, nodes = cKDTree(shell.nodes).query(np.concatenate([corners, middles], axis=1))
+    thicknesses, groups = np.unique(mesh.thickness, return_inverse=True)
+    yield f"*MATERIAL, NAME=STEEL-{number}"
+    yield from ("*ELASTIC", f"{material.youngs_modulus:.10e}, {material.poissons_ratio:.10e}")
+    yield from ("*DENSITY", f"{material.density:.10e}")
+    for k, thickness in enumerate(thicknesses):
+        name = f"WALLS-{number}-{k + 1}"
+        yield f"*ELEMENT, TYPE=S6, ELSET={name}"
+        for i in np.flatnonzero(groups == k):
+            yield ", ".join(map(str, [element + i, *(nodes[i] + first)]))
+        yield f"*SHELL SECTION, ELSET={name}, MATERIAL=STEEL-{number}"
+        yield f"{thickness:.10e}"
+    yield "*BOUNDARY"
+    places, dofs = shell.plates.nodes[1]
+    _, turned = cKDTree(shell.nodes).query(places)
+    rows = [(shell.node_dofs, np.arange(len(shell.nodes)), 1), (dofs, turned, 4)]
+    for global_rows, of, component in rows:
+        held = ~shell.free[global_rows - shell.owned[0]]
+        for node, axis in zip(*np.nonzero(held), strict=True):
+            yield f"{of[node] + first}, {component + axis}, {component + axis}"
+
+
+def _nodal(shell: SegmentShell, row: Array, first: int) -> list[tuple[int, int, float]]:
+    """Return node, component and value of a row (num_owned,), which reads displacements alone."""
+    values = row[shell.node_dofs - shell.owned[0]]
+    return [
+        (int(node) + first, int(axis) + 1, float(values[node, axis]))
+        for node, axis in zip(*np.nonzero(values), strict=True)
+    ]
+
+
+def exported(case: Case, file: str, name: str | None = None) -> Shell:
+    """Return the shell with a name, by default the last one.
+
+    Raises:
+        BadInput: the case has no such shell.
+    """
+    shells = {model.name: model for model in of_kind(Shell, case.models)}
+    if name is None and shells:
+        return [*shells.values()][-1]
+    if name is None or name not in shells:
+        what = f"must be {choices([*shells])}" if shells else "must be a shell, and there is none"
+        raise BadInput(file, "--model", what)
+    return shells[name]
+
+
+def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache | None) -> None:
+    """Write the deck of the shell that :func:`exported` returns, under the loads of t = 0.
+
+    Args:
+        case: a checked case.
+        file: name of the case in messages.
+        comm: communicator of one process.
+        path: path of the deck.
+        cache: cache of reduced shells.
+
+    Raises:
+        BadInput: the case has a feature that the deck does not support, or the ranks are several.
+        NumericsError: the boom has no static state.
+    """
+    from dynamics.equilibrium import rest_at
+    from shell_model.boom_shell import assemble_boom
+    from shell_model.buckling import TOUCHING, rigid, sideways
+
+    model = exported(case, file)
+    joined = model.joined(build_boom(case))
+    boom = joined.boom
+    for key, present in (
+        ("mpirun", comm.size > 1),
+        ("joint.lateral_play", boom.spatial),
+        ("hoist", case.hoist is not None),
+    ):
+        if present:
+            what = "cannot be exported to CalculiX, for which one process writes a flat boom, with"
+            raise BadInput(file, key, f"{what} no load on a rope; leave it out")
+    system = build(case, boom, model, Workshop(comm, cache=cache)).system
+    full = assemble_boom(boom, model.options(), comm)
+    shells = full.shells
+
+    def parts(reading: Mapping[int, Row]) -> dict[int, Array]:
+        return {n: shells[n].row(row) for n, row in reading.items()}
+
+    springs = [SpringRow(what, parts(seen.reading)) for what, seen in full.observed.items()]
+    gaps = system.rows @ rest_at(system)
+    for contact, law, gap in zip(full.rows.contacts, system.laws, gaps, strict=True):
+        force = float(law.force(np.array([gap]))[0])
+        if force != 0.0:
+            slope = float(law.slope(gap + np.array([-TOUCHING, TOUCHING])).max())
+            what = f"contact that presses with {force:.6g} N"
+            back = slope * gap - force
+            springs.append(SpringRow(what, parts(contact.reading), slope, back))
+    springs += [SpringRow("tie", parts(tie), rigid(shells[min(tie)])) for tie in full.ties]
+    springs += [
+        SpringRow(line.force, {line.segment: line.push}, line.stiffness) for line in full.lines
+    ]
+    loads = [load.copy() for load in full.own_loads]
+    for one, push in full.loads:
+        if not isinstance(one.history, ReleasedLoad | InitialImpulse):
+            loads[one.segment] += float(one.history(np.zeros(1))[0]) * push
+    for n, moment in full.pin_moments:
+        loads[n] = loads[n] + moment
+    for n, shell in enumerate(shells):
+        springs += [SpringRow("held sideways", {n: row}, k) for row, k in sideways(boom, n, shell)]
+    write_whole(path, deck(f"{case.title}: {model.name}", shells, springs, loads))

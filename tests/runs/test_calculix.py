@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Shells of booms at rest as decks for CalculiX."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import protractile as pt
+from dynamics.equilibrium import rest_at
+from runs.case import reading
+from runs.case.build import build_boom
+from runs.case.kinds.model import Workshop
+from runs.case.messages import BadInput
+from runs.pipeline.models import build
+
+pytest.importorskip("dolfinx", reason="shells need FEniCSx")
+
+from mpi4py import MPI
+
+from runs.report.calculix import write
+
+INSTALLED = pytest.mark.skipif(
+    shutil.which("ccx") is None, reason="CalculiX is missing: apt install calculix-ccx"
+)
+
+
+def readings(deck: Path) -> dict[str, float]:
+    """Run a deck, and return the displacements of its readings by their comments."""
+    subprocess.run(["ccx", deck.stem], cwd=deck.parent, check=True, capture_output=True)
+    lines = deck.with_suffix(".dat").read_text("utf-8").splitlines()[3:]
+    found = [float(line.split()[1]) for line in lines if line.strip()]
+    names = [line[3:] for line in deck.read_text("utf-8").splitlines() if line.startswith("** ")]
+    return dict(zip(names[1:], found, strict=True))
+
+
+@INSTALLED
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "size", "changed", "tolerance"),
+    [
+        # Between webs there is no bending of walls.
+        ("coarse", None, {}, 1e-4),
+        # Pads on flanges, a cylinder, three segments; level, so that no axial force softens it.
+        ("lift", 0.06, {"gravity.angle": 0.0}, 0.01),
+    ],
+)
+def test_a_boom_rests_in_calculix_as_here(
+    tmp_path: Path, name: str, size: float | None, changed: dict[str, float], tolerance: float
+) -> None:
+    """Reference: other code, CalculiX, its elements on the same mesh, from the state of contact."""
+    case = pt.change(pt.load_case(pt.CASES / f"{name}.toml"), **changed)
+    case = reading.select(case, "", ["shell"], size)
+    deck = tmp_path / "boom.inp"
+    write(case, "", MPI.COMM_SELF, deck, None)
+    found = readings(deck)
+    system = build(case, build_boom(case), case.models[0], Workshop(MPI.COMM_SELF)).system
+    rest = rest_at(system)
+    tip = system.observers["tip"].row @ rest
+    assert found["tip"] == pytest.approx(tip, rel=tolerance)
+    gaps = system.rows @ rest
+    for law, gap in zip(system.laws, gaps, strict=True):
+        force, slope = (float(f(np.array([gap]))[0]) for f in (law.force, law.slope))
+        if force != 0.0:
+            # The program prints seven digits of the gap, which are 1e-3 of the smallest force.
+            change = slope * (found[f"contact that presses with {force:.6g} N"] - gap)
+            assert abs(change) < max(tolerance, 1e-3) * abs(force)
+    if cylinders := build_boom(case).cylinders:
+        (cylinder,) = cylinders
+        expected = system.observers["cylinder_force"].row @ rest
+        assert -cylinder.stiffness * found["cylinder_force"] == pytest.approx(expected, rel=1e-3)
+
+
+def test_what_calculix_would_not_have_is_refused(tmp_path: Path) -> None:
+    case = pt.load_case(pt.CASES / "spatial.toml")
+    with pytest.raises(BadInput) as error:
+        write(case, "case.toml", MPI.COMM_SELF, tmp_path / "x.inp", None)
+    assert str(error.value) == (
+        "case.toml: joint.lateral_play: cannot be exported to CalculiX, for which one process "
+        "writes a flat boom, with no load on a rope; leave it out"
+    )
+    beams = reading.select(case, "", ["beam-fe"])
+    with pytest.raises(BadInput) as error:
+        write(beams, "case.toml", MPI.COMM_SELF, tmp_path / "x.inp", None)
+    assert str(error.value) == "case.toml: --model: must be a shell, and there is none"
