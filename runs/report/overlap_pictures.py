@@ -234,12 +234,14 @@ class OverlapView:
     def explain_forces(self, time: float) -> str:
         """Return a sentence on the arrows' numbers, or that no forces act at a time in s."""
         now = self.motion.sel(time=time, method="nearest")
-        if not np.nan_to_num(now["contact_force"].values).any():
+        forces = np.nan_to_num(now["contact_force"].values)
+        if not forces.any():
             return "no contact here"
         interval = float(np.diff(self.motion["time"].values[:2])[0])
-        return (
-            f"forces: mean of the last {1.0e3 * interval:.3g} ms; peak: maximum of a short impact"
-        )
+        text = f"forces: mean of the last {1.0e3 * interval:.3g} ms"
+        peaks = np.abs(now["contact_force_peak"].values)
+        impacts = (forces != 0.0) & (peaks >= PEAK * np.abs(forces))
+        return f"{text}; peak: maximum of a short impact" if impacts.any() else text
 
 
 def draw_overlap(

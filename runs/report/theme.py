@@ -86,7 +86,8 @@ class Canvas(FigureCanvasAgg):
 
 def segment_color(number: int) -> str:
     """Return the colour of a segment by its number, the same in all figures."""
-    return PALETTE[number % len(PALETTE)]
+    # Models have the first colours of the palette.
+    return PALETTE[-1 - number % len(PALETTE)]
 
 
 def tint(color: str, strength: float) -> tuple[float, float, float]:
