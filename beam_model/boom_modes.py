@@ -21,7 +21,7 @@ from dynamics.second_order import buckling_factor, soften_modes
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.cylinder import ground_lines
-from geometry.telescoping import places, sample_extensions
+from geometry.telescoping import sample_extensions, station_positions
 
 # Type of a component of one segment: index and motion.
 _Part = tuple[int, Motion]
@@ -138,7 +138,10 @@ def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
                 for force in forces
             )
             geometric = sum(moving, first)
-            moved = {n: places(boom.joints[n], extension) for n, extension in extensions.items()}
+            moved = {
+                n: station_positions(boom.joints[n], extension)
+                for n, extension in extensions.items()
+            }
             stiffness, free = group.stiffness(), _kernel(group.ties(moved), len(geometric))
             factor = buckling_factor(free.T @ stiffness @ free, free.T @ geometric @ free)
             smallest = min(smallest, factor)

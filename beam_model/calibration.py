@@ -188,7 +188,7 @@ def _bending(segment: Segment, far: ProbeResponses, motion: ProbedMotion) -> tup
     """Return E J and G A_s of a segment in one plane of bending."""
     assert segment.shear_stiffness is not None
     if segment.head_section is not None:
-        return segment.bending_stiffness, segment.local(
+        return segment.bending_stiffness, segment.prismatic_at(
             0.5 * sum(segment.ends)
         ).shear_stiffness or 0.0
     bending, shear = _fit(segment, far, motion, 2)

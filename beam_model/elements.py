@@ -47,7 +47,7 @@ def element(segment: Segment, theory: Theory, start: float, h: float) -> Element
     """Return the element of a segment from x = ``start`` over the length h, both in m."""
     if segment.head_section is None:
         return PlainElement(h, segment.bending_stiffness, _shear_number(segment, theory, h))
-    places = [segment.local(start + part * h) for part in (0.0, 0.5, 1.0)]
+    places = [segment.prismatic_at(start + part * h) for part in (0.0, 0.5, 1.0)]
     bending = [1.0 / place.bending_stiffness for place in places]
     shear = [_shear_flexibility(place, theory) for place in places]
     return TaperedElement(h, _parabola(bending), _parabola(shear))

@@ -92,7 +92,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         xi, weight = 0.5 * (points + 1.0), 0.5 * h * weights
         w, slope = here.deflection(xi), here.slope(xi)
         x = nodes[k] + h * xi
-        heavy, turned = (weight * segment.relative(number, x) for number in (_MASS, _ROTARY))
+        heavy, turned = (weight * segment.property_ratio(number, x) for number in (_MASS, _ROTARY))
         stiffness[dofs, dofs] += here.stiffness(xi, weight)
         mass[dofs, dofs] += segment.mass_per_length * products(w, heavy)
         turning[dofs] += segment.mass_per_length * w @ (heavy * x)
@@ -160,8 +160,8 @@ def _twist(segment: Segment, nodes: Array) -> Component:
         dofs = slice(k, k + 2)
         places = nodes[k] + h * np.array([0.0, 0.5, 1.0])
         # Simpson's rule for the flexibility.
-        stiff = 6.0 / (np.array([1.0, 4.0, 1.0]) @ (1.0 / segment.relative(_TORSION, places)))
-        heavy = segment.relative(_POLAR, places)[1]
+        stiff = 6.0 / (np.array([1.0, 4.0, 1.0]) @ (1.0 / segment.property_ratio(_TORSION, places)))
+        heavy = segment.property_ratio(_POLAR, places)[1]
         stretched, moved = [[1.0, -1.0], [-1.0, 1.0]], [[2.0, 1.0], [1.0, 2.0]]
         stiffness[dofs, dofs] += stiff * (twisting_stiffness / h) * np.array(stretched)
         mass[dofs, dofs] += heavy * (lateral.polar_inertia * h / 6.0) * np.array(moved)
@@ -189,7 +189,7 @@ def _twist(segment: Segment, nodes: Array) -> Component:
 
 def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> Array:
     """Return the nodes of equal elements between the required places; close places share a node."""
-    own = [support.x for support in segment.supports] + [mass.x for mass in segment.carried]
+    own = [support.x for support in segment.supports] + [mass.x for mass in segment.all_masses]
     places: list[float] = []
     for x in (segment.start, segment.end, *own, *segment.compression.places, *breaks):
         if segment.holds(x) and all(abs(x - place) > APART * segment.length for place in places):

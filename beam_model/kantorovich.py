@@ -107,7 +107,7 @@ def kantorovich_bending(
     # The printed base also fixes the slope at the first support.
     printed = int(bool(segment.supports) and base == "as printed")
     bent, heavy, turned = (
-        basis.weights * segment.relative(attrgetter(number), basis.x)
+        basis.weights * segment.property_ratio(attrgetter(number), basis.x)
         for number in ("bending_stiffness", "mass_per_length", "rotary_inertia")
     )
     stiffness = segment.bending_stiffness * products(basis.curvature, bent)
@@ -167,7 +167,7 @@ def kantorovich_twist(segment: Segment, terms: int) -> Component:
     basis = _Basis(segment, complete_basis(segment, held, terms))
     twisting_stiffness = segment.material.shear_modulus * lateral.torsion_constant
     stiff, heavy = (
-        basis.weights * segment.relative(attrgetter(f"lateral.{number}"), basis.x)
+        basis.weights * segment.property_ratio(attrgetter(f"lateral.{number}"), basis.x)
         for number in ("torsion_constant", "polar_inertia")
     )
     return Component(

@@ -46,7 +46,7 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
     segment = boom.segments[number]
     # The ends of the segment, and the places of forces on it.
     acting = {*segment.ends, *load_places(boom, number), *segment.compression.places}
-    acting |= {held.x for held in segment.supports} | {mass.x for mass in segment.carried}
+    acting |= {held.x for held in segment.supports} | {mass.x for mass in segment.all_masses}
     # The ends of all pieces: those of the elements, or equal pieces between places.
     breaks = model.components["z"].breaks
     if not breaks.size:
@@ -66,7 +66,8 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
                 # The moment follows from the local E J of the segment in this plane.
                 np.array(
                     [
-                        -plane.local(x).bending_stiffness * modes.curvature(number, x, direction)
+                        -plane.prismatic_at(x).bending_stiffness
+                        * modes.curvature(number, x, direction)
                         for x in starts + part * lengths
                     ]
                 )
@@ -83,7 +84,7 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
         rows["twist"] = _both_ends(breaks, partial(modes.twist, number))
         if model.components["z"].curvature is not None:
             stiffness = segment.material.shear_modulus * lateral.torsion_constant
-            local = segment.relative(attrgetter("lateral.torsion_constant"), middles)
+            local = segment.property_ratio(attrgetter("lateral.torsion_constant"), middles)
             twisted = stiffness * local[:, None] * _slope(breaks, rows["twist"])
             rows["torque"] = _to_ends(breaks, twisted, acting)
     return Line(np.repeat(breaks, 2)[1:-1], rows, paired=True)

@@ -66,7 +66,7 @@ def system_without_drives(
         boom.stations,
         {
             place.name: ObservedReading(_row(place, modes), place.kind.unit, place.kind.derivative)
-            for place in boom.recorded(ends)
+            for place in boom.all_observations(ends)
         },
         [(load.push(members[load.segment]), load.history) for load in boom.loads],
         [
@@ -94,13 +94,13 @@ def _rows(
             modes.displacement(joint.inner, x + on_inner, direction, inner)
             - modes.displacement(joint.outer, x + on_outer, direction, outer)
             for direction, x, (inner, outer) in (
-                (pad.direction, pad.middle, pad.covered),
-                (pad.rubs, pad.slide_x, (pad.inner, pad.outer)),
+                (pad.direction, pad.middle, pad.area_centres),
+                (pad.sliding_direction, pad.slide_x, (pad.inner, pad.outer)),
             )
         )
         pressing_sides = (pad.side,) if pad.side else sides
         points = [(side, pad.weight, approach) for side in pressing_sides]
-        pressing = rows.add_contact(pad.station, law, points, pad.raised)
+        pressing = rows.add_contact(pad.station, law, points, pad.shim)
         rows.add_dashpot(pad.station, joint.dashpot, points)
         rows.add_friction(pad.station, joint.friction, slide, pad.normal_force, pressing)
     for station, stop in boom.numbered_stops:

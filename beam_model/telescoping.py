@@ -20,7 +20,7 @@ from dynamics.gap_builder import GapBuilder
 from geometry.arrays import Array
 from geometry.axial import joint_thrust, moving_force
 from geometry.boom import SAME_PLACE, Boom
-from geometry.telescoping import MovedStations, drives_below, moved_stations
+from geometry.telescoping import TelescopingStations, drives_below, telescoping_stations
 
 # Function that returns the rows of the boom, from the extensions in m by index of the joint.
 RowsAt = Callable[[Mapping[int, float]], GapBuilder[Array]]
@@ -33,7 +33,7 @@ def travels(
     members: Sequence[BeamMember],
 ) -> list[Travel]:
     """Return the motion of rows by the drive of each joint, or of several joints for stops."""
-    return [_travel(boom, models, rows_at, members, group) for group in moved_stations(boom)]
+    return [_travel(boom, models, rows_at, members, group) for group in telescoping_stations(boom)]
 
 
 def moving_axial_forces(
@@ -63,7 +63,7 @@ def _travel(
     models: Sequence[SegmentModel],
     rows_at: RowsAt,
     members: Sequence[BeamMember],
-    group: MovedStations,
+    group: TelescopingStations,
 ) -> Travel:
     moving = rows_at({}).rows_at(group.stations)
 
@@ -78,7 +78,7 @@ def _travel(
     return Travel(history, table, moving, group.suffix, pressing, against)
 
 
-def _breaks(boom: Boom, models: Sequence[SegmentModel], group: MovedStations) -> list[float]:
+def _breaks(boom: Boom, models: Sequence[SegmentModel], group: TelescopingStations) -> list[float]:
     """Return the extensions in m at which a node passes a station, and the ends of the reach."""
     joint = boom.joints[group.joints[-1]]
     outer, inner = (

@@ -167,7 +167,7 @@ class PiecewiseLinear:
 class Spline:
     """Cubic spline between points, at rest at the first and the last one and constant beyond.
 
-    >>> pt.Spline(times=[0.0, 1.0, 2.0], values=[0.0, 5.0, 10.0])(np.array([0.5, 1.0, 9.0]))
+    >>> Spline(times=[0.0, 1.0, 2.0], values=[0.0, 5.0, 10.0])(np.array([0.5, 1.0, 9.0]))
     array([ 1.5625,  5.    , 10.    ])
 
     Args:

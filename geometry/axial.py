@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Axial forces: the compression of each segment along the load path to the base.
 
-All forces act towards the base. At each place, the outboard forces compress the segment. A segment
-transfers the sum of its forces at its lock in the next segment, or at its foot on the ground.
-Forces inboard of that point are suspended from it and cause tension.
+All forces act towards the base. A segment transfers the sum of its forces to the next segment at
+its lock, or to the ground at its foot. Forces outboard of that point cause compression, forces
+inboard of it cause tension.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from itertools import pairwise
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.compression import UNPRESSED, Compression
+from geometry.compression import NO_COMPRESSION, Compression
 from geometry.joint import Joint
 from geometry.load import Body
 from geometry.segment import SAME_PLACE, Segment
 from geometry.taper import mean_area
 
-# Number of steps of a tapered segment's weight. Forces are exact at the ends of steps, and between
-# them within thousandths of a step's weight.
+# Number of steps of uniform weight in a tapered segment. Forces are exact at the ends of steps;
+# between them the error is some thousandths of the weight of a step.
 _STEPS = 8
 
 
@@ -47,9 +47,9 @@ def with_compression(
     thrusts: Sequence[Thrust],
     gravity: float = 0.0,
 ) -> tuple[Segment, ...]:
-    """Return the segments with the axial forces that they carry.
+    """Return the segments with their axial forces.
 
-    The base of an upright boom carries its weight:
+    Example: the base of an upright boom carries its weight.
 
     >>> arm, fly = with_compression(boom.segments, boom.joints, [], gravity=9.80665)
     >>> masses = [segment.mass_per_length * segment.length for segment in (arm, fly)]
@@ -59,10 +59,10 @@ def with_compression(
 
     Args:
         segments: segments from the base to the tip.
-        joints: joints with the places where segments are locked.
+        joints: joints with the positions of locks.
         thrusts: axial forces on the segments.
-        gravity: acceleration towards the base in m/s², which acts on all masses, including collars
-            and diaphragms.
+        gravity: acceleration towards the base in m/s²; it acts on all masses, including those of
+            collars and diaphragms.
     """
     passed: list[list[tuple[float, float]]] = [[] for _ in segments]
     carrying = list(segments)
@@ -70,7 +70,7 @@ def with_compression(
         segment = segments[number]
         points = [(t.x, t.force) for t in thrusts if t.segment == number]
         points += passed[number] + _weights(segment, gravity)
-        spread = _spread_weights(segment, gravity)
+        spread = _distributed_weights(segment, gravity)
         joint = _lock(joints, number)
         held = segment.start if joint is not None or segment.foot is None else segment.foot.x
         if joint is not None:
@@ -85,14 +85,14 @@ def with_compression(
 
 @dataclass(frozen=True, slots=True)
 class MovingForce:
-    """Axial force whose place on a segment moves as another segment telescopes.
+    """Axial force that moves along a segment as a joint telescopes.
 
-    At an extension s, P increases by the force between x and the current place, x + direction · s;
-    it decreases if s is negative.
+    At an extension s > 0, P increases by the force between x and x + direction · s; at s < 0 it
+    decreases.
 
     Args:
         segment: index of the segment.
-        x: initial place in m.
+        x: initial position in m.
         direction: 1 towards the head, −1 towards the tail.
         force: force in N.
     """
@@ -102,8 +102,8 @@ class MovingForce:
     direction: int
     force: float
 
-    def more(self, x: Array, extension: Array) -> Array:
-        """Return the change of P (..., num_places) in N at x in m, for ``extension`` (...) in m."""
+    def change(self, x: Array, extension: Array) -> Array:
+        """Return the change of P (..., num_places) in N at x in m, at extensions (...) in m."""
         passed = self.direction * (x - self.x)
         far = np.asarray(extension)[..., None]
         out, back = (passed > 0.0) & (passed < far), (far < passed) & (passed < 0.0)
@@ -111,7 +111,7 @@ class MovingForce:
 
 
 def joint_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:
-    """Return the axial force in N that a joint carries, or 0 if a foot carries it."""
+    """Return the axial force in N that a joint carries; 0 if its inner segment has another lock."""
     inner = joints[number].inner
     taken = _lock(joints, inner) is joints[number]
     return segments[inner].compression.transferred if taken else 0.0
@@ -128,10 +128,10 @@ def foot_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: in
 def pin_moments(
     segments: Sequence[Segment], joints: Sequence[Joint], bodies: Sequence[Body]
 ) -> Iterator[tuple[int, Array]]:
-    """Yield moments of axial forces about pins below the axis: segment, load vector (num_dofs,).
+    """Yield (segment, load vector) of the moment of axial forces about each pin below the axis.
 
-    The pin is fixed, so that a rotation moves the segment along x by −d w′(x_pin) against the axial
-    forces N. Their work is N d w′, equal to that of a constant moment N d at the pin.
+    The pin is fixed, so that a rotation w′ at the pin moves the segment along x by −d w′ against
+    the axial forces N. Their work is N d w′, equal to that of a constant moment N d at the pin.
 
     Args:
         segments: segments with their axial forces.
@@ -148,10 +148,10 @@ def pin_moments(
 def moving_force(
     segments: Sequence[Segment], joints: Sequence[Joint], number: int
 ) -> MovingForce | None:
-    """Return the axial force that moves with a telescoping joint; None if none does.
+    """Return the axial force that moves with a telescoping joint; None if there is none.
 
-    A lock on the inner segment moves the force along the outer segment. A lock on the outer segment
-    unloads the inner segment progressively towards its tail, except for a foot below the tail.
+    If the lock is fixed to the inner segment, the force moves along the outer segment. If it is
+    fixed to the outer segment, the force moves along the inner segment, except below its tail.
     """
     joint = joints[number]
     inner, force = segments[joint.inner], joint_thrust(segments, joints, number)
@@ -166,7 +166,7 @@ def moving_force(
 def moving_force_places(
     segments: Sequence[Segment], joints: Sequence[Joint], segment: int
 ) -> set[float]:
-    """Return the x in m on a segment between which axial forces move along it."""
+    """Return the x in m of a segment between which axial forces move along it."""
     return {
         found.x + found.direction * extension
         for number, joint in enumerate(joints)
@@ -177,27 +177,28 @@ def moving_force_places(
     }
 
 
-def carried(
+def axial_force(
     segments: Sequence[Segment], joints: Sequence[Joint], number: int, x: Array, time: Array
 ) -> Array:
-    """Return P of a segment in N, (..., num_places) at x in m and times (...) in s.
+    """Return P (..., num_places) of a segment in N; at a jump, it is the value of either side.
 
     Args:
         segments: segments with their initial axial forces.
-        joints: joints, some of which may telescope.
-        number: number of the segment.
-        x, time: places and times; at a jump, P is either value.
+        joints: joints of the boom.
+        number: index of the segment.
+        x: positions (num_places,) in m.
+        time: times (...) in s.
     """
     total = np.broadcast_to(segments[number].compression(x), (*time.shape, x.size))
     for position, joint in enumerate(joints):
         found = moving_force(segments, joints, position)
         if joint.drive is not None and found is not None and found.segment == number:
-            total = total + found.more(x, joint.drive.history(time))
+            total = total + found.change(x, joint.drive.history(time))
     return total
 
 
 def _weights(segment: Segment, gravity: float) -> list[tuple[float, float]]:
-    """Return the point weights: x in m and weight in N of each one."""
+    """Return (x in m, weight in N) of the point weights of a segment."""
     found = [(point.x, point.mass * gravity) for point in segment.masses]
     if segment.section is not None:
         plate = segment.material.density * gravity
@@ -208,8 +209,8 @@ def _weights(segment: Segment, gravity: float) -> list[tuple[float, float]]:
     return found
 
 
-def _spread_weights(segment: Segment, gravity: float) -> list[tuple[float, float, float]]:
-    """Return the distributed weights: start and end in m, and weight in N/m of each one."""
+def _distributed_weights(segment: Segment, gravity: float) -> list[tuple[float, float, float]]:
+    """Return (start in m, end in m, weight in N/m) of the distributed weights of a segment."""
     found = list(_plain_weights(segment, gravity))
     if segment.section is not None:
         doubler = segment.material.density * gravity
@@ -221,7 +222,7 @@ def _spread_weights(segment: Segment, gravity: float) -> list[tuple[float, float
 
 
 def _plain_weights(segment: Segment, gravity: float) -> Iterator[tuple[float, float, float]]:
-    """Yield the weight of the mass per length, in uniform steps for a tapered segment."""
+    """Yield the weight without stiffeners, in uniform steps for a tapered segment."""
     if segment.head_section is None:
         yield segment.start, segment.end, segment.mass_per_length * gravity
         return
@@ -231,7 +232,7 @@ def _plain_weights(segment: Segment, gravity: float) -> Iterator[tuple[float, fl
 
 
 def _lock(joints: Sequence[Joint], number: int) -> Joint | None:
-    """Return the joint that carries a segment's axial force: with ``locked_at`` or outermost."""
+    """Return the joint that carries a segment's axial force: with ``locked_at``, or the last."""
     around = [joint for joint in joints if joint.inner == number]
     return max(around, key=lambda joint: (joint.locked_at is not None, joint.outer), default=None)
 
@@ -262,5 +263,5 @@ def _compression(
         hangs = everything if b <= held + near else 0.0
         pieces.append((first - hangs, last - hangs))
     if not any(force for piece in pieces for force in piece):
-        return replace(UNPRESSED, transferred=everything)
+        return replace(NO_COMPRESSION, transferred=everything)
     return Compression(tuple(places), tuple(pieces), everything)

@@ -15,7 +15,7 @@ from geometry.axial import moving_force_places
 from geometry.boom_checks import check_boom
 from geometry.boom_error import BoomError
 from geometry.cylinder import Cylinder
-from geometry.fields import placed
+from geometry.fields import resolve_distances
 from geometry.joint import Joint, PadSize, SlidePad, Stop
 from geometry.load import Load
 from geometry.observation import Observation, Quantity
@@ -30,7 +30,7 @@ from geometry.segment import (
     Segment,
 )
 from geometry.support import Support
-from geometry.telescoping import drives_of, places, reach
+from geometry.telescoping import drives_of, reach, station_positions
 from geometry.typography import choices
 
 _Part = TypeVar("_Part")
@@ -84,8 +84,8 @@ class Boom:
     Raises:
         BoomError: a segment name is unknown; a support, station, load or stop is outside its
             segment; an inner section does not fit in the outer one; a section is not symmetric; a
-            segment is not restrained; friction lacks a normal force; a boom in space lacks lateral
-            properties; or a boom does not have an observed quantity.
+            segment can move as a rigid body; friction lacks a normal force; a 3D boom lacks
+            lateral properties; or an observed quantity does not exist in 2D.
     """
 
     segments: Sequence[Segment]
@@ -101,7 +101,7 @@ class Boom:
         object.__setattr__(self, "segments", tuple(self.segments))
         for group in [field.name for field in fields(self)][1:]:
             parts = tuple(
-                on_segments(part, f"{group}[{number}]", self.segments)
+                resolve_segments(part, f"{group}[{number}]", self.segments)
                 for number, part in enumerate(getattr(self, group))
             )
             object.__setattr__(self, group, parts)
@@ -147,7 +147,7 @@ class Boom:
     def stations(self) -> list[tuple[float, Direction]]:
         """The x in m and the direction of all contact stations, without bonded joints.
 
-        Stations of joints along z come first, in space those along y follow, then those of stops.
+        The order is: joints along z, in space joints along y, stops.
         """
         return self._stations_of_joints + [(stop.x, "z") for stop in self.stops]
 
@@ -167,13 +167,13 @@ class Boom:
         ]
 
     def moving_intervals(self, segment: int) -> tuple[float, ...]:
-        """Return ascending x of a segment between which stations or axial forces move along it."""
+        """Return ascending x in m of a segment between which stations or axial forces move."""
         found = {
             place[joint.inner == segment]
             for joint in self.joints
             if joint.drive is not None and segment in (joint.outer, joint.inner)
             for extension in (0.0, *joint.drive.reach)
-            for place in places(joint, extension)
+            for place in station_positions(joint, extension)
         }
         if drives := drives_of(self.joints, segment):
             moved = [stop.x for stop in self.stops if stop.segment == segment]
@@ -181,10 +181,7 @@ class Boom:
         return tuple(sorted(found | moving_force_places(self.segments, self.joints, segment)))
 
     def stations_of(self, segment: int) -> tuple[float, ...]:
-        """Return ascending x in m of all places on a segment with forces or masses.
-
-        These are stations of joints, stops, lugs of cylinders, point loads and point masses.
-        """
+        """Return ascending x in m of the stations, stops, lugs, loads and masses of a segment."""
         places = {
             x for joint in self.joints if segment in (joint.outer, joint.inner)
             for x in joint.stations
@@ -202,17 +199,18 @@ class Boom:
         outer, inner = self.segments[joint.outer], self.segments[joint.inner]
         return max(outer.start, inner.start), min(outer.end, inner.end)
 
-    def overlap_left(self, joint: Joint) -> float:
-        """Return the overlap in m at the largest extension of a drive, or else at the start."""
+    def smallest_overlap(self, joint: Joint) -> float:
+        """Return the overlap in m of a joint at the largest extension of its drive, if any."""
         start, end = self.overlap(joint)
         return end - start - (0.0 if joint.drive is None else joint.drive.reach[1])
 
     @property
     def observed(self) -> dict[str, tuple[int, float]]:
-        """The places whose deflection every model reports, by name: segment and x.
+        """The (segment, x in m) of the points whose deflection all models report, by name.
 
-        ``tip`` is the end of the last segment, ``head`` the end of an outer and ``tail`` the start
-        of an inner segment. From the second joint on, names end with the number of the joint.
+        ``tip`` is the end of the last segment. Of each joint, ``head`` is the end of the outer
+        segment and ``tail`` the start of the inner one; a suffix such as ``-2`` numbers further
+        joints.
         """
         places = {"tip": (len(self.segments) - 1, self.tip)}
         for number, joint in enumerate(self.joints, start=1):
@@ -221,15 +219,14 @@ class Boom:
             places[f"tail{suffix}"] = (joint.inner, self.segments[joint.inner].start)
         return places
 
-    def recorded(self, of_ends: Sequence[Quantity]) -> list[Observation]:
-        """Return the recorded quantities: those of all segment ends, then the observations.
+    def all_observations(self, of_ends: Sequence[Quantity]) -> list[Observation]:
+        """Return the observations of segment ends, then those of the boom.
 
-        The name of an end is followed by the quantity, as in ``tip_rotation``, unless this is the
-        deflection.
+        Names of the former are, for example, ``tip`` for a deflection and ``tip_rotation``.
         """
-        return [*self.at_ends(of_ends), *self.observations]
+        return [*self.end_observations(of_ends), *self.observations]
 
-    def at_ends(self, quantities: Iterable[Quantity]) -> list[Observation]:
+    def end_observations(self, quantities: Iterable[Quantity]) -> list[Observation]:
         return [
             Observation(f"{name}_{what}".removesuffix("_deflection"), segment, x, what)
             for name, (segment, x) in self.observed.items()
@@ -237,12 +234,12 @@ class Boom:
         ]
 
 
-def on_segments(part: _Part, where: str, segments: Sequence[Segment]) -> _Part:
-    """Return a part with indices of segments in place of names, and x in place of distances.
+def resolve_segments(part: _Part, where: str, segments: Sequence[Segment]) -> _Part:
+    """Return a part whose segments are indices, not names, and whose positions are x in m.
 
     Args:
-        part: a joint, or a part of one segment.
-        where: place of the part in the boom.
+        part: joint, load, stop, observation or cylinder.
+        where: attribute of the boom with this part, for messages.
         segments: segments of the boom.
 
     Raises:
@@ -254,7 +251,7 @@ def on_segments(part: _Part, where: str, segments: Sequence[Segment]) -> _Part:
         if isinstance(name, str):
             if name not in names:
                 raise BoomError(f"{where}.{key}", f"{name!r} is no segment; give {choices(names)}")
-            # mypy cannot express that a type variable stands for dataclasses alone.
+            # Type hints cannot restrict a type variable to dataclasses.
             part = replace(part, **{key: names.index(name)})  # type: ignore[type-var]
     outer, inner = (getattr(part, key, getattr(part, "segment", 0)) for key in ("outer", "inner"))
-    return placed(part, segments[inner].start, segments[outer].end)
+    return resolve_distances(part, segments[inner].start, segments[outer].end)

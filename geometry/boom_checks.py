@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Checks of a whole boom: requirements between its parts."""
+"""Checks of a boom: compatibility of its parts."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from typing import TYPE_CHECKING
 
 from geometry.boom_error import BoomError
 from geometry.cylinder import forces
-from geometry.fit import check_flats, check_pads, check_room
-from geometry.holding import check_held
+from geometry.fit import check_contact_faces, check_pads, check_room
 from geometry.joint import Joint, Stop
 from geometry.load import PartialLoad
-from geometry.observation import IN_SPACE, KINDS
+from geometry.observation import KINDS, SPATIAL_QUANTITIES
 from geometry.segment import SAME_PLACE
+from geometry.support_check import check_supported
 from geometry.telescoping import check_drives
 
 if TYPE_CHECKING:
     from geometry.boom import Boom
 
-# Fraction of the inner segment's length below which an overlap counts as zero.
+# Minimum overlap as a fraction of the length of the inner segment.
 LEAST_OVERLAP = 1.0e-4
 
 
 def check_boom(boom: Boom) -> None:
-    """Check that the parts of a boom fit one another.
+    """Check that the parts of a boom are compatible.
 
     Raises:
-        BoomError: parts do not fit; see :class:`geometry.boom.Boom`.
+        BoomError: they are not; see :class:`geometry.boom.Boom`.
     """
     for number, segment in enumerate(boom.segments):
         segment.check(f"segments[{number}]")
@@ -37,7 +37,7 @@ def check_boom(boom: Boom) -> None:
     _check_order(boom)
     _check_mirrors(boom)
     _check_diaphragms(boom)
-    _check_touching(boom)
+    _check_contact_faces(boom)
     if boom.spatial:
         _check_space(boom)
     for number, joint in enumerate(boom.joints):
@@ -50,7 +50,7 @@ def check_boom(boom: Boom) -> None:
         boom.segments[cylinder.segment].check_place(f"cylinders[{number}].x", cylinder.x)
         cylinder.check(f"cylinders[{number}]", boom.spatial)
     _check_observations(boom)
-    check_held(boom)
+    check_supported(boom)
     check_drives(boom)
 
 
@@ -68,7 +68,7 @@ def _check_order(boom: Boom) -> None:
 
 
 def _check_mirrors(boom: Boom) -> None:
-    """Check that vertical bending is uncoupled, and in space also lateral bending and twist."""
+    """Check that sections have the symmetry that uncouples vertical and lateral motion."""
     for number, segment in enumerate(boom.segments):
         if segment.section is None:
             continue
@@ -86,10 +86,7 @@ def _check_mirrors(boom: Boom) -> None:
 
 
 def _check_diaphragms(boom: Boom) -> None:
-    """Check that no diaphragm closes a box at a place where another segment is inside.
-
-    Each segment ends beyond the previous one, so that only the next segment needs a check.
-    """
+    """Check that no diaphragm is at an x where another segment is inside the box."""
     for joint in boom.joints:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         for number, diaphragm in enumerate(outer.diaphragms):
@@ -101,16 +98,16 @@ def _check_diaphragms(boom: Boom) -> None:
                 )
 
 
-def _check_touching(boom: Boom) -> None:
+def _check_contact_faces(boom: Boom) -> None:
     for stop in boom.stops:
-        check_flats(f"segments[{stop.segment}]", boom.segments[stop.segment], ("z",), ())
+        check_contact_faces(f"segments[{stop.segment}]", boom.segments[stop.segment], ("z",), ())
     for joint in boom.joints:
         if joint.tied:
             continue
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         where, places = f"segments[{joint.inner}]", joint.stations
-        check_flats(f"segments[{joint.outer}]", outer, boom.directions, places)
-        check_flats(where, inner, boom.directions, places, outer)
+        check_contact_faces(f"segments[{joint.outer}]", outer, boom.directions, places)
+        check_contact_faces(where, inner, boom.directions, places, outer)
 
 
 def _check_space(boom: Boom) -> None:
@@ -184,7 +181,7 @@ def _check_stops(boom: Boom) -> None:
 
 
 def _check_observations(boom: Boom) -> None:
-    own = {*forces(boom), *(place.name for place in boom.at_ends(KINDS))}
+    own = {*forces(boom), *(place.name for place in boom.end_observations(KINDS))}
     for number, place in enumerate(boom.observations):
         where = f"observations[{number}]"
         if place.name in own:
@@ -194,7 +191,7 @@ def _check_observations(boom: Boom) -> None:
             )
         own.add(place.name)
         boom.segments[place.segment].check_place(f"{where}.x", place.x)
-        if place.kind.read in IN_SPACE and not boom.spatial:
+        if place.kind.read in SPATIAL_QUANTITIES and not boom.spatial:
             raise BoomError(
                 f"{where}.quantity",
                 "the boom is flat, and nothing moves along 'y' or twists; give another "
@@ -257,7 +254,7 @@ def check_order(where: str, outer: str, inner: str, names: Sequence[str]) -> Non
     """Check that the outer segment of a joint is nearer to the base than the inner one.
 
     Args:
-        where: place of the joint in the boom.
+        where: attribute of the boom with this joint, for messages.
         outer, inner: names of its segments.
         names: names of all segments, from the base to the tip.
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Error in a boom, with its place."""
+"""Error in the data of a boom."""
 
 from __future__ import annotations
 
 
 class BoomError(ValueError):
-    """Error in a boom; ``where`` is an object and its attribute, such as ``segments[1].start``."""
+    """Error in the data of a boom; ``where`` is an attribute, such as ``segments[1].start``."""
 
     def __init__(self, where: str, what: str) -> None:
         super().__init__(f"{where}: {what}")

@@ -12,16 +12,16 @@ from geometry.arrays import Array
 
 @dataclass(frozen=True, slots=True)
 class Compression:
-    """Axial force P(x) in N along a segment, positive in compression: piecewise linear, with jumps.
+    """Piecewise linear axial force P(x) in N along a segment, positive in compression.
 
     >>> column = Compression(places=(0.0, 4.0, 10.0), ends=((9e3, 7e3), (2e3, 2e3)))
     >>> column(np.array([1.0, 5.0]))
     array([8500., 2000.])
 
     Args:
-        places: ends (num_pieces + 1) of the pieces, ascending x in m; empty if P is 0 everywhere.
-        ends: P (num_pieces) at both ends of each piece in N.
-        transferred: total axial force in N, which the segment transfers at its lock or foot.
+        places: ascending x in m of the ends of the pieces; empty if P is 0 everywhere.
+        ends: P in N at both ends of each piece.
+        transferred: total axial force in N, which acts at the lock or foot of the segment.
     """
 
     places: tuple[float, ...] = ()
@@ -33,7 +33,7 @@ class Compression:
         return bool(self.ends)
 
     def __call__(self, x: Array) -> Array:
-        """Return P (num_places,) at x (num_places,) in m; at a jump, either value."""
+        """Return P (num_places,) at x (num_places,) in m; at a jump, the value of either side."""
         if not self:
             return np.zeros(x.shape)
         places, ends = np.array(self.places), np.array(self.ends)
@@ -43,4 +43,4 @@ class Compression:
         return np.asarray(first + part * (last - first))
 
 
-UNPRESSED = Compression()
+NO_COMPRESSION = Compression()

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Contact geometry: the places where the segments of a joint touch and slide.
+"""Contact geometry: positions and areas of contact between the segments of a joint.
 
-In a flat boom, contact is on the axis of the segments, above and below at the same x. In space, it
-is at the corners of the sections, where slide pads usually are since folds are stiff: at both ends
-of each face. Pads of a given size are patches beside the corners, or bear on the corners along
-their length.
+In a flat boom, contact is on the axes of the segments, on both sides at the same x. In space, it is
+at the corners of the sections, where slide pads usually are. Pads of a given size are patches
+beside the corners, or bear on the corners along their length.
 """
 
 from __future__ import annotations
@@ -24,8 +23,8 @@ from geometry.telescoping import drives_of, reach
 
 ContactLine = Literal["near webs", "across", "surface"]
 
-# Length of a station's contact along the corners, as a fraction of the least overlap: about 0.1 m
-# in the paper's boom, a typical length of slide pads.
+# Default length of contact along the corners, as a fraction of the smallest overlap. It is about
+# 0.1 m in the paper's boom, a typical length of slide pads.
 _OF_OVERLAP = 0.1
 
 _SIDES: tuple[Side, Side] = (1, -1)
@@ -36,12 +35,9 @@ _BOTH: tuple[Side] = (0,)
 class Patch:
     """Area of a pad of a given size on a wall of the inner segment.
 
-    It is centred at its station, but shifted into the overlap if necessary. Across the wall, it
-    begins at an offset from the corner of the inner box.
-
     Args:
-        start, end: x in m.
-        offset: distance of its edge from the edge of the wall in m.
+        start, end: x of its ends in m.
+        offset: distance across the wall from the corner of the inner section to the pad in m.
         width: width across the wall in m.
     """
 
@@ -51,18 +47,18 @@ class Patch:
     width: float
 
     def across(self, face: Face) -> tuple[float, float]:
-        """Return both ends of the patch across an inner segment's wall, in m from the middle."""
+        """Return both edges of the patch across a wall, in m from the middle of the wall."""
         far = 0.5 * face.width - self.offset
         return far - self.width, far
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
-    """Interval of a segment's corners on which a station's contact force acts.
+class ContactInterval:
+    """Interval of the corners of a segment on which a contact force acts.
 
     Args:
-        start, end: x in m.
-        station: x in m of the resultant.
+        start, end: x of its ends in m.
+        station: x of the resultant in m.
     """
 
     start: float
@@ -70,23 +66,22 @@ class Stretch:
     station: float
 
     @classmethod
-    def on(cls, segment: Segment, station: float, length: float) -> Stretch:
-        """Return an interval centred at a station, but shifted into the segment if necessary."""
+    def from_station(cls, segment: Segment, station: float, length: float) -> ContactInterval:
+        """Return the interval of a length in m, centred at a station as far as it fits."""
         start = min(max(station - 0.5 * length, segment.start), segment.end - length)
         return cls(start, start + length, station)
 
-    def moved(self, segment: Segment, by: float) -> Stretch:
+    def shift(self, segment: Segment, by: float) -> ContactInterval:
         """Return the interval shifted along the segment by ``by`` in m."""
         if by == 0.0:
             return self
-        return Stretch.on(segment, self.station + by, self.end - self.start)
+        return ContactInterval.from_station(segment, self.station + by, self.end - self.start)
 
-    def density(self, x: Array) -> Array:
-        """Return the density (num_places,) in 1/m of a unit force.
+    def line_load(self, x: Array) -> Array:
+        """Return the line load (num_places,) in 1/m that has a unit resultant at the station.
 
-        It is uniform if the station is in the middle, or else linear with the resultant at the
-        station. A deflection weighted by it is the value at the station of the deflection's
-        best-fit straight line.
+        It is linear in x. The integral of load times deflection is the value at the station of the
+        straight line that fits the deflection best.
         """
         length, middle = self.end - self.start, 0.5 * (self.start + self.end)
         return 1.0 / length + 12.0 * (self.station - middle) * (x - middle) / length**3
@@ -94,28 +89,26 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class Pad:
-    """Contact pair: a point of each segment of a joint, which touch across the clearance.
+    """Contact pair: a point of the inner segment and a point of the outer segment of a joint.
 
     Args:
         station: index in ``Boom.stations``.
-        joint: the joint.
+        joint: joint of the pad.
         number: index of the joint in ``Boom.joints``.
         x: position in m.
         direction: direction of the contact normal.
-        side: 1 for contact if the inner segment presses upwards (along y: towards larger y), −1 if
-            it presses downwards, 0 for both.
-        inner, outer: (y, z) in m of the points, from the axes of their segments.
-        weight: share of the joint's law on this side.
-        rubs: direction of sliding.
-        normal_force: given normal force of friction in N; None if the contact force is the normal
-            force.
-        pressed: intervals of the corners of the inner and the outer segment on which the force
-            acts.
+        side: 1 if contact is at positive displacement of the inner segment, −1 if it is at
+            negative displacement, 0 if it is at both.
+        inner, outer: (y, z) in m of the points from the axes of their segments.
+        weight: fraction of the contact law of the side.
+        sliding_direction: direction of friction.
+        normal_force: prescribed normal force of friction in N; None for the contact force.
+        intervals: intervals of the corners of inner and outer segment on which the force acts.
         patch: area on the wall; None for a point, or a pad that bears on a corner.
-        raised: protrusion into the joint's clearance in m.
-        face: face of the inner segment in space, which touches at a corner; None in a flat boom.
-        carrier: segment to which the pad is fixed while the joint telescopes; None without a drive.
-        moved: travel in m along the inner and the outer segment.
+        shim: reduction of the clearance by a shim in m.
+        face: face of the inner segment at whose corner the pad is; None in a flat boom.
+        carrier: segment to which the pad is fixed; None without a drive.
+        travel: displacement in m of the contact along the inner and the outer segment.
     """
 
     station: int
@@ -127,28 +120,28 @@ class Pad:
     inner: Offset
     outer: Offset
     weight: float
-    rubs: Direction
+    sliding_direction: Direction
     normal_force: float | None
-    pressed: tuple[Stretch, Stretch]
+    intervals: tuple[ContactInterval, ContactInterval]
     patch: Patch | None
-    raised: float = 0.0
+    shim: float = 0.0
     face: Face | None = None
     carrier: Carrier | None = None
-    moved: tuple[float, float] = (0.0, 0.0)
+    travel: tuple[float, float] = (0.0, 0.0)
 
     @property
     def half(self) -> int:
-        """The half of the wall in space: 1 at positive coordinates across the wall, else −1."""
+        """The half of the wall in space: 1 if its coordinate across the wall is positive, or −1."""
         return int(np.sign(self._corner))
 
     @property
     def _corner(self) -> float:
-        """The position of the point across the wall in m."""
+        """The coordinate of the point across the wall in m."""
         return self.inner[0] if self.direction == "z" else self.inner[1]
 
     @property
     def across(self) -> float:
-        """The distance in m, across the wall, of the area's middle from the point."""
+        """The offset in m across the wall from the point to the centre of the area."""
         if self.patch is None or self.face is None:
             return 0.0
         return self.half * 0.5 * sum(self.patch.across(self.face)) - self._corner
@@ -160,38 +153,38 @@ class Pad:
 
     @property
     def middle(self) -> float:
-        """The x in m of the area's middle, where the resultant acts."""
+        """The x in m of the resultant, at the centre of the area."""
         if self.patch is None:
-            return self.pressed[0].station
+            return self.intervals[0].station
         return 0.5 * (self.patch.start + self.patch.end)
 
     def travels(self, extension: float) -> tuple[float, float]:
-        """Return the travel in m along the outer and the inner segment at an extension in m."""
+        """Return the displacement in m along outer and inner segment at an extension in m."""
         on_outer = extension if self.carrier == "inner" else 0.0
         return on_outer, -extension if self.carrier == "outer" else 0.0
 
-    def extended(self, boom: Boom, extension: float) -> Pad:
+    def at_extension(self, boom: Boom, extension: float) -> Pad:
         """Return the pad at an ``extension`` of the joint in m."""
         on_outer, on_inner = self.travels(extension)
         inner, outer = (
-            stretch.moved(boom.segments[number], by)
+            stretch.shift(boom.segments[number], by)
             for stretch, number, by in zip(
-                self.pressed,
+                self.intervals,
                 (self.joint.inner, self.joint.outer),
                 (on_inner, on_outer),
                 strict=True,
             )
         )
-        return replace(self, pressed=(inner, outer), moved=(on_inner, on_outer))
+        return replace(self, intervals=(inner, outer), travel=(on_inner, on_outer))
 
     @property
     def slide_x(self) -> float:
-        """The x in m at which sliding is read: in a flat boom the middle, in space the corner."""
+        """The x in m at which the sliding distance is measured."""
         return self.middle if self.joint.lateral_play is None else self.x
 
     @property
-    def covered(self) -> tuple[Offset, Offset]:
-        """The middles (y, z) in m of the areas on both segments, from their axes."""
+    def area_centres(self) -> tuple[Offset, Offset]:
+        """The centres (y, z) in m of the areas on inner and outer segment, from their axes."""
         step = (self.across, 0.0) if self.direction == "z" else (0.0, self.across)
         (a, b), (c, d) = self.inner, self.outer
         return (a + step[0], b + step[1]), (c + step[0], d + step[1])
@@ -200,8 +193,7 @@ class Pad:
 def pads(boom: Boom) -> list[Pad]:
     """Return the pads of all joints that are not bonded, in the order of stations.
 
-    The weights of one side of a station sum to one, so that without roll the pads together have the
-    force of one contact on the axis.
+    The weights of each side of a station sum to one.
     """
     found: list[Pad] = []
     station = 0
@@ -215,18 +207,21 @@ def pads(boom: Boom) -> list[Pad]:
             inner_segment, outer_segment = boom.segments[joint.inner], boom.segments[joint.outer]
             for k, x in enumerate(joint.stations):
                 normal_force = joint.normal_forces[k] if joint.normal_forces else None
-                pressed = Stretch.on(inner_segment, x, length), Stretch.on(outer_segment, x, length)
+                pressed = (
+                    ContactInterval.from_station(inner_segment, x, length),
+                    ContactInterval.from_station(outer_segment, x, length),
+                )
                 for side, inner, outer, whole, face in _points(boom, joint, direction, x):
                     for size, share, shim in joint.pads_of(direction, side):
                         weight = whole * share
                         patch, stretches = None, pressed
-                        # Where plates are not known, pads are points.
+                        # Without a section, pads are points.
                         if size is not None and inner_segment.section is not None:
                             span = size.span(x, overlap)
                             if size.bears == "wall":
                                 patch = Patch(*span, size.offset, size.width)
                             else:
-                                stretches = (Stretch(*span, 0.5 * sum(span)),) * 2
+                                stretches = (ContactInterval(*span, 0.5 * sum(span)),) * 2
                         pad = Pad(
                             station=station,
                             joint=joint,
@@ -237,14 +232,14 @@ def pads(boom: Boom) -> list[Pad]:
                             inner=inner,
                             outer=outer,
                             weight=weight,
-                            rubs="y" if boom.spatial and direction == "z" else "z",
-                            # Both sides together have the friction of one pad on the axis.
+                            sliding_direction="y" if boom.spatial and direction == "z" else "z",
+                            # The normal forces of both sides sum to that of the station.
                             normal_force=None
                             if normal_force is None
                             else normal_force * weight * (0.5 if side else 1.0),
-                            pressed=stretches,
+                            intervals=stretches,
                             patch=patch,
-                            raised=shim,
+                            shim=shim,
                             face=face,
                             carrier=None if joint.drive is None else joint.drive.carriers[k],
                         )
@@ -254,10 +249,7 @@ def pads(boom: Boom) -> list[Pad]:
 
 
 def contact_centres(boom: Boom, joint: Joint) -> dict[float, tuple[float, ...]]:
-    """Return the x in m of the pads' middles along z, by station; without pads that of the station.
-
-    The keys are the x of the stations in m.
-    """
+    """Return the x in m of the centres of pads normal to z, by x of the station in m."""
     overlap = boom.overlap(joint)
     sizes = [size for side in _SIDES for size, _, _ in joint.pads_of("z", side)]
     known = boom.segments[joint.inner].section is not None
@@ -270,7 +262,7 @@ def contact_centres(boom: Boom, joint: Joint) -> dict[float, tuple[float, ...]]:
 
 
 def load_places(boom: Boom, number: int) -> tuple[float, ...]:
-    """Return the x in m of all forces and masses on a segment, including middles of pads."""
+    """Return the x in m of all forces and masses on a segment, including centres of pads."""
     joints = (joint for joint in boom.joints if number in (joint.outer, joint.inner))
     middles = (x for joint in joints for at in contact_centres(boom, joint).values() for x in at)
     return tuple(sorted({*boom.stations_of(number), *middles}))
@@ -279,7 +271,7 @@ def load_places(boom: Boom, number: int) -> tuple[float, ...]:
 def _points(
     boom: Boom, joint: Joint, direction: Direction, x: float
 ) -> Iterator[tuple[Side, Offset, Offset, float, Face | None]]:
-    """Yield a station's pads: side, inner and outer point, weight, and in space the inner face."""
+    """Yield (side, inner point, outer point, weight, inner face) of the contacts of a station."""
     if joint.lateral_play is None:
         for side in _SIDES if joint.pads else _BOTH:
             yield side, (0.0, 0.0), (0.0, 0.0), 1.0, None
@@ -295,35 +287,35 @@ def _points(
             yield side, within, around, 0.5, touching
 
 
-# Length of a stop's contact along the corners, as a fraction of the box's height: about 0.1 m in
-# the paper's boom.
+# Default length of contact of a stop, as a fraction of the height of the section. It is about
+# 0.1 m in the paper's boom.
 _OF_HEIGHT = 0.2
 
 
 @dataclass(frozen=True, slots=True)
 class StopPatch:
-    """Place at which a stop acts on a segment's corners.
+    """Contact of a stop with the corners of a segment.
 
     Args:
         station: index in ``Boom.stations``.
         stop: the stop.
-        pressed: interval of the corners.
-        reach: range of the segment's extension in m.
+        interval: interval of the corners on which the force acts.
+        reach: range of the travel of the segment in m.
     """
 
     station: int
     stop: Stop
-    pressed: Stretch
+    interval: ContactInterval
     reach: tuple[float, float]
 
-    def extended(self, boom: Boom, extension: float) -> StopPatch:
-        """Return the place at an ``extension`` of the segment in m."""
-        pressed = self.pressed.moved(boom.segments[self.stop.segment], -extension)
-        return replace(self, pressed=pressed)
+    def at_extension(self, boom: Boom, extension: float) -> StopPatch:
+        """Return the contact at a travel of the segment by ``extension`` in m."""
+        pressed = self.interval.shift(boom.segments[self.stop.segment], -extension)
+        return replace(self, interval=pressed)
 
 
 def stop_patches(boom: Boom) -> list[StopPatch]:
-    """Return the places of all stops of a boom with sections."""
+    """Return the contacts of all stops of a boom with sections."""
     found = []
     for station, stop in boom.numbered_stops:
         segment = boom.segments[stop.segment]
@@ -332,5 +324,9 @@ def stop_patches(boom: Boom) -> list[StopPatch]:
         length = stop.contact_length or min(
             _OF_HEIGHT * segment.section_at(stop.x).size("z"), segment.length
         )
-        found.append(StopPatch(station, stop, Stretch.on(segment, stop.x, length), extended))
+        found.append(
+            StopPatch(
+                station, stop, ContactInterval.from_station(segment, stop.x, length), extended
+            )
+        )
     return found

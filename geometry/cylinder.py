@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 class Cylinder:
     """A luffing cylinder: a spring between a lug of a segment and a point of the ground.
 
-    The lug moves with its cross-section. The segment does not stretch; its foot, the support
-    nearest to the base, holds it along x.
+    The lug is fixed to its cross-section. The segment is rigid along x and supported along x at
+    its foot, the support nearest to the base.
 
     >>> jack = pt.Cylinder(segment=0, x=4.0, depth=0.3, ground=(1.0, -4.3), stiffness=5e7)
     >>> jack.length, jack.direction
@@ -83,11 +83,10 @@ class Cylinder:
         ground = (foot.x + along * cosine + up * sine, -foot.depth - along * sine + up * cosine)
         return replace(self, ground=ground)
 
-    def pull(self, x: Array, foot: Support | None) -> Array:
-        """Return the normal force (num_places,) in N at x in m for 1 N of compression.
+    def normal_force(self, x: Array, foot: Support | None) -> Array:
+        """Return the normal force (num_places,) in the segment at x in m per N of compression.
 
-        It acts between the lug and the foot, which holds the segment along x; it is 0 without a
-        foot.
+        It is positive in tension and acts between lug and foot; without a foot it is 0.
         """
         if foot is None:
             return np.zeros(x.shape)
@@ -95,10 +94,10 @@ class Cylinder:
         return np.where(between, np.sign(self.x - foot.x) * self.direction[0], 0.0)
 
     def check(self, where: str, spatial: bool) -> None:
-        """Check that the cylinder is possible.
+        """Check the data of the cylinder.
 
         Args:
-            where: place in the boom, for example ``cylinders[0]``.
+            where: attribute of the boom, for example ``cylinders[0]``.
             spatial: whether the boom moves in space.
 
         Raises:
@@ -115,16 +114,16 @@ class Cylinder:
                 "joints lateral_play",
             )
 
-    def pushes(self, body: Body, foot: Support | None) -> Iterator[Array]:
-        """Yield load vectors (num_dofs,) of 1 N, which are also rows that read the length.
+    def load_vectors(self, body: Body, foot: Support | None) -> Iterator[Array]:
+        """Yield load vectors (num_dofs,) of 1 N, which are also the rows of the elongation.
 
-        Of two cylinders, the second vector has ½ N in one and −½ N in the other. A point at (y, z)
-        of a section moves along x by −w′ z − v′ y, and along z by w + φ y, in addition to the
-        segment's motion along x, which is zero at the depth of the foot.
+        For two cylinders, the second vector has ½ N in one and −½ N in the other. A point (y, z)
+        of a section moves along x by −w′ z − v′ y, and along z by w + φ y. In addition, the segment
+        moves along x so that the pin of the foot does not move.
 
         Args:
-            body: the segment.
-            foot: support that holds the segment along x.
+            body: segment with the lug.
+            foot: support of the segment along x.
         """
         along, up = self.direction
         in_plane = up * body.force(self.x, "z") + along * self.depth * body.moment(self.x, "z")
@@ -141,10 +140,10 @@ class GroundLine(NamedTuple):
 
     Args:
         segment: index in ``Boom.segments``.
-        push: load vector (num_dofs,) of 1 N along the line, also the row that reads its length.
+        push: load vector (num_dofs,) of 1 N along the line, also the row of its elongation.
         stiffness: stiffness in N/m.
         dashpot: dashpot in N·s/m.
-        force: name of the spring force in results, positive in compression; None if it is no
+        force: name of the spring force in results, positive in compression; empty if it is not a
             result.
     """
 
@@ -183,7 +182,7 @@ def ground_lines(boom: Boom, bodies: Sequence[Body]) -> Iterator[GroundLine]:
     """
     names = iter(forces(boom))
     for one in boom.cylinders:
-        for push in one.pushes(bodies[one.segment], boom.segments[one.segment].foot):
+        for push in one.load_vectors(bodies[one.segment], boom.segments[one.segment].foot):
             yield GroundLine(one.segment, push, one.stiffness, one.dashpot, next(names))
     for number, segment in enumerate(boom.segments):
         for support in segment.supports:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Fields of the parts of a boom: numbers with limits and units, names, and places along x.
+"""Types of the fields of a boom's parts: numbers with limits and units, names, positions along x.
 
-Parts are pydantic dataclasses for Python and for case files, where field names are keys. The JSON
-Schema and messages show the string below a field.
+Parts are pydantic dataclasses for Python and for case files, where field names are keys. The
+attribute docstring of a field is its description in the JSON Schema and in messages.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError
 
 
 class In:
-    """Unit of the numbers of a field, with a name of :mod:`runs.case.units`.
+    """Unit of the numbers of a field, one of :mod:`runs.case.units`.
 
     Args:
         units: one unit for all numbers, or one for each column of a table; ``1`` means
-            dimensionless, ``^n`` the power by the exponent of a contact law.
+            dimensionless, ``^n`` the exponent of a contact law.
     """
 
     def __init__(self, *units: str) -> None:
@@ -44,9 +44,9 @@ class In:
 
 
 def fields_of(table: type) -> dict[str, FieldInfo]:
-    """Return the fields of a part, or of a table of a case, by their names in the class.
+    """Return the fields of a part or of a table of a case, by name, with their descriptions.
 
-    Descriptions of inherited fields are in the base class.
+    Pydantic finds the descriptions of inherited fields only in the base class.
     """
     bases = [getattr(base, "__pydantic_fields__", {}) for base in table.__mro__]
     described = {
@@ -57,12 +57,12 @@ def fields_of(table: type) -> dict[str, FieldInfo]:
 
 
 def names_of(table: type) -> dict[str, str]:
-    """Return the names of a table's fields in the class, by their keys in the case file."""
+    """Return the field names of a table, by their keys in the case file."""
     return {field.alias or name: name for name, field in fields_of(table).items()}
 
 
 def declared_units(field: FieldInfo) -> tuple[str, ...]:
-    """Return the units in a field's :class:`In`; empty for fields without units."""
+    """Return the units of a field; empty for a field without units."""
     return next((unit.units for unit in _units((*field.metadata, field.annotation))), ())
 
 
@@ -74,16 +74,16 @@ def _units(parts: Iterable[Any]) -> Iterator[In]:
             yield from _units(get_args(part))
 
 
-def described(field: FieldInfo) -> str:
-    """Return the description of a field, the string below it, on one line."""
+def describe(field: FieldInfo) -> str:
+    """Return the description of a field on one line."""
     return " ".join(str(field.description).split())
 
 
 def _shorten(schema: JsonSchemaValue, table: type) -> None:
-    """Shorten the descriptions in a JSON Schema to one line each, without examples."""
+    """Shorten the descriptions in a JSON Schema to one line each."""
     schema["description"] = " ".join(str(table.__doc__).split("\n\n")[0].split())
     for key, rule in schema.get("properties", {}).items():
-        rule["description"] = described(fields_of(table)[names_of(table)[key]])
+        rule["description"] = describe(fields_of(table)[names_of(table)[key]])
 
 
 # Pydantic configuration of parts: unknown fields are errors.
@@ -95,11 +95,11 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Length = Annotated[Positive, In("m")]
 # The number of a detail category by EN 1993-1-9: 71 for 71 N/mm².
 Category = Annotated[Positive, In("1")]
-# Names become parts of file names and elements of comma-separated lists.
+# Names occur in file names and comma-separated lists.
 NAME = r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$"
 Name = Annotated[str, Field(pattern=NAME, max_length=60)]
 Flag = Annotated[bool, Field(strict=True)]
-# Maximum number of parts of a kind: more are an input error, and would take too long to draw.
+# Maximum number of parts of a kind. More are an input error.
 Few = Field(max_length=100)
 MOST_STATIONS = 50
 
@@ -119,7 +119,7 @@ End = Literal["tail", "head"]
 
 
 def _place(given: Any) -> Any:
-    """Check a number or a distance; the messages of a union type would name its branches."""
+    """Validate a number or a distance. A union type would have unreadable messages."""
     if isinstance(given, Distance):
         return given
     if is_number(given):
@@ -140,7 +140,7 @@ def is_number(given: Any) -> bool:
 
 
 class _AnyPlace:
-    """Validation of a place: its x, or a distance from an end until the part is on a segment."""
+    """Validation of a position: x, or a distance from an end."""
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -149,17 +149,17 @@ class _AnyPlace:
         return handler.generate_schema(Annotated[float | Distance, check])
 
 
-# Type of a place: x in m, or 'tail', 'head' or a distance from them until the part is on a segment.
+# Type of a position: x in m. Until the part is in a boom, it may be a distance from an end.
 Place = Annotated[float, _AnyPlace(), In("m")]
 
-# Type of the segment of a part: its name as given, its index once the part is in a boom.
+# Type of the segment of a part: its name, or its index if the part is in a boom.
 SegmentRef = Annotated[Any, WithJsonSchema({"type": "string"})]
 
 _Part = TypeVar("_Part")
 
 
 def at(place: float | Distance, tail: float, head: float) -> float:
-    """Return the x in m of a place between two ends."""
+    """Return the x in m of a position on a segment with the ends ``tail`` and ``head`` in m."""
     if not isinstance(place, Distance):
         return place
     if place.head is not None:
@@ -168,9 +168,9 @@ def at(place: float | Distance, tail: float, head: float) -> float:
     return tail + place.tail
 
 
-def placed(part: _Part, tail: float, head: float) -> _Part:
-    """Return a part (a dataclass) with x in m in place of distances from two ends."""
-    # mypy cannot express that a type variable stands for dataclasses alone.
+def resolve_distances(part: _Part, tail: float, head: float) -> _Part:
+    """Return a part whose distances from the ends ``tail`` and ``head`` are replaced by x in m."""
+    # Type hints cannot restrict a type variable to dataclasses.
     found: dict[str, Any] = {}
     for field in fields(part):  # type: ignore[arg-type]
         given = getattr(part, field.name)

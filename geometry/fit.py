@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Checks of clearances of sections and slide pads, and of the plates that touch."""
+"""Checks of clearances between sections, of slide pads, and of contact faces."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
     """Check that the inner segment of a joint fits with its play, if both sections are given.
 
     Raises:
-        BoomError: the segment does not fit; the place is an attribute of the joint ``where``.
+        BoomError: the segment does not fit; the message names an attribute of ``where``.
     """
     if outer.section is None or inner.section is None:
         return
@@ -50,13 +50,13 @@ def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
         )
 
 
-def check_room_on_the_way(
+def check_room_at_extension(
     where: str, joint: Joint, outer: Segment, inner: Segment, extension: float
 ) -> None:
-    """Check that the inner segment of a flat joint fits with its play at an extension.
+    """Check that the inner segment of a flat joint fits with its play at an extension in m.
 
     Raises:
-        BoomError: the segment does not fit; the place is the drive ``where``.
+        BoomError: the segment does not fit; the message names the drive ``where``.
     """
     if outer.section is None or inner.section is None:
         return
@@ -74,10 +74,9 @@ def check_room_on_the_way(
 def room(
     joint: Joint, outer: Segment, inner: Segment, extension: float = 0.0
 ) -> tuple[float, float]:
-    """Return the least space in m for motion of the inner segment, along z and along y.
+    """Return the smallest clearances in m, along z and along y, at an extension in m.
 
-    Both segments have sections. It suffices to check both ends of the overlap at the extension in
-    m, since tapers are linear.
+    Both segments have sections. Tapers are linear, so that the ends of the overlap govern.
     """
     first, last = max(outer.start, inner.start + extension), min(outer.end, inner.end + extension)
     found = [
@@ -88,24 +87,24 @@ def room(
     return min(heights), min(widths)
 
 
-def check_flats(
+def check_contact_faces(
     where: str,
     segment: Segment,
     directions: tuple[Direction, ...],
     places: Sequence[float],
     around: Segment | None = None,
 ) -> None:
-    """Check that a segment has plates that can touch, if it has a section.
+    """Check that a segment with a section has contact faces on both sides.
 
     Args:
-        where: place of the segment in the boom.
-        segment: segment that touches, on both sides.
+        where: attribute of the boom with this segment, for messages.
+        segment: segment to check.
         directions: directions of contact.
         places: x in m of the contacts.
         around: outer segment, if any.
 
     Raises:
-        BoomError: the segment has no such plates, or wider ones than the outer segment.
+        BoomError: a face is missing, or wider than that of the outer segment.
     """
     if segment.section is None:
         return
@@ -134,10 +133,10 @@ def check_flats(
 
 
 def check_pads(where: str, joint: Joint, boom: Boom) -> None:
-    """Check that all pads of a joint are possible.
+    """Check the pads of a joint.
 
     Raises:
-        BoomError: a pad does not fit, two pads overlap, or a side has no pads; the place is an
+        BoomError: a pad does not fit, two pads overlap, or a side has no pads; the message names an
             attribute of ``where``.
     """
     if joint.pad is not None:
@@ -158,12 +157,12 @@ def check_pads(where: str, joint: Joint, boom: Boom) -> None:
             _check_apart(f"{where}.pads", one, other)
 
 
-def check_pads_on_the_way(where: str, joint: Joint, boom: Boom) -> None:
-    """Check that all pads of a joint with a drive stay on both of its segments.
+def check_pads_in_travel(where: str, joint: Joint, boom: Boom) -> None:
+    """Check that all pads of a joint stay in the overlap while it telescopes.
 
     Raises:
-        BoomError: a pad is longer than the least overlap, or leaves it; the place is an attribute
-            of ``where``.
+        BoomError: a pad is longer than the smallest overlap, or leaves it; the message names an
+            attribute of ``where``.
     """
     sizes = {f"{where}.contact_length": joint.contact_length}
     pads = {} if joint.pad is None else {f"{where}.pad": joint.pad}

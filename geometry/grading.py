@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Graded meshes: fine at contacts and loads, and coarser elsewhere.
 
-The first step makes rectangles, which are nearly square near a refinement zone, and far from all
-zones almost seven times as long along the boom as across. Coarse meshes are too stiff in the
-bending of walls across the boom. This error is proportional to the square of the edge length
-across, and depends little on the length along: halving both lowers the frequencies of walls by 0.2
-to 0.4 %.
+The first step divides walls into pairs of triangles that form rectangles. Rectangles are nearly
+square near a refinement zone; far from all zones they are almost seven times as long along the boom
+as across. The main error of coarse meshes is the bending of walls across the boom. It is
+proportional to the square of the edge length across, and depends little on the length along:
+halving both lowers the frequencies of walls by 0.2 to 0.4 %.
 
 The second step is newest-vertex bisection (Mitchell 1989). It divides each triangle from its newest
-corner to the middle of the opposite edge, at first the diagonal of its rectangle. After two
-bisections, triangles have the original shape. Neighbours are divided, too, so that there are no
-hanging nodes. Places are compared on the positive side of the section's mirrors, after rounding, so
-that the mesh stays symmetric.
+vertex to the middle of the opposite edge, at first the diagonal of its rectangle. After two
+bisections, triangles have the original shape. Neighbours are also divided, so that there are no
+hanging nodes. Sizes are compared at rounded coordinates on the positive side of the mirror planes,
+so that the mesh stays symmetric.
 """
 
 from __future__ import annotations
@@ -27,16 +27,15 @@ from geometry.mesh import SegmentMesh, mesh_segment
 from geometry.refinement import RefinementZone
 from geometry.section import COMPONENT, Direction, Section
 
-# Unit for comparisons of lengths, as a fraction of a mesh's extent: below any edge, above
-# round-off.
+# Tolerance of lengths as a fraction of the length of a mesh: below any edge, above round-off.
 _ROUNDED = 1.0e-9
 
-# Rules for edges of the same length: the fraction by which an edge at the outline counts as
-# shorter, and the weights of x, y and z.
-_NEARER, _BESIDE = 1.0e-6, np.array([0.0, 1.0, 1.6])
+# Tie-break between edges of equal length: relative reduction of an edge at the outline, and weights
+# of x, y and z in its distance from the axis.
+_TIE_BREAK, _TIE_WEIGHTS = 1.0e-6, np.array([0.0, 1.0, 1.6])
 
-# Sides of rectangles as fractions of the mesh size: across the boom, and along it from zones
-# outwards.
+# Sides of rectangles as fractions of the mesh size: across the boom, and along the boom at
+# increasing distance from zones.
 _ACROSS = 0.3
 _ALONG = (0.5, 1.0, 2.0)
 
@@ -48,11 +47,11 @@ def graded_mesh(
     zones: Sequence[RefinementZone],
     closed: Sequence[str] = (),
 ) -> SegmentMesh:
-    """Mesh the walls of a segment as :func:`mesh_segment` does, fine in the refinement zones.
+    """Mesh the walls of a segment as :func:`mesh_segment`, with refinement zones.
 
     Args:
         section, breaks, closed: as in :func:`mesh_segment`.
-        size: edge length in m of squares with the area of the rectangles far from all zones.
+        size: mesh size in m, the side of a square with the area of a rectangle far from all zones.
         zones: refinement zones.
 
     Raises:
@@ -68,11 +67,11 @@ def graded_mesh(
 def _along(
     breaks: Mapping[str, float], size: float, zones: Sequence[RefinementZone]
 ) -> dict[float, float]:
-    """Return the lengths in m of rectangles, by the x in m of the outline at their start."""
+    """Return the lengths in m of rectangles, by the x in m from which they apply."""
     start, end = min(breaks.values()), max(breaks.values())
     fine, middle, coarse = (part * size for part in _ALONG)
     ends = {x for zone in zones for length in (middle, coarse) for x in zone.reach(length)}
-    # Outlines near a break are left out: they would only add slender triangles.
+    # Changes of length near a break are omitted, since they would add slender triangles.
     apart = [x for x in ends if min(abs(x - place) for place in breaks.values()) > fine]
     found: dict[float, float] = {}
     for x in sorted([start, *(x for x in apart if start < x < end)]):
@@ -89,14 +88,14 @@ def _along(
 
 
 def _diagonals_first(mesh: SegmentMesh) -> SegmentMesh:
-    """Return the mesh with the longest edge of each triangle first, which two triangles share.
+    """Return the mesh with the longest edge of each triangle first.
 
-    Of equal edges in a diaphragm's fan, the edge nearer to the axis comes first, so that the order
-    is symmetric.
+    Of two equal edges of a diaphragm, the edge nearer to the axis is first, so that the mesh stays
+    symmetric.
     """
     corners = mesh.points[mesh.triangles]
-    beside = np.abs(corners + np.roll(corners, -1, axis=1)) @ _BESIDE
-    lengths = _edges(corners) * (1.0 - _NEARER * beside / np.ptp(mesh.points[:, 1:]))
+    distance = np.abs(corners + np.roll(corners, -1, axis=1)) @ _TIE_WEIGHTS
+    lengths = _edges(corners) * (1.0 - _TIE_BREAK * distance / np.ptp(mesh.points[:, 1:]))
     turn = lengths.argmax(axis=1)[:, None] + np.arange(3)
     return replace(mesh, triangles=np.take_along_axis(mesh.triangles, turn % 3, axis=1))
 
@@ -115,16 +114,16 @@ def _too_large(
     mirrored = [COMPONENT[axis] for axis in mirrors]
     places[:, mirrored] = np.abs(places[:, mirrored])
     places = near * np.round(places / near)
-    allowed = np.min([zone.allowed(places) for zone in zones], axis=0, initial=np.inf)
+    allowed = np.min([zone.edge_length(places) for zone in zones], axis=0, initial=np.inf)
     # Legs of the isosceles right triangle with the same longest edge.
     sides = _edges(places[mesh.triangles]).max(axis=1) / np.sqrt(2.0)
     return np.asarray(sides - allowed[mesh.triangles].min(axis=1) > near)
 
 
 def _bisect(mesh: SegmentMesh, cut: Mask) -> SegmentMesh:
-    """Return the mesh with the marked triangles bisected, and others to avoid hanging nodes."""
+    """Return the mesh with the marked triangles bisected, without hanging nodes."""
     edges = np.sort(np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=2), axis=2)
-    # One number per pair of points is sorted ten times as fast as pairs.
+    # Sorting one number per pair of points is ten times as fast as sorting pairs.
     count = np.int64(len(mesh.points))
     numbers, edge_of = np.unique(edges[..., 0] * count + edges[..., 1], return_inverse=True)
     ends, edge_of = np.stack(np.divmod(numbers, count), axis=1), edge_of.reshape(-1, 3)
@@ -139,7 +138,7 @@ def _bisect(mesh: SegmentMesh, cut: Mask) -> SegmentMesh:
     while (split := middles[:, 0] >= 0).any():
         a, b, c = triangles[split].T
         new, after, before = middles[split].T
-        # The edge opposite to the new corner is first: it is bisected next.
+        # The edge opposite to the new vertex comes first, since it is bisected next.
         halves = np.column_stack([b, c, new]), np.column_stack([c, a, new])
         whole = np.full(len(new), -1)
         left = np.column_stack([after, whole, whole]), np.column_stack([before, whole, whole])
@@ -153,7 +152,7 @@ def _bisect(mesh: SegmentMesh, cut: Mask) -> SegmentMesh:
 
 
 def _with_middles(line: Indices, new_of: Mapping[tuple[int, int], int]) -> Indices:
-    """Return the edges of a line; halves replace edges with a new middle."""
+    """Return the edges of a line, with two halves in place of each bisected edge."""
     found: list[tuple[int, int]] = []
     for a, b in line.tolist():
         new = new_of.get((min(a, b), max(a, b)))

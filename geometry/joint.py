@@ -31,7 +31,7 @@ from geometry.section import Direction, Side
 
 PadSide = Literal["above", "below", "left", "right"]
 
-# Names of sides; right is at positive y, as for the plates of a section.
+# Names of sides. Right is at positive y, as for the plates of a section.
 SIDES: Mapping[PadSide, tuple[Direction, Side]] = {
     "above": ("z", 1),
     "below": ("z", -1),
@@ -40,14 +40,13 @@ SIDES: Mapping[PadSide, tuple[Direction, Side]] = {
 }
 
 
-# Modulus in Pa of cast polyamide 6 with 2.5 % of water, absorbed from air (data sheet of
-# PolyJARID); it is 3.2e9 in dry condition.
+# Modulus in Pa of cast polyamide 6 with 2.5 % of moisture (data sheet of PolyJARID); 3.2e9 if dry.
 POLYAMIDE = 1.9e9
 
 
 @part(frozen=True, slots=True, config=PART)
 class PadSize:
-    """A slide pad beside a corner: a patch of the inner segment's wall.
+    """Slide pad: a patch on a wall of the inner segment, beside a corner.
 
     >>> padded = replace(boom.joints[0], pad=pt.PadSize(length=0.2, width=0.06))
     >>> replace(boom, joints=(padded,)).joints[0].pad.length
@@ -81,7 +80,7 @@ class PadSize:
         return None if self.thickness is None else self.modulus * self.area / self.thickness
 
     def span(self, x: float, overlap: tuple[float, float]) -> tuple[float, float]:
-        """Return both ends in m: centred at x, but shifted into the overlap if necessary."""
+        """Return the x in m of both ends: centred at x, as far as the pad fits in the overlap."""
         first, last = overlap
         start = min(max(x - 0.5 * self.length, first), last - self.length)
         return start, start + self.length
@@ -89,9 +88,9 @@ class PadSize:
 
 @part(frozen=True, slots=True, config=PART, kw_only=True)
 class SlidePad(PadSize):
-    """One of several pads at each station: a pair beside both corners of a wall.
+    """Pair of identical pads at both corners of one wall.
 
-    Pads of one side share its force in proportion to their stiffness.
+    Pads on the same side share its force in proportion to their stiffness.
 
     >>> short = pt.SlidePad(length=0.1, width=0.03, side="below", thickness=0.02)
     >>> short.touches("z", -1), short.touches("z", 1)
@@ -111,7 +110,7 @@ class SlidePad(PadSize):
         return self.modulus * self.area / self.thickness
 
     def touches(self, direction: Direction, side: Side) -> bool:
-        """Return whether the pad is on this side."""
+        """Return whether the pad is on a side."""
         return SIDES[self.side] == (direction, side)
 
 
@@ -133,9 +132,9 @@ class Drive:
 
     Args:
         history: history in m since the start, 0 at t = 0; a history of the dynamics.
-        carriers: the segment to which each station of the joint is fixed.
+        carriers: segment to which each station of the joint is fixed.
         least_overlap: minimum overlap in m.
-        locked: segment to which the place is fixed at which the inner segment transfers its axial
+        locked: segment to which the lock is fixed, where the inner segment transfers its axial
             force.
     """
 
@@ -153,7 +152,7 @@ class Drive:
 
     @cached_property
     def reach(self) -> tuple[float, float]:
-        """The smallest extension (at most 0) and the largest one (at least 0) in m."""
+        """The minimum (at most 0) and the maximum (at least 0) of the extension in m."""
         ways = self.history(self.times)
         return min(0.0, float(ways.min())), max(0.0, float(ways.max()))
 
@@ -232,7 +231,10 @@ class Joint(BareJoint):
     drive: SkipValidation[Drive | None] = field(default=None, kw_only=True)
 
     def clearances(self, direction: Direction) -> tuple[float, float]:
-        """Return the clearances above and below in m, along y right and left; < 0 with preload."""
+        """Return the clearances in m above and below, along y right and left.
+
+        They are negative with interference.
+        """
         if direction == "z":
             play, first, pressed = self.play, self.play_above, self.interference
         else:
@@ -243,7 +245,7 @@ class Joint(BareJoint):
         return first - 0.5 * pressed, play - first - 0.5 * pressed
 
     def law(self, direction: Direction) -> Any:
-        """Return the contact law of each station in a direction, across its clearances.
+        """Return the contact law of each station in a direction, with its clearances.
 
         Raises:
             BoomError: the joint has no contact.
@@ -263,7 +265,7 @@ class Joint(BareJoint):
     def pads_of(
         self, direction: Direction, side: Side
     ) -> list[tuple[PadSize | None, float, float]]:
-        """Return size, share of the side's force, and shim in m of each pad; side 0 means both."""
+        """Return (size, share of the side's force, shim in m) of each pad; side 0 means both."""
         if not self.pads:
             return [(self.pad, 1.0, 0.0)]
         here = [pad for pad in self.pads if pad.touches(direction, side)]
@@ -280,7 +282,7 @@ class Joint(BareJoint):
 
 @part(frozen=True, slots=True, config=PART)
 class BareStop:
-    """Stop on the ground that a segment touches after a play, without contact law."""
+    """Stop on the ground with a play, without contact law."""
 
     segment: SegmentRef
     """the name of the segment"""

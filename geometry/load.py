@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Loads on the segments of a boom; each kind has places and a load vector."""
+"""Loads on the segments of a boom: their positions and load vectors."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from geometry.section import Direction
 
 
 class Body(Protocol):
-    """Segment of a model under point forces; methods return vectors (num_dofs,).
+    """Segment of a model under unit point loads; methods return load vectors (num_dofs,).
 
-    The load vector of a unit force is also the row that reads the displacement of its point.
+    The load vector of a unit force is also the row of the displacement of its point.
     """
 
     def force(self, x: float, direction: Direction) -> Array:
@@ -25,27 +25,30 @@ class Body(Protocol):
         """Return the load vector of 1 N·m at x in m, positive towards a larger slope."""
 
     def torque(self, x: float) -> Array:
-        """Return the load vector of 1 N·m at x in m about the axis, in space."""
+        """Return the load vector of a torque of 1 N·m at x in m."""
 
 
 class Member(Body, Protocol):
     """Segment of a model under all kinds of loads."""
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
-        """Return the load vector of 1 N/m between two x in m, by default along the segment."""
+        """Return the load vector of 1 N/m between both x in m of ``span``; None: everywhere."""
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        """Return the load vector of an acceleration: ``force`` in N/m on the plain segment."""
+        """Return the inertia load of a uniform acceleration of the whole segment.
+
+        ``force`` in N/m is the inertia load of the segment without stiffeners.
+        """
 
     def turning(self, direction: Direction) -> Array:
-        """Return the inertia load of an angular acceleration of 1 rad/s² about x = 0.
+        """Return the load vector of an angular acceleration of 1 rad/s² about x = 0.
 
-        It is positive towards a larger slope. Point masses do not contribute."""
+        It is positive towards a larger slope, and excludes point masses."""
 
 
 @dataclass(frozen=True, slots=True)
 class Load:
-    """Force on a segment's axis with a history.
+    """Force on the axis of a segment, with a history.
 
     >>> gust = pt.Load(segment=1, direction="z", magnitude=-1e3, x=14.0, history=pt.Sine(0.5))
     >>> len(pt.BeamElements(replace(boom, loads=(gust,))).system().excitations)
@@ -55,11 +58,10 @@ class Load:
         segment: name of the segment, or its index in a boom.
         direction: direction of the force.
         magnitude: magnitude in N/m along the whole segment, or in N at one place.
-        x: place in m; None for the whole segment.
-        history: factor of the magnitude over time, a history of the dynamics, or its substitute for
-            loads that end before t = 0.
-        inertial: whether the load is the inertia of an acceleration along the whole segment; it
-            then also acts on collars and diaphragms.
+        x: position in m; None for the whole segment.
+        history: factor of the magnitude over time, see :mod:`dynamics.excitation`.
+        inertial: True for the inertia load of an acceleration of the whole segment, which also
+            acts on collars and diaphragms.
     """
 
     segment: SegmentRef
@@ -71,15 +73,15 @@ class Load:
 
     @property
     def places(self) -> Mapping[str, float]:
-        """The x in m at which the load needs mesh lines, by their keys."""
+        """The x in m at which the load needs mesh lines, by their keys in a case."""
         return {} if self.x is None else {"x": self.x}
 
     def resultant(self, length: float) -> float:
-        """Return the resultant in N for the value 1 of the history and a segment's length in m."""
+        """Return the resultant in N at the value 1 of the history, for a segment's length in m."""
         return self.magnitude * (length if self.x is None else 1.0)
 
     def push(self, member: Member) -> Array:
-        """Return the load vector (num_dofs,) for the value 1 of the history."""
+        """Return the load vector (num_dofs,) at the value 1 of the history."""
         if self.x is not None:
             return self.magnitude * member.force(self.x, self.direction)
         if self.inertial:
@@ -107,7 +109,7 @@ class PartialLoad(Load):
 
 @dataclass(frozen=True, slots=True)
 class Moment(Load):
-    """Moment in N·m at one place, positive towards a larger slope of the segment."""
+    """Moment in N·m at a point, positive towards a larger slope of the segment."""
 
     def resultant(self, length: float) -> float:
         return 0.0
@@ -118,8 +120,8 @@ class Moment(Load):
 
 
 @dataclass(frozen=True, slots=True)
-class Turn(Load):
-    """Inertia load of mass per length and rotary inertia under rotation about x = 0, in rad/s².
+class AngularAcceleration(Load):
+    """Inertia load of an angular acceleration about x = 0; the magnitude is in rad/s².
 
     With an impulse as history, it causes an angular velocity of its magnitude in rad/s.
     """

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Structured triangle meshes of segments by gmsh.
 
-Every plate of the section is a wall, which is divided at its middle and into transfinite patches.
-So mesh lines are exactly at supports, stations and contact points, for all lengths and mesh sizes,
-and the mesh does not depend on gmsh's version. The mesh has the symmetries of the section, so that
-a load in the plane of bending moves the section only in that plane, up to round-off. A rotated box
-has the rotated mesh. A diaphragm has a patch in each corner of the section. It shares the nodes of
-its outline with the walls, so that edges there have three triangles.
+Each plate of the section is a wall of transfinite patches, two across its width. So mesh lines are
+exactly at supports, stations and contact points, and the mesh does not depend on gmsh's version.
+The mesh has the symmetries of the section, so that a load in the plane of bending causes lateral
+motion only by round-off. A rotated box has the rotated mesh. A diaphragm has a patch in each corner
+of the section, and shares the nodes of its outline with the walls.
 """
 
 from __future__ import annotations
@@ -41,9 +40,9 @@ class SegmentMesh:
         points: positions (num_points, 3) in m, with x along the boom and the axis at y = z = 0.
         triangles: point numbers (num_triangles, 3).
         plates: names of the section's plates.
-        walls: index (num_triangles,) of each triangle's wall in ``plates``; ``len(plates)`` + k on
-            the diaphragm k.
-        lines: point numbers (num_edges, 2) of the edges of cross-section lines, by name.
+        walls: index (num_triangles,) of each triangle's wall in ``plates``; ``len(plates)`` + k for
+            diaphragm k.
+        lines: point numbers (num_edges, 2) of the edges of outlines, by name.
     """
 
     points: Array
@@ -105,13 +104,13 @@ def mesh_segment(
     """Mesh the plates of a section, and diaphragms.
 
     Args:
-        section: section with the mid-lines to mesh.
-        breaks: x in m of each outline that must be a mesh line, by name; the smallest and the
-            largest x are the ends of the segment. Two names may share a place.
-        size: target edge length in m; every patch gets the nearest whole number of edges.
+        section: section whose mid-lines are meshed.
+        breaks: x in m of required mesh lines around the section, by name. The smallest and the
+            largest x are the ends of the segment. Two breaks may have the same x.
+        size: target edge length in m; each patch has the nearest whole number of edges.
         closed: names of the breaks with a diaphragm, in order.
-        along: target edge lengths in m along the boom, by the x in m of further outlines from which
-            they hold; ``size`` before the first one.
+        along: target edge lengths in m along the boom, by the x in m from which each applies;
+            ``size`` before the first x.
 
     Raises:
         ValueError: the size is not a positive number, or there are no two distinct breaks.
@@ -188,9 +187,9 @@ def _restore_signal_handlers() -> None:
 
 
 class _Ring(NamedTuple):
-    """Points and curves of gmsh once around a section; a curve begins at the point with its index.
+    """Points and curves of gmsh around a section; curve i begins at point i.
 
-    Plates begin at even indices, and have their middles at odd ones.
+    Points of even index are corners, points of odd index are middles of plates.
     """
 
     points: Sequence[int]
@@ -203,10 +202,13 @@ def _build_patches(
     across: float,
     along: Sequence[float],
 ) -> tuple[list[list[int]], list[_Ring]]:
-    """Build transfinite patches; return the surfaces of each wall, and the ring of each outline.
+    """Build the transfinite patches of walls.
 
-    ``across`` is the edge length around the section, ``along`` that of each interval along the
-    boom.
+    ``across`` is the edge length around the section, ``along`` the edge length in each interval
+    along the boom.
+
+    Returns:
+        The surfaces of each wall, and the ring of each outline.
     """
     geo = gmsh.model.geo
     corners: list[Offset] = [place for plate in plates for place in (plate.start, plate.middle)]
@@ -222,8 +224,8 @@ def _build_patches(
             loop = geo.addCurveLoop([rails[i][j], rings[i + 1][j], -rails[i][k], -rings[i][j]])
             surface = geo.addPlaneSurface([loop])
             surfaces[j // 2].append(surface)
-            # Diagonals run from a wall's middle towards a corner along x, so that the mesh has the
-            # symmetries of the section, and a rotated box has the rotated mesh.
+            # With growing x, diagonals run from the middle of a wall to a corner. So the mesh has
+            # the symmetries of the section, and a rotated box has the rotated mesh.
             geo.mesh.setTransfiniteSurface(
                 surface,
                 "Left" if j % 2 == 0 else "Right",
@@ -237,11 +239,11 @@ def _build_patches(
 
 
 def _close(x: float, ring: _Ring, section: Section, size: float) -> list[int]:
-    """Build the transfinite patches of a diaphragm; return their surfaces.
+    """Build the transfinite patches of a diaphragm, and return their surfaces.
 
-    If the outline allows it, as for a box, there is a patch in each corner, whose spokes have as
-    many edges as the opposite halves of plates. Otherwise each half of a plate has a patch, as a
-    fan from the middle.
+    Spokes from the centre divide the diaphragm. If opposite half plates have equal numbers of
+    edges, as in a box, each corner has a quadrilateral patch. Otherwise each half plate has a
+    triangular patch.
     """
     low, high = section.bounds
     middle = gmsh.model.geo.addPoint(x, *(0.5 * (a + b) for a, b in zip(low, high, strict=True)))
@@ -255,12 +257,12 @@ def _close(x: float, ring: _Ring, section: Section, size: float) -> list[int]:
 
 
 def _mesh_between_spokes(ring: _Ring, middle: int, spokes: Mapping[int, int]) -> list[int]:
-    """Build the patches between spokes.
+    """Build the patches between spokes, and return their surfaces.
 
     Args:
-        ring: the ring around the patches.
-        middle: gmsh's point in the middle.
-        spokes: number of edges from a point of the ring to the middle, by the point's index.
+        ring: ring around the patches.
+        middle: point of gmsh at the centre.
+        spokes: number of edges of each spoke, by the index of its point of the ring.
     """
     geo, count, places = gmsh.model.geo, len(ring.points), list(spokes)
     curves = {j: geo.addLine(ring.points[j], middle) for j in places}
@@ -272,7 +274,7 @@ def _mesh_between_spokes(ring: _Ring, middle: int, spokes: Mapping[int, int]) ->
         loop = geo.addCurveLoop([*sides, curves[after], -curves[before % count]])
         surfaces.append(geo.addPlaneSurface([loop]))
         ends = [ring.points[j % count] for j in range(before, after + 1)]
-        # Diagonals run from the middle towards a corner, so that the mesh is symmetric.
+        # Diagonals run from the centre to a corner, so that the mesh is symmetric.
         if len(ends) == 2:
             corner_last = ends if after % 2 == 0 else ends[::-1]
             geo.mesh.setTransfiniteSurface(surfaces[-1], "Left", [middle, *corner_last])
@@ -292,7 +294,7 @@ def _edges(length: float, size: float) -> int:
 def _extract(surfaces: Sequence[Sequence[int]], plates: tuple[str, ...]) -> SegmentMesh:
     mesh = gmsh.model.mesh
     tags, coordinates, _ = mesh.getNodes()
-    # Points in a mirror plane must be in it to the last bit.
+    # Coordinates of points in a mirror plane are exactly 0.
     coordinates[np.abs(coordinates) < _ROUND_OFF * np.ptp(coordinates)] = 0.0
     number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     number[tags] = np.arange(tags.size)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Observations: additional outputs of a boom's motion."""
+"""Observations: outputs of a motion that a case requests."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from pydantic.dataclasses import dataclass
 
 from geometry.fields import PART, Name, Place, SegmentRef
 
-# Quantities that a case may observe.
+# Quantities that a case may request.
 Recorded = Literal["deflection", "rotation", "velocity", "acceleration", "lateral", "twist"]
 
 Quantity = Literal[Recorded, "distortion"]
 
 
-# Quantities that a row can read of a cross-section.
+# Displacements of a cross-section, which are linear in the coordinates of a model.
 Read = Literal["deflection", "rotation", "distortion", "lateral", "twist"]
 
-# Quantities that only booms in space have.
-IN_SPACE: tuple[Read, ...] = ("lateral", "twist")
+# Displacements that only booms in space have.
+SPATIAL_QUANTITIES: tuple[Read, ...] = ("lateral", "twist")
 
 
-class Kind(NamedTuple):
-    """Kind of a quantity: unit, quantity that is read, number of time derivatives, description."""
+class QuantityKind(NamedTuple):
+    """Unit, displacement, order of the time derivative, and title of an output quantity."""
 
     unit: str
     read: Read
@@ -32,14 +32,18 @@ class Kind(NamedTuple):
     title: str
 
 
-KINDS: Mapping[Quantity, Kind] = {
-    "deflection": Kind("m", "deflection", 0, "deflection along z"),
-    "rotation": Kind("rad", "rotation", 0, "rotation of the cross-section, the slope along z"),
-    "distortion": Kind("m", "distortion", 0, "how much taller the cross-section has become"),
-    "lateral": Kind("m", "lateral", 0, "deflection along y"),
-    "twist": Kind("rad", "twist", 0, "turn about x"),
-    "velocity": Kind("m/s", "deflection", 1, "velocity along z"),
-    "acceleration": Kind(
+KINDS: Mapping[Quantity, QuantityKind] = {
+    "deflection": QuantityKind("m", "deflection", 0, "deflection along z"),
+    "rotation": QuantityKind(
+        "rad", "rotation", 0, "rotation of the cross-section, the slope along z"
+    ),
+    "distortion": QuantityKind(
+        "m", "distortion", 0, "how much taller the cross-section has become"
+    ),
+    "lateral": QuantityKind("m", "lateral", 0, "deflection along y"),
+    "twist": QuantityKind("rad", "twist", 0, "turn about x"),
+    "velocity": QuantityKind("m/s", "deflection", 1, "velocity along z"),
+    "acceleration": QuantityKind(
         "m/s2", "deflection", 2, "acceleration along z, mean of the output interval that ends then"
     ),
 }
@@ -47,7 +51,7 @@ KINDS: Mapping[Quantity, Kind] = {
 
 @dataclass(frozen=True, slots=True, config=PART)
 class Observation:
-    """Output that every model records.
+    """Output that a case requests from all models.
 
     >>> seat = pt.Observation("seat", segment=1, x=10.0, quantity="velocity")
     >>> system = pt.BeamElements(replace(boom, observations=(seat,))).system()
@@ -66,6 +70,6 @@ class Observation:
     interval, rotation of the cross-section; in space also lateral deflection and twist"""
 
     @property
-    def kind(self) -> Kind:
-        """The kind of the quantity."""
+    def kind(self) -> QuantityKind:
+        """The unit, displacement and derivative of the quantity."""
         return KINDS[self.quantity]

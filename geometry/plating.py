@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Plated meshes: plate thickness by triangle, and meshes of tapered segments."""
+"""Meshes with the plate thickness of each triangle, and meshes of tapered segments."""
 
 from __future__ import annotations
 
@@ -22,22 +22,21 @@ class PlatedMesh(SegmentMesh):
     """Mesh with the thickness of each triangle.
 
     Args:
-        thickness: thickness (num_triangles,) of all plates in m.
-        plain: thickness (num_triangles,) of walls without collars in m, 0 on diaphragms.
-        even: weight (num_triangles,) in m that distributes a uniform force per length over the
+        thickness: thickness (num_triangles,) in m.
+        plain: thickness (num_triangles,) in m without collars, 0 on diaphragms.
+        load_weight: weight (num_triangles,) in m that distributes a uniform line load over the
             walls: ``plain``, divided by the relative area of the section if the segment tapers.
     """
 
     thickness: Array
     plain: Array
-    even: Array
+    load_weight: Array
 
     @property
-    def halved(self) -> PlatedMesh:
-        """The mesh with edges of half the length, without the lines.
+    def refined(self) -> PlatedMesh:
+        """The mesh with each triangle divided into four, without lines.
 
-        Its first points are those of this mesh; four triangles one after another take the place of
-        each, in the same plane.
+        Its first points are those of this mesh. Triangles 4k to 4k + 3 replace triangle k.
         """
         corners = self.triangles
         edges = np.sort(corners[:, [[1, 2], [2, 0], [0, 1]]], axis=2).reshape(-1, 2)
@@ -54,22 +53,23 @@ class PlatedMesh(SegmentMesh):
             lines={},
             thickness=np.repeat(self.thickness, 4),
             plain=np.repeat(self.plain, 4),
-            even=np.repeat(self.even, 4),
+            load_weight=np.repeat(self.load_weight, 4),
         )
 
 
-def plated(segment: Segment, mesh: SegmentMesh) -> PlatedMesh:
-    """Return a segment's mesh with the thickness of its plates.
+def add_thickness(segment: Segment, mesh: SegmentMesh) -> PlatedMesh:
+    """Return a mesh with the plate thickness of its segment.
 
     Args:
-        segment: segment with a section, and with the diaphragms of the mesh in the same order.
-        mesh: mesh with lines at the ends of collars.
+        segment: segment with a section.
+        mesh: mesh of the segment, with lines at the ends of collars, and diaphragms in the order of
+            the segment.
     """
     assert segment.section is not None
     x = mesh.along
     plain = even = plain_thickness(segment.section, mesh)
     if segment.head_section is not None:
-        # Mirror images have the same thickness to the last bit.
+        # Rounding gives mirror images exactly the same thickness.
         part = np.round((x - segment.start) / segment.length, _DIGITS)
         plain = plain + part * (plain_thickness(segment.head_section, mesh) - plain)
         parabola = np.polyfit([0.0, 0.5, 1.0], areas(segment.section, segment.head_section), 2)
@@ -96,14 +96,14 @@ _ROUND_OFF = 1.0e-12
 
 
 def tapered_mesh(segment: Segment, mesh: PlatedMesh) -> PlatedMesh:
-    """Move each point into the section at its x; walls are flat between mesh lines.
+    """Return a mesh with each point moved into the section at its x.
 
-    A section is a fan of triangles from its middle to each plate: a point keeps its position
-    relative to its triangle.
+    Triangles from the centre of a section to each plate divide it. A point keeps its relative
+    position in its triangle. Walls are flat between mesh lines.
 
     Args:
         segment: tapered segment.
-        mesh: mesh of the plain segment that has its widest section everywhere.
+        mesh: mesh of the prismatic segment with the section ``segment.widest``.
     """
     number, first, last = _in_fan(segment.widest, mesh.points[:, 1:])
     points = mesh.points.copy()
@@ -115,18 +115,18 @@ def tapered_mesh(segment: Segment, mesh: PlatedMesh) -> PlatedMesh:
         ends = np.roll(starts, -1, axis=0)
         arms = (starts - middle)[number[here]], (ends - middle)[number[here]]
         points[here, 1:] = middle + first[here, None] * arms[0] + last[here, None] * arms[1]
-    # Points in a mirror plane must be in it to the last bit.
+    # Coordinates of points in a mirror plane are exactly 0.
     points[np.abs(points) < near] = 0.0
     return replace(mesh, points=points)
 
 
 def _fan(section: Section) -> tuple[Array, Array]:
-    """Return the starts (num_plates, 2) of plates, and the middle (2,), in m."""
+    """Return the starts (num_plates, 2) of plates, and the centre (2,), in m."""
     return np.array([plate.start for plate in section.plates]), np.mean(section.bounds, axis=0)
 
 
 def _in_fan(section: Section, places: Array) -> tuple[Indices, Array, Array]:
-    """Return the triangle (num_places,) of each place, and its coordinates along two sides."""
+    """Return the triangle (num_places,) of each place, and its relative coordinates along sides."""
     starts, middle = _fan(section)
     arms = np.stack([starts, np.roll(starts, -1, axis=0)], axis=2) - middle[:, None]
     parts = np.einsum("kij,nj->nki", np.linalg.inv(arms), places - middle)

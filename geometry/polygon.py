@@ -39,7 +39,7 @@ _LEAST_TURN, _MOST_TURN = -1.0e-9, np.radians(170.0)
 class PolygonSection(Section):
     """Closed section of flat plates, described by the corners of their mid-lines.
 
-    Area, centroid and second moments are those of thick plates, which are mitred at corners, as in
+    Area, centroid and second moments include the thickness of plates, with mitred corners as in
     :class:`geometry.section.BoxSection`. Shear areas follow from the shear flow along the mid-lines
     (:mod:`geometry.shear_flow`).
 
@@ -66,10 +66,10 @@ class PolygonSection(Section):
 
     @cached_property
     def plates(self) -> tuple[Plate, ...]:
-        """The plates, anticlockwise from the lowest corner, of several from the left one."""
+        """The plates, anticlockwise from the lowest corner, or from the left one of several."""
         corners = self._upwards[0] - np.array(self.centroid)
         for axis in self.mirrors:
-            # Values that differ by round-off become equal to the last bit, as meshes require.
+            # Meshes require that mirror images are exactly equal.
             image = _mirrored(corners, axis)
             corners = 0.5 * (corners + image[_partners(corners, image)])
         return _plates(corners, self._upwards[1])
@@ -98,12 +98,12 @@ class PolygonSection(Section):
     @cached_property
     def shear_area(self) -> float:
         """The shear area in m² for a force along z, by the work of the shear flow."""
-        return ShearFlow.of(self.plates, "z").shear_area
+        return ShearFlow.from_plates(self.plates, "z").shear_area
 
     @cached_property
     def lateral_shear_area(self) -> float:
         """The shear area in m² for a force along y, by the work of the shear flow."""
-        return ShearFlow.of(self.plates, "y").shear_area
+        return ShearFlow.from_plates(self.plates, "y").shear_area
 
     @cached_property
     def centroid(self) -> Offset:
@@ -120,7 +120,7 @@ class PolygonSection(Section):
             outwards = side * ends[:, :, COMPONENT[direction] - 1]
             outermost = np.flatnonzero(outwards.min(axis=1) > outwards.max() - self.near)
             if len(outermost) == 1:
-                found.append(Face.of(self.plates, int(outermost[0]), direction, side))
+                found.append(Face.from_plate(self.plates, int(outermost[0]), direction, side))
         return tuple(found)
 
     @cached_property
@@ -176,10 +176,9 @@ _OUTWARDS: Sequence[tuple[Direction, Side]] = (("z", -1), ("y", 1), ("z", 1), ("
 
 
 def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> Section:
-    """Return the section of a polygon; an upright rectangle becomes a box.
+    """Return the section of a polygon. An upright rectangle becomes a :class:`BoxSection`.
 
-    A box carries shear only in its webs, a polygon by the shear flow. So a box has the same
-    properties in both specifications.
+    So a box has the same shear area in both specifications: only its webs carry shear.
 
     >>> corners = ((-0.15, -0.2), (0.15, -0.2), (0.15, 0.2), (-0.15, 0.2))
     >>> print(pt.closed_polygon(corners, thicknesses=(0.01, 0.006, 0.008, 0.006)))
@@ -246,7 +245,7 @@ def _check(corners: Sequence[Offset], thicknesses: Sequence[float]) -> None:
 
 
 def _plates(corners: Array, thicknesses: Array) -> tuple[Plate, ...]:
-    """Return the plates with names by their side, from the bottom upwards."""
+    """Return the plates, whose names give their side and number from the bottom upwards."""
     names = _names(corners)
     ends: list[Offset] = [(y, z) for y, z in corners.tolist()]
     return tuple(
@@ -258,7 +257,7 @@ def _plates(corners: Array, thicknesses: Array) -> tuple[Plate, ...]:
 
 
 def _names(corners: Array) -> list[str]:
-    """Return the names of plates: bottom and top if they exist, right or left for the others."""
+    """Return the names of plates: bottom, top, right or left, with a number if needed."""
     ends, low, high = np.roll(corners, -1, axis=0), corners[:, 1].min(), corners[:, 1].max()
     near = _SAME * (high - low)
     sides = []
@@ -294,7 +293,7 @@ def _partners(places: Array, images: Array) -> Indices:
 
 
 def _moments(polygons: Array) -> Array:
-    """Return the common centroid in m, and ∫ y² dA and ∫ z² dA in m⁴, of polygons (Green).
+    """Return the common centroid in m, and ∫ y² dA and ∫ z² dA in m⁴, by Green's theorem.
 
     Args:
         polygons: (num_polygons, num_corners, 2) in m, anticlockwise.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Probe responses: compliance of a segment to beam-like loads, which a calibrated beam matches.
+"""Probe responses: compliance of a shell segment to loads that a calibrated beam reproduces.
 
-The probes are forces and torques at the segment's ends and stations, and moments at its ends. Each
-is distributed over the section like the stress of a beam, so that it causes no local deformation.
+The probes are forces and torques at the ends and stations of the segment, and moments at its ends.
+Each is distributed over the section like the stress of a beam, which avoids local deformation.
 """
 
 from __future__ import annotations
@@ -16,8 +16,7 @@ from geometry.boom import Boom
 
 ProbedMotion = Literal["z", "y", "twist"]
 
-# Frequency of probes in Hz, low compared with all elastic motion. Self-equilibrated forces do not
-# excite rigid motion.
+# Frequency of probes in Hz, far below all elastic modes.
 PROBE_FREQUENCY = 2.0
 
 
@@ -26,9 +25,9 @@ class ProbeResponses:
     """Compliance of a segment to probes.
 
     Args:
-        places: ascending x in m of forces and torques; the first and the last one also of moments.
-        compliance: compliance (num_probes, num_probes) at σ = (2π · ``PROBE_FREQUENCY``)² in m/N,
-            rad/N and rad/(N·m), by motion; for bending, forces come before moments.
+        places: ascending x in m of forces and torques. Moments act at the first and the last x.
+        compliance: (num_probes, num_probes) at the frequency of probes in m/N, rad/N and
+            rad/(N·m), by motion; for bending, forces come before moments.
     """
 
     places: tuple[float, ...]

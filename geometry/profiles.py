@@ -74,7 +74,7 @@ def u_section(
     Args:
         height: distance between bottom and top.
         width: distance between the webs.
-        radius: radius of the bends; with half the width, both form one semicircle.
+        radius: radius of the bends; if it is half the width, both form one semicircle.
         facets: flat plates in each bend, between the level bottom and the web; one at least.
         top, bottom, web: thicknesses of the top, of the bottom with its bends, and of the webs.
 
@@ -105,8 +105,8 @@ def _mirrored(
     """Return the section of a right half and its mirror image.
 
     Args:
-        twice: doubled (y, z) of the half's corners in m, (num_corners, 2), upwards.
-        thicknesses: thicknesses in m, of the bottom, the plates between the corners, and the top.
+        twice: 2 (y, z) in m of the corners of the right half (num_corners, 2), upwards.
+        thicknesses: thicknesses in m of the bottom, the plates between the corners, and the top.
     """
     right = 0.5 * np.array(twice)
     left = right[::-1] * [-1.0, 1.0]

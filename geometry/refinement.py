@@ -2,10 +2,10 @@
 """Refinement zones of meshes, for an accurate local compliance at loads and contacts.
 
 Edge lengths are fractions of the loaded size: the length of a corner contact, the smaller side of a
-pad, or the size of the box if its walls share the force. The fractions are measured: with them, the
-local compliance (less that of the same force distributed over the webs) differs from that of
-infinitely fine meshes by less than the tolerance. The error is proportional to the square of the
-edge length.
+pad, or the size of the section if its walls share the force. The fractions are calibrated so that
+the error of the local compliance by the mesh is below the tolerance. The local compliance is that
+of a force less that of the same force distributed over the webs; its error is proportional to the
+square of the edge length.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.boom import Boom
-from geometry.contact_places import ContactLine, Pad, StopPatch, Stretch
+from geometry.contact_places import ContactInterval, ContactLine, Pad, StopPatch
 from geometry.section import Direction, Face, Section
 
-# The tolerance at which the fractions below were measured.
-MEASURED_AT = 0.01
+# Tolerance for which the fractions below are calibrated.
+CALIBRATION_TOLERANCE = 0.01
 
-# Edge length as a fraction of the length of a corner contact, the smaller side of a pad, and the
-# smaller side of the box; growth of the edge length per unit of distance.
+# Edge length as a fraction of the length of a corner contact, of the smaller side of a pad and of
+# the smaller side of the section, each with the growth of the edge length per unit of distance.
 _CORNER, _CORNER_GROWTH = 0.2, 0.5
 _PAD, _PAD_GROWTH = 0.18, 0.3
 _WALLS, _WALLS_GROWTH = 0.1, 0.5
@@ -32,7 +32,7 @@ _WALLS, _WALLS_GROWTH = 0.1, 0.5
 
 @dataclass(frozen=True, slots=True)
 class RefinementZone:
-    """Refinement zone of a segment's mesh, with all its mirror images.
+    """Refinement zone of a mesh. It also applies to its mirror images.
 
     Args:
         low, high: (x, y, z) in m of opposite corners, on the positive side of the mirrors.
@@ -45,20 +45,20 @@ class RefinementZone:
     size: float
     growth: float
 
-    def allowed(self, places: Array) -> Array:
-        """Return the permitted edge length (num_places,) in m at places (num_places, 3)."""
+    def edge_length(self, places: Array) -> Array:
+        """Return the permitted edge length (num_places,) in m at points (num_places, 3)."""
         outside = np.maximum(np.maximum(self.low - places, places - self.high), 0.0)
         return np.asarray(self.size + self.growth * np.sqrt((outside**2).sum(axis=1)))
 
     def reach(self, size: float) -> tuple[float, float]:
-        """Return the limits of x in m between which edges of a size are too long for the zone."""
+        """Return the x in m between which the permitted edge length is below ``size`` in m."""
         distance = max((size - self.size) / self.growth, 0.0)
         return self.low[0] - distance, self.high[0] + distance
 
-    def squares(self, size: float) -> float:
-        """Return the number of squares with permitted edge lengths below ``size``.
+    def num_squares(self, size: float) -> float:
+        """Return the number of square elements where the permitted edge length is below ``size``.
 
-        It is counted on an infinite flat wall: in the zone, along its sides, and at its corners.
+        It is estimated for an infinite flat wall: in the zone, along its sides, at its corners.
         """
         if self.size >= size:
             return 0.0
@@ -80,15 +80,15 @@ def refinement_zones(
     """Return the refinement zones of a segment with a section.
 
     Args:
-        boom: boom of the segment.
-        number: index in ``Boom.segments``.
+        boom: boom with the segment.
+        number: index of the segment in ``Boom.segments``.
         tolerance: relative error of the local compliance.
         line: contact line on the walls.
         stop_patches, pads: stop patches and pads of the boom.
     """
-    finer = float(np.sqrt(tolerance / MEASURED_AT))
-    # Zones on several sides, or mirror images, are merged.
-    measured = dict.fromkeys(_measured(boom, number, line, stop_patches, pads))
+    finer = float(np.sqrt(tolerance / CALIBRATION_TOLERANCE))
+    # Zones with the same data, such as mirror images, are merged.
+    measured = dict.fromkeys(_zones(boom, number, line, stop_patches, pads))
     return [
         RefinementZone(low, high, finer * size, finer * growth)
         for low, high, size, growth in measured
@@ -96,17 +96,17 @@ def refinement_zones(
 
 
 _Place = tuple[float, float, float]
-_Measured = tuple[_Place, _Place, float, float]
+_Zone = tuple[_Place, _Place, float, float]
 
 
-def _measured(
+def _zones(
     boom: Boom,
     number: int,
     line: ContactLine,
     stop_patches: Sequence[StopPatch],
     pads: Sequence[Pad],
-) -> Iterator[_Measured]:
-    """Yield corners, size and growth of each zone for the tolerance ``MEASURED_AT``."""
+) -> Iterator[_Zone]:
+    """Yield (low, high, size, growth) of each zone for the tolerance of calibration."""
     segment = boom.segments[number]
     section = segment.widest
     lowest, high = section.bounds
@@ -119,19 +119,23 @@ def _measured(
         yield (x, low_y, low_z), (x, *high), _WALLS * across, _WALLS_GROWTH
     for rest in stop_patches:
         if rest.stop.segment == number:
-            extended = [rest.extended(boom, extension) for extension in rest.reach]
+            extended = [rest.at_extension(boom, extension) for extension in rest.reach]
             for face in _faces(section, "z"):
-                yield _swept(_corner(one.pressed, face) for one in extended)
+                yield _envelope(_corner(one.interval, face) for one in extended)
     for pad in pads:
         for end, of in enumerate((pad.joint.inner, pad.joint.outer)):
             if of == number:
                 for face in _faces(section, pad.direction):
-                    telescoping_pads = (pad.extended(boom, extension) for extension in pad.reach)
-                    yield _swept(_pressed(boom, one, end, face, line) for one in telescoping_pads)
+                    telescoping_pads = (
+                        pad.at_extension(boom, extension) for extension in pad.reach
+                    )
+                    yield _envelope(
+                        _pad_zone(boom, one, end, face, line) for one in telescoping_pads
+                    )
 
 
 def _walls(boom: Boom, number: int) -> Iterator[float]:
-    """Yield x of supports, ties, loads, masses and stiffeners, which act in the walls' plane."""
+    """Yield the x in m at which forces act in the plane of walls, and of stiffeners."""
     segment = boom.segments[number]
     yield from (support.x for support in segment.supports)
     yield from (mass.x for mass in segment.masses)
@@ -159,30 +163,30 @@ def _place(face: Face, x: float, across: float) -> _Place:
     return (x, across, face.offset) if face.direction == "z" else (x, face.offset, across)
 
 
-def _corner(stretch: Stretch, face: Face) -> _Measured:
+def _corner(stretch: ContactInterval, face: Face) -> _Zone:
     size = _CORNER * (stretch.end - stretch.start)
     low, high = (_place(face, x, face.high) for x in (stretch.start, stretch.end))
     return low, high, size, _CORNER_GROWTH
 
 
-def _swept(places: Iterable[_Measured]) -> _Measured:
-    """Return the range from the first to the last of places that differ only in x."""
+def _envelope(places: Iterable[_Zone]) -> _Zone:
+    """Return the zone that encloses zones that differ only in x."""
     lows, highs, sizes, growths = zip(*places, strict=True)
     return min(lows), max(highs), sizes[0], growths[0]
 
 
-def _pressed(boom: Boom, pad: Pad, end: int, face: Face, line: ContactLine) -> _Measured:
-    """Return the pad's area on the face of the inner (``end`` 0) or outer segment."""
+def _pad_zone(boom: Boom, pad: Pad, end: int, face: Face, line: ContactLine) -> _Zone:
+    """Return the zone of a pad on a face of the inner (``end`` 0) or outer segment (``end`` 1)."""
     covered = pad.patch
     if covered is None:
-        low, high, size, growth = _corner(pad.pressed[end], face)
+        low, high, size, growth = _corner(pad.intervals[end], face)
         return (low if line != "across" else (low[0], 0.0, low[2])), high, size, growth
     size = _PAD * min(covered.end - covered.start, covered.width)
     near, far = covered.across(
         boom.segments[pad.joint.inner].widest.face(face.direction, face.side)
     )
     low, high = (
-        _place(face, x + pad.moved[end], across)
+        _place(face, x + pad.travel[end], across)
         for x, across in ((covered.start, near), (covered.end, far))
     )
     return low, high, size, _PAD_GROWTH

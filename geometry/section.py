@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Thin-walled sections: their protocol, the box, and inference of a box from beam properties.
 
-A section consists of flat plates around a cell. Places (y, z) count from its centroid, y is
-lateral, z in the plane of bending. Other modules do not depend on the number of plates: meshes and
-shells use plates, contacts use faces, beams use properties.
+A section consists of flat plates around a cell. Coordinates (y, z) are relative to its centroid;
+y is lateral, z in the plane of bending. Other modules do not depend on the number of plates: meshes
+and shells use plates, contacts use faces, beams use properties.
 
-Data of beams have area and second moment; shells need plates. A box with uniform walls has three
-parameters (height, width, thickness), so that one more condition is necessary: the height-to-width
-ratio for the outermost segment, and the space inside the next larger section for the others.
+Shells need plates, but beam data give only area and second moment. A box with uniform walls has
+three parameters (height, width, thickness). The third condition is the height-to-width ratio for
+the outermost segment, and the clearance in the next larger section for the others.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ Offset = tuple[float, float]
 # Index of each direction in (x, y, z).
 COMPONENT: Mapping[Direction, int] = {"y": 1, "z": 2}
 
-# Minimum height of an inner box as a fraction of the outer one.
+# Minimum height of an inferred inner box, as a fraction of the height inside the outer section.
 SMALLEST = 1.0e-6
 
-# Fraction of a root below which its imaginary part is round-off.
+# Fraction of the modulus of a root below which its imaginary part is round-off.
 _REAL = 1.0e-8
 
 
 class SectionError(ValueError):
-    """Error for requirements that no section satisfies."""
+    """Error for data that no section can have."""
 
 
 class Plate(NamedTuple):
@@ -78,12 +78,12 @@ class Plate(NamedTuple):
 
 
 class Face(NamedTuple):
-    """Plate that may touch an inner or an outer section.
+    """Plate normal to y or z, at which contact is possible.
 
     Args:
-        plate: index in the section's plates.
-        direction: direction of the outward normal.
-        side: 1 if the normal has the sense of the direction, −1 for the opposite sense.
+        plate: index in the plates of the section.
+        direction: axis of the outward normal.
+        side: sign of the outward normal along this axis.
         offset: offset of the mid-line along the direction, in m.
         low, high: coordinates of its ends across the plate in m.
         thickness: thickness of the plate in m.
@@ -98,7 +98,9 @@ class Face(NamedTuple):
     thickness: float
 
     @classmethod
-    def of(cls, plates: Sequence[Plate], number: int, direction: Direction, side: Side) -> Face:
+    def from_plate(
+        cls, plates: Sequence[Plate], number: int, direction: Direction, side: Side
+    ) -> Face:
         """Return the face of a plate that is normal to a direction."""
         plate, normal = plates[number], COMPONENT[direction] - 1
         low, high = sorted((plate.start[1 - normal], plate.end[1 - normal]))
@@ -111,12 +113,12 @@ class Face(NamedTuple):
 
     @property
     def outside(self) -> float:
-        """The coordinate in m of the outer surface, which may touch an outer section."""
+        """The coordinate in m of the outer surface."""
         return self.offset + 0.5 * self.side * self.thickness
 
     @property
     def inside(self) -> float:
-        """The coordinate in m of the inner surface, which may touch an inner section."""
+        """The coordinate in m of the inner surface."""
         return self.offset - 0.5 * self.side * self.thickness
 
 
@@ -160,9 +162,9 @@ class Section(Protocol):
         """The directions of mirror symmetry, ``y`` before ``z``."""
 
     def shear_plates(self, direction: Direction) -> tuple[tuple[int, float], ...]:
-        """Return the plates that carry a shear force in their own plane.
+        """Return (index, force along the tangent) of the plates that carry a unit shear force.
 
-        Each is an index and the force along its tangent under a unit force through the centroid.
+        The force acts at the centroid.
         """
 
     def __str__(self) -> str:
@@ -173,7 +175,7 @@ class Section(Protocol):
 
     @property
     def polar_second_moment_of_area(self) -> float:
-        """The polar second moment in m⁴; the polar inertia is density times it."""
+        """The polar second moment in m⁴."""
         return self.second_moment_of_area + self.lateral_second_moment_of_area
 
     @property
@@ -208,21 +210,21 @@ class Section(Protocol):
         return high - low
 
     def face(self, direction: Direction, side: float) -> Face:
-        """Return the face with this outward normal, which must exist; ``side`` is a sign."""
+        """Return the face whose outward normal has a direction and the sign of ``side``."""
         return next(f for f in self.faces if f.direction == direction and f.side * side > 0.0)
 
     def on_plates(self, places: Array) -> Mask:
-        """Return the mask (num_places,) of places (num_places, 2) on a mid-line."""
+        """Return the mask (num_places,) of points (num_places, 2) that are on a mid-line."""
         distance = np.min([plate.distance(places) for plate in self.plates], axis=0)
         return np.asarray(distance < self.near)
 
     @property
     def near(self) -> float:
-        """The distance in m below which places are the same; meshes are exact to round-off."""
+        """The distance in m below which points coincide."""
         return _ON_PLATE * self.size("z")
 
 
-# Distance below which places are the same, as a fraction of a section's height.
+# Distance below which points coincide, as a fraction of the height of a section.
 _ON_PLATE = 1.0e-7
 
 
@@ -246,10 +248,10 @@ def rectangle(
 def rectangle_faces(plates: Sequence[Plate]) -> tuple[Face, ...]:
     """Return the faces of the four plates of a rectangle."""
     return (
-        Face.of(plates, 0, "z", -1),
-        Face.of(plates, 1, "y", 1),
-        Face.of(plates, 2, "z", 1),
-        Face.of(plates, 3, "y", -1),
+        Face.from_plate(plates, 0, "z", -1),
+        Face.from_plate(plates, 1, "y", 1),
+        Face.from_plate(plates, 2, "z", 1),
+        Face.from_plate(plates, 3, "y", -1),
     )
 
 
@@ -257,8 +259,7 @@ def rectangle_faces(plates: Sequence[Plate]) -> tuple[Face, ...]:
 class BoxSection(Section):
     """Rectangular box, described by the mid-lines and thicknesses of its four walls.
 
-    Its corners are filled: properties except shear and torsion are those of the outer rectangle
-    less the inner one.
+    Area, centroid and second moments are those of the outer rectangle less the inner one.
 
     >>> box = pt.BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006)
     >>> print(f"{1e4 * box.area:.0f} cm²")
@@ -333,12 +334,12 @@ class BoxSection(Section):
 
     @property
     def shear_area(self) -> float:
-        """The shear area in m² for a force along z: that of both webs."""
+        """The shear area in m² for a force along z: the area of both webs."""
         return self.height * sum(self._walls[1])
 
     @property
     def lateral_shear_area(self) -> float:
-        """The shear area in m² for a force along y: that of both flanges."""
+        """The shear area in m² for a force along y: the area of both flanges."""
         return self.width * sum(self._walls[0])
 
     @property
@@ -379,7 +380,7 @@ class BoxSection(Section):
         return tuple(axis for axis, same in alike.items() if same)
 
     def shear_plates(self, direction: Direction) -> tuple[tuple[int, float], ...]:
-        """Return the webs along z, the flanges along y, by the law of the lever."""
+        """Return (index, force) of the webs for z, of the flanges for y, by moment equilibrium."""
         y, z = self.centroid
         if direction == "z":
             return (1, 0.5 + y / self.width), (3, y / self.width - 0.5)
@@ -389,19 +390,19 @@ class BoxSection(Section):
 def _hollow_rectangle(
     width: float, height: float, webs: Offset, flanges: Offset
 ) -> tuple[float, float]:
-    """Return the centroid of a hollow rectangle and its second moment about the centroid.
+    """Return the height of the centroid and the second moment of a hollow rectangle.
 
     Args:
         width, height: width and height of the mid-lines in m.
-        webs, flanges: thicknesses in m, of flanges that of the upper one first.
+        webs: thicknesses of the webs in m.
+        flanges: thicknesses of the upper and the lower flange in m.
 
     Returns:
-        The height above the middle of the mid-lines in m, and the moment about the axis parallel
-        to the width in m⁴, by the parallel axes' theorem (Steiner).
+        The height in m above the middle of the mid-lines, and the second moment in m⁴ about the
+        centroidal axis along the width, by the parallel axis theorem.
     """
     web, flange = 0.5 * sum(webs), 0.5 * sum(flanges)
-    # The middles of the outer rectangle and of the hole have opposite distances from that of the
-    # mid-lines.
+    # The centres of the outer rectangle and of the hole are at ±middle from the mid-lines' centre.
     middle = 0.25 * (flanges[0] - flanges[1])
     whole, hole = (width + web) * (height + flange), (width - web) * (height - flange)
     centre = middle * (whole + hole) / (whole - hole)
@@ -424,8 +425,8 @@ def infer_outer_section(
         SectionError: no wall thickness gives these values.
     """
 
-    # With width = h/r and wall = c/h, 6 J = c ((1 + 3/r) h² + (3 + 1/r) c²/h²); of its two roots h²
-    # the larger one has the thinner wall.
+    # With width = h/r and wall = c/h, 6 J = c ((1 + 3/r) h² + (3 + 1/r) c²/h²). The larger of the
+    # two roots h² has the thinner wall.
     c = area / (2.0 * (1.0 + 1.0 / height_to_width))
     high, low = 1.0 + 3.0 / height_to_width, (3.0 + 1.0 / height_to_width) * c**2
     half = 3.0 * second_moment_of_area / c
@@ -445,7 +446,7 @@ def infer_outer_section(
 def infer_inner_section(
     area: float, second_moment_of_area: float, outer: Section, clearance: float
 ) -> BoxSection:
-    """Return the uniform-wall box that fills ``outer`` up to the clearance above and below.
+    """Return the uniform-wall box that fits in ``outer`` with a clearance above and below.
 
     Args:
         area: area in m².
@@ -454,7 +455,7 @@ def infer_inner_section(
         clearance: Δ in m, at the top and at the bottom.
 
     Raises:
-        SectionError: no such box exists, or it is too wide; the remedy is an explicit section.
+        SectionError: no such box exists, or the outer section has inclined plates.
     """
     if len(outer.plates) != len(outer.faces):
         raise SectionError(

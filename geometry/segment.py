@@ -18,18 +18,17 @@ from pydantic_core import PydanticCustomError
 
 from geometry.arrays import Array
 from geometry.boom_error import BoomError
-from geometry.compression import UNPRESSED, Compression
-from geometry.fields import PART, Category, In, Length, Place, Positive, placed
+from geometry.compression import NO_COMPRESSION, Compression
+from geometry.fields import PART, Category, In, Length, Place, Positive, resolve_distances
 from geometry.section import COMPONENT, Section, SectionError
 from geometry.support import Support, check_support
-from geometry.taper import areas, between, check_alike, half_way, mean_area
+from geometry.taper import areas, check_alike, interpolate_section, mean_area, middle_section
 
-# Fraction of a segment's length below which two places are the same: far below any plate, far above
-# round-off.
+# Fraction of a segment's length below which two x are equal: far below any part, above round-off.
 SAME_PLACE = 1.0e-10
 
-# Shortest element as a fraction of a segment's length: the stiffness of an element grows with the
-# inverse cube of its length, so that a shorter one causes a complete loss of digits.
+# Minimum distance of supports as a fraction of a segment's length. The stiffness of an element
+# between them is proportional to the inverse cube of its length and would cause loss of digits.
 APART = 1.0e-4
 
 
@@ -153,7 +152,7 @@ class Lateral:
         rotary_inertia: rotary inertia for bending in the plane x-y in kg·m.
         torsion_constant: J_t of the torsional stiffness G J_t in m⁴.
         polar_inertia: mass moment of inertia per length about x in kg·m.
-        load: uniform load along y in N/m, applied at t = 0 and kept.
+        load: uniform load along y in N/m, constant from t = 0 on.
     """
 
     second_moment_of_area: float
@@ -179,16 +178,16 @@ class Segment:
         second_moment_of_area: J in m⁴.
         rotary_inertia: I_p in kg·m.
         section: section; only shear-flexible beams, shells and booms in space need it.
-        head_section: section at the end of a tapered segment. ``section`` is then that at the
-            start, all centroids are on the axis, m̄ is the mean, and the other values above and in
-            ``lateral`` hold at the middle.
-        load: uniform load along z in N/m, applied at t = 0 and kept.
+        head_section: section at the end of a tapered segment. Then ``section`` is the section at
+            the start, all centroids are on the axis, m̄ is the mean, and the other values above and
+            in ``lateral`` apply at the middle.
+        load: uniform load along z in N/m, constant from t = 0 on.
         supports: supports on the ground.
         viscous_damping: μ̄ of (25) in N·s/m², for deflections along z and y.
         masses: point masses.
         lateral: additional properties for a boom in space.
-        collars, diaphragms: stiffeners of the plates; beams include only their mass, and the
-            properties above are those of the plain box.
+        collars, diaphragms: stiffeners of the plates, whose mass beams include; the properties
+            above exclude them.
         compression: axial force, see :func:`geometry.axial.with_compression`.
         shear_stiffnesses: G A_s in N along z and along y, if they differ from those of the section.
     """
@@ -209,12 +208,14 @@ class Segment:
     lateral: Lateral | None = None
     collars: tuple[Collar, ...] = ()
     diaphragms: tuple[Diaphragm, ...] = ()
-    compression: Compression = UNPRESSED
+    compression: Compression = NO_COMPRESSION
     shear_stiffnesses: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         for group in ("supports", "masses", "collars", "diaphragms"):
-            on_segment = tuple(placed(one, self.start, self.end) for one in getattr(self, group))
+            on_segment = tuple(
+                resolve_distances(one, self.start, self.end) for one in getattr(self, group)
+            )
             object.__setattr__(self, group, on_segment)
 
     @classmethod
@@ -240,7 +241,7 @@ class Segment:
             name, start, end, material, section, others: as in :class:`Segment`.
         """
         head = others.get("head_section")
-        numbers = half_way(section, head)
+        numbers = middle_section(section, head)
         density, second_moment = material.density, numbers.second_moment_of_area
         sideways = numbers.lateral_second_moment_of_area
         lateral = Lateral(
@@ -274,7 +275,7 @@ class Segment:
 
     @property
     def yield_strength(self) -> float | None:
-        """The least yield strength in Pa of the plates; None without one."""
+        """The minimum yield strength of the plates in Pa; None if unknown."""
         if self.section is None:
             return self.material.yield_strength
         plates = (plate for x in self.ends for plate in self.section_at(x).plates)
@@ -282,7 +283,7 @@ class Segment:
         return min((one for one in strengths if one is not None), default=None)
 
     @property
-    def mass_middle(self) -> float:
+    def mass_centre(self) -> float:
         """The x in m of the centre of the mass per length."""
         if self.section is None or self.head_section is None:
             return 0.5 * (self.start + self.end)
@@ -294,7 +295,7 @@ class Segment:
         assert self.section is not None
         if self.head_section is None:
             return self.section
-        return between(self.section, self.head_section, (x - self.start) / self.length)
+        return interpolate_section(self.section, self.head_section, (x - self.start) / self.length)
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -303,19 +304,19 @@ class Segment:
 
     @property
     def widest(self) -> Section:
-        """The end section with the longer mid-lines, from which meshes start."""
+        """The end section with the larger perimeter."""
         assert self.section is not None
         ends = self.section, self.head_section or self.section
         return max(ends, key=lambda section: section.perimeter)
 
     @property
-    def carried(self) -> tuple[PointMass, ...]:
-        """The point masses, including those of stiffeners."""
+    def all_masses(self) -> tuple[PointMass, ...]:
+        """The point masses, including stiffeners."""
         return (*self.masses, *self.stiffener_masses)
 
     @property
     def stiffener_masses(self) -> tuple[PointMass, ...]:
-        """The masses of diaphragms, and of collars at their middles; empty without a section."""
+        """The diaphragms and collars as point masses; empty without a section."""
         if self.section is None:
             return ()
         density = self.material.density
@@ -332,24 +333,24 @@ class Segment:
     @property
     def mass(self) -> float:
         """The mass in kg, including all attached masses."""
-        return self.mass_per_length * self.length + sum(point.mass for point in self.carried)
+        return self.mass_per_length * self.length + sum(point.mass for point in self.all_masses)
 
     def mean_perimeter(self, collar: Collar) -> float:
         """Return the length of the mid-lines in m at the middle of a collar."""
         return self.section_at(collar.middle).perimeter
 
-    def local(self, x: float) -> Segment:
+    def prismatic_at(self, x: float) -> Segment:
         """Return the prismatic segment with the section of this one at x in m."""
         if self.head_section is None:
             return self
         section = self.section_at(x)
         return Segment.of_section(self.name, self.start, self.end, self.material, section)
 
-    def relative(self, number: Callable[[Segment], float], x: Array) -> Array:
-        """Return a section's property (num_places,) at x in m, relative to the segment's."""
+    def property_ratio(self, number: Callable[[Segment], float], x: Array) -> Array:
+        """Return a property (num_places,) at x in m, relative to its value for the segment."""
         if self.head_section is None:
             return np.ones(x.shape)
-        return np.array([number(self.local(place)) for place in x.tolist()]) / number(self)
+        return np.array([number(self.prismatic_at(place)) for place in x.tolist()]) / number(self)
 
     @property
     def bending_stiffness(self) -> float:
@@ -358,7 +359,7 @@ class Segment:
 
     @property
     def shear_stiffness(self) -> float | None:
-        """The shear stiffness G A_s in N; None if neither it nor the section is given."""
+        """The shear stiffness G A_s in N; None if it is unknown."""
         if self.shear_stiffnesses is not None:
             return self.shear_stiffnesses[0]
         if self.section is None:
@@ -367,7 +368,7 @@ class Segment:
 
     @property
     def rigid_modes(self) -> int:
-        """The number of rigid motions along z that the supports leave free."""
+        """The number of rigid modes along z."""
         held = sum(
             2 if support.holds_slope("z") or support.rotation_stiffness is not None else 1
             for support in self.supports
@@ -376,7 +377,7 @@ class Segment:
 
     @property
     def rigid_twists(self) -> int:
-        """The number of rigid rotations about the axis that the supports leave free."""
+        """The number of rigid modes of twist."""
         return 0 if self.supports else 1
 
     @property
@@ -385,12 +386,12 @@ class Segment:
         return min(self.supports, key=lambda support: support.x, default=None)
 
     def holds(self, x: float) -> bool:
-        """Return whether x is on the segment, including its ends."""
+        """Return whether x in m is on the segment, including its ends."""
         near = SAME_PLACE * self.length
         return self.start - near <= x <= self.end + near
 
     def turned(self) -> Segment:
-        """Return the segment with its planes exchanged: motion along y becomes motion along z.
+        """Return the segment with y and z exchanged.
 
         Raises:
             ValueError: the segment has no lateral properties.
@@ -415,14 +416,14 @@ class Segment:
         )
 
     def check(self, where: str) -> None:
-        """Check that the segment is possible.
+        """Check the data of the segment.
 
         Args:
-            where: place in the boom, for example ``segments[1]``.
+            where: attribute of the boom, for example ``segments[1]``.
 
         Raises:
-            BoomError: the span is empty, or a support, mass, collar or diaphragm is invalid or not
-                on the segment.
+            BoomError: the length is not positive, or a support, mass, collar or diaphragm is
+                invalid or not on the segment.
         """
         if not self.start < self.end:
             raise BoomError(
@@ -495,14 +496,14 @@ class Segment:
             )
 
     def check_place(self, where: str, x: float) -> None:
-        """Check that a place is on the segment.
+        """Check that a position is on the segment.
 
         Args:
-            where: part of the boom at this place.
-            x: place in m.
+            where: attribute of the boom with this position, for messages.
+            x: position in m.
 
         Raises:
-            BoomError: the place is not on the segment.
+            BoomError: the position is not on the segment.
         """
         if not self.holds(x):
             raise BoomError(

@@ -17,17 +17,17 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.section import COMPONENT, Direction, Offset, Plate
 
-# Gauss's rule on a plate, which is exact for q².
+# Gauss points and weights on a plate, exact for q².
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 _ALONG, _PARTS = 0.5 * (1.0 + _POINTS), 0.5 * _WEIGHTS
 
-# Fraction of the force below which a plate carries no shear.
+# Fraction of the total force below which the shear force of a plate is round-off.
 _NO_PART = 1.0e-12
 
 
 @dataclass(frozen=True, slots=True)
 class ShearFlow:
-    """Shear flow of a force of 1 N that does not twist the section.
+    """Shear flow of a force of 1 N through the shear centre.
 
     Args:
         flow: q (num_plates, num_points) in 1/m along the tangents of plates, at Gauss points.
@@ -41,11 +41,11 @@ class ShearFlow:
     arms: Array
 
     @classmethod
-    def of(cls, plates: Sequence[Plate], direction: Direction) -> ShearFlow:
+    def from_plates(cls, plates: Sequence[Plate], direction: Direction) -> ShearFlow:
         """Return the flow of a force along a direction.
 
         Args:
-            plates: plates in order, each of which begins at the end of the previous one.
+            plates: plates of a closed section in order, each from the end of the previous one.
             direction: direction of the force.
         """
         start = np.array([plate.start for plate in plates])
@@ -69,7 +69,7 @@ class ShearFlow:
 
     @property
     def shear_area(self) -> float:
-        """The shear area 1/∮ q²/t ds in m², by the equal work of the flow (Pilkey 2002)."""
+        """The shear area 1/∮ q²/t ds in m² of equal strain energy (Pilkey 2002)."""
         return float(1.0 / (self.lengths / self.thicknesses @ self.flow**2 @ _PARTS))
 
     @property
@@ -79,7 +79,7 @@ class ShearFlow:
 
     @property
     def moment(self) -> float:
-        """The moment about the axis in m, which is the lever arm of the force."""
+        """The moment about the axis in N·m per N, the lever arm of the force in m."""
         return float(self.arms @ self.forces)
 
 
@@ -90,16 +90,16 @@ def shear_centre(plates: Sequence[Plate]) -> Offset:
     >>> print(f"{1e3 * shear_centre(box.plates)[0]:.1f} mm to the thicker web's side")
     50.0 mm to the thicker web's side
     """
-    return ShearFlow.of(plates, "z").moment, -ShearFlow.of(plates, "y").moment
+    return ShearFlow.from_plates(plates, "z").moment, -ShearFlow.from_plates(plates, "y").moment
 
 
 def shear_plates(plates: Sequence[Plate], direction: Direction) -> tuple[tuple[int, float], ...]:
-    """Return the plates that carry a unit force through the axis: index, force along the tangent.
+    """Return (index, force along the tangent) of the plates that carry a unit force on the axis.
 
-    The forces are those of the shear flow, and of the moment that shifts the force from the shear
+    The forces are those of the shear flow, and of the torque that shifts the force from the shear
     centre to the axis.
     """
-    carried = ShearFlow.of(plates, direction)
+    carried = ShearFlow.from_plates(plates, direction)
     around = carried.moment / (carried.arms @ carried.lengths)
     forces = carried.forces - around * carried.lengths
     return tuple((n, force) for n, force in enumerate(forces.tolist()) if abs(force) > _NO_PART)

@@ -66,7 +66,7 @@ class Support:
     """the table of its pin, for the proof of the foot"""
 
     def holds_slope(self, direction: Direction) -> bool:
-        """Return whether the slope of the motion along y or z is fixed."""
+        """Return whether the slope of the deflection along y or z is fixed."""
         return self.kind == "clamped" or (self.kind == "hinged" and direction == "y")
 
     @property
@@ -75,12 +75,12 @@ class Support:
         return self.kind == "clamped"
 
     def turned(self) -> Support:
-        """Return the support of a segment with its planes exchanged."""
+        """Return the support for a segment with y and z exchanged."""
         return replace(self, kind="clamped") if self.kind == "hinged" else self
 
 
 def check_support(where: str, support: Support) -> None:
-    """Check that a support is not both rigid and elastic; ``where`` is its place in the boom.
+    """Check that a support is not both rigid and elastic; ``where`` names it in messages.
 
     Raises:
         BoomError: the support is both rigid and elastic.

@@ -9,12 +9,12 @@ from typing import Any
 from geometry.section import Section, SectionError
 
 
-def between(tail: Section, head: Section, part: float) -> Section:
-    """Return the section at a fraction of the length between the tail's and the head's.
+def interpolate_section(tail: Section, head: Section, part: float) -> Section:
+    """Return the section at a fraction of the length between the sections at tail and head.
 
-    >>> from geometry.taper import between
+    >>> from geometry.taper import interpolate_section
     >>> deep = pt.BoxSection(height=0.4, width=0.3, flange=0.01, web=0.006)
-    >>> round(between(deep, replace(deep, height=0.2), 0.25).height, 6)
+    >>> round(interpolate_section(deep, replace(deep, height=0.2), 0.25).height, 6)
     0.35
 
     Args:
@@ -56,21 +56,21 @@ def check_alike(tail: Section, head: Section) -> None:
                 "one kind"
             )
     for quarter in (1, 2, 3):
-        between(tail, head, 0.25 * quarter)
+        interpolate_section(tail, head, 0.25 * quarter)
 
 
-def half_way(section: Section, head: Section | None) -> Section:
-    """Return the section at the middle of a segment, tapered or not."""
-    return section if head is None else between(section, head, 0.5)
+def middle_section(section: Section, head: Section | None) -> Section:
+    """Return the section at the middle of a segment; ``head`` is None without taper."""
+    return section if head is None else interpolate_section(section, head, 0.5)
 
 
 def areas(tail: Section, head: Section) -> tuple[float, float, float]:
-    """Return the areas in m² at tail, middle and head; they define a parabola, exact for boxes."""
-    return tail.area, half_way(tail, head).area, head.area
+    """Return the areas in m² at tail, middle and head. The area of a box is parabolic between."""
+    return tail.area, middle_section(tail, head).area, head.area
 
 
 def mean_area(section: Section, head: Section | None) -> float:
-    """Return the mean area in m² along a segment, tapered or not."""
+    """Return the mean area in m² along a segment; ``head`` is None without taper."""
     if head is None:
         return section.area
     tail, middle, last = areas(section, head)

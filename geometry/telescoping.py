@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Telescoping: the stations and segments that drives of joints move, and checks of drives."""
+"""Telescoping: stations and segments that drives move, and checks of drives."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geometry.boom_error import BoomError
-from geometry.fit import check_pads_on_the_way, check_room_on_the_way
+from geometry.fit import check_pads_in_travel, check_room_at_extension
 from geometry.joint import Drive, Joint
 from geometry.segment import SAME_PLACE, Segment
 
@@ -23,13 +23,13 @@ _SAMPLES = 9
 
 
 @dataclass(frozen=True, slots=True)
-class MovedStations:
-    """Stations that the drives of some joints move together.
+class TelescopingStations:
+    """Stations that move with the same drives.
 
     Args:
-        joints: indices of the joints in ``Boom.joints``, from the base.
+        joints: indices of the joints of the drives in ``Boom.joints``, from the base.
         drives: drives of these joints.
-        stations: indices in ``Boom.stations`` of the stations that move.
+        stations: indices of the stations in ``Boom.stations``.
     """
 
     joints: tuple[int, ...]
@@ -49,18 +49,18 @@ class MovedStations:
         return "" if self.joints[0] == 0 else f"-{self.joints[0] + 1}"
 
     def extensions(self, extension: float) -> dict[int, float]:
-        """Return extensions in m by index of the joint; for stops only their sum matters."""
+        """Return extensions in m by index of the joint whose sum is ``extension`` in m."""
         return {self.joints[0]: extension}
 
 
-def moved_stations(boom: Boom) -> list[MovedStations]:
-    """Return the moved stations of each joint with a drive, and stops of several joints."""
+def telescoping_stations(boom: Boom) -> list[TelescopingStations]:
+    """Return the stations that drives move: of each joint with a drive, and of stops."""
     moved: dict[tuple[int, ...], list[int]] = {}
     for station, joints in _driven_stations(boom):
         if joints:
             moved.setdefault(joints, []).append(station)
     return [
-        MovedStations(
+        TelescopingStations(
             joints,
             tuple(drive for n in joints if (drive := boom.joints[n].drive) is not None),
             tuple(stations),
@@ -70,7 +70,7 @@ def moved_stations(boom: Boom) -> list[MovedStations]:
 
 
 def _driven_stations(boom: Boom) -> Iterator[tuple[int, tuple[int, ...]]]:
-    """Yield each station, with the indices of the joints whose drives move its place."""
+    """Yield each station, with the indices of the joints whose drives move it."""
     station = 0
     for _ in boom.directions:
         for number, joint in enumerate(boom.joints):
@@ -107,14 +107,14 @@ def reach(drives: Sequence[Drive]) -> tuple[float, float]:
 
 
 def farthest_travel(boom: Boom, segment: int) -> float:
-    """Return the largest travel of a segment in m: outwards, or inwards if it only retracts."""
+    """Return the largest outward travel of a segment in m; inward for drives that only retract."""
     drives = [boom.joints[number].drive for number in drives_below(boom.joints, segment)]
     reaches = [drive.reach for drive in drives if drive is not None]
     return sum(high or low for low, high in reaches)
 
 
 def sample_extensions(boom: Boom) -> list[dict[int, float]]:
-    """Return extensions in m by the index of the joint: initial, extreme and between."""
+    """Return extensions in m by index of the joint, at extremes and at times between them."""
     drives = {n: joint.drive for n, joint in enumerate(boom.joints) if joint.drive is not None}
     times = np.unique(np.concatenate([np.zeros(1), *(drive.times for drive in drives.values())]))
     extensions = np.array([drive.history(times) for drive in drives.values()]).reshape(
@@ -125,8 +125,11 @@ def sample_extensions(boom: Boom) -> list[dict[int, float]]:
     return [dict(zip(drives, there.tolist(), strict=True)) for there in extensions[:, steps].T]
 
 
-def places(joint: Joint, extension: float) -> list[tuple[float, float]]:
-    """Return x in m of each station on the outer and inner segment at an extension in m."""
+def station_positions(joint: Joint, extension: float) -> list[tuple[float, float]]:
+    """Return (x on the outer segment, x on the inner segment) in m of each station.
+
+    The x are material coordinates at an ``extension`` in m.
+    """
     carriers = () if joint.drive is None else joint.drive.carriers
     return [
         (x, x - extension) if carrier == "outer" else (x + extension, x)
@@ -135,10 +138,10 @@ def places(joint: Joint, extension: float) -> list[tuple[float, float]]:
 
 
 def check_drives(boom: Boom) -> None:
-    """Check that each drive has space for its stroke, and moves only parts that may move.
+    """Check that each drive has space for its travel, and moves no supported segment.
 
     Raises:
-        BoomError: a drive is not possible.
+        BoomError: a drive is invalid.
     """
     driven = [(n, joint) for n, joint in enumerate(boom.joints) if joint.drive is not None]
     if not driven:
@@ -146,7 +149,7 @@ def check_drives(boom: Boom) -> None:
     for number, joint in driven:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         _check_way(f"joints[{number}].drive", joint, outer, inner)
-        check_pads_on_the_way(f"joints[{number}]", joint, boom)
+        check_pads_in_travel(f"joints[{number}]", joint, boom)
         _check_taper(f"joints[{number}].drive", boom, outer, inner)
         _check_lock(f"joints[{number}].locked_at", joint, outer, inner)
     _check_order(boom)
@@ -187,7 +190,7 @@ def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
                 f"{plate.x:g} m is in its way; it must be less than {inner.start - plate.x:g} m",
             )
     for extension in (low, high):
-        there = places(joint, extension)
+        there = station_positions(joint, extension)
         for x, (on_outer, on_inner) in zip(joint.stations, there, strict=True):
             if not (outer.holds(on_outer) and inner.holds(on_inner)):
                 raise BoomError(
@@ -201,7 +204,7 @@ def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
                 f"stations pass one another as {inner.name!r} telescopes by {extension:g} m; "
                 "make the travel shorter, or move them",
             )
-        check_room_on_the_way(where, joint, outer, inner, extension)
+        check_room_at_extension(where, joint, outer, inner, extension)
 
 
 def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
@@ -240,7 +243,7 @@ def _check_taper(where: str, boom: Boom, outer: Segment, inner: Segment) -> None
 
 
 def _check_order(boom: Boom) -> None:
-    """Check that all joints in which a segment slides move it by the same extension."""
+    """Check that all joints of a segment move it by the same extension."""
     for number, joint in enumerate(boom.joints):
         own = () if joint.drive is None else (number,)
         if drives_below(boom.joints, joint.inner) != drives_below(boom.joints, joint.outer) + own:
@@ -253,7 +256,7 @@ def _check_order(boom: Boom) -> None:
 
 
 def _check_free(boom: Boom, number: int) -> None:
-    """Check that the ground does not hold a segment that telescopes; stops may touch it."""
+    """Check that a segment that telescopes has no supports and cylinders; stops may touch it."""
     segment = boom.segments[number]
     held = [f"segments[{number}].supports"] if segment.supports else []
     held += [f"cylinders[{k}]" for k, c in enumerate(boom.cylinders) if c.segment == number]

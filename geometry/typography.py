@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Formats of numbers and lists for readers, and multiples of units."""
+"""Formats of numbers and lists in texts, and factors of units."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from collections.abc import Iterable, Sequence
 TO_MICRO, TO_MILLI, TO_KILO, TO_MEGA, TO_PERCENT = 1.0e6, 1.0e3, 1.0e-3, 1.0e-6, 100.0
 
 
-def signed(text: str) -> str:
+def with_minus_signs(text: str) -> str:
     """Return the text of a number with a minus sign in place of a hyphen."""
     return text.replace("-", "−")
 
 
 def digits(value: float, count: int = 3) -> str:
-    """Return a number with a number of significant digits, without exponent: 1020, not 1.02e+03.
+    """Return a number with ``count`` significant digits, without exponent: 1020, not 1.02e+03.
 
     >>> digits(1023.4), digits(22.68), digits(0.0)
     ('1020', '22.7', '0')
     """
-    return signed(f"{float(f'{value:.{count}g}'):.12g}")
+    return with_minus_signs(f"{float(f'{value:.{count}g}'):.12g}")
 
 
-def listed(parts: Iterable[str]) -> str:
-    """Return the items of a list, which is not empty, as a phrase.
+def join_words(parts: Iterable[str]) -> str:
+    """Return the items of a non-empty list as a phrase.
 
-    >>> listed(["play", "load", "friction"])
+    >>> join_words(["play", "load", "friction"])
     'play, load and friction'
     """
     *most, last = parts
@@ -38,7 +38,7 @@ MOST_CHOICES = 12
 
 
 def choices(known: Sequence[str]) -> str:
-    """Return names as "'a', 'b' or 'c'"; of many names the first few."""
+    """Return names as "'a', 'b' or 'c'"; if there are many, the first of them."""
     if len(known) > MOST_CHOICES:
         return f"{', '.join(repr(name) for name in known[:MOST_CHOICES])} or another of its kind"
     quoted = [repr(name) for name in known]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Walls of flat plates around a cell: their area, the space inside, positions along x."""
+"""Walls of flat plates around a cell: thick plates, clearances, and mid-lines along x."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from geometry.arrays import Array
 from geometry.section import Plate, Section
 from geometry.segment import Segment
 
-# Sine of the angle below which plates have a butt joint: mitres of different thicknesses would be
-# long.
+# Sine of the angle between plates below which they have a butt joint instead of a mitre, which
+# would be long between different thicknesses.
 _STRAIGHT = 0.1
 
-# Component of a normal below which a plate does not limit the travel.
+# Component of a normal below which a plate does not limit a shift.
 _ASIDE = 1.0e-9
 
 
@@ -28,8 +28,7 @@ def normals(plates: Sequence[Plate]) -> Array:
 def trapezoids(plates: Sequence[Plate]) -> Array:
     """Return the corners (num_plates, 4, 2) in m of thick plates, anticlockwise, outer edge first.
 
-    Neighbours are mitred, so that corners are filled. The outer edges are the outside of the
-    section, the inner edges its hole.
+    Neighbours are mitred, so that the trapezoids fill the wall.
     """
     start, end = (np.array([getattr(plate, at) for plate in plates]) for at in ("start", "end"))
     normal, half = normals(plates), 0.5 * np.array([plate.thickness for plate in plates])
@@ -50,14 +49,14 @@ def trapezoids(plates: Sequence[Plate]) -> Array:
 
 
 def free_room(outer: Section, inner: Section, play: float = 0.0) -> tuple[float, float]:
-    """Return the distances in m by which a section can move within another one, along z and y.
+    """Return the total clearances in m along z and y of a section within another one.
 
-    Both sections must be convex. A negative distance means that the inner section does not fit.
+    Both sections must be convex. If a clearance is negative, the inner section does not fit.
 
     Args:
         outer: outer section.
-        inner: inner section, at any z.
-        play: play along z in m; the distance along y is available at any position within it.
+        inner: inner section.
+        play: play along z in m; the clearance along y is the smallest one within this play.
     """
     reach = trapezoids(inner.plates)[:, :2].reshape(-1, 2)
     normal = normals(outer.plates)
@@ -81,20 +80,20 @@ def _travel(slope: Array, clear: Array) -> tuple[float, float]:
     return float((clear[behind] / slope[behind]).max()), float((clear[ahead] / slope[ahead]).min())
 
 
-# Tolerance as a fraction of the height: above the distance between a tapered section and walls that
-# are flat between mesh lines, below any edge.
+# Tolerance as a fraction of the height. It exceeds the distance between a tapered section and the
+# mesh, whose walls are flat between mesh lines.
 _OFF_TAPER = 1.0e-4
 
 
 class WallsAlong:
-    """Mid-lines of a segment's section at many x.
+    """Mid-lines of the sections of a segment at several x.
 
     Args:
         segment: segment with a section.
         x: (num_places,) in m.
 
     Attributes:
-        near: distance in m below which a place is on a mid-line.
+        near: distance in m below which a point is on a mid-line.
     """
 
     def __init__(self, segment: Segment, x: Array) -> None:
@@ -111,7 +110,10 @@ class WallsAlong:
         return np.asarray(self._starts[self._at, plate])
 
     def distance(self, plate: int, places: Array) -> Array:
-        """Return distances (num_places,) of places (num_places, 2), one at each x, from a plate."""
+        """Return distances (num_places,) in m of points (num_places, 2) from a plate.
+
+        Point i is at the x of index i.
+        """
         start, end = self.starts(plate), self.starts((plate + 1) % self._starts.shape[1])
         length = np.linalg.norm(end - start, axis=1)
         tangent = (end - start) / length[:, None]

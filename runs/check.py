@@ -21,7 +21,7 @@ from beam_model.statics import StaticState
 from dynamics.damping import closed_contact_damping, closed_contact_modes
 from dynamics.failure import NUMERICAL_ERRORS
 from dynamics.motion import constant_load_equilibrium
-from geometry.axial import carried, moving_force_places
+from geometry.axial import axial_force, moving_force_places
 from geometry.boom import Boom, Direction, Joint
 from geometry.fit import room
 from geometry.section import Section
@@ -281,7 +281,7 @@ def _masses(boom: Boom, system: System) -> Table:
     own = [one.mass_per_length * one.length for one in segments]
     masses = [one.mass for one in segments]
     moments = [
-        mass * segment.mass_middle + sum(point.mass * point.x for point in segment.carried)
+        mass * segment.mass_centre + sum(point.mass * point.x for point in segment.all_masses)
         for mass, segment in zip(own, segments, strict=True)
     ]
     whole, moment = sum(masses), sum(moments)
@@ -334,9 +334,9 @@ def _extreme_axial_force(
     x = np.unique(np.clip([*ends, segment.start, segment.end], segment.start, segment.end))
     times = [joint.drive.times for joint in boom.joints if joint.drive is not None]
     time = np.unique(np.concatenate([np.zeros(1), *times]))
-    forces = carried(boom.segments, boom.joints, number, x, time)
+    forces = axial_force(boom.segments, boom.joints, number, x, time)
     for cylinder, force in cylinders:
-        forces = forces - force * cylinder.pull(x, segment.foot)
+        forces = forces - force * cylinder.normal_force(x, segment.foot)
     largest = float(forces.flat[np.abs(forces).argmax()])
     if segment.section is None:
         return largest, None

@@ -21,7 +21,7 @@ from geometry.grading import graded_mesh
 from geometry.load import Load
 from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.observation import Quantity, Read
-from geometry.plating import PlatedMesh, plated, tapered_mesh
+from geometry.plating import PlatedMesh, add_thickness, tapered_mesh
 from geometry.refinement import refinement_zones
 from shell_model.contact.rows import ShellContacts, ties
 from shell_model.contact.surface import SurfaceOptions
@@ -224,7 +224,7 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
         tolerance, line = options.contact_tolerance, options.contact_line
         fine = refinement_zones(boom, number, tolerance, line, stop_patches(boom), pads(boom))
         mesh = graded_mesh(*box, fine, closed=closed)
-    built = plated(segment, mesh)
+    built = add_thickness(segment, mesh)
     return built if segment.head_section is None else tapered_mesh(segment, built)
 
 
@@ -235,7 +235,7 @@ def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, ObservedR
         ends += ("lateral", "twist")
     outlines: dict[tuple[int, float], Outline] = {}
     observed = {}
-    for place in boom.recorded(ends):
+    for place in boom.all_observations(ends):
         at = place.segment, place.x
         if at not in outlines:
             outlines[at] = shells[place.segment].outline(place.x)

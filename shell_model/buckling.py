@@ -245,7 +245,7 @@ def buckle_segments(
     Raises:
         NumericsError: see :func:`buckling_modes`.
     """
-    finer = [None if mesh is None else mesh.halved for mesh in meshes]
+    finer = [None if mesh is None else mesh.refined for mesh in meshes]
     coarse = _modes_on(boom, meshes, state, options, count, comm)
     halves = replace(state, forces=[np.repeat(one, 4, axis=0) for one in state.forces])
     fine = _modes_on(boom, finer, halves, options, count, comm)

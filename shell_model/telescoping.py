@@ -28,7 +28,7 @@ from dynamics.reduction import reduce_modes, with_coordinates
 from geometry.arrays import Array, Mask
 from geometry.axial import joint_thrust, moving_force
 from geometry.boom import SAME_PLACE, Boom
-from geometry.telescoping import MovedStations, moved_stations
+from geometry.telescoping import TelescopingStations, telescoping_stations
 from shell_model.boom_shell import BoomShell
 from shell_model.reduction.coordinates import BoomCoordinates, exact_product
 from shell_model.reduction.pad_springs import SLOW, PadResponses, pad_responses, springs, squared
@@ -61,7 +61,7 @@ class _SampledRows:
         touching: contacts, friction and dashpots at each extension.
     """
 
-    group: MovedStations | None
+    group: TelescopingStations | None
     moving: Sequence[tuple[RowKind, int]]
     extensions: Array
     touching: Sequence[GapBuilder[Reading]]
@@ -106,7 +106,7 @@ class _SampledRows:
 def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]:
     """Sample all rows of a boom where stations pass the rings of a mesh with the size in m."""
     found = []
-    for group in moved_stations(boom):
+    for group in telescoping_stations(boom):
         pieces = [
             np.linspace(start, end, max(round((end - start) / size), _FEWEST) + 1)
             for start, end in pairwise(sorted({*group.reach, 0.0}))
@@ -287,7 +287,11 @@ class TelescopingShell:
 
 
 def _moving_axial_forces(
-    boom: Boom, full: BoomShell, coordinates: BoomCoordinates, group: MovedStations, behind: int
+    boom: Boom,
+    full: BoomShell,
+    coordinates: BoomCoordinates,
+    group: TelescopingStations,
+    behind: int,
 ) -> list[MovingAxialForce]:
     """Return the axial force, if any, that moves with a telescoping joint. Collective.
 

@@ -16,7 +16,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, Collar, Joint, Segment, Support
-from geometry.contact_places import Stretch
+from geometry.contact_places import ContactInterval
 from geometry.polygon import PolygonSection
 from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import Direction, Section
@@ -163,7 +163,10 @@ def ring_of_bars(section: Section, length: float) -> float:
 def ring_of_shell(section: Section, length: float, size: float) -> float:
     """Return the same of a shell with edges of a size in m."""
     segment = Segment.of_section("ring", 0.0, length, STEEL, section)
-    shell, stretch = shell_alone(segment, size), Stretch.on(segment, 0.5 * length, length)
+    shell, stretch = (
+        shell_alone(segment, size),
+        ContactInterval.from_station(segment, 0.5 * length, length),
+    )
     corners = CornerLines(shell)
     top, bottom = (corners.deflection(stretch, "z", 0.0, side) for side in (1, -1))
     return compliances(shell, top - bottom)[0]

@@ -131,7 +131,7 @@ def _one_way(stiffness: float) -> list[float]:
     forces, tips = (
         [run.data[name].values for run in (asked, felt)] for name in ("contact_force", "tip")
     )
-    lag = float(np.abs(data["drive_lag"]).max()) / boom.overlap_left(boom.joints[0])
+    lag = float(np.abs(data["drive_lag"]).max()) / boom.smallest_overlap(boom.joints[0])
     return [
         stiffness, told.sticks, TO_MILLI * told.slip, TO_PERCENT * lag,
         TO_PERCENT * float(np.abs(forces[0] - forces[1]).max() / np.abs(forces[1]).max()),

@@ -10,7 +10,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.boom import Segment, Support
-from geometry.contact_places import Stretch
+from geometry.contact_places import ContactInterval
 from geometry.section import BoxSection, Section
 from shell_model.buckling import BucklingModes, buckling_modes, with_springs
 from shell_model.contact.wall_rows import CornerLines
@@ -151,7 +151,7 @@ class PressedBox:
         """
         shell = _supported(self.section, self.length, n)
         middle, half = 0.5 * self.length, 0.5 * self.patch
-        pressed = Stretch(middle - half, middle + half, middle)
+        pressed = ContactInterval(middle - half, middle + half, middle)
         force = -shell.row(CornerLines(shell).deflection(pressed, "z", 0.0, 1))
         modes = gather_stress_modes(shell, at_rest(shell, force[:, None]))
         assert modes is not None

@@ -15,10 +15,10 @@ from dynamics.excitation import (
     Step,
 )
 from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, BoomError, Direction, Segment, Stop, on_segments
+from geometry.boom import Boom, BoomError, Direction, Segment, Stop, resolve_segments
 from geometry.fields import Distance, at
 from geometry.joint import BareStop
-from geometry.load import Load, Moment, PartialLoad, Turn
+from geometry.load import AngularAcceleration, Load, Moment, PartialLoad
 from geometry.typography import choices
 from runs.case.history import build_history
 from runs.case.schema import (
@@ -86,7 +86,7 @@ def _initial_momentum(
                 for p in segment.masses
             ]
         if turn:
-            given.append(Turn(index, direction, turn, None, InitialImpulse()))
+            given.append(AngularAcceleration(index, direction, turn, None, InitialImpulse()))
     return given
 
 
@@ -155,7 +155,7 @@ def thrusts(case: Case, segments: Sequence[Segment]) -> tuple[Thrust, ...]:
 def _thrust(where: str, table: AxialTable, case: Case, segments: Sequence[Segment]) -> Thrust:
     name: Any = segments[-1].name if table.segment is None else table.segment
     place: Any = Distance(head=0.0) if table.x is None else table.x
-    thrust = on_segments(Thrust(name, place, axial_force(where, table, case)), where, segments)
+    thrust = resolve_segments(Thrust(name, place, axial_force(where, table, case)), where, segments)
     segments[thrust.segment].check_place(f"{where}.x", thrust.x)
     return thrust
 

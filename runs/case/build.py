@@ -20,11 +20,11 @@ from geometry.boom import (
     Segment,
 )
 from geometry.boom_checks import check_order
-from geometry.fields import described, placed
-from geometry.holding import check_contacts_at_rest
+from geometry.fields import describe, resolve_distances
 from geometry.joint import BareJoint
 from geometry.section import Section, SectionError, infer_inner_section, infer_outer_section
-from geometry.taper import check_alike, half_way, mean_area
+from geometry.support_check import check_contacts_at_rest
+from geometry.taper import check_alike, mean_area, middle_section
 from runs.case import actions
 from runs.case.actions import field_values
 from runs.case.contact import JointTable
@@ -195,7 +195,7 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
         lateral_contact=None if table.lateral_play is None else table.law("y"),
         drive=drive,
     )
-    return placed(joint, tail, head)
+    return resolve_distances(joint, tail, head)
 
 
 def _check_plays(where: str, table: JointTable) -> None:
@@ -233,7 +233,7 @@ def _segment(case: Case, index: int, section: Section | None, ends: tuple[float,
         supports=table.supports,
         viscous_damping=table.viscous_damping,
         masses=table.masses + payload,
-        lateral=_lateral(table, material, section and half_way(section, head))
+        lateral=_lateral(table, material, section and middle_section(section, head))
         if _is_spatial(case)
         else None,
         collars=table.collars,
@@ -248,7 +248,7 @@ def material_of(case: Case, index: int) -> Material:
         raise BoomError(
             "material",
             f"missing, and {case.segments[index].name!r} has none of its own; it is "
-            f"{described(Case.model_fields['material'])}",
+            f"{describe(Case.model_fields['material'])}",
         )
     return table
 
@@ -302,7 +302,7 @@ def _beam_properties(case: Case, index: int) -> tuple[float, float]:
     if section is not None:
         _check_plates(case, index, section)
         mass = mass or material_of(case, index).density * mean_area(section, head)
-        second_moment = second_moment or half_way(section, head).second_moment_of_area
+        second_moment = second_moment or middle_section(section, head).second_moment_of_area
     if mass is None:
         raise _missing_key_error(index, "mass_per_length")
     if second_moment is None:
@@ -332,7 +332,7 @@ def _check_plates(case: Case, index: int, section: Section) -> None:
 
 
 def _missing_key_error(index: int, key: str) -> BoomError:
-    what = f"missing; it is {described(SegmentTable.model_fields[key])}"
+    what = f"missing; it is {describe(SegmentTable.model_fields[key])}"
     return BoomError(f"segment[{index + 1}].{key}", what)
 
 

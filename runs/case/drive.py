@@ -12,7 +12,7 @@ from pydantic import Field
 from dynamics.arrays import Array
 from dynamics.excitation import History, MotionLaw, PiecewiseLinear, SCurve, Spline, Stroke
 from geometry.boom import BoomError
-from geometry.fields import Distance, In, NotNegative, Number, Positive, described
+from geometry.fields import Distance, In, NotNegative, Number, Positive, describe
 from geometry.joint import Carrier, Drive
 from runs.case.limits import MOST_TIMES, CaseTable, Text
 
@@ -120,7 +120,7 @@ class TravelTable(CaseTable):
     @classmethod
     def meaning(cls, key: str) -> str:
         """Return the description of a key."""
-        return described(cls.model_fields[key])
+        return describe(cls.model_fields[key])
 
 
 class DriveTable(TravelTable):

@@ -11,7 +11,7 @@ from dynamics.drive.stick_slip import ElasticDrive
 from dynamics.drive.travel import Travel
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, BoomError
-from geometry.telescoping import drives_below, moved_stations
+from geometry.telescoping import drives_below, telescoping_stations
 from runs.case.contact import JointTable
 from runs.case.drive import DriveTable
 from runs.case.schema import Case
@@ -47,7 +47,7 @@ def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
 def with_elastic_drives(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
     """Return the gap system of a model with the data of its elastic drives."""
     found = elastic_drives(case, boom)
-    suffixes = {group.suffix: found.get(group.joints[0]) for group in moved_stations(boom)}
+    suffixes = {group.suffix: found.get(group.joints[0]) for group in telescoping_stations(boom)}
 
     def with_elasticity(travel: Travel) -> Travel:
         return replace(travel, elastic=None if travel.suffix is None else suffixes[travel.suffix])

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
 from geometry.boom_error import BoomError
-from geometry.fields import NAME, described, fields_of, names_of
+from geometry.fields import NAME, describe, fields_of, names_of
 from geometry.typography import choices
 from runs.case import schema
 from runs.case.kinds import KINDS
@@ -103,7 +103,7 @@ def _explain(
     if fault == "missing" and isinstance(location[-1], int):
         return _key(location[:-1]), f"must be {_pair(location)}, got {_format_value(value)}"
     if fault == "missing":
-        return key, f"missing; it is {described(_field(location))}"
+        return key, f"missing; it is {describe(_field(location))}"
     if fault == "union_tag_not_found":
         return f"{key}.kind", f"missing; give {_kinds()}"
     if fault in _UNKNOWN:

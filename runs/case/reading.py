@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from geometry.boom import BoomError
-from geometry.fields import described
+from geometry.fields import describe
 from geometry.typography import choices
 from runs.case.build import build_boom, check_ensemble_data, check_names
 from runs.case.checked_case import CheckedCase
@@ -274,7 +274,7 @@ def _history(path: str, key: str, table: History, system: System) -> History:
     wanted = Column("time", system.unit("s")), Column("factor", system.unit(unit), factor=True)
     read = read_pairs(path, f"{key}.file", table.file, table.columns, wanted)
     if not read.measured and table.amount not in table.model_fields_set:
-        what = described(type(table).model_fields[table.amount])
+        what = describe(type(table).model_fields[table.amount])
         raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
     # Without this the default value would be in SI units, not in those of the case file.
     amount = {table.amount: getattr(table, table.amount)}

@@ -160,7 +160,7 @@ def _joint_ranges(case: Case, boom: Boom, number: int) -> Iterator[UsualRange]:
         what, least = f"the overlap of {inner.name!r}", 0.03 * inner.length
         if joint.drive is not None:
             key, what = ".drive", f"{what} that the drive leaves"
-        yield UsualRange(where + key, what, boom.overlap_left(joint), "m", least, np.inf, 100.0)
+        yield UsualRange(where + key, what, boom.smallest_overlap(joint), "m", least, np.inf, 100.0)
     if joint.drive is not None:
         what = f"the largest speed at which {inner.name!r} moves"
         yield UsualRange(f"{where}.drive", what, max_speed(joint.drive), "m/s", 0.0, 5.0, 200.0)

@@ -13,7 +13,7 @@ from dynamics.frame_motion import FrameAcceleration, FrameMotion
 from geometry.boom import BoomError, Direction, Segment
 from geometry.fields import In, Number, Positive
 from geometry.joint import Joint
-from geometry.load import Load, Turn
+from geometry.load import AngularAcceleration, Load
 from geometry.telescoping import drives_of
 from runs.case.drive import TravelTable
 from runs.case.limits import MOST_TIMES
@@ -121,6 +121,6 @@ def turning_loads(
             )
             if growing.peak or even.peak:
                 yield Load(number, direction, -mass, None, even, inertial=True)
-                yield Turn(number, direction, -1.0, None, growing)
+                yield AngularAcceleration(number, direction, -1.0, None, growing)
                 for point, history in zip(segment.masses, points, strict=True):
                     yield Load(number, direction, -point.mass, point.x, history)

@@ -14,7 +14,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from geometry.boom import Boom
-from geometry.fields import described, fields_of, is_number, names_of
+from geometry.fields import describe, fields_of, is_number, names_of
 from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.checked_case import CheckedCase
@@ -172,7 +172,7 @@ class Draft:
             ends = sorted((_LEAST * value, _MOST * value))
             if place.steps[0] == "joint" and place.steps[-1] == "extension":
                 # At the limit the segments separate.
-                ends[1] = value + self.boom.overlap_left(self.boom.joints[int(place.steps[1])])
+                ends[1] = value + self.boom.smallest_overlap(self.boom.joints[int(place.steps[1])])
             low, high = max(low, ends[0]), min(high, ends[1])
         for usual in usual_ranges(self.case, self.boom):
             if usual.key == place.name and usual.value == value:
@@ -258,7 +258,7 @@ def _field(case: Case, place: Place) -> Any:
 
 def _described(case: Case, place: Place) -> str:
     field = _field(case, place)
-    return "" if field is None else described(field)
+    return "" if field is None else describe(field)
 
 
 def _limits(case: Case, place: Place) -> tuple[float, float]:

@@ -52,7 +52,7 @@ def drive_lines(boom: Boom, system: System) -> Iterator[str]:
         yield (
             f"A drive {' and '.join(travels)} from {max(0.0, min(kinks)):g} to {max(kinks):g} s, "
             f"at {system.text(max_speed(joint.drive), 'm/s')} at most; the least overlap is "
-            f"{system.text(boom.overlap_left(joint), 'm')}."
+            f"{system.text(boom.smallest_overlap(joint), 'm')}."
         )
 
 
@@ -190,7 +190,7 @@ def lag_cautions(boom: Boom, data: xr.Dataset, system: System) -> Iterator[str]:
         name = "drive_lag" if number == 1 else f"drive_lag-{number}"
         if name not in data:
             continue
-        lag, overlap = float(np.abs(data[name]).max()), boom.overlap_left(joint)
+        lag, overlap = float(np.abs(data[name]).max()), boom.smallest_overlap(joint)
         if lag > MAX_LAG * overlap:
             yield (
                 f"caution: {boom.segments[joint.inner].name!r} lags up to "

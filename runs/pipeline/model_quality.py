@@ -15,7 +15,7 @@ import xarray as xr
 from dynamics.trajectory import PointwiseDifferences
 from geometry.axial import moving_force
 from geometry.boom import Boom
-from geometry.typography import TO_MILLI, TO_PERCENT, listed, signed
+from geometry.typography import TO_MILLI, TO_PERCENT, join_words, with_minus_signs
 from runs.case.actions import series_notes
 from runs.case.schema import Case, Model
 from runs.pipeline.comparison import Distributions, PeakDifferences, compare
@@ -172,7 +172,7 @@ def _percent(part: float) -> str:
 
 
 def _signed_percent(part: float) -> str:
-    return f"{signed(f'{TO_PERCENT * part:+.2g}')} %"
+    return f"{with_minus_signs(f'{TO_PERCENT * part:+.2g}')} %"
 
 
 def _agreement(design: DesignResults) -> Iterator[str]:
@@ -191,7 +191,7 @@ def _agreement(design: DesignResults) -> Iterator[str]:
             ratio = other.motion.peaks[0].largest / own.motion.peaks[0].largest
             parts.append(f"{_signed_percent(ratio - 1.0)} in the maximum tip deflection")
         if parts:
-            yield f"{name} differs from {reference} by {listed(parts)}."
+            yield f"{name} differs from {reference} by {join_words(parts)}."
 
 
 def static_deviation(own: ModelDesignResults, other: ModelDesignResults) -> float | None:
@@ -211,7 +211,7 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
     }
     parted = {name: time for name, time in times.items() if time is not None}
     if parted:
-        which = listed([f"{name} {time:.2f} s" for name, time in parted.items()])
+        which = join_words([f"{name} {time:.2f} s" for name, time in parted.items()])
         yield (
             "The motion is chaotic: runs whose data differ immeasurably are "
             f"{_percent(_DIVERGED)} of the tip's range apart after these times: {which}. A later "
@@ -219,7 +219,7 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
         )
     regular = [name for name, time in times.items() if time is None]
     if regular:
-        yield f"The motion of {listed(regular)} can be predicted over the whole {duration:g} s."
+        yield f"The motion of {join_words(regular)} can be predicted over the whole {duration:g} s."
 
 
 def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[str]:

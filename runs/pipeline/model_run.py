@@ -262,7 +262,7 @@ def _beam_stiffness(segment: Segment, stiffness: Stiffness) -> BeamStiffness:
     planes = (
         (segment, segment.turned())[: len(stiffness.bending)] if segment.lateral else (segment,)
     )
-    shear = [plane.local(0.5 * sum(plane.ends)).shear_stiffness or 0.0 for plane in planes]
+    shear = [plane.prismatic_at(0.5 * sum(plane.ends)).shear_stiffness or 0.0 for plane in planes]
     torsion = None
     if stiffness.torsion is not None and segment.lateral is not None:
         own = segment.material.shear_modulus * segment.lateral.torsion_constant

@@ -272,7 +272,7 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
             "long_name": f"{place.kind.title} of {boom.segments[place.segment].name!r} "
             f"at x = {place.x:g} m"
         }
-        for place in boom.recorded(list(KINDS))
+        for place in boom.all_observations(list(KINDS))
     } | {name: {"long_name": title} for name, title in forces(boom).items()}
     lengths = {"time": time.size, "station": len(stations)}
     variables = {}

@@ -15,7 +15,7 @@ import numpy as np
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line, Quantity
 from geometry.arrays import Array
-from geometry.axial import carried
+from geometry.axial import axial_force
 from geometry.boom import Boom
 from geometry.cylinder import force_name
 
@@ -49,7 +49,7 @@ def with_cylinder_forces(boom: Boom, system: GapSystem, lines: Sequence[Line]) -
     for number, cylinder in enumerate(boom.cylinders, start=1):
         line, foot = found[cylinder.segment], boom.segments[cylinder.segment].foot
         x = np.repeat(0.5 * (line.x[::2] + line.x[1::2]), 2) if line.paired else line.x
-        pull = np.outer(cylinder.pull(x, foot), system.observers[force_name(number)].row)
+        pull = np.outer(cylinder.normal_force(x, foot), system.observers[force_name(number)].row)
         normal = line.rows.get("normal", 0.0) + pull
         found[cylinder.segment] = replace(line, rows={**line.rows, "normal": normal})
     return found
@@ -72,7 +72,7 @@ def section_forces(
     jump = np.diff(line.x) == 0.0
     aside = _ASIDE * max(1.0, float(np.ptp(line.x)))
     x = line.x + aside * (np.append(False, jump).astype(float) - np.append(jump, False))
-    pressed = carried(boom.segments, boom.joints, number, x, time)
+    pressed = axial_force(boom.segments, boom.joints, number, x, time)
     if boom.driven:
         # Lines already include the shear force at the start due to axial forces.
         more = pressed - boom.segments[number].compression(x)

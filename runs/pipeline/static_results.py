@@ -24,7 +24,7 @@ from geometry.arrays import Array, Indices
 from geometry.boom import Boom
 from geometry.contact_places import contact_centres
 from geometry.cylinder import forces
-from geometry.telescoping import places, travel
+from geometry.telescoping import station_positions, travel
 from runs.case.drive import resolving_times
 from runs.pipeline.pads import SIGNS, loaded_pads, side_force
 from runs.pipeline.section_forces import round_values, section_forces
@@ -307,7 +307,11 @@ def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> 
         if len(own) > 1:
             before = travel(boom, joint.outer, time)
             extension = travel(boom, joint.inner, time) - before
-            on_outer = [x for x, _ in places(joint, extension)] if joint.drive else joint.stations
+            on_outer = (
+                [x for x, _ in station_positions(joint, extension)]
+                if joint.drive
+                else joint.stations
+            )
             # The resultant force of a pad acts at its centre.
             middles = contact_centres(boom, joint)
             on_outer = [

@@ -155,7 +155,7 @@ class Fibres:
         if segment.section is None or "moment" not in line.rows:
             return None
         spatial = "lateral_moment" in line.rows
-        there = [segment.local(x) for x in line.x.tolist()]
+        there = [segment.prismatic_at(x) for x in line.x.tolist()]
         y, z = _corners(segment, line.x, spatial)
         of_moment = z / _each(there, "second_moment_of_area")
         of_lateral = y / _each(there, "lateral.second_moment_of_area") if spatial else y

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
-from geometry.typography import signed
+from geometry.typography import with_minus_signs
 
 if TYPE_CHECKING:
     from runs.pipeline.results import Results
@@ -42,7 +42,7 @@ class Utilisation(NamedTuple):
         assert self.value is not None
         relation = "exceeds" if self.value > 1.0 else "below"
         return (
-            f"{signed(f'{self.value:.3g}')} at {self.part}, {self.segment} segment, "
+            f"{with_minus_signs(f'{self.value:.3g}')} at {self.part}, {self.segment} segment, "
             f"x = {self.x:.4g} m: {relation} {LIMITS[self.part]}"
         )
 

@@ -23,7 +23,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Cylinder, Joint
 from geometry.section import Plate, Section
 from geometry.telescoping import farthest_travel
-from geometry.typography import signed
+from geometry.typography import with_minus_signs
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
@@ -189,7 +189,7 @@ def _draw_whole(panel: Panel, symbols: Sequence[Symbol]) -> None:
     axes.set_ylim(low[1] - margin, high[1] + margin)
     axes.set_aspect("equal")
     axes.set_axis_off()
-    degrees = signed(f"{angle:g}°")
+    degrees = with_minus_signs(f"{angle:g}°")
     axes.set_title(f"at {degrees}, to scale" if angle else "to scale", fontsize=10.0)
     if angle:
         radius = 0.18 * boom.length

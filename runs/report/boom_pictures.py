@@ -13,7 +13,7 @@ from matplotlib.colors import Normalize
 from PIL import Image
 
 from geometry.arrays import Array
-from geometry.typography import listed
+from geometry.typography import join_words
 from runs.report import theme
 from runs.report.scene import (
     DISPLACEMENT_DRAWN,
@@ -122,7 +122,7 @@ class BoomView:
             rod[0] = rod.mean(axis=0)
             sheet.pass_by(*axes.plot(*rod.T, linewidth=9.0, **black))
         kinds = [str(symbol.kind) for symbol in shown]
-        return listed(dict.fromkeys(kinds + ["cylinders"] * bool(cylinders))) if kinds else ""
+        return join_words(dict.fromkeys(kinds + ["cylinders"] * bool(cylinders))) if kinds else ""
 
 
 def draw_boom(

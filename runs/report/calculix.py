@@ -23,7 +23,7 @@ from dynamics.excitation import InitialImpulse, ReleasedLoad
 from geometry.arrays import Array
 from geometry.typography import choices
 from runs.case.build import build_boom
-from runs.case.kinds.model import Workshop, of_kind
+from runs.case.kinds.model import BuildContext, select_kind
 from runs.case.kinds.shell import Shell
 from runs.case.messages import BadInput
 from runs.case.schema import Case
@@ -163,7 +163,7 @@ def exported(case: Case, file: str, name: str | None = None) -> Shell:
     Raises:
         BadInput: the case has no such shell.
     """
-    shells = {model.name: model for model in of_kind(Shell, case.models)}
+    shells = {model.name: model for model in select_kind(Shell, case.models)}
     if name is None and shells:
         return [*shells.values()][-1]
     if name is None or name not in shells:
@@ -186,13 +186,13 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
         BadInput: the case has a feature that the deck does not support, or the ranks are several.
         NumericsError: the boom has no static state.
     """
-    from dynamics.equilibrium import rest_at
+    from dynamics.equilibrium import equilibrium_at
     from shell_model.boom_shell import assemble_boom
     from shell_model.buckling import TOUCHING, rigid, sideways
 
     model = exported(case, file)
-    joined = model.joined(build_boom(case))
-    boom = joined.boom
+    model_boom = model.model_boom(build_boom(case))
+    boom = model_boom.boom
     for key, present in (
         ("mpirun", comm.size > 1),
         ("joint.lateral_play", boom.spatial),
@@ -201,7 +201,7 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
         if present:
             what = "cannot be exported to CalculiX, for which one process writes a flat boom, with"
             raise BadInput(file, key, f"{what} no load on a rope; leave it out")
-    system = build(case, boom, model, Workshop(comm, cache=cache)).system
+    system = build(case, boom, model, BuildContext(comm, cache=cache)).system
     full = assemble_boom(boom, model.options(), comm)
     shells = full.shells
 
@@ -209,7 +209,7 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
         return {n: shells[n].row(row) for n, row in reading.items()}
 
     springs = [SpringRow(what, parts(seen.reading)) for what, seen in full.observed.items()]
-    gaps = system.rows @ rest_at(system)
+    gaps = system.rows @ equilibrium_at(system)
     for contact, law, gap in zip(full.rows.contacts, system.laws, gaps, strict=True):
         force = float(law.force(np.array([gap]))[0])
         if force != 0.0:

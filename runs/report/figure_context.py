@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
 from geometry.arrays import Array
-from geometry.typography import listed
+from geometry.typography import join_words
 from runs.case.schema import Case
 from runs.pipeline.results import Results
 from runs.pipeline.static_results import StaticResult
@@ -270,4 +270,4 @@ def of_start(case: Case) -> str:
 def of_rests(case: Case, rests: Iterable[StaticResult]) -> str:
     """Return a sentence on the extensions of the states at rest; empty without telescoping."""
     times = [f"{time:g}" for time in sorted({rest.time for rest in rests})]
-    return f" Extension as at {listed(times)} s." if case.driven and times else ""
+    return f" Extension as at {join_words(times)} s." if case.driven and times else ""

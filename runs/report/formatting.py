@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from statistics import median
 
-from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT, signed
+from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT, with_minus_signs
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -15,7 +15,8 @@ _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 def scientific(number: float, digits: int = 1) -> str:
     """Return a number in scientific notation, such as 8 × 10⁻⁵, with at most some digits."""
     mantissa, exponent = f"{number:.{digits - 1}e}".split("e")
-    return f"{signed(f'{float(mantissa):g}')} × 10{str(int(exponent)).translate(_SUPERSCRIPT)}"
+    power = str(int(exponent)).translate(_SUPERSCRIPT)
+    return f"{with_minus_signs(f'{float(mantissa):g}')} × 10{power}"
 
 
 NONE = "–"
@@ -28,7 +29,7 @@ def number(value: float | None, digits: int = 3) -> str:
     if value == 0.0 or 1.0e-3 <= abs(value) < 1.0e5:
         rounded = float(f"{value:.{digits}g}")
         whole = abs(rounded) >= 10.0 ** (digits - 1)
-        return signed(f"{rounded:.0f}" if whole else f"{rounded:g}")
+        return with_minus_signs(f"{rounded:.0f}" if whole else f"{rounded:g}")
     return scientific(value, digits)
 
 
@@ -52,7 +53,7 @@ def fixed(value: float | None, decimals: int, factor: float = 1.0) -> str:
     if value is None or not math.isfinite(value):
         return NONE
     # Adding 0 removes the sign of a number that is rounded to zero.
-    return signed(f"{round(factor * value, decimals) + 0.0:.{decimals}f}")
+    return with_minus_signs(f"{round(factor * value, decimals) + 0.0:.{decimals}f}")
 
 
 def repeated(values: Sequence[float]) -> str:

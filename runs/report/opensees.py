@@ -188,7 +188,7 @@ def _segment(boom: Boom, number: int, part: Part, model: BeamElements) -> dict[s
             }
             for support in segment.supports
         ],
-        "masses": [[part.node(mass.x), mass.mass] for mass in segment.carried],
+        "masses": [[part.node(mass.x), mass.mass] for mass in segment.all_masses],
     }
 
 
@@ -211,7 +211,7 @@ def _contacts(
             if law is None:
                 continue
             law = law.shared(pad.weight)
-            law = law.behind(-pad.raised) if pad.raised else law
+            law = law.behind(-pad.shim) if pad.shim else law
             yield {"outer": outer, "inner": inner, "points": points(law)}
     for _, stop in boom.numbered_stops:
         node = [stop.segment, parts[stop.segment].node(stop.x)]

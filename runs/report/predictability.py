@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from dynamics.predictability.horizon import SHARES
-from geometry.typography import TO_MILLI, signed
+from geometry.typography import TO_MILLI, with_minus_signs
 from runs.pipeline.comparison import Comparison, PeakDifferences
 from runs.pipeline.low_pass import SlowPeaks
 from runs.pipeline.model_quality import SCOPES
@@ -212,4 +212,7 @@ def _spread(
     """Return a mean and its spread, such as ``1.058 ± 0.031``; ``NONE`` without a value."""
     if value is None or spread is None:
         return NONE
-    return signed(f"{factor * value:{sign}.{decimals}f}") + f" ± {fixed(spread, decimals, factor)}"
+    return (
+        with_minus_signs(f"{factor * value:{sign}.{decimals}f}")
+        + f" ± {fixed(spread, decimals, factor)}"
+    )

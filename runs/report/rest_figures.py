@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.typography import TO_MILLI, signed
+from geometry.typography import TO_MILLI, with_minus_signs
 from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.motion_results import Envelope
 from runs.pipeline.static_results import StaticResult
@@ -69,9 +69,8 @@ def at_rest(run: FigureContext) -> list[Figure]:
         "curve." + of_start(run.case) + of_rests(run.case, rests.values())
     )
     far = max(rests.values(), key=lambda rest: abs(rest.tip)).tip
-    title = (
-        f"Static deflection under the maximum load: the tip at {signed(f'{TO_MILLI * far:.1f}')} mm"
-    )
+    tip = with_minus_signs(f"{TO_MILLI * far:.1f}")
+    title = f"Static deflection under the maximum load: the tip at {tip} mm"
     return _stacked(run, lines, "at-rest", title, caption)
 
 

@@ -25,7 +25,7 @@ from geometry.boom import Boom, Segment
 from geometry.contact_places import pads
 from geometry.section import Direction
 from geometry.telescoping import drives_below
-from geometry.typography import signed
+from geometry.typography import with_minus_signs
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.pipeline.model_output import BeamOutput, SegmentMotion
@@ -80,7 +80,8 @@ class Instant(NamedTuple):
         title = f"{self.title}:  " if self.title else ""
         tip = float(scene.motion["tip"].sel(time=self.time, method="nearest"))
         aside = " sideways" if scene.from_above else ""
-        return f"{title}t = {self.time:.3f} s,  tip {signed(f'{1.0e3 * tip:+.1f}')} mm{aside}"
+        deflection = with_minus_signs(f"{1.0e3 * tip:+.1f}")
+        return f"{title}t = {self.time:.3f} s,  tip {deflection} mm{aside}"
 
 
 @dataclass(frozen=True)
@@ -385,7 +386,7 @@ def _tube(boom: Boom, segment: Segment, output: SegmentMotion) -> _Tube:
     rings = np.arange(y.size).reshape(y.shape)
     quads = [(low, np.roll(low, -1), np.roll(high, -1), high) for low, high in pairwise(rings)]
     a, b, c, d = np.array(quads).transpose(1, 0, 2).reshape(4, -1)
-    there = [segment.local(place) for place in x.tolist()]
+    there = [segment.prismatic_at(place) for place in x.tolist()]
     # Rigid segments have no bending moments.
     stress = _bending(read.get("moment", none), there, "second_moment_of_area") * z
     if "lateral_moment" in read:

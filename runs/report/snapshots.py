@@ -17,7 +17,7 @@ from matplotlib import rc_context
 from PIL import Image
 
 from dynamics.trajectory import Trajectory
-from geometry.typography import TO_MILLI, signed
+from geometry.typography import TO_MILLI, with_minus_signs
 from runs.case.kinds.model import select_kind
 from runs.case.kinds.shell import Shell
 from runs.case.messages import BadInput
@@ -390,4 +390,4 @@ def _instant(name: str, motion: xr.Dataset) -> tuple[str, str]:
     else:
         return event, ""
     tip = float(motion["tip"].sel(time=time, method="nearest"))
-    return when, f", the tip at {signed(f'{TO_MILLI * tip:+.1f}')} mm"
+    return when, f", the tip at {with_minus_signs(f'{TO_MILLI * tip:+.1f}')} mm"

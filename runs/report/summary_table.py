@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
+from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, join_words, with_minus_signs
 from runs.pipeline.design_results import ModelDesignResults, PlayDifference
 from runs.pipeline.low_pass import mean_period
 from runs.pipeline.model_quality import static_deviation
@@ -99,14 +99,14 @@ def deviation_note(results: Results) -> str:
     ]
     offs = {name: static_deviation(design[reference], design[name]) for name in loose}
     deviations = [
-        f"{name} {signed(f'{TO_PERCENT * off:+.2g}')} %"
+        f"{name} {with_minus_signs(f'{TO_PERCENT * off:+.2g}')} %"
         for name, off in offs.items()
         if off is not None
     ]
     if not deviations:
         return ""
     behind = [name for name in results.summary.models if name not in results.main_models]
-    more = f" For {listed(behind)} see the tables and figures below." if behind else ""
+    more = f" For {join_words(behind)} see the tables and figures below." if behind else ""
     return (
         f"Deviation of the static tip deflection (maximum load) from {reference}: "
         f"{', '.join(deviations)}.{more}"
@@ -125,8 +125,8 @@ def play_effect(results: Results) -> str:
     kinds = [(_PHRASES[what], one) for what, one in first.items() if what in _PHRASES]
     more = [f"{_more(one)} to {what}" for what, one in kinds if not hardly(one)]
     same = [what for what, one in kinds if hardly(one)]
-    sentences = [f"Play adds {listed(more)}."] if more else []
-    sentences += [f"It hardly changes {listed(same)}."] if same else []
+    sentences = [f"Play adds {join_words(more)}."] if more else []
+    sentences += [f"It hardly changes {join_words(same)}."] if same else []
     frequency = first.get("first frequency")
     if frequency is not None and frequency.bonded and not hardly(frequency):
         both = f"{amount(frequency.with_play, 'Hz')} in place of {amount(frequency.bonded, 'Hz')}"
@@ -155,7 +155,7 @@ def _not_given(results: Results, model: str) -> str:
     pressed = (pad for pad in results.summary.pads if pad.model == model and pad.force > 0.0)
     pads = {pad.inner: None for pad in pressed if pad.utilisation is None}
     missing = {"yield strength is given of": steels, "allowable pressure is given of pads of": pads}
-    return "".join(f" No {what} {listed([*of])}." for what, of in missing.items() if of)
+    return "".join(f" No {what} {join_words([*of])}." for what, of in missing.items() if of)
 
 
 _PHRASES = {
@@ -166,7 +166,9 @@ _PHRASES = {
 
 
 def _more(one: PlayDifference) -> str:
-    share = "" if one.share is None else f" ({signed(f'{TO_PERCENT * one.share:+.0f}')} %)"
+    share = (
+        "" if one.share is None else f" ({with_minus_signs(f'{TO_PERCENT * one.share:+.0f}')} %)"
+    )
     return f"{amount(one.increase, one.unit)}{share}"
 
 
@@ -254,7 +256,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     if shells:
         most = [f"{amount(one.von_mises, 'Pa')} in {name}" for name, one in shells.items()]
         yield (
-            f"Single elements beside contact lines have larger stresses ({listed(most)}). They "
+            f"Single elements beside contact lines have larger stresses ({join_words(most)}). They "
             "grow with mesh refinement; the table of wall forces gives their places."
         )
 

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from rich.console import Console
 
-from geometry.typography import TO_PERCENT, listed
+from geometry.typography import TO_PERCENT, join_words
 from runs.case import reading as case_file
 from runs.case.messages import BadInput
 from runs.case.schema import Case
@@ -116,7 +116,7 @@ def show(data: pd.DataFrame, case: Case, refused: Sequence[str], console: Consol
         for one in QUANTITIES
         if one.name in SHOWN and one.name in top
     ]
-    notes = [f"Refused with 1 % more or less: {listed(refused)}."] if refused else []
+    notes = [f"Refused with 1 % more or less: {join_words(refused)}."] if refused else []
     if len(data) > len(top):
         notes.append(f"{len(data) - len(top)} more numbers are in {CSV}.")
     title = f"Change of results by 1 % of each number: {case.models[0].name}"

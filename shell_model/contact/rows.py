@@ -58,7 +58,7 @@ class _PadReadings:
                 approach = self.at_corners(pad.direction, pad.inner, pad.outer)
             else:
                 approach = self.over_patch(pad.patch, pad.side, pad.half)
-            slide = self.at_corners(pad.rubs, pad.inner, pad.outer)
+            slide = self.at_corners(pad.sliding_direction, pad.inner, pad.outer)
             return [(pad.side, pad.weight, approach)], slide
         points = []
         for side in (pad.side,) if pad.side else _SIDES:
@@ -78,7 +78,7 @@ class _PadReadings:
 
     def at_corners(self, direction: Direction, inner: Offset, outer: Offset) -> Reading:
         """Return the approach along the corners at offsets (y, z) in m."""
-        places = zip(self._ends, self.pad.pressed, (inner, outer), strict=True)
+        places = zip(self._ends, self.pad.intervals, (inner, outer), strict=True)
         rows = (self.corners[n].deflection(at, direction, *offset) for n, at, offset in places)
         return self._approach(*rows)
 
@@ -88,10 +88,10 @@ class _PadReadings:
         across, shares = gauss(-0.5 * width, 0.5 * width, 8)
         for y, share in zip(across[across > 0.0], 2.0 * shares[across > 0.0], strict=True):
             rows = []
-            for number, stretch in zip(self._ends, self.pad.pressed, strict=True):
+            for number, stretch in zip(self._ends, self.pad.intervals, strict=True):
                 # Points at ±y along the interval, with weights that sum to one.
                 x, weights = gauss(stretch.start, stretch.end, _POINTS)
-                force = 0.5 * weights * (stretch.end - stretch.start) * stretch.density(x)
+                force = 0.5 * weights * (stretch.end - stretch.start) * stretch.line_load(x)
                 places = np.column_stack([np.tile(x, 2), np.repeat([y, -y], x.size)])
                 mean = self.walls[number].mean
                 rows.append(mean(Wall("z", side), places, np.tile(force, 2), "z"))
@@ -110,7 +110,7 @@ class _PadReadings:
         wall = Wall(self.pad.direction, side)
         rows = (
             self.walls[n].mean(wall, places + np.array([by, 0.0]), weights, self.pad.direction)
-            for n, by in zip(self._ends, self.pad.moved, strict=True)
+            for n, by in zip(self._ends, self.pad.travel, strict=True)
         )
         return self._approach(*rows)
 
@@ -118,7 +118,7 @@ class _PadReadings:
     def _touching(self) -> Section:
         """Return the section of the inner segment at the pad."""
         inner = self.walls[self.pad.joint.inner].segment
-        return inner.section_at(self.pad.x + self.pad.moved[0])
+        return inner.section_at(self.pad.x + self.pad.travel[0])
 
     @property
     def _ends(self) -> tuple[int, int]:
@@ -177,19 +177,19 @@ class ShellContacts:
         boom, points = self.boom, self.points
         rows = GapBuilder([LawRow(point.reading, point.law, point.station) for point in points])
         for pad in pads(boom):
-            extended = pad.extended(boom, extensions.get(pad.number, 0.0))
+            extended = pad.at_extension(boom, extensions.get(pad.number, 0.0))
             touching, slide = _PadReadings(extended, self.corners, self.walls).contact(self.line)
             if self.line == "surface":
                 pressing = tuple(i for i, point in enumerate(points) if point.presses(pad))
             else:
                 law = pad.joint.law(pad.direction)
-                pressing = rows.add_contact(pad.station, law, touching, pad.raised)
+                pressing = rows.add_contact(pad.station, law, touching, pad.shim)
             rows.add_dashpot(pad.station, pad.joint.dashpot, touching)
             rows.add_friction(pad.station, pad.joint.friction, slide, pad.normal_force, pressing)
         for rest in stop_patches(boom):
             segment, drives = rest.stop.segment, drives_below(boom.joints, rest.stop.segment)
             extension = sum(extensions.get(number, 0.0) for number in drives)
-            pressed, lines = rest.extended(boom, extension).pressed, self.corners[segment]
+            pressed, lines = rest.at_extension(boom, extension).interval, self.corners[segment]
             # A stop touches a flange at both webs at once.
             flanges = [
                 (side, 1.0, Reading({segment: lines.deflection(pressed, "z", 0.0, side)}))

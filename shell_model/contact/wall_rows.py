@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.arrays import Array, Indices
-from geometry.contact_places import Stretch
+from geometry.contact_places import ContactInterval
 from geometry.section import COMPONENT, Direction
 from geometry.walls import WallsAlong
 from shell_model import compat
@@ -35,14 +35,14 @@ class _CornerLine(NamedTuple):
     x: Array
     dofs: Indices
 
-    def mean(self, stretch: Stretch, direction: Direction) -> Row:
+    def mean(self, stretch: ContactInterval, direction: Direction) -> Row:
         """Return the mean displacement, weighted by the density of a force, by Simpson's rule."""
         left, right = self.x[:-2:2], self.x[2::2]
         low, high = np.maximum(left, stretch.start), np.minimum(right, stretch.end)
         (edges,) = np.nonzero(low < high)
         left, right, low, high = (ends[edges, None] for ends in (left, right, low, high))
         places = low + (high - low) * [0.0, 0.5, 1.0]
-        forces = (high - low) * [1 / 6, 4 / 6, 1 / 6] * stretch.density(places)
+        forces = (high - low) * [1 / 6, 4 / 6, 1 / 6] * stretch.line_load(places)
         weights = np.einsum("ep,epn->en", forces, quadratic((places - left) / (right - left)))
         nodes = 2 * edges[:, None] + np.arange(3)
         return Row.of(self.dofs[nodes, COMPONENT[direction]].ravel(), weights.ravel())
@@ -63,7 +63,7 @@ class CornerLines:
             order = np.argsort(x)
             self._lines.append(_CornerLine(x[order], dofs[order]))
 
-    def deflection(self, stretch: Stretch, direction: Direction, y: float, z: float) -> Row:
+    def deflection(self, stretch: ContactInterval, direction: Direction, y: float, z: float) -> Row:
         """Return u_z or u_y of a face in m, on the straight line through its two corners.
 
         The corners share a force on the face by the law of the lever, as webs do under a flange.

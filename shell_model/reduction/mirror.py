@@ -137,7 +137,7 @@ def cell_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
         lines={},
         thickness=mesh.thickness[mine],
         plain=mesh.plain[mine],
-        even=mesh.even[mine],
+        load_weight=mesh.load_weight[mine],
     )
 
 

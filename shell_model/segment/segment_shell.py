@@ -45,7 +45,7 @@ class SegmentShell(Shell):
 
         They act on the plain section, without collars and diaphragms.
         """
-        loads = self._loads_on(lambda mesh: mesh.even)
+        loads = self._loads_on(lambda mesh: mesh.load_weight)
         return {direction: load / self.segment.area for direction, load in loads.items()}
 
     @cached_property
@@ -89,7 +89,9 @@ class SegmentShell(Shell):
         if span is None:
             return self.unit_loads[direction]
         start, end = span
-        loads = self._loads_on(lambda mesh: mesh.even * ((mesh.along > start) & (mesh.along < end)))
+        loads = self._loads_on(
+            lambda mesh: mesh.load_weight * ((mesh.along > start) & (mesh.along < end))
+        )
         return loads[direction] / self.segment.area
 
     def inertia(self, direction: Direction, force: float) -> Array:

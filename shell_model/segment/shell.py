@@ -209,7 +209,7 @@ def assemble_plates(
     points, triangles, of_cells = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64), None
     if mesh is not None:
         # Only the plain walls carry the axial force, so that it is the same in each section.
-        pressed = segment.compression(mesh.along) / segment.area * mesh.even
+        pressed = segment.compression(mesh.along) / segment.area * mesh.load_weight
         points, triangles, of_cells = mesh.points, mesh.triangles, (mesh.thickness, pressed)
     domain = compat.create_triangle_mesh(comm, points, triangles)
     thickness, compression = (

@@ -192,7 +192,7 @@ def _along(segment: Segment, mesh: PlatedMesh, force: Callable[[Array], Array]) 
 
     The plain walls carry the forces and share them with collars.
     """
-    return force(mesh.along) / segment.area * mesh.even / mesh.thickness
+    return force(mesh.along) / segment.area * mesh.load_weight / mesh.thickness
 
 
 def _axial_stress(boom: Boom, meshes: Sequence[PlatedMesh]) -> dict[str, _Variable]:
@@ -239,6 +239,6 @@ def _pushed(boom: Boom, number: int, mesh: PlatedMesh) -> Iterator[tuple[str, Mo
     for k, cylinder in enumerate(boom.cylinders, start=1):
         if cylinder.segment == number:
             stress = np.zeros((1, len(mesh.triangles), len(COMPONENTS)), dtype=np.float32)
-            pull = partial(cylinder.pull, foot=segment.foot)
+            pull = partial(cylinder.normal_force, foot=segment.foot)
             stress[0, :, COMPONENTS.index("membrane_x")] = _along(segment, mesh, pull)
             yield force_name(k), stress

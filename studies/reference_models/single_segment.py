@@ -13,7 +13,7 @@ from slepc4py import SLEPc
 from dynamics.failure import NumericsError
 from geometry.arrays import Array
 from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
-from geometry.plating import plated
+from geometry.plating import add_thickness
 from geometry.segment import Segment
 from shell_model.segment.cross_section import Row
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
@@ -35,7 +35,7 @@ def shell_alone(segment: Segment, size: float, places: Sequence[float] = ()) -> 
     lines = [*places, *(support.x for support in segment.supports)]
     breaks |= {f"place-{k}": x for k, x in enumerate(lines, start=1)}
     mesh = mesh_segment(segment.section, breaks, size, closed=tuple(plates))
-    return assemble_segment(MPI.COMM_SELF, segment, plated(segment, mesh))
+    return assemble_segment(MPI.COMM_SELF, segment, add_thickness(segment, mesh))
 
 
 def at_rest(shell: SegmentShell, forces: Array) -> Array:

@@ -99,7 +99,7 @@ def test_it_weighs_what_its_plates_weigh() -> None:
     middle = 8.0 * (2.0 * areas[1] + areas[2]) / (areas[0] + 4.0 * areas[1] + areas[2])
     segment = arm(supports=(Support(0.0, stiffness=1e6), Support(8.0, stiffness=1e6)))
     assert segment.mass_per_length * 8.0 == pytest.approx(mass, rel=1e-12)
-    assert segment.mass_middle == pytest.approx(middle, rel=1e-12)
+    assert segment.mass_centre == pytest.approx(middle, rel=1e-12)
     felt = Load(0, "z", segment.mass_per_length, None, Step(), inertial=True)
     boom = Boom((segment,), (), (felt,))
     for models in (

@@ -60,7 +60,7 @@ def test_flow_is_the_matrix_exponential(step: float) -> None:
         _, impulse, rise, ramp, drift = expm(generator * step)[0]
         reach = min(step, 1.0 / np.sqrt(abs(omega2))) if omega2 else step
         expected = {
-            "impulse": (impulse, reach), "rise": (rise, reach**2),
+            "impulse": (impulse, reach), "gain": (rise, reach**2),
             "ramp": (ramp / step, reach**2), "drift": (drift / step**2, reach**2),
         }  # fmt: skip
         for entry, (value, size) in expected.items():

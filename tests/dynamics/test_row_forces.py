@@ -185,4 +185,4 @@ def test_a_side_without_a_law_ends_the_search_for_its_deepest_press(
         stations=[0.0],
         observers={},
     )
-    assert march._slope_at(row_laws(system), 0, side, 1.0e-3) == pytest.approx(slope)
+    assert march._stiffness_at_energy(row_laws(system), 0, side, 1.0e-3) == pytest.approx(slope)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from dynamics.excitation import PiecewiseLinear
-from geometry.axial import MovingForce, Thrust, carried, moving_force, with_compression
+from geometry.axial import MovingForce, Thrust, axial_force, moving_force, with_compression
 from geometry.boom import (
     Boom,
     BoomError,
@@ -21,7 +21,7 @@ from geometry.boom import (
     Segment,
     Support,
 )
-from geometry.compression import UNPRESSED
+from geometry.compression import NO_COMPRESSION
 from geometry.joint import Carrier, Drive
 from geometry.section import BoxSection
 
@@ -106,7 +106,7 @@ def test_of_three_segments_each_carries_all_that_is_beyond_it() -> None:
 
 def test_without_forces_nothing_is_pressed() -> None:
     alone = with_compression(segments(), [JOINT], [])
-    assert [segment.compression for segment in alone] == [UNPRESSED, UNPRESSED]
+    assert [segment.compression for segment in alone] == [NO_COMPRESSION, NO_COMPRESSION]
     assert not Boom(alone, (JOINT,)).compressed
     assert Boom(with_compression(alone, [JOINT], [], 1.0), (JOINT,)).compressed
     assert at(alone[0], 1.0, 7.0) == [0.0, 0.0]
@@ -157,7 +157,7 @@ def test_drawn_out_a_force_goes_along(
             x = np.linspace(own[number].start, own[number].end, 97)[1:-1] + 1e-3
             here = own[number].compression(x)
             if way > 0.0:
-                here = carried(own, [joint], number, x, np.array([0.3, way]))[1]
+                here = axial_force(own, [joint], number, x, np.array([0.3, way]))[1]
             elif found is not None and found.segment == number:
-                here = here + found.more(x, np.array(way))
+                here = here + found.change(x, np.array(way))
             assert here == pytest.approx(expected[number].compression(x + moved), abs=1e-6)

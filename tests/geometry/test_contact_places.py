@@ -10,7 +10,7 @@ import pytest
 
 from dynamics.contact import PowerContact
 from geometry.boom import Boom, PadSize, Stop
-from geometry.contact_places import Pad, Patch, Stretch, pads
+from geometry.contact_places import ContactInterval, Pad, Patch, pads
 
 
 def test_a_flat_boom_touches_on_its_axis(paper_boom: Boom) -> None:
@@ -20,7 +20,10 @@ def test_a_flat_boom_touches_on_its_axis(paper_boom: Boom) -> None:
     axis = (0.0, 0.0)
     outer, inner = paper_boom.segments
     # A tenth of the overlap from 9 to 10 m.
-    tail, head = ((Stretch.on(inner, x, 0.1), Stretch.on(outer, x, 0.1)) for x in joint.stations)
+    tail, head = (
+        (ContactInterval.from_station(inner, x, 0.1), ContactInterval.from_station(outer, x, 0.1))
+        for x in joint.stations
+    )
     assert pads(boom) == [
         Pad(0, joint, 0, 9.0, "z", 0, axis, axis, 1.0, "z", 4500.0, tail, None),
         Pad(1, joint, 0, 10.0, "z", 0, axis, axis, 1.0, "z", 5000.0, head, None),
@@ -56,7 +59,9 @@ def test_pads_in_space_are_in_the_corners(spatial_boom: Boom) -> None:
         (2, 9.0),
         (3, 10.0),
     ]
-    assert [(pad.direction, pad.rubs) for pad in found[::4]] == 2 * [("z", "y")] + 2 * [("y", "z")]
+    assert [(pad.direction, pad.sliding_direction) for pad in found[::4]] == 2 * [
+        ("z", "y")
+    ] + 2 * [("y", "z")]
     b, h = 0.5 * inner.width, 0.5 * inner.height
     top, side = 0.5 * (outer.height - outer.flange), 0.5 * (outer.width - outer.web)
     flange = [(pad.side, pad.inner, pad.outer) for pad in found[:4]]
@@ -125,10 +130,10 @@ def test_a_station_presses_corners_evenly_or_about_itself(
     """Reference: analytic. A unit force whose resultant is at the station, on a tenth of a metre
     of the outer segment, [0, 10] m: even within, along a line from 4/c down to -2/c at an end.
     """
-    stretch = Stretch.on(paper_boom.segments[0], station, 0.1)
+    stretch = ContactInterval.from_station(paper_boom.segments[0], station, 0.1)
     assert (stretch.start, stretch.end) == pytest.approx((start, start + 0.1))
-    assert stretch.density(np.array([start, start + 0.1])) == pytest.approx(ends)
+    assert stretch.line_load(np.array([start, start + 0.1])) == pytest.approx(ends)
     x, weights = np.polynomial.legendre.leggauss(2)
     x = start + 0.05 + 0.05 * x
-    forces = 0.05 * weights * stretch.density(x)
+    forces = 0.05 * weights * stretch.line_load(x)
     assert [forces.sum(), forces @ x] == pytest.approx([1.0, station])

@@ -27,7 +27,7 @@ from geometry.mesh import (
     diaphragm_breaks,
     mesh_segment,
 )
-from geometry.plating import plated
+from geometry.plating import add_thickness
 from geometry.section import BoxSection
 from tests.shell_model.booms import box_segment
 
@@ -144,7 +144,7 @@ def test_plates_have_their_thicknesses() -> None:
         "tail": 0.0, "head": 10.0, "diaphragm-1": 9.0, "diaphragm-2": 2.0,
         "collar-1-start": 8.7, "collar-1-end": 9.1,
     }  # fmt: skip
-    mesh = plated(segment, mesh_segment(box, breaks, 0.15, closed=tuple(plates)))
+    mesh = add_thickness(segment, mesh_segment(box, breaks, 0.15, closed=tuple(plates)))
     walls = box.area * 10.0
     assert mesh.plain @ areas(mesh) == pytest.approx(walls, rel=1e-12)
     collar, closing = 1.6 * 0.4 * 0.01, 0.15 * (0.012 + 0.004)

@@ -13,7 +13,7 @@ from geometry.arrays import Array
 from geometry.polygon import PolygonSection, closed_polygon
 from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import BoxSection, Section
-from geometry.taper import between, check_alike
+from geometry.taper import check_alike, interpolate_section
 
 TRAPEZOID = PolygonSection(
     ((-0.1, -0.3), (0.1, -0.3), (0.2, 0.3), (-0.2, 0.3)), (0.010, 0.006, 0.008, 0.006)
@@ -74,7 +74,7 @@ def test_it_tapers_wherever_its_corners_begin() -> None:
     ):
         check_alike(tail, head)
         for part in (0.0, 0.3, 1.0):
-            assert between(tail, head, part).plates == tail.plates
+            assert interpolate_section(tail, head, part).plates == tail.plates
 
 
 def test_an_upright_rectangle_is_a_box() -> None:

@@ -21,7 +21,7 @@ def test_a_box_worked_by_hand() -> None:
     corner, hump = t * b * h / (4.0 * bending), t * h**2 / (8.0 * bending)
     webs = 2.0 * h * (corner**2 + 4.0 / 3.0 * corner * hump + 8.0 / 15.0 * hump**2)
     flanges = 2.0 * b * corner**2 / 3.0
-    flow = ShearFlow.of(BoxSection(h, b, t, t).plates, "z")
+    flow = ShearFlow.from_plates(BoxSection(h, b, t, t).plates, "z")
     assert flow.shear_area == pytest.approx(t / (webs + flanges), rel=1e-12)
     assert flow.moment == pytest.approx(0.0, abs=1e-15)
 
@@ -31,7 +31,7 @@ def test_a_box_worked_by_hand() -> None:
 def test_it_is_the_force_and_does_not_twist(name: str, direction: Direction) -> None:
     """Reference: analytic, equilibrium and ∮ q/t ds = 0."""
     plates = ALL[name].plates
-    flow = ShearFlow.of(plates, direction)
+    flow = ShearFlow.from_plates(plates, direction)
     tangents = np.array([plate.tangent for plate in plates])
     expected = [1.0, 0.0] if direction == "y" else [0.0, 1.0]
     assert flow.forces @ tangents == pytest.approx(expected, abs=1e-12)

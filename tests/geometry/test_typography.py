@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Numbers and lists as people read them."""
 
-from geometry.typography import digits, listed, signed
+from geometry.typography import digits, join_words, with_minus_signs
 
 
 def test_digits_never_need_an_exponent() -> None:
@@ -13,9 +13,9 @@ def test_digits_never_need_an_exponent() -> None:
 
 def test_minus_signs_are_no_hyphens() -> None:
     """Reference: Unicode, MINUS SIGN."""
-    assert signed("-1.5") == "\N{MINUS SIGN}1.5"
+    assert with_minus_signs("-1.5") == "\N{MINUS SIGN}1.5"
 
 
 def test_the_last_of_several_follows_an_and() -> None:
     """Reference: by hand."""
-    assert [listed("abc"[:count]) for count in (1, 2, 3)] == ["a", "a and b", "a, b and c"]
+    assert [join_words("abc"[:count]) for count in (1, 2, 3)] == ["a", "a and b", "a, b and c"]

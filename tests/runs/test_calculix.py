@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import protractile as pt
-from dynamics.equilibrium import rest_at
+from dynamics.equilibrium import equilibrium_at
 from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.kinds.model import Workshop
@@ -59,7 +59,7 @@ def test_a_boom_rests_in_calculix_as_here(
     write(case, "", MPI.COMM_SELF, deck, None)
     found = readings(deck)
     system = build(case, build_boom(case), case.models[0], Workshop(MPI.COMM_SELF)).system
-    rest = rest_at(system)
+    rest = equilibrium_at(system)
     tip = system.observers["tip"].row @ rest
     assert found["tip"] == pytest.approx(tip, rel=tolerance)
     gaps = system.rows @ rest

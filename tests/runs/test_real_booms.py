@@ -65,7 +65,7 @@ def by_hand(boom: Boom, weight: float, tip: float) -> tuple[list[Pushed], list[f
     """
     pushed = [Pushed(segment, -weight * segment.mass_per_length) for segment in boom.segments]
     for one in pushed:
-        one.forces += [(mass.x, -weight * mass.mass) for mass in one.segment.carried]
+        one.forces += [(mass.x, -weight * mass.mass) for mass in one.segment.all_masses]
     pushed[-1].forces.append((boom.tip, tip))
     for joint in reversed(boom.joints):
         inner, (first, last) = pushed[joint.inner], middles(joint)
@@ -165,8 +165,8 @@ def test_moments_about_the_pin_are_in_balance(name: str, lowered: float) -> None
         (mass, x)
         for segment in boom.segments
         for mass, x in (
-            (segment.mass_per_length * segment.length, segment.mass_middle),
-            *((point.mass, point.x) for point in segment.carried),
+            (segment.mass_per_length * segment.length, segment.mass_centre),
+            *((point.mass, point.x) for point in segment.all_masses),
         )
     ]
     turning = sum(mass * (x - foot.x) for mass, x in masses) * GRAVITY * np.cos(angle)

@@ -15,7 +15,7 @@ import pytest
 from pydantic.fields import FieldInfo
 from rich.console import Console
 
-from geometry.fields import declared_units, described, fields_of
+from geometry.fields import declared_units, describe, fields_of
 from protractile.cases import change
 from runs.case import reading, toml
 from runs.case.build import build_boom
@@ -364,7 +364,7 @@ def test_every_number_declares_its_unit() -> None:
         for unit in units:
             Unit.of(re.sub(r"\^\(?n.*", "", unit))
             said = {"1": "", "deg": "degrees", "rad/s": "rad/s"}.get(unit, unit)
-            text = described(field)
+            text = describe(field)
             assert said in text or "the same" in text or "such pairs" in text, name
 
 

@@ -15,7 +15,7 @@ from mpi4py import MPI
 
 from geometry.boom import PointMass, Support
 from geometry.mesh import mesh_segment
-from geometry.plating import plated
+from geometry.plating import add_thickness
 from geometry.section import BoxSection, Section
 from shell_model.segment.cross_section import Row
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
@@ -38,7 +38,7 @@ def box_shell(
     segment = replace(box_segment("box", 0.0, length, section, supports=supports), masses=masses)
     breaks = {"start": 0.0, "end": length}
     breaks |= {f"place-{one.x:g}": one.x for one in (*supports, *masses)}
-    mesh = plated(segment, mesh_segment(section, breaks, size))
+    mesh = add_thickness(segment, mesh_segment(section, breaks, size))
     return assemble_segment(MPI.COMM_WORLD, segment, mesh if MPI.COMM_WORLD.rank == 0 else None)
 
 

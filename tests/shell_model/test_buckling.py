@@ -183,7 +183,7 @@ def test_halved_meshes_have_the_same_walls() -> None:
     shell = shell_alone(box_segment("box", 0.0, 2.0, TUBE), 0.2)
     mesh = shell.mesh
     assert mesh is not None
-    finer = mesh.halved
+    finer = mesh.refined
     assert np.array_equal(finer.points[: len(mesh.points)], mesh.points)
     areas = triangle_areas(mesh.points, mesh.triangles)
     own = triangle_areas(finer.points, finer.triangles)

@@ -13,7 +13,7 @@ from mpi4py import MPI
 from dynamics.failure import NumericsError
 from geometry.boom import Collar, Diaphragm, PointMass, Support
 from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
-from geometry.plating import plated
+from geometry.plating import add_thickness
 from geometry.section import Section
 from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, SymmetryClass
 from shell_model.reduction.symmetry import Job, SymmetryReduction
@@ -37,7 +37,7 @@ def _laden(section: Section) -> SegmentShell:
     breaks = {"start": 0.0, "support": 2.0, "end": 10.0}
     breaks |= collar_breaks(segment) | diaphragm_breaks(segment)
     mesh = mesh_segment(section, breaks, 0.5, closed=tuple(diaphragm_breaks(segment)))
-    return assemble_segment(MPI.COMM_WORLD, segment, plated(segment, mesh))
+    return assemble_segment(MPI.COMM_WORLD, segment, add_thickness(segment, mesh))
 
 
 def _everything(shell: SegmentShell) -> tuple[SymmetryReduction, list[Job]]:
@@ -159,7 +159,7 @@ def test_refuses_a_mesh_that_is_no_mirror_image(
 ) -> None:
     mesh = spoil(mesh_segment(BOX, {"start": 0.0, "end": 10.0}, 0.5))
     segment = box_segment("box", 0.0, 10.0, BOX)
-    shell = assemble_segment(MPI.COMM_WORLD, segment, plated(segment, mesh))
+    shell = assemble_segment(MPI.COMM_WORLD, segment, add_thickness(segment, mesh))
     message = f"^a segment's {what} is not its own mirror image in y$"
     with pytest.raises(NumericsError, match=message):
         SymmetryReduction(shell)

@@ -24,7 +24,7 @@ from geometry.boom import (
     Stop,
     Support,
 )
-from geometry.contact_places import ContactLine, Stretch
+from geometry.contact_places import ContactInterval, ContactLine
 from geometry.polygon import PolygonSection
 from geometry.section import BoxSection, Section
 from shell_model.contact.wall_rows import CornerLines, Wall, WallPoints
@@ -83,7 +83,7 @@ def test_contacts_read_the_true_faces(box_shell: Shells, section: Section) -> No
     field = np.zeros(shell.num_dofs)
     field[shell.node_dofs[:, 1:]] = shell.nodes[:, 1:]
     corners, walls = CornerLines(shell), WallPoints(shell)
-    stretch = Stretch.on(shell.segment, 5.0, 0.7)
+    stretch = ContactInterval.from_station(shell.segment, 5.0, 0.7)
     for face in section.faces:
         offsets = (0.0, face.side) if face.direction == "z" else (face.side, 0.0)
         row = corners.deflection(stretch, face.direction, *offsets)

@@ -10,7 +10,7 @@ import pytest
 
 from beam_model.component import natural_modes
 from beam_model.finite_element import Theory, finite_element_segment
-from geometry.contact_places import Stretch
+from geometry.contact_places import ContactInterval
 from geometry.section import BoxSection
 from shell_model.contact.wall_rows import CornerLines
 from shell_model.segment.segment_shell import SegmentShell
@@ -92,7 +92,7 @@ def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
     """
     shell = box_shell(0.25)
     outline, corners = shell.outline(10.0), CornerLines(shell)
-    at_end, within = (Stretch.on(shell.segment, x, 0.1) for x in (10.0, 7.3))
+    at_end, within = (ContactInterval.from_station(shell.segment, x, 0.1) for x in (10.0, 7.3))
     in_plane = np.array([0.0, 0.0, 0.03, 0.0, -0.002, 0.0])
     lifted = 0.03 + 0.002 * 5.0
     rows = (
@@ -135,7 +135,7 @@ def test_a_length_of_a_corner_gives_way_alike_on_any_mesh(box_shell: Shells) -> 
 
     def local(size: float, length: float) -> float:
         shell = box_shell(size, 0.4, section=section)
-        stretch = Stretch.on(shell.segment, 0.2, length)
+        stretch = ContactInterval.from_station(shell.segment, 0.2, length)
         pressed = CornerLines(shell).deflection(stretch, "z", 0.0, 1.0)
         spread = shell.outline(0.4).wall_deflection("z"), shell.outline(0.0).wall_deflection("z")
         return compliance(shell, pressed - 0.5 * spread[0] - 0.5 * spread[1])

@@ -17,7 +17,7 @@ from mpi4py import MPI
 from dynamics.excitation import Step
 from geometry.boom import Collar, Diaphragm, Load, Segment, Support
 from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
-from geometry.plating import PlatedMesh, plated
+from geometry.plating import PlatedMesh, add_thickness
 from geometry.section import BoxSection
 from runs.report.scene import Scene
 from shell_model.boom_shell import ShellOptions
@@ -42,7 +42,7 @@ def meshed(segment: Segment, size: float) -> PlatedMesh:
     breaks |= {f"support-{one.x:g}": one.x for one in segment.supports}
     # Where there is none, the mesh is that of the stiffened box all the same.
     breaks |= {f"place-{one.x:g}": one.x for one in PLATES if one.x <= segment.end}
-    return plated(segment, mesh_segment(segment.section, breaks, size, closed=tuple(plates)))
+    return add_thickness(segment, mesh_segment(segment.section, breaks, size, closed=tuple(plates)))
 
 
 @cache

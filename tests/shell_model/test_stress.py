@@ -14,7 +14,7 @@ from mpi4py import MPI
 from geometry.arrays import Array
 from geometry.boom import Boom, Collar, Diaphragm, PadSize, Support
 from geometry.mesh import diaphragm_breaks, mesh_segment
-from geometry.plating import PlatedMesh, plated
+from geometry.plating import PlatedMesh, add_thickness
 from geometry.profiles import octagon
 from geometry.section import BoxSection, Section
 from shell_model.boom_shell import ShellOptions
@@ -39,7 +39,7 @@ def plates() -> tuple[SegmentShell, PlatedMesh]:
     segment = CLOSED
     breaks = {"start": 0.0, "end": 1.0} | diaphragm_breaks(segment)
     closed = tuple(diaphragm_breaks(segment))
-    mesh = plated(segment, mesh_segment(BOX, breaks, 0.25, closed=closed))
+    mesh = add_thickness(segment, mesh_segment(BOX, breaks, 0.25, closed=closed))
     first = MPI.COMM_WORLD.rank == 0
     return assemble_segment(MPI.COMM_WORLD, segment, mesh if first else None), mesh
 
@@ -265,7 +265,7 @@ def stressed(boom: Boom) -> ShellStress:
     return ShellStress.of(moving)
 
 
-def carried(shell: ShellStress, x: float) -> float:
+def axial_force(shell: ShellStress, x: float) -> float:
     """By all walls through a section, in N."""
     return sum(forces.axial for forces in wall_forces(shell, 0.0, 0, x).values())
 
@@ -283,12 +283,12 @@ def test_a_column_is_pressed_by_its_load_and_its_weight() -> None:
     doubled = replace(segment, collars=(Collar((3.0, 4.0), 0.006),))
     collared = stressed(replace(boom, segments=(doubled,)))
     assert collared.at(0.0).membrane[:, 0].max() == pytest.approx(-0.5 * force / COLUMN_BOX.area)
-    assert carried(collared, 3.5) == pytest.approx(-force, rel=1e-6)
+    assert axial_force(collared, 3.5) == pytest.approx(-force, rel=1e-6)
     weighing = stressed(column((CLAMP,), force, gravity))
     row = weighing.row(0, 2.0)
     middle = 0.5 * (weighing.spans[row, 0].min() + weighing.spans[row, 1].max())
     above = COLUMN_BOX.mass_per_length(STEEL.density) * gravity * (LENGTH - middle)
-    assert carried(weighing, 2.0) == pytest.approx(-force - above, rel=1e-4)
+    assert axial_force(weighing, 2.0) == pytest.approx(-force - above, rel=1e-4)
     every = np.arange(weighing.segment.size)
     ((_, over_time),) = weighing.over_time(every)
     np.testing.assert_array_equal(over_time.membrane[0], weighing.at(0.0).membrane)
@@ -305,7 +305,7 @@ def test_a_taper_is_pressed_most_at_its_slender_end() -> None:
     np.testing.assert_allclose(stress, -1000.0 / local, rtol=1e-5)
     assert stress.min() / stress.max() > 3.0
     for place in (1.0, 4.0, 7.0):
-        assert carried(shell, place) == pytest.approx(-1000.0, rel=2e-3)
+        assert axial_force(shell, place) == pytest.approx(-1000.0, rel=2e-3)
 
 
 THIN = BoxSection(height=0.4, width=0.3, flange=0.005, web=0.005)
@@ -320,7 +320,7 @@ def shell() -> ShellStress:
     between those at which every triangle is looked at.
     """
     mesh = mesh_segment(THIN, {"start": 0.0, "end": 4.0}, 0.1)
-    mesh = plated(box_segment("box", 0.0, 4.0, THIN), mesh)
+    mesh = add_thickness(box_segment("box", 0.0, 4.0, THIN), mesh)
     centroids = mesh.points[mesh.triangles].mean(axis=1)
     modes = np.zeros((2, len(mesh.triangles), 6), dtype=np.float32)
     modes[0, :, 0] = 5.0e6 * centroids[:, 2]

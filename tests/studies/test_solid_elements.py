@@ -18,7 +18,7 @@ from mpi4py import MPI
 from geometry.arrays import Array
 from geometry.boom import Collar, PointMass, Segment, Support
 from geometry.mesh import mesh_segment
-from geometry.plating import plated
+from geometry.plating import add_thickness
 from geometry.section import BoxSection
 from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, SymmetryClass
 from shell_model.reduction.symmetry import SymmetryReduction
@@ -191,7 +191,7 @@ def test_the_shell_of_a_thin_box_is_the_solid_s() -> None:
     thin = BoxSection(0.40, 0.30, 0.01, 0.01)
     box = box_segment("box", 0.0, 2.0, thin, supports=(Support(0.0), Support(0.5)))
     mesh = mesh_segment(thin, {"a": 0.0, "held": 0.5, "b": 2.0}, 0.05)
-    shell = assemble_segment(MPI.COMM_SELF, box, plated(box, mesh))
+    shell = assemble_segment(MPI.COMM_SELF, box, add_thickness(box, mesh))
     lift = shell.row(shell.outline(2.0).wall_deflection("z"))
     symmetry = SymmetryReduction(shell)
     (job,) = symmetry.jobs(lift[:, None], np.zeros((lift.size, 0)))

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Check of restraint: supports, joints and stops must prevent all rigid motions.
+"""Check of support: supports, cylinders, joints and stops must prevent all rigid motions.
 
-Rigid motions of a segment are translation along z and rotation in that plane, in space also along
-y, and rotation about the axis. Each restraint is a row over the rigid motions of all segments; the
-boom is restrained if no motion satisfies all rows. A stop may act in one direction only. The loads
-at t = 0 must then press the segment against it, in equilibrium with the reactions of the other
-rows.
+Rigid motions of a segment are translation along z and rotation in the plane x-z; in space also
+those in the plane x-y, and rotation about the axis. Each restraint is a row over the rigid motions
+of all segments. The boom is supported if only zero motion satisfies rows · motion = 0. If a
+one-sided stop is necessary, the loads at t = 0 must press the segment against it.
 """
 
 from __future__ import annotations
@@ -34,14 +33,14 @@ _ROUND_OFF = 1.0e-9
 _FLAT, _SPATIAL = 2, 5
 
 
-def check_held(boom: Boom) -> None:
-    """Check that supports, cylinders, joints and stops leave no rigid motion.
+def check_supported(boom: Boom) -> None:
+    """Check that supports, cylinders, joints and stops prevent all rigid motions.
 
     Args:
-        boom: boom with all places on its segments.
+        boom: boom whose parts are on their segments.
 
     Raises:
-        BoomError: a segment is not restrained.
+        BoomError: a segment can move as a rigid body.
     """
     _check_depths(boom)
     bodies = _bodies(boom)
@@ -62,10 +61,10 @@ def check_held(boom: Boom) -> None:
 
 
 def check_contacts_at_rest(boom: Boom) -> None:
-    """Check that the loads at t = 0 press the one-way stops that the boom needs.
+    """Check that the loads at t = 0 press the one-sided stops that the boom needs.
 
     Args:
-        boom: restrained boom with loads.
+        boom: supported boom with loads.
 
     Raises:
         BoomError: the loads lift a segment off its stops.
@@ -91,7 +90,10 @@ def check_contacts_at_rest(boom: Boom) -> None:
 
 @dataclass(frozen=True, slots=True)
 class _RigidBody(Member):
-    """Rigid segment over the motions of all segments; the boom's length scales rotations."""
+    """Rigid segment; degrees of freedom are the rigid motions of all segments.
+
+    Rotations are scaled by the length of the boom.
+    """
 
     boom: Boom
     number: int
@@ -102,12 +104,12 @@ class _RigidBody(Member):
 
     @property
     def key(self) -> str:
-        """The place of the segment in the boom."""
+        """The attribute of the boom with this segment, for messages."""
         return f"segments[{self.number}]"
 
     @property
     def motions(self) -> slice:
-        """The motions of the segment: along z, then along y and about the axis."""
+        """The degrees of freedom of the segment: for z, in space also for y and twist."""
         count = _SPATIAL if self.boom.spatial else _FLAT
         return slice(count * self.number, count * (self.number + 1))
 
@@ -118,7 +120,7 @@ class _RigidBody(Member):
         if self.boom.spatial and self.segment.lateral is not None:
             whole += self.segment.lateral.load * self.uniform("y", None)
         for load in self.boom.loads:
-            # A load that ends before t = 0 has no value.
+            # The history of a load that ends before t = 0 is not callable.
             if load.segment == self.number and callable(load.history):
                 whole += float(load.history(np.zeros(()))) * load.push(self)
         return whole
@@ -139,7 +141,7 @@ class _RigidBody(Member):
 
     def inertia(self, direction: Direction, force: float) -> Array:
         segment, acceleration = self.segment, force / self.segment.mass_per_length
-        plain = force * segment.length * self.force(segment.mass_middle, direction)
+        plain = force * segment.length * self.force(segment.mass_centre, direction)
         added = (
             acceleration * one.mass * self.force(one.x, direction)
             for one in segment.stiffener_masses
@@ -148,7 +150,7 @@ class _RigidBody(Member):
 
     def turning(self, direction: Direction) -> Array:
         segment = self.segment if direction == "z" else self.segment.turned()
-        mass, middle = segment.mass_per_length * segment.length, segment.mass_middle
+        mass, middle = segment.mass_per_length * segment.length, segment.mass_centre
         inertia = mass * segment.length**2 / 12.0 + segment.rotary_inertia * segment.length
         plates = mass * middle * self.force(middle, direction) + inertia * self.moment(
             middle, direction
@@ -215,7 +217,7 @@ def _always(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
 
 
 def _left(rows: Iterable[Array], bodies: list[_RigidBody]) -> Array:
-    """Return the motions (num_motions, num_left) that the rows leave free."""
+    """Return a basis (num_dofs, num_free) of the motions with rows · motion = 0."""
     sizes = [(row, float(np.linalg.norm(row))) for row in rows]
     scaled = np.array([row / size for row, size in sizes if size > 0.0])
     motions = np.eye(bodies[-1].motions.stop)
@@ -226,5 +228,5 @@ def _left(rows: Iterable[Array], bodies: list[_RigidBody]) -> Array:
 
 
 def _free(bodies: list[_RigidBody], left: Array) -> Iterator[_RigidBody]:
-    """Yield the segments that move in the free motions."""
+    """Yield the segments that take part in free motions."""
     return (body for body in bodies if np.abs(left[body.motions]).max(initial=0.0) > _ROUND_OFF)

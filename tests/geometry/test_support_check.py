@@ -12,9 +12,9 @@ import pytest
 from dynamics.contact import PowerContact
 from dynamics.excitation import Ramp, ReleasedLoad, Step
 from geometry.boom import Boom, BoomError, Collar, Cylinder, Load, Material, Segment, Stop, Support
-from geometry.holding import check_contacts_at_rest
 from geometry.observation import Observation
 from geometry.section import BoxSection
+from geometry.support_check import check_contacts_at_rest
 from tests.space import in_space
 
 HINGE = Support(0.0)
