@@ -73,7 +73,7 @@ def test_it_is_fine_at_its_spots_and_coarse_far_from_them(mesh: SegmentMesh) -> 
     let them be.
     """
     places = np.column_stack([mesh.points[:, 0], np.abs(mesh.points[:, 1:])])
-    allowed = np.minimum(CORNER.allowed(places), PAD.allowed(places))
+    allowed = np.minimum(CORNER.edge_length(places), PAD.edge_length(places))
     sides = _longest(mesh) / np.sqrt(2.0)
     assert (sides < 1.000001 * allowed[mesh.triangles].min(axis=1)).all()
     x = mesh.points[mesh.triangles, 0].mean(axis=1)
