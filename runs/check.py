@@ -44,9 +44,11 @@ from runs.pipeline.largest_loads import (
     beam_note,
     overload_cautions,
     static_table,
+    weakest_at_rest,
 )
 from runs.pipeline.load_table import load_table
 from runs.pipeline.pad_walls import pad_wall_lines
+from runs.pipeline.panels import PanelBuckling
 from runs.pipeline.proportions import (
     buckling_cautions,
     period_cautions,
@@ -128,7 +130,9 @@ def check_case(declared: CheckedCase) -> Check:
     case, boom, preview = declared.case, declared.boom, Preview(declared)
     found = statics(case, boom)
     shown = boom if found is None else found.with_play.boom
-    extremes = [] if found is None else StaticBeam.of(case, shown).extremes(case.system)
+    beam = None if found is None else StaticBeam.of(case, shown)
+    extremes = [] if beam is None else beam.extremes(case.system)
+    panels = [] if beam is None else weakest_at_rest(beam)
     tables = [
         _segments(case, boom),
         _stiffeners(boom, case.system),
@@ -142,6 +146,7 @@ def check_case(declared: CheckedCase) -> Check:
         *([_reactions(found.with_play, case.system)] if found else []),
         *([_cylinders(found.with_play, case.system)] if found else []),
         static_table(case, shown, extremes),
+        _panels(panels, case.system),
         *combination_tables(combination_results(case), case),
     ]
     drives = list(stick_slip_estimates(case, boom))
@@ -155,6 +160,12 @@ def check_case(declared: CheckedCase) -> Check:
         *actions.series_notes(case),
         *proportion_cautions(case, boom),
         *overload_cautions(extremes),
+        *(
+            f"caution: the wall {one.wall!r} of {one.segment!r} buckles at {number(one.factor, 3)} "
+            f"times the loads at rest, at x = {case.system.text(one.x, 'm')} (panel formulas)"
+            for one in panels
+            if one.factor < 1.0
+        ),
         *stick_slip_cautions(drives, case.system),
     ]
     lines.append(f"A run may take {preview_cost(preview)}.")
@@ -358,6 +369,21 @@ def _buckling(declared: CheckedCase) -> Table:
         Column("axial force over\ncritical force", [f and 1.0 / f for f in factors], ".3g", "%"),
     ]
     return Table("Buckling under the axial forces, joints in contact", columns)
+
+
+def _panels(panels: Sequence[PanelBuckling], system: System) -> Table:
+    """Return the table of the wall of each segment that buckles first by panel formulas."""
+    columns = [
+        Column("segment", [one.segment for one in panels]),
+        Column("wall", [one.wall for one in panels]),
+        Column(f"x\n{system.label('m')}", [f"{system.of(one.x, 'm'):.4g}" for one in panels]),
+        Column("buckling factor", [one.factor for one in panels], ".3g"),
+    ]
+    note = (
+        "Under the largest loads at rest. Long panels on simple supports, stresses in interaction: "
+        "k = 4 in compression, 23.9 in bending, 5.34 in shear; without loads of pads."
+    )
+    return Table("Buckling of walls, estimate", columns, [note])
 
 
 def _damping_ratios(preview: Preview) -> Table:

@@ -22,6 +22,7 @@ from geometry.axial import foot_thrust
 from geometry.boom import Boom
 from runs.case.schema import Case
 from runs.case.units import System
+from runs.pipeline.panels import PanelBuckling, weakest_panels
 from runs.pipeline.section_forces import section_forces, with_cylinder_forces
 from runs.pipeline.static_results import StaticResult, instants, positions, static_result
 from runs.pipeline.strength import Fibres, largest_stresses
@@ -192,6 +193,16 @@ class StaticBeam(NamedTuple):
                 for load in loads
             ]
             yield _static_extreme(f"pad, {name}", f"pad at {where}", "Pa", rests, pressures, used)
+
+
+def weakest_at_rest(beam: StaticBeam) -> list[PanelBuckling]:
+    """Return the wall of each segment that buckles first in any of the static states."""
+    found: dict[str, PanelBuckling] = {}
+    for rest in beam.rests:
+        for one in weakest_panels(beam.boom.segments, rest):
+            if one.segment not in found or one.factor < found[one.segment].factor:
+                found[one.segment] = one
+    return [*found.values()]
 
 
 def _static_extreme(

@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from geometry.section import BoxSection
 from geometry.segment import Material, Segment
+from runs.case.checked_case import CheckedCase
+from runs.check import check_case
 from runs.pipeline.panels import normal_coefficient, panel_factor, weakest_panels
 from runs.pipeline.static_results import Diagram, StaticResult
+from tests.runs.case_texts import read_case
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 SLENDERNESS = 80.0
@@ -68,3 +73,32 @@ def test_the_weakest_wall_of_a_segment() -> None:
     wall, x, factor = weakest(torque=[1.0e5, 1.0e4])
     assert (wall, x) == ("bottom", 0.0)
     assert factor == pytest.approx(5.34 * flange / shear)
+
+
+def test_check_names_walls_that_buckle(tmp_path: Path) -> None:
+    """Reference: analytic, the bottom flange of a cantilever under a load at its tip."""
+    box = BoxSection(height=0.4, width=0.3, flange=0.003, web=0.008)
+    unit = np.pi**2 * 2.1e11 / (12.0 * 0.91) * (0.003 / 0.3) ** 2
+    stress = 2.0e5 * 6.0 * 0.2 / box.second_moment_of_area
+    sheared = 2.0e5 / (2.0 * 0.4 * 0.008)
+    case = read_case(
+        tmp_path,
+        """
+title = "Thin"
+time = { duration = 1.0 }
+material = { youngs_modulus = 2.1e11, poissons_ratio = 0.3, density = 7850.0 }
+model = [{ name = "beam", kind = "finite-element" }]
+load = [{ segment = "arm", x = "head", magnitude = -2e5 }]
+[[segment]]
+name = "arm"
+length = 6.0
+supports = [{ x = 0.0, kind = "clamped" }]
+section = { height = 0.4, width = 0.3, flange = 0.003, web = 0.008 }
+""",
+    )
+    found = check_case(CheckedCase(case))
+    (table,) = (one for one in found.tables if one.title == "Buckling of walls, estimate")
+    assert table.rows == [("arm", "bottom", "0", f"{4.0 * unit / stress:.3g}")]
+    assert sheared < 0.1 * 5.34 * unit * (8.0 / 3.0) ** 2
+    (caution,) = (line for line in found.lines if "panel formulas" in line)
+    assert caution.startswith("caution: the wall 'bottom' of 'arm' buckles at")
