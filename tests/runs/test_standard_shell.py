@@ -13,16 +13,24 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 from mpi4py import MPI
 
 from dynamics.equilibrium import equilibrium
+from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
+from geometry.boom import Boom
 from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
-from runs.case.reading import load
 from runs.pipeline.models import build
-from tests.runs.case_texts import STEEL, box
+from tests.runs.case_texts import STEEL, box, read_case
 
+CASE = """
+title = "A boom of one segment"
+time = { duration = 0.1 }
+[[model]]
+name = "shell"
+kind = "shell"
+mesh_size = 0.4
+contact_tolerance = "any"
+"""
 RESTING = f"""
-title = "A boom that rests on a stop"
-[time]
-duration = 0.1
 [gravity]
 angle = 0.0
 {STEEL}
@@ -33,31 +41,9 @@ x = 5.0
 play = 0.01
 stiffness = 0.0
 stiffness_below = 1e7
-[[model]]
-name = "shell"
-kind = "shell"
-mesh_size = 0.4
-contact_tolerance = "any"
 """
-
-
-def test_a_boom_that_its_weight_holds_down_becomes_a_shell(tmp_path: Path) -> None:
-    """Reference: analytic. The stop bears M g · 3/5 of a beam of 6 m over a lever of 5 m."""
-    path = tmp_path / "resting.toml"
-    path.write_text(RESTING, encoding="utf-8")
-    case = load(str(path))
-    boom = build_boom(case)
-    tools = BuildContext(MPI.COMM_SELF)
-    system = build(case, boom, case.models[0], tools).system.gather_loads()
-    (gap,) = system.rows @ equilibrium(system, system.load)
-    weight = 9.80665 * boom.segments[0].mass_per_length * 6.0
-    assert system.laws[0].force(np.array(gap)) == pytest.approx(-weight * 3.0 / 5.0, rel=1e-6)
-
-
+# At 50 degrees, its pin 0.35 m below the axis.
 RAISED = f"""
-title = "A boom at 50 degrees, its pin 0.35 m below the axis"
-[time]
-duration = 0.1
 [gravity]
 angle = 50.0
 {STEEL.replace("7850.0", "1600.0")}
@@ -74,22 +60,28 @@ x = 2.6
 depth = 0.3
 ground = [0.9, -1.3]
 stiffness = 1e9
-[[model]]
-name = "shell"
-kind = "shell"
-mesh_size = 0.4
-contact_tolerance = "any"
 """
+
+
+def at_rest(folder: Path, text: str) -> tuple[Boom, GapSystem, Array]:
+    """Return a boom, its shell and where that rests."""
+    case = read_case(folder, CASE + text)
+    boom = build_boom(case)
+    system = build(case, boom, case.models[0], BuildContext(MPI.COMM_SELF)).system.gather_loads()
+    return boom, system, equilibrium(system, system.load)
+
+
+def test_a_boom_that_its_weight_holds_down_becomes_a_shell(tmp_path: Path) -> None:
+    """Reference: analytic. The stop bears M g · 3/5 of a beam of 6 m over a lever of 5 m."""
+    boom, system, position = at_rest(tmp_path, RESTING)
+    (gap,) = system.rows @ position
+    weight = 9.80665 * boom.segments[0].mass_per_length * 6.0
+    assert system.laws[0].force(np.array(gap)) == pytest.approx(-weight * 3.0 / 5.0, rel=1e-6)
 
 
 def test_axial_forces_turn_a_shared_shell_about_its_lowered_pin(tmp_path: Path) -> None:
     """Reference: analytic, moments about the pin of 80 kg/m, 400 kg and 3 kN: 55.89 kN."""
-    path = tmp_path / "raised.toml"
-    path.write_text(RAISED, encoding="utf-8")
-    case = load(str(path))
-    boom = build_boom(case)
+    boom, system, position = at_rest(tmp_path, RAISED)
     assert boom.segments[0].mass_per_length == pytest.approx(80.0)
-    system = build(case, boom, case.models[0], BuildContext(MPI.COMM_SELF)).system.gather_loads()
-    position = equilibrium(system, system.load)
     force = system.observers["cylinder_force"].row @ position
     assert force == pytest.approx(55.89e3, rel=1e-3)
