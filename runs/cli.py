@@ -235,6 +235,14 @@ def sweep(
             "results of a beam change.",
         ),
     ] = False,
+    samples: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            help="Sample the numbers of the case that have a mean and an sd at N quasi-random "
+            "points, and print mean, deviation and quantiles of the results of a beam.",
+        ),
+    ] = None,
 ) -> int:
     """Run a case over values of its numbers, and chart its models.
 
@@ -247,19 +255,22 @@ def sweep(
     from runs.pipeline import estimates, members
     from runs.process import workers
     from runs.sweep import output as charts
-    from runs.sweep import points, search
+    from runs.sweep import points, sampling, search
     from runs.sweep import run as sweep_runs
     from runs.sweep import sensitivity as changes
 
-    if sensitivity == bool(vary):
-        what = "missing" if not sensitivity else "does not go with --sensitivity"
-        raise BadInput(case, "--vary", f"{what}; give one of both")
+    others = ["--sensitivity"] * sensitivity + [sampling.OPTION] * (samples is not None)
+    if len(others) + bool(vary) != 1:
+        what = f"does not go with {' and '.join(others)}" if others else "missing"
+        raise BadInput(case, "--vary", f"{what}; give one of --vary, --sensitivity and --samples")
 
     def plan_of(texts: Sequence[str]) -> Plan:
         return points.plan(case, texts, _names(models), mesh_size, against)
 
     if sensitivity:
         plan, refused = changes.plan_changes(case, _names(models), mesh_size)
+    elif samples is not None:
+        plan, sampled = sampling.plan_samples(case, _names(models), mesh_size, samples)
     else:
         plan = plan_of(vary)
     bound = None if until is None else search.parse_bound(until, plan)
@@ -286,6 +297,12 @@ def sweep(
             changes.write(table, folder)
             print(printable(str(folder / changes.CSV)))
             changes.show(table, plan.points[0].case, refused, Terminal())
+            return sweep_runs.print_failures(plan, outcomes)
+        if samples is not None:
+            results = sampling.results_of(plan, outcomes)
+            sampling.write(results, sampled, folder)
+            print(printable(str(folder / sampling.CSV)))
+            sampling.show(results, plan, Terminal())
             return sweep_runs.print_failures(plan, outcomes)
         data = charts.write(plan, outcomes, folder)
         print(printable(str(folder / charts.CSV)))

@@ -29,6 +29,7 @@ from runs.case.limits import MOST_MEMBERS, units_of
 from runs.case.messages import BadInput
 from runs.case.sanity import check_ranges
 from runs.case.schema import Case, EnsembleTable, Model, TimeTable
+from runs.case.spread import Spread, take_means
 from runs.case.units import System
 from runs.case.user_files import read_text
 
@@ -62,6 +63,11 @@ def load_checked(path: str) -> CheckedCase:
     return check_tables(_read(path), path)
 
 
+def load_spreads(path: str) -> list[Spread]:
+    """Return the distributions of a case file; raise the errors of :func:`load`."""
+    return take_means(_read(path), path)[1]
+
+
 def check_tables(tables: Mapping[str, object], path: str) -> CheckedCase:
     """Check the tables of a case file, and return the case with its boom.
 
@@ -69,7 +75,8 @@ def check_tables(tables: Mapping[str, object], path: str) -> CheckedCase:
         BadInput: the content is invalid.
     """
     try:
-        case = convert_to_si(_read_tables(Case.model_validate(tables), path))
+        means, _ = take_means(tables, path)
+        case = convert_to_si(_read_tables(Case.model_validate(means), path))
     except ValidationError as error:
         raise BadInput.from_validation(path, error) from None
     except OverflowError:

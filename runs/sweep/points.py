@@ -141,6 +141,15 @@ def plan_case(
     return Plan(file, whole.title, variations, units, bonded, points, reference, limits)
 
 
+def chosen_beam(case: Case, models: Sequence[str] | None) -> list[str]:
+    """Return the names of the given models; else that of the last beam, with play if possible."""
+    if models is not None:
+        return list(models)
+    beams = [model for model in case.models if not model.needs_shell]
+    with_play = [model for model in beams if not model.bonded]
+    return [model.name for model in with_play or beams][-1:]
+
+
 def tables_of(case: Case) -> Tables:
     """Return a case as plain tables, without those that have no effect on runs of a sweep."""
     unused = {names_of(Case)[key] for key in UNUSED}

@@ -17,7 +17,7 @@ from runs.case.schema import Case
 from runs.folder.files import changed_folder, exclusive, whole
 from runs.pipeline.quantities import QUANTITIES
 from runs.report.tables import Column, Table
-from runs.sweep.points import Plan, Point, make_points, tables_of
+from runs.sweep.points import Plan, Point, chosen_beam, make_points, tables_of
 from runs.sweep.run import Outcome
 from runs.sweep.variation import Place, Variation
 
@@ -45,10 +45,7 @@ def plan_changes(
         BadInput: the case is invalid, or has more or fewer than one model to run.
     """
     case = case_file.load(file)
-    if models is None:
-        beams = [model for model in case.models if not model.needs_shell]
-        with_play = [model for model in beams if not model.bonded]
-        models = [model.name for model in with_play or beams][-1:]
+    models = chosen_beam(case, models)
     if len(models) != 1:
         what = f"{len(models)} models are chosen; name one with --models, a beam say"
         raise BadInput(file, OPTION, what)

@@ -12,6 +12,7 @@ from runs import cli
 from tests.runs.cantilever import CANTILEVER, static_tip
 
 LENGTHS = "segment[1].length=3:5:3"
+ONE = "give one of --vary, --sensitivity and --samples"
 
 
 @pytest.fixture(autouse=True)
@@ -48,10 +49,10 @@ def test_a_bound_is_bracketed(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        ((), "--vary: missing; give one of both"),
+        ((), f"--vary: missing; {ONE}"),
         (
             ("--vary", LENGTHS, "--sensitivity"),
-            "--vary: does not go with --sensitivity; give one of both",
+            f"--vary: does not go with --sensitivity; {ONE}",
         ),
         (
             ("--vary", LENGTHS, "--until", "tip=0.9"),

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Scatter of results under the tolerances of a case, ``{ mean = 0.003, sd = 0.0005 }``.
+
+Points are scrambled Sobol points (Owen 1998) at normal quantiles, which are then shifted and
+combined to their exact means, variances and zero correlations (moment matching, Barraquand 1995).
+Mean and standard deviation of a linear result are therefore exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pandas as pd
+from rich.console import Console
+
+from geometry.arrays import Array
+from runs.case import reading as case_file
+from runs.case.messages import BadInput
+from runs.folder.files import changed_folder, exclusive, whole
+from runs.pipeline.metrics import Metric
+from runs.pipeline.quantities import QUANTITIES
+from runs.report import theme
+from runs.report.figure_context import new_sheet
+from runs.report.tables import Table
+from runs.sweep.points import Plan, Setting, chosen_beam, make_points
+from runs.sweep.run import Outcome
+from runs.sweep.variation import Place, Variation, unit_of
+
+OPTION = "--samples"
+SAMPLES, CSV, CHART = "samples.csv", "sampling.csv", "sampling.png"
+# Seed of the scrambling: the same points at each run.
+SEED = 0
+# Quantiles in the table.
+QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
+# Results in a terminal and in the chart.
+SHOWN = ("tip_at_rest", "tip", "stress", "contact_force", "first_frequency")
+# Standard deviation as a fraction of the mean below which a result does not scatter.
+NONE = 1.0e-9
+
+
+def plan_samples(
+    file: str, models: Sequence[str] | None, mesh_size: float | None, count: int
+) -> tuple[Plan, pd.DataFrame]:
+    """Return the points of a sampling, and the sampled numbers (columns) in the case's units.
+
+    Raises:
+        BadInput: the case is invalid or has no distribution, the count is no power of 2 above the
+            number of distributions, or a sample is invalid.
+    """
+    spreads, case = case_file.load_spreads(file), case_file.load(file)
+    if not spreads:
+        what = (
+            "the case has no number with a mean and an sd; give one, for example "
+            "{ mean = 0.003, sd = 0.0005 }"
+        )
+        raise BadInput(file, OPTION, what)
+    if count <= len(spreads) + 1 or count & (count - 1):
+        what = f"must be a power of 2 above {len(spreads) + 1}, such as 64, got {count}"
+        raise BadInput(file, OPTION, what)
+    places = [Place(spread.steps) for spread in spreads]
+    sizes = [case.system.size(unit_of(place, case) or "1") for place in places]
+    values = normal_points(len(spreads), count) * [one.sd for one in spreads]
+    values += [one.mean for one in spreads]
+    samples = pd.DataFrame(values, columns=[place.name for place in places])
+    variations = [
+        Variation(place.name, tuple(column), (replace(place, size=size),))
+        for place, size, column in zip(places, sizes, values.T.tolist(), strict=True)
+    ]
+    settings: list[Sequence[Setting]] = [
+        list(zip(variations, row, strict=True)) for row in values.tolist()
+    ]
+    names = chosen_beam(case, models)
+    if not names:
+        raise BadInput(file, OPTION, "the case has no beam; name a model with --models")
+    try:
+        points = list(make_points(case, file, names, mesh_size, settings))
+    except BadInput as fault:
+        key = fault.key.removeprefix("--vary ")
+        what = f"a sample is not valid, {key}: {fault.what}; give a smaller sd"
+        raise BadInput(file, OPTION, what) from None
+    return Plan(file, case.title, (), (), (), points), samples
+
+
+def normal_points(dimensions: int, count: int) -> Array:
+    """Return standard normal points (count, dimensions) with exact moments of first two orders."""
+    from scipy.stats import norm, qmc
+
+    uniform = qmc.Sobol(dimensions, seed=SEED).random(count)
+    points = norm.ppf(uniform)
+    points -= points.mean(axis=0)
+    covariance = np.atleast_2d(np.cov(points, rowvar=False))
+    return np.asarray(np.linalg.solve(np.linalg.cholesky(covariance), points.T).T)
+
+
+def results_of(plan: Plan, outcomes: Sequence[Outcome]) -> dict[str, pd.DataFrame]:
+    """Return each result (columns) of each point (rows), by the model's name, in SI units."""
+    names = [one.name for one in QUANTITIES if one.charted]
+    return {
+        model: pd.DataFrame(
+            [one.models.get(model, {}) for one in outcomes], columns=names, dtype=float
+        ).dropna(axis=1, how="all")
+        for model in plan.coordinates["model"]
+    }
+
+
+def scatter(results: pd.DataFrame) -> pd.DataFrame:
+    """Return mean, standard deviation and quantiles (columns) of each result that scatters."""
+    parts = np.nanquantile(results, QUANTILES, axis=0, method="hazen")
+    found = pd.DataFrame(parts.T, results.columns, QUANTILES)
+    found.insert(0, "mean", results.mean())
+    found.insert(1, "sd", results.std())
+    return found[found["sd"] > NONE * found["mean"].abs()]
+
+
+def write(results: dict[str, pd.DataFrame], samples: pd.DataFrame, folder: Path) -> None:
+    """Write ``samples.csv``, ``sampling.csv`` and the chart into the folder of a sweep."""
+    several = {
+        "sample": {name: pd.concat([samples, found], axis=1) for name, found in results.items()},
+        "result": {name: scatter(found) for name, found in results.items()},
+    }
+    with (
+        exclusive(folder),
+        changed_folder(folder) as part,
+        whole(part / SAMPLES) as points,
+        whole(part / CSV) as table,
+        whole(part / CHART) as chart,
+    ):
+        for (rows, frames), path in zip(several.items(), (points, table), strict=True):
+            whole_table = pd.concat(frames, names=["model", rows])
+            whole_table.to_csv(path, float_format="%.9g", lineterminator="\r\n")
+        _draw(results, chart)
+
+
+def show(results: dict[str, pd.DataFrame], plan: Plan, console: Console) -> None:
+    """Print mean, standard deviation and quantiles of the main results of each model."""
+    for model, found in results.items():
+        rows = [
+            (f"{one.title} ({one.shown_unit})", *(one.factor * row).tolist())
+            for one, row in _shown(found)
+        ]
+        forms = {"": ""} | dict.fromkeys(("mean", "sd"), ".4g")
+        forms |= {f"{100.0 * part:g} %": ".4g" for part in QUANTILES}
+        title = f"Scatter of results over {len(plan.points)} samples: {model}"
+        Table.of_rows("sampling", title, forms, rows).show(console)
+
+
+def _shown(results: pd.DataFrame) -> Iterator[tuple[Metric, pd.Series[float]]]:
+    """Yield the statistics of the results of ``SHOWN`` that scatter."""
+    found = scatter(results)
+    for one in QUANTITIES:
+        if one.name in SHOWN and one.name in found.index:
+            yield one, found.loc[one.name]
+
+
+def _draw(results: dict[str, pd.DataFrame], path: Path) -> None:
+    """Draw the share of samples below each value, a panel for each of the main results."""
+    shown = {one: None for found in results.values() for one, _ in _shown(found)}
+    strokes = theme.strokes(list(results), [])
+    with matplotlib.rc_context(theme.RC):
+        sheet, _ = new_sheet(1, 0.9 + 1.7 * max(1, len(shown)))
+        sheet.clear()
+        panels = sheet.subplots(max(1, len(shown)), 1, squeeze=False)[:, 0]
+        for axes, one in zip(panels, shown, strict=False):
+            for model, found in results.items():
+                if one.name in found:
+                    axes.ecdf(
+                        one.factor * found[one.name].dropna(),
+                        color=strokes[model].color,
+                        label=model,
+                    )
+            axes.set(xlabel=f"{one.title} ({one.shown_unit})", ylabel="share", ylim=(0.0, 1.0))
+        panels[0].legend()
+        sheet.savefig(path)
