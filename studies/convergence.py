@@ -138,6 +138,7 @@ STUDIES = (
     "sections",
     "taper",
     "design_results",
+    "combinations",
     "validation",
 )
 
