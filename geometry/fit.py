@@ -214,16 +214,7 @@ def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
         raise BoomError(
             f"{where}.offset", "the pad bears on the corner; leave offset out, or bears = 'corner'"
         )
-    inner = boom.segments[joint.inner]
-    if inner.section is None:
-        return
-    room = 0.5 * min(
-        face.width
-        for x in joint.stations
-        for face in inner.section_at(x).faces
-        if face.direction in boom.directions
-        and (not isinstance(pad, SlidePad) or pad.touches(face.direction, face.side))
-    )
+    room = pad_room(joint, pad, boom)
     if not 0.0 < pad.width <= room - pad.offset:
         beside = f" less the offset of {pad.offset:g} m" if pad.offset else ""
         raise BoomError(
@@ -231,3 +222,17 @@ def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
             f"must be above 0 and not above half a wall of the inner segment, {room:.6g} m"
             f"{beside}, got {pad.width:g} m",
         )
+
+
+def pad_room(joint: Joint, pad: PadSize, boom: Boom) -> float:
+    """Return half the width in m of the narrowest wall of a pad; infinite without a section."""
+    inner = boom.segments[joint.inner]
+    if inner.section is None:
+        return float("inf")
+    return 0.5 * min(
+        face.width
+        for x in joint.stations
+        for face in inner.section_at(x).faces
+        if face.direction in boom.directions
+        and (not isinstance(pad, SlidePad) or pad.touches(face.direction, face.side))
+    )

@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from geometry.boom import Boom
 from geometry.fields import describe, fields_of, is_number, names_of
+from geometry.fit import pad_room
 from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.checked_case import CheckedCase
@@ -168,6 +169,11 @@ class Draft:
     def _range(self, place: Place, value: float) -> tuple[float, float] | None:
         """Return a range in SI units, within the limits of the schema and of the checks."""
         low, high = _limits(self.case, place)
+        if place.steps[-1] == "offset":
+            joint = self.boom.joints[int(place.steps[1])]
+            pad = joint.pad if place.steps[2] == "pad" else joint.pads[int(place.steps[3])]
+            assert pad is not None
+            high = pad_room(joint, pad, self.boom) - pad.width
         if not (math.isfinite(low) and math.isfinite(high)):
             ends = sorted((_LEAST * value, _MOST * value))
             if place.steps[0] == "joint" and place.steps[-1] == "extension":

@@ -24,11 +24,15 @@ from runs.case.messages import BadInput
 from runs.live.beam import beam_results
 from runs.live.knobs import Draft
 from runs.live.shell_run import ShellRuns
+from runs.pipeline.estimates import run_cost
 from runs.pipeline.model_run import failure_reason
 from runs.process.ending import when_interrupted
 from runs.report.pages import page
 
 _HTML = "text/html; charset=utf-8"
+
+# Time in s within which a request that waits for another one notices that it is outdated.
+_NOTICED = 0.02
 
 # Maximum size of a request in bytes.
 _LARGEST = 1_000_000
@@ -84,10 +88,14 @@ class LivePage:
             if self._newest[tab] != number:
                 raise Superseded
 
-        with self._computing:
+        while not self._computing.acquire(timeout=_NOTICED):
+            check_current()
+        try:
             check_current()
             checked = self.draft.beam(self.draft.changed(dict(request["values"])))
             yield from beam_results(checked, check_current)
+        finally:
+            self._computing.release()
 
     def knob(self, request: dict[str, Any]) -> Generator[Any]:
         """Yield the knob of a key."""
@@ -98,8 +106,13 @@ class LivePage:
         yield {"stage": "case", "text": toml.dumps(self.draft.changed(dict(request["values"])))}
 
     def shell(self, request: dict[str, Any]) -> Generator[Any]:
-        """Yield progress and results of the shell with the values of a request."""
+        """Yield progress and results of the shell; a large run needs ``large`` in the request."""
         case = self.draft.with_shell(self.draft.changed(dict(request["values"])))
+        cost = run_cost(case)
+        if cost.large and not request.get("large"):
+            yield {"stage": "large", "what": f"The run may take {cost}. Start it all the same?"}
+            return
+        yield {"stage": "shell", "progress": f"may take {cost}"}
         yield from self.shells.run(case, self.draft.file)
 
     @property

@@ -63,6 +63,11 @@ class Cost:
             time = f"{float(f'{self.seconds:.1g}'):g} s"
         return f"{self.memory / 1e9:.2g} GB and {time}"
 
+    @property
+    def large(self) -> bool:
+        """True if a run needs more than is allowed without confirmation."""
+        return not (self.memory <= MAX_MEMORY and self.seconds <= MAX_TIME)
+
     def __add__(self, other: Cost) -> Cost:
         return Cost(self.memory + other.memory, self.seconds + other.seconds)
 
@@ -135,7 +140,7 @@ def refuse_large(cost: Cost, file: str) -> None:
     Raises:
         BadInput: the cost exceeds :data:`MAX_MEMORY` or :data:`MAX_TIME`.
     """
-    if not (cost.memory <= MAX_MEMORY and cost.seconds <= MAX_TIME):
+    if cost.large:
         raise BadInput(
             file,
             "--large",

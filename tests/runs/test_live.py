@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 import threading
 from collections.abc import Iterator
 from http.client import HTTPConnection
@@ -38,6 +39,8 @@ def test_equal_numbers_of_joints_share_a_knob(draft: Draft) -> None:
     # The overlap of the file is 1.2 m.
     assert knobs["joint[2].extension"].range == pytest.approx((2.2, 5.6))
     assert knobs["payload.mass"].unit == "kg"
+    # Half the flange of the fly section, 146 mm, less the width of the pads, 40 mm.
+    assert draft.knob("joint[2].pad.offset").range == pytest.approx((0.0, 0.033))
 
 
 def test_knobs_have_the_unit_of_the_case(tmp_path: Path) -> None:
@@ -143,6 +146,20 @@ def test_a_refusal_names_the_key(
 ) -> None:
     status, text = sent(address, "POST", "beam", json.dumps(request_))
     assert (status, json.loads(text)) == (200, {"stage": "refused", "key": key, "what": what})
+
+
+def test_a_large_run_is_asked_about(draft: Draft, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = LivePage(draft)
+    monkeypatch.setattr(page.shells, "run", lambda case, file: iter([{"stage": "shell"}]))
+    small = [one["stage"] for one in page.shell({"values": {}})]
+    assert small == ["shell", "shell"]
+    monkeypatch.setattr("runs.pipeline.estimates.MAX_TIME", 1.0)
+    (question,) = page.shell({"values": {}})
+    assert question["stage"] == "large"
+    assert re.fullmatch(
+        r"The run may take .* GB and .*\. Start it all the same\?", question["what"]
+    )
+    assert [one["stage"] for one in page.shell({"values": {}, "large": True})] == small
 
 
 def test_an_older_request_of_a_tab_is_not_answered(draft: Draft) -> None:

@@ -185,5 +185,5 @@ def test_the_page_fits_its_window(page: Page, width: int) -> None:
 
 
 def test_the_browser_has_nothing_to_complain_of(page: Page) -> None:
-    """Requests that newer ones replace are aborted."""
-    assert {text for text in page.complaints if "ERR_ABORTED" not in text} == set()
+    """Chromium also reports answers as aborted that the page has read to their end."""
+    assert {text for text in page.complaints if text != "net::ERR_ABORTED"} == set()
