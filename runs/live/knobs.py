@@ -11,11 +11,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 
 from geometry.boom import Boom
 from geometry.fields import describe, fields_of, is_number, names_of
-from geometry.fit import pad_room
+from geometry.fit import pad_room, room
 from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.checked_case import CheckedCase
@@ -36,6 +37,9 @@ TOLERANCE = 1.0e-2
 
 # Ends of a range without limits, as multiples of the number.
 _LEAST, _MOST = 0.5, 2.0
+
+# Shortest pad of the slider, as a fraction of the length in the file.
+_SHORTEST = 0.1
 
 # Keys that designers change first, in this order.
 _FIRST = (
@@ -155,37 +159,51 @@ class Draft:
             raise BadInput(self.file, key, "is not a number of the case; choose one of the list")
         place, value = self._numbers[keys[0]]
         unit, system = self._unit(place), self.case.system
-        limits, text = self._range(place, value), _described(self.case, place)
-        in_unit = [system.of(one, unit or "1") for one in (value, *(limits or ()))]
+        ranges, text = (
+            [self._range(*self._numbers[one]) for one in keys],
+            _described(self.case, place),
+        )
+        low, high = max(one[0] for one in ranges), min(one[1] for one in ranges)
+        in_unit = [system.of(one, unit or "1") for one in (value, low, high)]
         return Knob(
             key,
             keys,
             text,
             in_unit[0],
             system.label(unit) if unit else "",
-            (in_unit[1], in_unit[2]) if limits else None,
+            (in_unit[1], in_unit[2]) if low < high else None,
         )
 
-    def _range(self, place: Place, value: float) -> tuple[float, float] | None:
+    def _range(self, place: Place, value: float) -> tuple[float, float]:
         """Return a range in SI units, within the limits of the schema and of the checks."""
         low, high = _limits(self.case, place)
-        if place.steps[-1] == "offset":
-            joint = self.boom.joints[int(place.steps[1])]
-            pad = joint.pad if place.steps[2] == "pad" else joint.pads[int(place.steps[3])]
-            assert pad is not None
-            high = pad_room(joint, pad, self.boom) - pad.width
         if not (math.isfinite(low) and math.isfinite(high)):
             ends = sorted((_LEAST * value, _MOST * value))
-            if place.steps[0] == "joint" and place.steps[-1] == "extension":
-                # At the limit the segments separate.
-                ends[1] = value + self.boom.smallest_overlap(self.boom.joints[int(place.steps[1])])
+            if place.steps[0] == "joint":
+                ends = self._fitting(place, value, *ends)
             low, high = max(low, ends[0]), min(high, ends[1])
         for usual in usual_ranges(self.case, self.boom):
             if usual.key == place.name and usual.value == value:
                 low, high = max(low, usual.least), min(high, usual.most)
                 if value == 0.0 and math.isfinite(usual.most):
                     high = usual.most
-        return (low, high) if low < high else None
+        return low, high
+
+    def _fitting(self, place: Place, value: float, low: float, high: float) -> list[float]:
+        """Return the range in which a number of a joint fits the segments; else the one given."""
+        joint = self.boom.joints[int(place.steps[1])]
+        outer, inner = (self.boom.segments[number] for number in (joint.outer, joint.inner))
+        match place.steps[2:]:
+            case ("extension",):
+                # At the upper end the segments separate.
+                return [low, value + self.boom.overlap_left(joint)]
+            case ("play",) if outer.section is not None and inner.section is not None:
+                return [0.0, room(joint, outer, inner)[0]]
+            case ("pad", "length"):
+                return [_SHORTEST * value, float(np.ptp(self.boom.overlap(joint)))]
+            case ("pad", "offset") if joint.pad is not None:
+                return [0.0, pad_room(joint, joint.pad, self.boom) - joint.pad.width]
+        return [low, high]
 
     def changed(self, values: Mapping[str, float]) -> Case:
         """Return the case with other numbers, before its checks.

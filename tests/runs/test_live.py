@@ -39,6 +39,8 @@ def test_equal_numbers_of_joints_share_a_knob(draft: Draft) -> None:
     # The overlap of the file is 1.2 m.
     assert knobs["joint[2].extension"].range == pytest.approx((2.2, 5.6))
     assert knobs["payload.mass"].unit == "kg"
+    # The pads are at most as long as the overlap of 1.7 m and 1.2 m.
+    assert knobs["joint.pad.length"].range == pytest.approx((0.012, 1.2))
     # Half the flange of the fly section, 146 mm, less the width of the pads, 40 mm.
     assert draft.knob("joint[2].pad.offset").range == pytest.approx((0.0, 0.033))
 
@@ -48,7 +50,8 @@ def test_knobs_have_the_unit_of_the_case(tmp_path: Path) -> None:
     path = tmp_path / "shown.toml"
     path.write_text(f'shown_units = "mm-t-s"\n{text}', encoding="utf-8")
     knob = Draft.load(str(path)).knob("joint[1].play")
-    assert (knob.value, knob.unit, knob.range) == (3.0, "mm", (1.5, 6.0))
+    # The mid-lines are 300 and 256 mm high; the flanges of 6 and 5 mm take 11 mm.
+    assert (knob.value, knob.unit, knob.range) == (3.0, "mm", (0.0, pytest.approx(33.0)))
     changed = Draft.load(str(path)).changed({"joint[1].play": 4.5})
     assert changed.joints[0].play == 0.0045
 
