@@ -14,6 +14,8 @@ import protractile as pt
 from beam_model.statics import StaticState, static_state
 from dynamics.damping import closed_contact_modes
 from runs.case.build import build_boom
+from runs.live.beam import beam_results
+from runs.live.knobs import Draft
 from runs.pipeline.proportions import proportion_cautions
 from runs.pipeline.static_results import tilts
 from runs.pipeline.statics import cylinder_force, statics
@@ -114,6 +116,31 @@ def test_the_beam_is_that_of_the_report(run: Runner, lift: str, tmp_path: Path) 
         swept = run(lift, "beam", **{"joint.play": 1e-3 * float(play), "time.duration": 0.5})
         rest = {peak.what: peak for peak in swept.design.models["beam"].motion.peaks}
         assert shown(1e3 * rest["deflection"].at_rest, 1, play)
+
+
+@pytest.mark.parametrize(
+    ("label", "key", "value"),
+    [
+        ("play of 19 mm", "joint[1].play", 0.019),
+        ("play of 20 mm", "joint[1].play", 0.020),
+        ("pads of 30 mm", "joint[1].pad.length", 0.030),
+        ("pads of 12 mm", "joint[1].pad.length", 0.012),
+    ],
+)
+def test_the_live_page_has_the_numbers_of_its_table(
+    lift: str, tmp_path: Path, label: str, key: str, value: float
+) -> None:
+    """Reference: the page, to its digits."""
+    path = tmp_path / "my-lift.toml"
+    path.write_text(lift, "utf-8")
+    draft = Draft.load(str(path))
+    *_, motion = beam_results(draft.beam(draft.changed({key: value})), lambda: None)
+    rows = {title: text.replace("−", "-") for title, text in motion["rows"]}
+    tip = rows["Maximum dynamic tip deflection (factor φ), mm"].split(" ")[0]
+    assert shown(-float(tip), 1, label)
+    used = re.search(r"([0-9.]+) %", rows["Governing pad: force, pressure, utilisation"])
+    assert used is not None
+    assert shown(0.01 * float(used[1]), 2, label, column=1)
 
 
 @pytest.mark.slow
