@@ -196,7 +196,7 @@ class Draft:
         match place.steps[2:]:
             case ("extension",):
                 # At the upper end the segments separate.
-                return [low, value + self.boom.overlap_left(joint)]
+                return [low, value + self.boom.smallest_overlap(joint)]
             case ("play",) if outer.section is not None and inner.section is not None:
                 return [0.0, room(joint, outer, inner)[0]]
             case ("pad", "length"):
