@@ -136,7 +136,7 @@ def test_an_integration_of_its_own(paper_boom: Boom, thrust: float) -> None:
     """Reference: other code, Hermite elements with moving rows and a moving thrust by Runge and
     Kutta's method (DOP853), assembled in the tests; a second-order approach to it.
     """
-    history = SCurve(4.0, 0.6)
+    history = SCurve(4.0, 0.4)
     boom = telescope(paper_boom, 0.0, Drive(history, DRIVE.carriers))
     segments = tuple(replace(segment, rotary_inertia=0.0) for segment in boom.segments)
     if thrust:
@@ -144,7 +144,7 @@ def test_an_integration_of_its_own(paper_boom: Boom, thrust: float) -> None:
         segments = with_compression(segments, boom.joints, ropes)
     boom = replace(boom, segments=segments)
     system = elements(touching(boom, LAW), length=LONGEST, rotary_inertia=False)
-    runs = [FixedStep(step)(Motion(system, 0.6, 5.0e-3)) for step in (2.0e-5, 1.0e-5)]
+    runs = [FixedStep(step)(Motion(system, 0.4, 5.0e-3)) for step in (2.0e-5, 1.0e-5)]
     tip, work = runge_kutta(boom, history, runs[0].time, thrust)
     assert runs[0].data.attrs["contact_changes"] > 2
     errors = [np.abs(run.data["tip"].values - tip).max() / np.ptp(tip) for run in runs]
@@ -153,7 +153,7 @@ def test_an_integration_of_its_own(paper_boom: Boom, thrust: float) -> None:
     assert float(runs[1].data["drive_work"][-1]) == pytest.approx(work, rel=1e-4)
     # Without the drive, or with a thrust that stays, the tip is elsewhere.
     without = [replace(travel, axial_forces=()) for travel in system.travels] if thrust else ()
-    still = FixedStep(2.0e-5)(Motion(replace(system, travels=without), 0.6, 5.0e-3))
+    still = FixedStep(2.0e-5)(Motion(replace(system, travels=without), 0.4, 5.0e-3))
     off = np.abs(still.data["tip"].values - tip).max() / np.ptp(tip)
     assert off > (3.0e-4 if thrust else 0.05)
 
