@@ -32,7 +32,7 @@ from geometry.contact_places import contact_centres
 COMPRESSED_ELEMENTS = 20
 
 
-class Reaction(NamedTuple):
+class NodeReaction(NamedTuple):
     """Reaction on a segment: force in N along z, moment in N·m towards a larger slope."""
 
     segment: int
@@ -54,7 +54,7 @@ class StaticState(NamedTuple):
     boom: Boom
     system: GapSystem
     position: Array
-    reactions: list[Reaction]
+    reactions: list[NodeReaction]
 
     @property
     def tip(self) -> float:
@@ -144,7 +144,7 @@ def telescoping_system(boom: Boom) -> GapSystem:
     return gap_system(boom, Elements(boom).segments).gather_loads()
 
 
-def net_reactions(boom: Boom, reactions: Sequence[Reaction]) -> list[Reaction]:
+def net_reactions(boom: Boom, reactions: Sequence[NodeReaction]) -> list[NodeReaction]:
     """Return the reactions of a boom, each force once.
 
     A reaction at a joint is the force of the other segment, elsewhere that of the ground.
@@ -177,7 +177,7 @@ def _reaction_places(boom: Boom, number: int) -> set[float]:
 
 def _reactions(
     boom: Boom, number: int, component: Component, modes: BoomModes, position: Array
-) -> list[Reaction]:
+) -> list[NodeReaction]:
     """Return the residuals of a segment without its supports, at all possible supports."""
     nodes = component.breaks
     bent = [
@@ -193,6 +193,6 @@ def _reactions(
     stiffness = component.stiffness - component.geometric_stiffness
     left = (stiffness @ np.array(bent) - load).reshape(-1, 2)
     return [
-        Reaction(number, x, *map(float, left[np.abs(nodes - x).argmin()]))
+        NodeReaction(number, x, *map(float, left[np.abs(nodes - x).argmin()]))
         for x in sorted(_reaction_places(boom, number))
     ]

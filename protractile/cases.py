@@ -231,14 +231,14 @@ def frequencies(
     >>> import protractile as pt
     >>> case = pt.load_case(pt.CASES / "paper.toml")
     >>> data = pt.frequencies(case, models=["kantorovich-5"])
-    >>> data["frequency"].sel(joints="tied", mode=1).values.round(3)
+    >>> data["frequency"].sel(joints="bonded", mode=1).values.round(3)
     array([2.361])
 
     Args:
         case, vary, models: as in :func:`sweep`.
 
     Returns:
-        ``frequency`` in Hz; dims: the keys, ``model``, ``joints`` (``"pressed"``, ``"tied"``),
+        ``frequency`` in Hz; dims: the keys, ``model``, ``joints`` (``"in contact"``, ``"bonded"``),
         ``mode``; NaN where a model has none.
 
     Raises:

@@ -159,7 +159,7 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
                 theme.Stroke(color, dashes),
             )
             for name, color in colors.items()
-            for joints, dashes in (("pressed", "-"), ("tied", "--"))
+            for joints, dashes in (("in contact", "-"), ("bonded", "--"))
         }
         for mode in data["mode"].values
     }

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 NAME = "frequencies"
 MODES = 3
-JOINTS = ("pressed", "tied")
+JOINTS = ("in contact", "bonded")
 
 
 def first_frequencies(

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.statics import Reaction, net_reactions, static_state
+from beam_model.statics import NodeReaction, net_reactions, static_state
 from dynamics.contact import PowerContact
 from dynamics.excitation import Ramp, Step
 from geometry.boom import Boom, Cylinder, Load, PointMass, Segment, Support
@@ -28,9 +28,13 @@ def test_supports_and_stations_bear_what_the_lever_rule_says(paper_boom: Boom) -
     far = -(831.6 * 5.0 + tail * 9.0 + head * 10.0) / 2.0
     near = -831.6 - 550.7 - far
     expected = [
-        Reaction(0, 0.0, near, 0.0), Reaction(0, 2.0, far, 0.0), Reaction(0, 9.0, tail, 0.0),
-        Reaction(0, 10.0, head, 0.0), Reaction(1, 9.0, -tail, 0.0), Reaction(1, 10.0, -head, 0.0),
-    ]  # fmt: skip
+        NodeReaction(0, 0.0, near, 0.0),
+        NodeReaction(0, 2.0, far, 0.0),
+        NodeReaction(0, 9.0, tail, 0.0),
+        NodeReaction(0, 10.0, head, 0.0),
+        NodeReaction(1, 9.0, -tail, 0.0),
+        NodeReaction(1, 10.0, -head, 0.0),
+    ]
     found = static_state(touching(paper_boom, LAW))
     assert [(reaction.segment, reaction.x) for reaction in found.reactions] == [
         h[:2] for h in expected
