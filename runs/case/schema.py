@@ -392,6 +392,9 @@ class CombinationTable(CaseTable):
     """group = factor, for each group of its load cases"""
     resistance: ResistanceTable = ResistanceTable.model_validate({})
     """the table of resistance factors"""
+    motion: Flag = False
+    """whether prove and runs take the extremes of the motion under these loads, by the first model
+    of beam elements, in place of those at rest"""
     proofs: tuple[ProofName, ...] = PROOFS
     """the proofs that the combination demands: yield, plate, column, pad, cylinder and pin unless
     given; deflection compares the tip with limits.tip_at_rest"""

@@ -78,14 +78,25 @@ class CombinationState(NamedTuple):
         return CombinationResult(self.combined.name, extremes)
 
 
-def combination_states(case: Case) -> list[CombinationState]:
-    """Return the static states of all combinations; those of the case without combinations."""
+def combination_states(case: Case, moving: bool = True) -> list[CombinationState]:
+    """Return the states of all combinations; those of the case without combinations.
+
+    Args:
+        case: a checked case.
+        moving: whether combinations with ``motion`` have the extremes of their motion; otherwise
+            all are at rest.
+    """
     found = []
     for combined in combined_cases(case):
         boom = boom_with_play(combined.case, build_boom(combined.case))
         try:
             with np.errstate(all="ignore"):
-                beam = StaticBeam.of(combined.case, boom)
+                if moving and combined.combination.motion:
+                    from runs.pipeline.combined_motion import beam_in_motion
+
+                    beam = beam_in_motion(combined.case)
+                else:
+                    beam = StaticBeam.of(combined.case, boom)
         except NUMERICAL_ERRORS:
             beam = None
         found.append(CombinationState(combined, beam))
@@ -93,9 +104,9 @@ def combination_states(case: Case) -> list[CombinationState]:
 
 
 def combination_results(case: Case) -> list[CombinationResult]:
-    """Return the results of a case's combinations; empty without load cases and combinations."""
+    """Return the results of combinations at rest; none without load cases and combinations."""
     given = case.load_cases or case.combinations
-    return [one.result for one in combination_states(case)] if given else []
+    return [one.result for one in combination_states(case, moving=False)] if given else []
 
 
 def combination_tables(
@@ -119,12 +130,15 @@ def combination_tables(
             cells = [_marked(one, most, system) if one else None for one in values]
             columns.append(Column(heading, cells))
     notes = [f"{_GOVERNS.strip()} governs."]
+    moving = [one.name for one in case.combinations if one.motion]
+    if moving:
+        notes.append(f"In prove and reports {', '.join(moving)}: extremes of the motion.")
     if shell:
         notes.append(f"By {shell}; one reduced shell for each geometry, with its axial forces.")
     else:
         notes.append(beam_note(boom_with_play(case, build_boom(case))))
     notes += [f"{one.name}: no rest is found." for one in results if not one.extremes]
-    yield Table("Combinations at rest, the largest results", columns, notes, "combinations")
+    yield Table("Combinations, the largest results", columns, notes, "combinations")
     if len(results) > 1:
         yield _envelope(results, system)
 

@@ -186,7 +186,7 @@ def test_check_marks_the_governing_combination(tmp_path: Path) -> None:
     cells = {row[0]: row[1:] for row in envelope.rows}
     assert cells["tip"][2] == governing
     text = printed(print_check, CheckedCase(case), width=80)
-    assert "Combinations at rest, the largest results" in text
+    assert "Combinations, the largest results" in text
     assert max(map(len, text.splitlines())) <= 80
 
 
