@@ -36,7 +36,7 @@ _WRITE_TIME, _OF_TRAVEL = 3.0e-5, 4.0e-4
 _OF_MEMBER, _OF_STEP = 22.0, 24.0
 
 # Time in s for the design results of a model, and for the report of a run without and with shells.
-_RESULTS, _REPORT, _SHELL_REPORT = 1.0, 5.0, 15.0
+_RESULTS, _REPORT, _SHELL_REPORT = 1.0, 5.0, 12.0
 # Time in s of a step: constant part, per coordinate, per contact.
 _STEP, _OF_MODE, _OF_ROW = 0.5e-6, 1.0e-8, 0.5e-6
 # With error control: steps per output interval without impacts; with impacts the fraction of the

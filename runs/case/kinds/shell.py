@@ -40,7 +40,7 @@ _FLAT, _SPATIAL = 60, 210
 # Measured costs. Number of dofs over area / (mesh size)²: of a uniform mesh, of a graded mesh
 # outside and inside its refinement zones. Bytes per dof, and per dof and coordinate; s per dof.
 _DOFS, _GRADED_DOFS, _DOFS_AT_ZONES = 21.0, 42.0, 35.0
-_OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 2000.0, 5.0, 0.8e-4
+_OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 2000.0, 5.0, 0.45e-4
 # A single process reduces a shell of fewer dofs in a few seconds.
 _SMALL = 5.0e4
 # Number of elements of the longest segment in the surrogate of a shell.
