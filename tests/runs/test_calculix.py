@@ -14,7 +14,7 @@ import protractile as pt
 from dynamics.equilibrium import equilibrium_at
 from runs.case import reading
 from runs.case.build import build_boom
-from runs.case.kinds.model import Workshop
+from runs.case.kinds.model import BuildContext
 from runs.case.messages import BadInput
 from runs.pipeline.models import build
 
@@ -58,7 +58,7 @@ def test_a_boom_rests_in_calculix_as_here(
     deck = tmp_path / "boom.inp"
     write(case, "", MPI.COMM_SELF, deck, None)
     found = readings(deck)
-    system = build(case, build_boom(case), case.models[0], Workshop(MPI.COMM_SELF)).system
+    system = build(case, build_boom(case), case.models[0], BuildContext(MPI.COMM_SELF)).system
     rest = equilibrium_at(system)
     tip = system.observers["tip"].row @ rest
     assert found["tip"] == pytest.approx(tip, rel=tolerance)
