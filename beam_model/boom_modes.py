@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Modal coordinates of a boom of beams, and rows that read displacements in them."""
+"""Modal coordinates of a boom of beams, and rows of displacements in these coordinates."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ from geometry.boom import Boom, Direction
 from geometry.cylinder import ground_lines
 from geometry.telescoping import sample_extensions, station_positions
 
-# Type of a component of one segment: index and motion.
+# Type that identifies a component: index of the segment, and motion.
 _Part = tuple[int, Motion]
 
-# Fraction of the largest stiffness below which a tie is neglected.
+# Fraction of the largest singular value below which a constraint is neglected.
 ROUND_OFF = 1.0e-9
 
 
@@ -54,7 +54,7 @@ class BoomModes:
         load: list[Array] = []
         damping: list[Array] = []
         first = 0
-        for group in _groups(boom, models):
+        for group in _coupled_groups(boom, models):
             modes = group.modes()
             geometric = group.geometric_stiffness
             if geometric.any():
@@ -80,7 +80,7 @@ class BoomModes:
     def displacement(
         self, segment: int, x: float, direction: Direction, offset: tuple[float, float] = (0.0, 0.0)
     ) -> Array:
-        """Return the row (num_modes,) that reads a displacement of a segment at x in m.
+        """Return the row (num_modes,) of a displacement of a segment at x in m.
 
         ``offset`` is (y, z) of the point from the axis in m.
         """
@@ -92,19 +92,19 @@ class BoomModes:
         return row
 
     def twist(self, segment: int, x: float) -> Array:
-        """Return the row (num_modes,) that reads the rotation of a cross-section about x in rad."""
+        """Return the row (num_modes,) of the twist of a segment at x in m."""
         return self.member(segment).torque(x)
 
     def rotation(self, segment: int, x: float, direction: Direction) -> Array:
-        """Return the row (num_modes,) that reads the rotation of a cross-section at x in m."""
+        """Return the row (num_modes,) of the rotation of a cross-section at x in m."""
         return self.member(segment).moment(x, direction)
 
     def curvature(self, segment: int, x: float, direction: Direction) -> Array:
-        """Return the row (num_modes,) that reads the curvature of a segment at x in m."""
+        """Return the row (num_modes,) of the curvature of a segment at x in m."""
         return self.member(segment).read(direction, lambda component: component.curvature_at(x))
 
     def member(self, segment: int) -> BeamMember:
-        """Return a segment that takes loads, in all modal coordinates."""
+        """Return the rows and load vectors of a segment in all modal coordinates."""
 
         def read(motion: Motion, rule: Rule) -> Array:
             columns, shapes = self._shapes[segment, motion]
@@ -116,15 +116,14 @@ class BoomModes:
 
 
 def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
-    """Return the critical factor of the axial forces, see :mod:`dynamics.second_order`.
+    """Return the buckling factor of the axial forces for bonded joints.
 
-    It is that of the boom without play, infinite without axial forces, and None for a mechanism.
-    For a telescoping boom it is the smallest one of several extensions, including the ends of the
-    stroke.
+    It is infinite without axial forces, and None for a mechanism. For a telescoping boom it is the
+    minimum over several extensions, including the extreme ones.
     """
     drives = [number for number, joint in enumerate(boom.joints) if joint.drive is not None]
     smallest = np.inf
-    for group in _groups(boom.bonded, models):
+    for group in _coupled_groups(boom.bonded, models):
         first = group.geometric_stiffness
         passing = {n: moving_axial_forces(boom, models, group.members, n) for n in drives}
         if not (first.any() or any(passing.values())):
@@ -148,10 +147,11 @@ def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
     return smallest
 
 
-def _groups(boom: Boom, models: Sequence[SegmentModel]) -> list[_Group]:
-    """Return the groups with common modes: segments that bonded joints connect, in each motion.
+def _coupled_groups(boom: Boom, models: Sequence[SegmentModel]) -> list[_CoupledGroup]:
+    """Return the groups of components with common modes.
 
-    Two inclined cylinders side by side couple the twist of a segment with its slope along y.
+    Bonded joints couple segments in each motion. Two inclined cylinders side by side couple the
+    twist of a segment with its slope along y.
     """
     motions: tuple[Motion, ...] = ("z", "y", "twist") if boom.spatial else ("z",)
     parts: list[_Part] = [(i, motion) for motion in motions for i in range(len(boom.segments))]
@@ -167,17 +167,18 @@ def _groups(boom: Boom, models: Sequence[SegmentModel]) -> list[_Group]:
         kept, lost = group_of[one], group_of[other]
         group_of = {part: kept if at == lost else at for part, at in group_of.items()}
     return [
-        _Group(boom, models, [part for part in parts if group_of[part] == name])
+        _CoupledGroup(boom, models, [part for part in parts if group_of[part] == name])
         for name in dict.fromkeys(group_of.values())
     ]
 
 
-class _Group:
-    """Components of segments that ties and cylinders couple.
+class _CoupledGroup:
+    """Components of segments that bonded joints and cylinders couple.
 
     Attributes:
-        parts, components: segment and motion of each component, and the component.
-        members: each segment that takes loads, in these components; rows of other motions are 0.
+        parts: (segment, motion) of each component.
+        components: components of the group.
+        members: rows and load vectors of each segment in the coordinates of the group.
         springs: cylinders that act on the components.
         geometric_stiffness: geometric stiffness K_G (num_dofs, num_dofs).
     """
@@ -203,9 +204,10 @@ class _Group:
         return BeamMember(read)
 
     def ties(self, moved: Mapping[int, Sequence[tuple[float, float]]]) -> list[Array]:
-        """Return the rows (num_dofs,) that bonded joints keep at zero.
+        """Return the constraints of bonded joints, rows (num_dofs,) of zero displacements.
 
-        Telescoping joints are bonded at the places ``moved``, x in m on both segments.
+        ``moved`` gives (x on the outer segment, x on the inner segment) in m of the stations of
+        telescoping joints.
         """
         return [
             self.members[joint.inner].at(motion, on_inner)
@@ -225,7 +227,7 @@ class _Group:
         return np.asarray(stiffness)
 
     def modes(self) -> Modes:
-        """Return the modes under the constraints of ties and cylinders."""
+        """Return the modes with the constraints of bonded joints and the springs of cylinders."""
         apart = [natural_modes(c.stiffness, c.mass, c.rigid_modes) for c in self.components]
         ties = self.ties({})
         if not ties and not self.springs and len(apart) == 1:
@@ -233,7 +235,7 @@ class _Group:
         rigid = block_diag(
             *(m.shapes[:, : c.rigid_modes] for m, c in zip(apart, self.components, strict=True))
         )
-        # Rigid motions of the segments that satisfy the constraints keep the frequency 0.
+        # Rigid motions that satisfy all constraints and do not strain cylinders are rigid modes.
         rows = [*ties, *(line.push for line in self.springs)]
         held = np.array(rows).reshape(-1, len(rigid)) @ rigid
         bound = np.linalg.svd(held, compute_uv=False) if held.size else np.zeros(0)
@@ -245,5 +247,5 @@ class _Group:
 
 
 def _kernel(ties: Sequence[Array], num_dofs: int) -> Array:
-    """Return the motions (num_dofs, num_free) that keep the ties at zero."""
+    """Return a basis (num_dofs, num_free) of the motions that satisfy constraints."""
     return null_space(np.array(ties)) if ties else np.eye(num_dofs)

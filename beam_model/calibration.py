@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Calibration of beams by the shell of the same boom: effective stiffness, local compliance.
 
-With the effective E J, G A_s and G J_t of a segment, the shear-flexible beam has the shell's
-response to static probes. The effective stiffnesses include shear lag, Poisson's effect and folds.
+With the effective E J, G A_s and G J_t of a segment, a Timoshenko beam has the response of the
+shell to static probes. The effective stiffnesses include shear lag, Poisson's effect and folds.
 
 The residual compliance is the additional local compliance at contacts. With the rows B of contacts,
 friction and dashpots, and C = B Ω⁻² Bᵀ over the elastic modes, it is D = C_fine − C_coarse of shell
 and beam (MacNeal 1971). Both models have the same rigid motions and the same inertia forces, so
-that D is purely local. Its positive part D = Σ g gᵀ becomes a set of massless springs, each of
-which is a coordinate with the rows ω_s g and a frequency ω_s well above the motion.
+that D is purely local. Its positive part D = Σ g gᵀ is added as quasi-static springs: each is a
+coordinate with the rows ω_s g and a frequency ω_s far above the motion.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Segment
 from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
 
-# Weight of a factor's logarithm in the least squares. It determines a stiffness without influence
-# on the responses, and does not change the others.
+# Regularisation weight of the logarithms of factors in the least squares. It determines only a
+# stiffness without influence on the responses.
 _PRIOR = 1.0e-4
 # ω_s/2π in Hz, at least ten times the frequencies of a boom's vibration.
 SPRING_FREQUENCY = 400.0
-# Fraction of the largest compliance below which a force pattern meets rigid walls.
-_NOTHING = 1.0e-3
+# Fraction of the largest compliance below which the compliance of a force pattern is neglected.
+_NEGLIGIBLE = 1.0e-3
 # Minimum number of elements of a segment; their static solution is exact at the nodes.
 _ELEMENTS = 20
 
@@ -45,8 +45,8 @@ class Stiffness:
     """Effective stiffness of a segment as a beam.
 
     Args:
-        bending: E J in N·m² along z, and in space along y.
-        shear: G A_s in N along z, and in space along y.
+        bending: E J in N·m² for z, and in space for y.
+        shear: G A_s in N for z, and in space for y.
         torsion: G J_t in N·m² in space.
     """
 
@@ -80,26 +80,29 @@ def calibrate(
     probe_responses: Sequence[ProbeResponses],
     segments: Callable[[Boom], Sequence[SegmentModel]],
 ) -> tuple[GapSystem, Calibration]:
-    """Return a beam with the contact places and local compliance of a shell, and its calibration.
+    """Return a beam with the effective stiffness and local compliance of a shell.
 
     Args:
         boom: boom whose segments all have sections.
-        shell: shell of the boom, with contacts near the webs or at pads.
-        probe_responses: probe responses of the shell's segments.
+        shell: gap system of the shell of the boom, with contacts near the webs or at pads.
+        probe_responses: probe responses of the segments of the shell.
         segments: function that returns the beams of a boom.
+
+    Returns:
+        The gap system of the beam, and its calibration.
     """
     found = [
-        effective_stiffness(segment, far)
-        for segment, far in zip(boom.segments, probe_responses, strict=True)
+        effective_stiffness(segment, probed)
+        for segment, probed in zip(boom.segments, probe_responses, strict=True)
     ]
-    stiff = stiffened(boom, found)
+    stiff = with_stiffnesses(boom, found)
     beam = gap_system(stiff, segments(stiff), EACH_SIDE)
     residual = residual_compliance(beam, shell)
     return with_springs(beam, residual), Calibration(found, residual)
 
 
 def elastic_compliance(system: GapSystem) -> Array:
-    """Return B Ω⁻² Bᵀ (num_rows, num_rows) in m/N for rows of contacts, friction, dashpots."""
+    """Return B Ω⁻² Bᵀ (num_rows, num_rows) in m/N of all rows B over the elastic modes."""
     elastic = system.omega2 > 0.0
     rows = system.all_rows[:, elastic]
     return np.asarray(rows / system.omega2[elastic] @ rows.T)
@@ -117,38 +120,38 @@ def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
 
 
 def with_springs(system: GapSystem, residual: Array) -> GapSystem:
-    """Return the system with springs: the positive part of a residual compliance.
+    """Return the system with springs for the positive part of a residual compliance.
 
     The residual is (num_rows, num_rows) in m/N.
     """
     sizes = np.sqrt(np.abs(np.diag(residual)))
     sizes[sizes == 0.0] = 1.0
-    # Rows are normalised, since those of friction, pads and dashpots differ by orders of magnitude.
+    # Rows are scaled, since contacts, friction and dashpots differ by orders of magnitude.
     amounts, patterns = np.linalg.eigh(residual / np.outer(sizes, sizes))
-    kept = amounts > _NOTHING * max(amounts.max(initial=0.0), 0.0)
+    kept = amounts > _NEGLIGIBLE * max(amounts.max(initial=0.0), 0.0)
     spring = 2.0 * np.pi * SPRING_FREQUENCY
     rows = spring * sizes[:, None] * patterns[:, kept] * np.sqrt(amounts[kept])
     return with_coordinates(system, np.full(rows.shape[1], spring**2), rows)
 
 
-def stiffened(boom: Boom, stiffness: Sequence[Stiffness]) -> Boom:
-    """Return the boom with the given stiffness of each segment."""
+def with_stiffnesses(boom: Boom, stiffness: Sequence[Stiffness]) -> Boom:
+    """Return the boom with a given stiffness of each segment."""
     return replace(boom, segments=tuple(map(with_stiffness, boom.segments, stiffness)))
 
 
-def effective_stiffness(segment: Segment, far: ProbeResponses) -> Stiffness:
-    """Return the stiffness with which a beam has the shell segment's response to the probes.
+def effective_stiffness(segment: Segment, probed: ProbeResponses) -> Stiffness:
+    """Return the stiffness of a beam that reproduces the probe responses of a shell segment.
 
-    For a tapered segment it is the unchanged stiffness of the beam at the middle.
+    For a tapered segment it is the stiffness of the beam at the middle, without calibration.
     """
-    in_plane = _bending(segment, far, "z")
-    if "y" not in far.compliance:
+    in_plane = _bending(segment, probed, "z")
+    if "y" not in probed.compliance:
         return Stiffness((in_plane[0],), (in_plane[1],))
-    sideways = _bending(segment.turned(), far, "y")
+    sideways = _bending(segment.turned(), probed, "y")
     lateral = segment.lateral
     assert lateral is not None
     torsion = segment.material.shear_modulus * lateral.torsion_constant
-    factor = 1.0 if segment.head_section is not None else _fit(segment, far, "twist", 1)[0]
+    factor = 1.0 if segment.head_section is not None else _fit(segment, probed, "twist", 1)[0]
     return Stiffness(
         (in_plane[0], sideways[0]), (in_plane[1], sideways[1]), float(factor * torsion)
     )
@@ -184,21 +187,21 @@ def with_stiffness(segment: Segment, stiffness: Stiffness) -> Segment:
     return replace(changed, lateral=lateral)
 
 
-def _bending(segment: Segment, far: ProbeResponses, motion: ProbedMotion) -> tuple[float, float]:
+def _bending(segment: Segment, probed: ProbeResponses, motion: ProbedMotion) -> tuple[float, float]:
     """Return E J and G A_s of a segment in one plane of bending."""
     assert segment.shear_stiffness is not None
     if segment.head_section is not None:
         return segment.bending_stiffness, segment.prismatic_at(
             0.5 * sum(segment.ends)
         ).shear_stiffness or 0.0
-    bending, shear = _fit(segment, far, motion, 2)
+    bending, shear = _fit(segment, probed, motion, 2)
     return float(bending * segment.bending_stiffness), float(shear * segment.shear_stiffness)
 
 
-def _fit(segment: Segment, far: ProbeResponses, motion: ProbedMotion, count: int) -> Array:
-    """Return the factors (count,) of the stiffnesses, by least squares of relative errors."""
-    first, turns = _component(segment, far, motion, np.ones(count))
-    probes = _probes(first, far, motion)
+def _fit(segment: Segment, probed: ProbeResponses, motion: ProbedMotion, count: int) -> Array:
+    """Return the factors (count,) of the stiffnesses by least squares of relative errors."""
+    first, turns = _component(segment, probed, motion, np.ones(count))
+    probes = _probes(first, probed, motion)
     moved = probes.any(axis=1)
     modes = natural_modes(first.stiffness, first.mass, turns)
     # Self-equilibrated combinations of probes.
@@ -206,14 +209,14 @@ def _fit(segment: Segment, far: ProbeResponses, motion: ProbedMotion, count: int
     balanced = np.eye(len(probes))[:, moved] @ (
         null_space(rigid.T) if turns else np.eye(moved.sum())
     )
-    shell = balanced.T @ far.compliance[motion] @ balanced
+    shell = balanced.T @ probed.compliance[motion] @ balanced
     sizes = np.sqrt(np.outer(np.diag(shell), np.diag(shell)))
     pairs = np.triu_indices(len(shell))
 
     def errors(logarithms: Array) -> Array:
-        component, _ = _component(segment, far, motion, np.exp(logarithms))
+        component, _ = _component(segment, probed, motion, np.exp(logarithms))
         sigma = (2.0 * np.pi * PROBE_FREQUENCY) ** 2
-        pushes = _probes(component, far, motion).T @ balanced
+        pushes = _probes(component, probed, motion).T @ balanced
         beam = pushes.T @ np.linalg.solve(component.stiffness + sigma * component.mass, pushes)
         return np.concatenate([((beam - shell) / sizes)[pairs], _PRIOR * logarithms])
 
@@ -221,9 +224,9 @@ def _fit(segment: Segment, far: ProbeResponses, motion: ProbedMotion, count: int
 
 
 def _component(
-    segment: Segment, far: ProbeResponses, motion: ProbedMotion, factors: Array
+    segment: Segment, probed: ProbeResponses, motion: ProbedMotion, factors: Array
 ) -> tuple[Component, int]:
-    """Return the component of a motion with stiffness factors, and its rigid motions."""
+    """Return the component of a motion with stiffness factors, and its number of rigid modes."""
     if motion == "twist":
         assert segment.lateral is not None
         torsion = factors[0] * segment.lateral.torsion_constant
@@ -239,14 +242,14 @@ def _component(
             shear_stiffnesses=(factors[1] * stiffness, stiffness),
         )
     length = segment.length / _ELEMENTS
-    model = finite_element_segment(changed, length, far.places, "timoshenko", True)
+    model = finite_element_segment(changed, length, probed.places, "timoshenko", True)
     component = model.components["twist" if motion == "twist" else "z"]
     return component, component.rigid_modes
 
 
-def _probes(component: Component, far: ProbeResponses, motion: ProbedMotion) -> Array:
+def _probes(component: Component, probed: ProbeResponses, motion: ProbedMotion) -> Array:
     """Return the load vectors (num_probes, num_dofs) of the probes."""
-    rows = [component.at(x) for x in far.places]
+    rows = [component.at(x) for x in probed.places]
     if motion != "twist":
-        rows += [component.rotation_at(x) for x in (far.places[0], far.places[-1])]
+        rows += [component.rotation_at(x) for x in (probed.places[0], probed.places[-1])]
     return np.array(rows)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Components of a segment's motion in finitely many coordinates, and their natural modes.
+"""Components of the motion of a segment, and their natural modes.
 
-A segment deflects along z, and in space also along y, and twists. The three motions are uncoupled
-in a straight segment with a symmetric section.
+The components are deflection along z, in space also deflection along y and twist. They are
+uncoupled in a straight segment with a symmetric section.
 """
 
 from __future__ import annotations
@@ -24,25 +24,24 @@ Motion = Literal["z", "y", "twist"]
 
 @dataclass(frozen=True, slots=True)
 class Component:
-    """Component of a segment's motion: M q̈ + C q̇ + K q = f, and rows that read it at any x.
+    """Component of the motion of a segment, M q̈ + C q̇ + K q = f, and its rows at any x.
 
     Args:
         stiffness, mass, damping: matrices (num_dofs, num_dofs).
-        load: uniform load (num_dofs,) of the segment.
-        unit_load: load vector (num_dofs,) of a uniform load of 1 N/m (1 N for the twist).
-        inertia_load: inertia load (num_dofs,) of the mass per length under an acceleration that
-            causes 1 N/m, on average for a tapered segment; ``unit_load`` unless given.
+        load: load vector (num_dofs,) of the uniform load of the segment.
+        unit_load: load vector (num_dofs,) of a uniform load of 1 N/m (1 N for twist).
         at: function of x in m that returns the row (num_dofs,) of the deflection or twist.
-        rotation: function of x in m that returns the row (num_dofs,) of the cross-section's
-            rotation, which is the slope of a beam rigid in shear; None for a twist.
-        curvature: function of x in m that returns the row (num_dofs,) of the derivative θ′ of this
-            rotation; None for a twist or a rigid segment.
-        turning: momentum (num_dofs,) in N·s of mass per length and rotary inertia for a rotation
-            about x = 0 by 1 rad/s; None for a twist.
+        rigid_modes: number of rigid modes.
+        rotation: function of x in m that returns the row (num_dofs,) of the rotation θ of the
+            cross-section; None for twist.
+        curvature: function of x in m that returns the row (num_dofs,) of θ′; None for twist or a
+            rigid segment.
+        rotation_load: load vector (num_dofs,) of an angular acceleration of 1 rad/s² about
+            x = 0; empty for twist.
         breaks: x in m between which rows are polynomials.
-        geometric: geometric stiffness K_G (num_dofs, num_dofs) of the axial force, to be subtracted
-            from the stiffness; None without axial force.
-        rigid_modes: number of rigid motions that the supports leave free.
+        geometric: K_G (num_dofs, num_dofs) of the axial force; None without axial force.
+        inertia_load: inertia load (num_dofs,) of a uniform acceleration that causes a mean load of
+            1 N/m; ``unit_load`` unless given.
     """
 
     stiffness: Array
@@ -54,44 +53,47 @@ class Component:
     rigid_modes: int
     rotation: Callable[[float], Array] | None = None
     curvature: Callable[[float], Array] | None = None
-    turning: Array = field(default_factory=lambda: np.zeros(0))
+    rotation_load: Array = field(default_factory=lambda: np.zeros(0))
     breaks: Array = field(default_factory=lambda: np.zeros(0))
     geometric: Array | None = None
     inertia_load: Array | None = None
 
     @property
     def geometric_stiffness(self) -> Array:
-        """The geometric stiffness K_G (num_dofs, num_dofs)."""
+        """K_G (num_dofs, num_dofs), to be subtracted from the stiffness."""
         return np.zeros_like(self.stiffness) if self.geometric is None else self.geometric
 
     @property
     def inertia(self) -> Array:
-        """The inertia load (num_dofs,) of the mass per length, for any component."""
+        """The inertia load (num_dofs,) of a uniform acceleration, as ``inertia_load``."""
         return self.unit_load if self.inertia_load is None else self.inertia_load
 
     def rotation_at(self, x: float) -> Array:
-        """Return the row (num_dofs,) that reads the rotation of the cross-section at x in m."""
+        """Return the row (num_dofs,) of the rotation θ of the cross-section at x in m."""
         assert self.rotation is not None
         return self.rotation(x)
 
     def curvature_at(self, x: float) -> Array:
-        """Return the row (num_dofs,) that reads θ′ at x in m."""
+        """Return the row (num_dofs,) of θ′ at x in m."""
         assert self.curvature is not None
         return self.curvature(x)
 
     @property
     def member(self) -> BeamMember:
-        """The segment that takes loads, and moves only along z by this component."""
+        """The load vectors of a segment that moves only along z by this component."""
         nothing = np.zeros(len(self.load))
         return BeamMember(lambda motion, rule: rule(self) if motion == "z" else nothing)
 
     def uniform(self, span: tuple[float, float] | None) -> Array:
-        """Return the load vector (num_dofs,) of 1 N/m between two x in m, or along the segment."""
+        """Return the load vector (num_dofs,) of 1 N/m between both x in m of ``span``.
+
+        The load acts along the whole segment if ``span`` is None.
+        """
         if span is None:
             return self.unit_load
         start, end = span
         inside = self.breaks[(self.breaks > start) & (self.breaks < end)]
-        # The Gauss points are exact for all polynomials that a piece can have.
+        # The number of Gauss points is sufficient for the polynomials between breaks.
         points, weights = np.polynomial.legendre.leggauss(
             len(self.load) // max(1, self.breaks.size - 1) + 4
         )
@@ -109,20 +111,20 @@ Rule = Callable[[Component], Array]
 
 @dataclass(frozen=True, slots=True)
 class BeamMember:
-    """Segment that takes loads, a :class:`geometry.load.Member`, in any coordinates.
+    """Rows and load vectors of a segment in any coordinates; a :class:`geometry.load.Member`.
 
     Args:
-        read: function that returns the row (num_coordinates,) of a motion, from a function that
-            returns the row of its component.
+        read: function that returns a row (num_coordinates,), from a motion and the function that
+            returns this row of its component.
     """
 
     read: Callable[[Motion, Rule], Array]
 
     def at(self, motion: Motion, x: float) -> Array:
-        """Return the row (num_coordinates,) of a deflection in m or the twist in rad at x in m."""
+        """Return the row (num_coordinates,) of a deflection or of the twist at x in m."""
         return self.read(motion, lambda component: component.at(x))
 
-    def force(self, x: float, direction: Direction) -> Array:
+    def unit_load_vector(self, x: float, direction: Direction) -> Array:
         return self.at(direction, x)
 
     def moment(self, x: float, direction: Direction) -> Array:
@@ -137,8 +139,8 @@ class BeamMember:
     def inertia(self, direction: Direction, force: float) -> Array:
         return force * self.read(direction, lambda component: component.inertia)
 
-    def turning(self, direction: Direction) -> Array:
-        return self.read(direction, lambda component: component.turning)
+    def rotation_load(self, direction: Direction) -> Array:
+        return self.read(direction, lambda component: component.rotation_load)
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,14 +158,14 @@ class Modes(NamedTuple):
 
 
 def natural_modes(stiffness: Array, mass: Array, rigid_modes: int) -> Modes:
-    """Return all natural modes of (K, M), with ω² exactly 0 for rigid ones."""
+    """Return all natural modes of (K, M), with ω² exactly 0 for rigid modes."""
     if not mass.size:
         return Modes(np.zeros(0), np.zeros((0, 0)))
     # Coordinates are scaled, since rotations and deflections differ by orders of magnitude.
     scale = 1.0 / np.sqrt(np.diag(mass))
     scales = np.outer(scale, scale)
-    # With the upper triangle, the reduction of a series begins with the largest entries, which
-    # preserves the digits of the lowest modes.
+    # With the upper triangle, LAPACK reduces the largest entries of a series first, which preserves
+    # the digits of the lowest modes.
     omega2, shapes = eigh(stiffness * scales, mass * scales, lower=False)
     omega2[:rigid_modes] = 0.0
     return Modes(omega2, shapes * scale[:, None])

@@ -2,10 +2,10 @@
 """Two-node beam elements, which are exact at their nodes if no load acts between them.
 
 Both elements have the deflection w and the rotation θ as nodal unknowns. With Φ = 12 E J / (G A_s
-h²) the shape functions of a plain element solve the homogeneous Timoshenko equations (Friedman and
-Kosmatka 1993); at Φ = 0 they are the Hermite cubics with θ = w′. In the element of a tapered
-segment, the moment is also linear, and the curvature follows from the local flexibility
-(Eisenberger and Reich 1989).
+h²) the shape functions of a prismatic element solve the homogeneous Timoshenko equations (Friedman
+and Kosmatka 1993); for Φ = 0 they are the Hermite cubics with θ = w′. In a tapered element, the
+moment is also linear, and the curvature follows from the local flexibility (Eisenberger and Reich
+1989).
 """
 
 from __future__ import annotations
@@ -40,13 +40,13 @@ class Element(Protocol):
         """Return the derivatives θ′ (4, num_points) of the shape functions."""
 
     def stiffness(self, xi: Array, weights: Array) -> Array:
-        """Return the stiffness (4, 4) by a rule of points ξ and weights in m, (num_points,)."""
+        """Return the stiffness (4, 4) by quadrature with points ξ and weights in m."""
 
 
 def element(segment: Segment, theory: Theory, start: float, h: float) -> Element:
     """Return the element of a segment from x = ``start`` over the length h, both in m."""
     if segment.head_section is None:
-        return PlainElement(h, segment.bending_stiffness, _shear_number(segment, theory, h))
+        return PrismaticElement(h, segment.bending_stiffness, _shear_number(segment, theory, h))
     places = [segment.prismatic_at(start + part * h) for part in (0.0, 0.5, 1.0)]
     bending = [1.0 / place.bending_stiffness for place in places]
     shear = [_shear_flexibility(place, theory) for place in places]
@@ -54,13 +54,13 @@ def element(segment: Segment, theory: Theory, start: float, h: float) -> Element
 
 
 @dataclass(frozen=True, slots=True)
-class PlainElement:
-    """Element with one section.
+class PrismaticElement:
+    """Prismatic element.
 
     Args:
         h: length in m.
         bending_stiffness: E J in N·m².
-        phi: Φ, zero for a beam rigid in shear.
+        phi: Φ, zero for an Euler–Bernoulli beam.
     """
 
     h: float
@@ -129,13 +129,13 @@ class PlainElement:
 class TaperedElement:
     """Element with a varying section.
 
-    Under the moments 1 and ξ, the curvature is f and ξ f, the shear strain 0 and −g/h; integration
-    gives θ and w.
+    The moments 1 and ξ cause the curvatures f and ξ f and the shear strains 0 and −g/h.
+    Integration gives θ and w.
 
     Args:
         h: length in m.
         bending: f = 1/(E J) as a function of ξ in 1/(N·m²).
-        shear: g = 1/(G A_s) as a function of ξ in 1/N, zero for a beam rigid in shear.
+        shear: g = 1/(G A_s) as a function of ξ in 1/N, zero for an Euler–Bernoulli beam.
     """
 
     h: float
@@ -162,7 +162,7 @@ class TaperedElement:
         return np.asarray(moved.T @ flexibility @ moved)
 
     def _shapes(self, rigid: tuple[float | Array, ...], bent: _Pair, xi: Array) -> Array:
-        """Return shape functions (4, num_points): rigid motion of the first node plus bending."""
+        """Return shape functions (4, num_points): motion with the first node, plus bending."""
         moved = np.array([np.broadcast_to(one, xi.shape) for one in (*rigid, 0.0, 0.0)])
         return np.asarray(moved + self._moments.T @ np.array([one(xi) for one in bent]))
 
@@ -183,7 +183,7 @@ class TaperedElement:
 
 
 def _powers(xi: Array) -> tuple[Any, Any, Any]:
-    """Return ξ, ξ² and ξ³, as plain numbers for a single place, which is faster."""
+    """Return ξ, ξ² and ξ³; for a single ξ as Python numbers, which are faster."""
     powers = xi, xi**2, xi**3
     return powers if xi.ndim else (xi.item(), powers[1].item(), powers[2].item())
 
@@ -199,14 +199,14 @@ def _parabola(values: list[float]) -> Polynomial:
 
 
 def _shear_flexibility(segment: Segment, theory: Theory) -> float:
-    """Return 1/(G A_s) in 1/N, zero for a beam rigid in shear."""
+    """Return 1/(G A_s) in 1/N, zero for an Euler–Bernoulli beam."""
     if theory == "euler-bernoulli" or segment.section is None:
         return 0.0
     return 1.0 / (segment.material.shear_modulus * segment.section.shear_area)
 
 
 def _shear_number(segment: Segment, theory: Theory, h: float) -> float:
-    """Return Φ = 12 E J / (G A_s h²), zero for a beam rigid in shear."""
+    """Return Φ = 12 E J / (G A_s h²), zero for an Euler–Bernoulli beam."""
     shear_stiffness = segment.shear_stiffness
     if theory == "euler-bernoulli" or shear_stiffness is None:
         return 0.0

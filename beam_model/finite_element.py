@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Beams of two-node elements (:mod:`beam_model.elements`) for each plane of bending.
+"""Beams of two-node elements, see :mod:`beam_model.elements`, in each plane of bending.
 
-With a linear element for the twist, they form the frame element in space (Przemieniecki 1968)
-without axial strain.
+With linear elements for twist, they are 3D frame elements without axial strain (Przemieniecki
+1968).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from geometry.boom import SAME_PLACE, Boom, BoomError, Segment
 from geometry.contact_places import load_places
 from geometry.segment import APART
 
-# Gauss rule that is exact for products of cubics.
+# Gauss points and weights, exact for products of two cubics.
 _GAUSS = np.polynomial.legendre.leggauss(4)
 
 _MASS, _ROTARY = map(attrgetter, ("mass_per_length", "rotary_inertia"))
@@ -31,7 +31,9 @@ _TORSION, _POLAR = map(attrgetter, ("lateral.torsion_constant", "lateral.polar_i
 def finite_element_segments(
     boom: Boom, element_length: float, theory: Theory, rotary_inertia: bool
 ) -> list[SegmentModel]:
-    """Return all segments of a boom, with nodes at all forces; arguments as below.
+    """Return the models of all segments of a boom, with nodes at all forces.
+
+    Arguments are those of :func:`finite_element_segment`.
 
     Raises:
         BoomError: the boom lacks data that the theory needs.
@@ -51,16 +53,15 @@ def finite_element_segment(
     theory: Theory,
     rotary_inertia: bool,
 ) -> SegmentModel:
-    """Assemble one segment.
+    """Return the model of one segment.
 
     Args:
-        segment: a segment. Supports, masses and ends of the pieces of its axial force get nodes, or
-            share nodes nearer than ``APART``. With lateral properties it also deflects along y and
-            twists.
-        element_length: greatest length of an element in m.
-        breaks: further x in m with nodes, at stations.
-        theory: ``timoshenko`` takes the shear areas from the segment's box section.
-        rotary_inertia: whether I_p of (3) is kept.
+        segment: segment; supports, masses and jumps of the axial force get nodes. With lateral
+            properties the model includes deflection along y and twist.
+        element_length: maximum element length in m.
+        breaks: further x in m of nodes.
+        theory: beam theory; ``timoshenko`` needs the section for its shear area.
+        rotary_inertia: whether the mass matrix includes I_p of (3).
 
     Raises:
         BoomError: a Timoshenko beam has no section.
@@ -80,10 +81,10 @@ def finite_element_segment(
 
 
 def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: bool) -> Component:
-    """Return the component of deflection along z, with the unknowns w and θ of each node."""
+    """Return the component of deflection along z; its unknowns are w and θ of each node."""
     num_dofs = 2 * nodes.size
     stiffness, mass, damping, geometric = (np.zeros((num_dofs, num_dofs)) for _ in range(4))
-    unit_load, turning, inertia_load = np.zeros((3, num_dofs))
+    unit_load, rotation_load, inertia_load = np.zeros((3, num_dofs))
     points, weights = _GAUSS
     lengths = np.diff(nodes).tolist()
     elements = [element(segment, theory, *one) for one in zip(nodes, lengths, strict=False)]
@@ -95,11 +96,11 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         heavy, turned = (weight * segment.property_ratio(number, x) for number in (_MASS, _ROTARY))
         stiffness[dofs, dofs] += here.stiffness(xi, weight)
         mass[dofs, dofs] += segment.mass_per_length * products(w, heavy)
-        turning[dofs] += segment.mass_per_length * w @ (heavy * x)
+        rotation_load[dofs] += segment.mass_per_length * w @ (heavy * x)
         if rotary_inertia:
             theta = here.rotation(xi)
             mass[dofs, dofs] += segment.rotary_inertia * products(theta, turned)
-            turning[dofs] += segment.rotary_inertia * theta @ turned
+            rotation_load[dofs] += segment.rotary_inertia * theta @ turned
         damping[dofs, dofs] += segment.viscous_damping * products(w, weight)
         geometric[dofs, dofs] += products(slope, weight * segment.compression(x))
         unit_load[dofs] += w @ weight
@@ -121,7 +122,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         mass[dof, dof] += point.mass
     for point in segment.stiffener_masses:
         dof = 2 * _nearest(nodes, point.x)
-        turning[dof] += point.mass * point.x
+        rotation_load[dof] += point.mass * point.x
         inertia_load[dof] += point.mass / segment.mass_per_length
     free = np.setdiff1d(np.arange(num_dofs), held)
 
@@ -142,7 +143,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         at=partial(read, "deflection"),
         rotation=partial(read, "rotation"),
         curvature=partial(read, "curvature"),
-        turning=turning[free],
+        rotation_load=rotation_load[free],
         breaks=nodes,
         rigid_modes=segment.rigid_modes,
         geometric=geometric[block],
@@ -150,7 +151,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
 
 
 def _twist(segment: Segment, nodes: Array) -> Component:
-    """Return the component of twist, linear between nodes and exact at nodes in statics."""
+    """Return the component of twist, with linear elements."""
     lateral = segment.lateral
     assert lateral is not None
     stiffness, mass = (np.zeros((nodes.size, nodes.size)) for _ in range(2))
@@ -159,7 +160,7 @@ def _twist(segment: Segment, nodes: Array) -> Component:
     for k, h in enumerate(np.diff(nodes)):
         dofs = slice(k, k + 2)
         places = nodes[k] + h * np.array([0.0, 0.5, 1.0])
-        # Simpson's rule for the flexibility.
+        # Simpson's rule gives the mean flexibility.
         stiff = 6.0 / (np.array([1.0, 4.0, 1.0]) @ (1.0 / segment.property_ratio(_TORSION, places)))
         heavy = segment.property_ratio(_POLAR, places)[1]
         stretched, moved = [[1.0, -1.0], [-1.0, 1.0]], [[2.0, 1.0], [1.0, 2.0]]
@@ -188,7 +189,7 @@ def _twist(segment: Segment, nodes: Array) -> Component:
 
 
 def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> Array:
-    """Return the nodes of equal elements between the required places; close places share a node."""
+    """Return the nodes of equal elements between required x; close x share a node."""
     own = [support.x for support in segment.supports] + [mass.x for mass in segment.all_masses]
     places: list[float] = []
     for x in (segment.start, segment.end, *own, *segment.compression.places, *breaks):

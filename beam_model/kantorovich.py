@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The Kantorovich (semi-discrete Ritz) beam: w(x, t) = Σ a_i(t) φ_i(x), (12) of the paper.
 
-The function spaces are the paper's (29)–(31). The printed bases are powers of x, which are
-numerically singular from about ten terms on. Here Legendre polynomials times the lowest function
-span the same spaces, with the same modes. The complete base has all polynomials that the supports
-admit, for any supports.
+The function spaces are (29)–(31) of the paper. The bases of the paper are powers of x, which are
+numerically singular from about ten terms on. Here products of the lowest function and Legendre
+polynomials span the same spaces. The complete base has all polynomials that the supports admit.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Segment
 from geometry.compression import Compression
 
-# Number of additional quadrature points, for the properties of tapered sections.
+# Number of additional quadrature points for tapered segments.
 _TAPERING = 6
 
 Base = Literal["as printed", "pinned", "complete"]
@@ -32,7 +31,9 @@ Base = Literal["as printed", "pinned", "complete"]
 def kantorovich_segments(
     boom: Boom, terms: Sequence[int], base: Base, rotary_inertia: bool
 ) -> list[SegmentModel]:
-    """Return all segments of a boom, each with its own number of terms; arguments as below.
+    """Return the models of all segments of a boom, with a number of terms for each.
+
+    Other arguments are those of :func:`kantorovich_segment`.
 
     Raises:
         BoomError: the base does not admit the boom's supports or cylinders.
@@ -45,7 +46,7 @@ def kantorovich_segments(
 
 
 def check_base(boom: Boom, base: Base) -> None:
-    """Check that the functions have a form for the supports of the boom.
+    """Check that a base admits the supports of the boom.
 
     Raises:
         BoomError: a boom with clamped or elastic supports or a cylinder needs the complete base.
@@ -55,7 +56,7 @@ def check_base(boom: Boom, base: Base) -> None:
         if boom.spatial:
             _check_supports(segment.turned(), base)
     if boom.cylinders and base != "complete":
-        raise _no_form(boom.segments[boom.cylinders[0].segment], "a cylinder", base)
+        raise _unsupported(boom.segments[boom.cylinders[0].segment], "a cylinder", base)
 
 
 def _check_supports(segment: Segment, base: Base) -> None:
@@ -64,10 +65,10 @@ def _check_supports(segment: Segment, base: Base) -> None:
         for support in segment.supports
     )
     if base != "complete" and any(elastic):
-        raise _no_form(segment, "clamped or elastic supports", base)
+        raise _unsupported(segment, "clamped or elastic supports", base)
 
 
-def _no_form(segment: Segment, feature: str, base: Base) -> BoomError:
+def _unsupported(segment: Segment, feature: str, base: Base) -> BoomError:
     return BoomError(
         "segment",
         f"{segment.name!r} has {feature}, for which the functions {base!r} have no form; use base ="
@@ -78,14 +79,14 @@ def _no_form(segment: Segment, feature: str, base: Base) -> BoomError:
 def kantorovich_segment(
     segment: Segment, terms: int, base: Base, rotary_inertia: bool
 ) -> SegmentModel:
-    """Return a segment in the paper's function spaces, in space with the same spaces along y.
+    """Return the model of a segment in the function spaces of the paper.
 
     Args:
-        segment: a segment; with lateral properties it also deflects along y and twists.
+        segment: segment; with lateral properties the model includes deflection along y in the same
+            spaces, and twist.
         terms: number of functions of each component.
-        base: interpretation of (29) and (31); the twist, which is not in the paper, is always
-            complete.
-        rotary_inertia: whether I_p of (3) and (9) is kept; (21) neglects it.
+        base: interpretation of (29) and (31); twist always has the complete base.
+        rotary_inertia: whether the mass matrix includes I_p of (3) and (9); (21) neglects it.
 
     Raises:
         BoomError: clamped or elastic supports need the complete base.
@@ -102,9 +103,12 @@ def kantorovich_segment(
 def kantorovich_bending(
     segment: Segment, terms: int, base: Base, rotary_inertia: bool
 ) -> Component:
-    """Return the matrices (23)–(26) of a segment's deflection along z; arguments as above."""
+    """Return the component of deflection along z, with the matrices (23)–(26).
+
+    Arguments are those of :func:`kantorovich_segment`.
+    """
     basis = _Basis(segment, bending_basis(segment, terms, base))
-    # The printed base also fixes the slope at the first support.
+    # The base as printed also fixes the slope at the first support.
     printed = int(bool(segment.supports) and base == "as printed")
     bent, heavy, turned = (
         basis.weights * segment.property_ratio(attrgetter(number), basis.x)
@@ -112,10 +116,10 @@ def kantorovich_bending(
     )
     stiffness = segment.bending_stiffness * products(basis.curvature, bent)
     mass = segment.mass_per_length * products(basis.value, heavy)
-    turning = segment.mass_per_length * basis.value @ (basis.x * heavy)
+    rotation_load = segment.mass_per_length * basis.value @ (basis.x * heavy)
     if rotary_inertia:
         mass += segment.rotary_inertia * products(basis.slope, turned)
-        turning += segment.rotary_inertia * basis.slope @ turned
+        rotation_load += segment.rotary_inertia * basis.slope @ turned
     for support in segment.supports:
         if support.stiffness is not None:
             row = basis.at(support.x)
@@ -129,7 +133,7 @@ def kantorovich_bending(
     inertia_load = basis.value @ heavy
     for point in segment.stiffener_masses:
         row = basis.at(point.x)
-        turning += point.mass * point.x * row
+        rotation_load += point.mass * point.x * row
         inertia_load += point.mass / segment.mass_per_length * row
     return Component(
         stiffness=stiffness,
@@ -140,7 +144,7 @@ def kantorovich_bending(
         at=basis.at,
         rotation=basis.slope_at,
         curvature=basis.curvature_at,
-        turning=turning,
+        rotation_load=rotation_load,
         rigid_modes=min(max(0, segment.rigid_modes - printed), terms),
         geometric=_geometric(segment.compression, basis.functions),
         inertia_load=inertia_load,
@@ -160,7 +164,7 @@ def _geometric(compression: Compression, functions: Sequence[Legendre]) -> Array
 
 
 def kantorovich_twist(segment: Segment, terms: int) -> Component:
-    """Return the component of twist of a segment with lateral properties, fixed at all supports."""
+    """Return the component of twist of a segment; supports prevent twist."""
     lateral = segment.lateral
     assert lateral is not None
     held = [(support.x, 0) for support in segment.supports]
@@ -205,10 +209,9 @@ def outer_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
     """Return functions that vanish at the supports and span (29): φ_i = x^i (x − x0)(x − x1).
 
     Args:
-        segment: segment with the supports x0, x1, …; x counts from the first one, as in the paper
-            where x0 = 0.
+        segment: segment with the supports x0, x1, …; x is relative to x0.
         terms: number of functions: i = 1 … terms as printed, i = 0 … terms − 1 otherwise.
-        base: interpretation: as printed, the slope also vanishes at x0; in the others it is free.
+        base: interpretation; as printed, the slope also vanishes at x0.
     """
     supports = sorted(support.x for support in segment.supports)
     roots = [supports[0], *supports] if base == "as printed" else supports
@@ -219,7 +222,7 @@ def inner_basis(segment: Segment, terms: int) -> list[Legendre]:
     """Return functions of a free segment, (30), (31): 1, x − x2, then (x − x2)^(i−1) (x − x4).
 
     The base is incomplete: all functions keep x4 on the tangent at x2, so that the series does not
-        converge to a free beam.
+    converge to a free beam.
 
     Args:
         segment: segment from x2 to x4.
@@ -236,13 +239,13 @@ def complete_basis(
     """Return orthonormal polynomials of increasing degree with zero values or slopes at supports.
 
     Args:
-        segment: segment over whose length they are orthonormal.
-        held: zero conditions: x in m, and 0 for the value or 1 for the slope.
+        segment: segment; polynomials are orthonormal over its length.
+        held: (x in m, order) of each condition; the order is 0 for a value, 1 for a slope.
         terms: number of polynomials.
     """
     domain = [segment.start, segment.end]
     count = terms + len(held)
-    # Legendre's polynomials of unit norm: ∫ P_k² dx = L/(2k + 1).
+    # Legendre polynomials of unit norm, since ∫ P_k² dx = L/(2k + 1).
     whole = [
         np.sqrt((2 * k + 1) / segment.length) * Legendre.basis(k, domain=domain)
         for k in range(count)
@@ -253,8 +256,8 @@ def complete_basis(
             [[(f.deriv() if order else f)(x) for f in whole] for x, order in held]
         )
         admitted = null_space(conditions / np.linalg.norm(conditions, axis=1)[:, None])
-        # An orthogonal transform makes degrees increase by one from function to function, which
-        # preserves the digits of low modes beside stiff functions of high degree.
+        # An orthogonal transform makes degrees increase by one from function to function. This
+        # preserves the digits of low modes, since functions of high degree are much stiffer.
         _, turn = rq(admitted[len(held) :])
         admitted = np.triu(admitted @ turn.T, -len(held))
     coefficients = np.array([f.coef[-1] for f in whole])
@@ -262,7 +265,7 @@ def complete_basis(
 
 
 class _Basis:
-    """Functions on a segment, at the points of a rule that is exact for products of two.
+    """Functions on a segment, and their values at quadrature points.
 
     Attributes:
         x: points (num_points,) in m.
@@ -273,7 +276,7 @@ class _Basis:
 
     def __init__(self, segment: Segment, functions: Sequence[Legendre]) -> None:
         self.functions = functions
-        # A Gauss rule with as many points as the highest degree plus one is exact.
+        # A Gauss rule with degree + 1 points is exact for products of two functions.
         degree = max(function.degree() for function in functions)
         tapering = _TAPERING if segment.head_section is not None else 0
         nodes, weights = np.polynomial.legendre.leggauss(degree + 1 + tapering)
@@ -288,20 +291,20 @@ class _Basis:
         self.integral = self.value @ self.weights
 
     def at(self, x: float) -> Array:
-        """Return the values (num_functions,) at one place in m."""
+        """Return the values (num_functions,) at x in m."""
         return np.array([function(x) for function in self.functions])
 
     def slope_at(self, x: float) -> Array:
-        """Return the slopes (num_functions,) at one place in m."""
+        """Return the slopes (num_functions,) at x in m."""
         return np.array([slope(x) for slope in self._slopes])
 
     def curvature_at(self, x: float) -> Array:
-        """Return the second derivatives (num_functions,) at one place in m."""
+        """Return the second derivatives (num_functions,) at x in m."""
         return np.array([curvature(x) for curvature in self._curvatures])
 
 
 def _times_legendre(segment: Segment, seed: Polynomial, terms: int) -> list[Legendre]:
-    """Return products of a seed and the first normalised Legendre polynomials of a segment."""
+    """Return products of a polynomial and the first Legendre polynomials, normalised."""
     domain = [segment.start, segment.end]
     lowest = seed.convert(kind=Legendre, domain=domain)
     functions = [lowest * Legendre.basis(k, domain=domain) for k in range(terms)]

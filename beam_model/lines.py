@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Deflections and section forces along segments of beams.
 
-The moment follows from the curvature, M = −E J θ′. The shear force is normal to the straight axis.
-With an axial force P it is M′ − P w′, whose mean over a piece is exact for elements. Under a
-uniform load q, the moment of an element has an error of q h²/12 at the ends, and none in the mean
-slope. Between middles of pieces without point forces, the shear force is linear.
+The moment is M = −E J θ′. The shear force is normal to the straight axis; with an axial force P it
+is M′ − P w′. Its mean over an element is exact: under a uniform load q, the moment of an element of
+length h has an error of q h²/12 at both ends, but none in its mean slope. Between point forces,
+shear forces are interpolated linearly from the middles of elements.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.contact_places import load_places
 
-# Minimum number of pieces of a segment between two forces.
+# Number of pieces of a segment without elements.
 _PIECES = 40
 
-# Points in a piece at which curvatures are read; a curvature is linear in its piece.
+# Relative positions in a piece of the points of a linear curvature.
 _EARLY, _LATE = 0.25, 0.75
 
 _NAMES: dict[Direction, tuple[Quantity, Quantity, Quantity]] = {
@@ -37,17 +37,17 @@ _NAMES: dict[Direction, tuple[Quantity, Quantity, Quantity]] = {
 
 
 def lines(boom: Boom, models: Sequence[SegmentModel]) -> list[Line]:
-    """Return the line of each segment; rigid segments have no section forces."""
+    """Return the rows along each segment. Rigid segments have no section forces."""
     modes = BoomModes(boom, models)
     return [_line(boom, number, modes, model) for number, model in enumerate(models)]
 
 
 def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Line:
     segment = boom.segments[number]
-    # The ends of the segment, and the places of forces on it.
+    # Ends of the segment, and positions of forces.
     acting = {*segment.ends, *load_places(boom, number), *segment.compression.places}
     acting |= {held.x for held in segment.supports} | {mass.x for mass in segment.all_masses}
-    # The ends of all pieces: those of the elements, or equal pieces between places.
+    # Ends of elements, or of equal pieces between forces.
     breaks = model.components["z"].breaks
     if not breaks.size:
         even = np.linspace(segment.start, segment.end, _PIECES + 1)
@@ -63,7 +63,7 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
         if model.components[direction].curvature is not None:
             plane = segment if direction == "z" else segment.turned()
             early, late = (
-                # The moment follows from the local E J of the segment in this plane.
+                # E J is that of the section at x in this plane.
                 np.array(
                     [
                         -plane.prismatic_at(x).bending_stiffness
@@ -91,7 +91,7 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
 
 
 def _both_ends(breaks: Array, read: Callable[[float], Array]) -> Array:
-    """Return the rows (2 num_pieces, num_modes) of a continuous quantity at pieces' ends."""
+    """Return the rows (2 num_pieces, num_modes) of a continuous quantity at both ends of pieces."""
     return np.asarray(np.repeat([read(x) for x in breaks], 2, axis=0)[1:-1])
 
 
@@ -101,7 +101,7 @@ def _slope(breaks: Array, rows: Array) -> Array:
 
 
 def _to_ends(breaks: Array, means: Array, acting: set[float]) -> Array:
-    """Return rows (2 num_pieces, num_modes) at pieces' ends, extrapolated from means."""
+    """Return rows (2 num_pieces, num_modes) at both ends of pieces, from means over pieces."""
     jumps = [int(np.abs(breaks - x).argmin()) for x in acting]
     ends = np.repeat(means, 2, axis=0)
     for first, last in pairwise(np.unique(jumps).tolist()):

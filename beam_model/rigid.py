@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Segments as rigid bodies with mass and inertia; only supports and contacts are elastic."""
+"""Segments as rigid bodies with mass and inertia, on elastic supports and contacts."""
 
 from __future__ import annotations
 
@@ -13,35 +13,35 @@ from geometry.boom import Segment
 
 
 def rigid_segment(segment: Segment) -> SegmentModel:
-    """Return a segment that moves, and in space rotates about its axis, without deformation.
+    """Return the model of a segment that moves without deformation.
 
-    Its motions are the linear functions that rigid supports admit, possibly none. Springs of
-    elastic supports and point masses act on them.
+    Its motions are those that rigid supports admit, possibly none. Elastic supports and point
+    masses act on them.
     """
-    components: dict[Motion, Component] = {"z": _moving(segment)}
+    components: dict[Motion, Component] = {"z": _rigid_motion(segment)}
     if segment.lateral is not None:
-        components["y"] = _moving(segment.turned())
+        components["y"] = _rigid_motion(segment.turned())
         turns = segment.rigid_twists
-        components["twist"] = kantorovich_twist(segment, turns) if turns else _held()
+        components["twist"] = kantorovich_twist(segment, turns) if turns else _no_motion()
     return SegmentModel(components)
 
 
-def freedom(segment: Segment) -> int:
-    """Return the number of motions along z that rigid supports leave free in a rigid segment."""
+def count_rigid_motions(segment: Segment) -> int:
+    """Return the number of rigid motions along z that rigid supports admit."""
     held = sum((s.stiffness is None) + (s.kind == "clamped") for s in segment.supports)
     return max(0, 2 - held)
 
 
-def _moving(segment: Segment) -> Component:
-    motions = freedom(segment)
+def _rigid_motion(segment: Segment) -> Component:
+    motions = count_rigid_motions(segment)
     if motions == 0:
-        return _held()
+        return _no_motion()
     straight = kantorovich_bending(segment, motions, "complete", rotary_inertia=True)
     return replace(straight, curvature=None)
 
 
-def _held() -> Component:
+def _no_motion() -> Component:
     none, empty = np.zeros(0), np.zeros((0, 0))
     return Component(
-        empty, empty, empty, none, none, lambda x: none, 0, lambda x: none, turning=none
+        empty, empty, empty, none, none, lambda x: none, 0, lambda x: none, rotation_load=none
     )

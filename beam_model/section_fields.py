@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Section fields: shells condensed to as few coordinates as a beam has.
+"""Condensation of shells to as few coordinates as a beam has.
 
-The condensed system keeps some modes: a few of the slowest ones, and those with the largest
-inertial response b²/ω⁴ to loads b, whose static response is b²/ω². It represents the other modes by
-the motions that forces excite, which match ``MOMENTS`` derivatives at rest. So statics is exact,
-and the inertia of local deformation is accurate to the first orders (MacNeal 1971; Rubin 1975,
-whose residual modes are the first block).
+The condensed system keeps the lowest modes, and modes with a large inertial response b²/ω⁴ to loads
+b relative to the static response Σ b²/ω². Responses to forces represent the other modes, and match
+two moments at zero frequency. So statics is exact, and the inertia of local deformation is accurate
+to first order (MacNeal 1971; Rubin 1975, whose residual modes are the first block).
 """
 
 from __future__ import annotations
@@ -16,33 +15,32 @@ from dynamics.gap_system import GapSystem
 from dynamics.reduction import independent_columns, reduce_modes
 from geometry.arrays import Array, Indices
 
-# Number of blocks Ω⁻²ᵏ Bᵀ of the load vectors.
+# Number of blocks Ω⁻²ᵏ Bᵀ of load vectors, which is the number of matched moments.
 MOMENTS = 2
-# Greatest fraction of the coordinates for blocks, unless a single block needs more.
-_OF_ALL = 1.0 / 3.0
-# Fraction of the coordinates for the slowest modes, loaded or not.
-_SLOWEST = 1.0 / 8.0
+# Maximum fraction of the coordinates for blocks, unless a single block needs more.
+_BLOCK_FRACTION = 1.0 / 3.0
+# Fraction of the coordinates for the lowest modes.
+_LOWEST_FRACTION = 1.0 / 8.0
 
 
 def condense(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
-    """Return the system in at most ``most`` coordinates, and their shapes.
-
-    Shapes are (num_modes, num_coordinates). There are more coordinates if loads and rows need them.
+    """Return the system in fewer coordinates, and their shapes (num_modes, num_coordinates).
 
     Args:
         system: gap system without modal damping, which a case adds later.
-        most: maximum total number of coordinates of all segments.
+        most: maximum number of coordinates of all segments; more if loads and rows need them.
 
-    Raises: ValueError: the system has modal damping.
+    Raises:
+        ValueError: the system has modal damping.
     """
     if system.damping.any():
         raise ValueError("a system is condensed before it is damped")
     if system.num_modes <= most:
         return system, np.eye(system.num_modes)
     pushes = _forces(system)
-    order = _order_modes(system.omega2, pushes, round(_SLOWEST * most))
+    order = _order_modes(system.omega2, pushes, round(_LOWEST_FRACTION * most))
     count = len(independent_columns((pushes * (system.omega2 > 0.0)).T).T)
-    moments = int(np.clip(_OF_ALL * most // max(count, 1), 1, MOMENTS))
+    moments = int(np.clip(_BLOCK_FRACTION * most // max(count, 1), 1, MOMENTS))
     kept, rest = np.split(order, [max(most - moments * count, (system.omega2 <= 0.0).sum())])
     kept, rest = (part[np.argsort(system.omega2[part], kind="stable")] for part in (kept, rest))
     omega2, shapes = reduce_modes(system.omega2, pushes, kept, rest, moments)
@@ -50,7 +48,7 @@ def condense(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
 
 
 def _order_modes(omega2: Array, pushes: Array, slowest: int) -> Indices:
-    """Return the order (num_modes,) of modes: slowest, then by b²/ω⁴ over the total b²/ω²."""
+    """Return the order (num_modes,) of modes: lowest, then by b²/ω⁴ over the total b²/ω²."""
     elastic = omega2 > 0.0
     gives = np.where(elastic, pushes**2 / np.where(elastic, omega2, 1.0), 0.0)
     whole = gives.sum(axis=1, keepdims=True)
@@ -61,7 +59,7 @@ def _order_modes(omega2: Array, pushes: Array, slowest: int) -> Indices:
 
 
 def _forces(system: GapSystem) -> Array:
-    """Return all possible forces (num_pushes, num_modes)."""
+    """Return all rows and loads (num_pushes, num_modes)."""
     constant = [system.load, system.released_load, system.initial_impulse]
     excited = [excitation.load for excitation in system.excitations]
     return np.vstack([system.all_rows, *constant, *excited])

@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Gap systems of beams.
-
-Kantorovich series and beam finite elements share this code, as do booms in the plane and in space,
-which have more components and pads.
-"""
+"""Gap systems of beams: series, finite elements and rigid segments, flat or in space."""
 
 from __future__ import annotations
 
@@ -25,8 +21,7 @@ from geometry.observation import Observation, Quantity
 from geometry.section import Side
 from geometry.telescoping import drives_below
 
-# Sides of the contact rows of stations along z and of stops: one row for both sides, or one row per
-# side, as in a shell, whose walls differ.
+# Sides of the contact rows of a flat joint or a stop: one row for both sides, or one row per side.
 BOTH_SIDES: Sequence[Side] = (0,)
 EACH_SIDE: Sequence[Side] = (1, -1)
 
@@ -36,10 +31,10 @@ def gap_system(
     models: Sequence[SegmentModel],
     sides: Sequence[Side] = BOTH_SIDES,
 ) -> GapSystem:
-    """Return the gap system of segments that contact, friction and ties couple.
+    """Return the gap system of a boom of beams.
 
-    The forces of pads with a given size act at their middles. ``sides`` are the sides of a contact
-    row.
+    Pad forces act at the centres of pads. ``sides`` are the sides of contact rows, ``BOTH_SIDES``
+    or ``EACH_SIDE``.
     """
     modes = BoomModes(boom, models)
     system = system_without_drives(boom, modes, sides)
@@ -89,7 +84,7 @@ def _rows(
         on_outer, on_inner = pad.travels(extensions.get(pad.number, 0.0))
         law = pad.joint.law(pad.direction)
         joint = pad.joint
-        # The row reads u − w of the pad's two points.
+        # u − w of both points of the pad.
         approach, slide = (
             modes.displacement(joint.inner, x + on_inner, direction, inner)
             - modes.displacement(joint.outer, x + on_outer, direction, outer)
@@ -112,7 +107,7 @@ def _rows(
 
 
 def _row(place: Observation, modes: BoomModes) -> Array:
-    """Return the row (num_modes,) that reads a quantity, or the quantity that it differentiates."""
+    """Return the row (num_modes,) of the displacement of an observation."""
     match place.kind.read:
         case "rotation":
             return modes.rotation(place.segment, place.x, "z")

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Static states and support reactions: forces of supports, joints, cylinders and stops on beams.
+"""Static states and reactions: forces of supports, joints, cylinders and stops on beams.
 
-A segment without its supports, with the static deflection of the boom, is in equilibrium with its
-loads except at supports. So the residual K w − f at a node is the reaction there, for any number of
-supports.
+For a segment without its supports, the residual K w − f of the static deflection w at a node is the
+reaction at this node.
 """
 
 from __future__ import annotations
@@ -28,12 +27,12 @@ from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.contact_places import contact_centres
 
-# Number of elements of the longest segment under axial forces.
-COMPRESSED_ELEMENTS = 20
+# Minimum number of elements of the longest segment with axial forces or tapers.
+ELEMENTS_WITH_AXIAL_FORCE = 20
 
 
 class NodeReaction(NamedTuple):
-    """Reaction on a segment: force in N along z, moment in N·m towards a larger slope."""
+    """Reaction on a segment: force in N along z, and moment in N·m, positive for larger slopes."""
 
     segment: int
     x: float
@@ -68,8 +67,8 @@ class Elements:
 
     Args:
         boom: boom with joints bonded or with play.
-        count: minimum number of elements of the longest segment. Section forces are linear within
-            half an element, so that stresses need more elements.
+        count: minimum number of elements of the longest segment. Section forces need more than
+            one, since they are interpolated between elements.
     """
 
     boom: Boom
@@ -97,13 +96,13 @@ class Elements:
         """Return the element length in m, smaller with axial forces or tapers, and the theory."""
         segments, count = self.boom.segments, self.count
         if self.boom.compressed or any(one.head_section is not None for one in segments):
-            count = max(count, COMPRESSED_ELEMENTS)
+            count = max(count, ELEMENTS_WITH_AXIAL_FORCE)
         longest = max(segment.length for segment in segments) / count
         return longest, static_theory(self.boom)
 
 
 def static_theory(boom: Boom) -> Theory:
-    """Return the theory of a boom's elements: Timoshenko's if all sections are known."""
+    """Return the beam theory for statics: Timoshenko if all segments have sections."""
     known = all(segment.section is not None for segment in boom.segments)
     return "timoshenko" if known else "euler-bernoulli"
 
@@ -113,14 +112,13 @@ def static_state(
     elements: Elements | None = None,
     walls: float = 1.0,
 ) -> StaticState:
-    """Return the static state of a boom of beam elements, by :func:`static_theory`.
-
-    Walls bend under pads, see :mod:`beam_model.wall_compliance`.
+    """Return the static state of a boom of beam elements with wall compliance at pads.
 
     Args:
         boom: boom with its loads.
-        elements: elements of the segments, if already available, with or without play.
-        walls: factor of the compliance of walls under pads, 0 for rigid walls.
+        elements: elements of the boom, if available.
+        walls: factor of the compliance of walls under pads, see
+            :mod:`beam_model.wall_compliance`; 0 for rigid walls.
 
     Raises:
         NumericsError: there is no equilibrium.
@@ -140,19 +138,17 @@ def static_state(
 
 
 def telescoping_system(boom: Boom) -> GapSystem:
-    """Return the gap system of the beams of :func:`static_state`, with drives."""
+    """Return the gap system of beam elements as for :func:`static_state`, with drives."""
     return gap_system(boom, Elements(boom).segments).gather_loads()
 
 
 def net_reactions(boom: Boom, reactions: Sequence[NodeReaction]) -> list[NodeReaction]:
-    """Return the reactions of a boom, each force once.
-
-    A reaction at a joint is the force of the other segment, elsewhere that of the ground.
+    """Return the reactions at joints as forces between segments, others as forces of the ground.
 
     Args:
         boom: boom at rest.
-        reactions: reactions on all segments; those on an outer segment do not include the forces of
-            the inner one.
+        reactions: residuals of all segments. At a joint, the residual of the outer segment is the
+            sum of the force of the inner segment and of its own reaction.
     """
     whole = {reaction[:2]: reaction for reaction in reactions}
     for joint in sorted(boom.joints, key=lambda joint: -joint.inner):
@@ -178,7 +174,7 @@ def _reaction_places(boom: Boom, number: int) -> set[float]:
 def _reactions(
     boom: Boom, number: int, component: Component, modes: BoomModes, position: Array
 ) -> list[NodeReaction]:
-    """Return the residuals of a segment without its supports, at all possible supports."""
+    """Return the reactions on a segment at all its possible supports."""
     nodes = component.breaks
     bent = [
         row @ position
@@ -187,7 +183,7 @@ def _reactions(
     ]
     load = component.load.copy()
     for given in boom.loads:
-        # A load that ends before t = 0 has no value.
+        # The history of a load that ends before t = 0 is not callable.
         if given.segment == number and given.direction == "z" and callable(given.history):
             load += given.history(np.zeros(1))[0] * given.push(component.member)
     stiffness = component.stiffness - component.geometric_stiffness

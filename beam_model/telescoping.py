@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Rows of a telescoping boom of beams at all extensions of its joints.
+"""Rows of a telescoping boom of beams as functions of the extensions of its joints.
 
-Between two nodes that pass a station, rows are shape functions of an element. Those of a plain
-element are cubic, and tables represent them exactly. Those of a tapered element have degree five,
-those of a series any degree, and tables represent them within a tolerance.
+While a station passes an element, its rows are shape functions. Tables of cubics represent
+prismatic elements exactly. Tapered elements have degree five and series any degree; tables
+represent them within a tolerance.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from geometry.axial import joint_thrust, moving_force
 from geometry.boom import SAME_PLACE, Boom
 from geometry.telescoping import TelescopingStations, drives_below, telescoping_stations
 
-# Function that returns the rows of the boom, from the extensions in m by index of the joint.
+# Function that returns all rows of the boom, from extensions in m by index of the joint.
 RowsAt = Callable[[Mapping[int, float]], GapBuilder[Array]]
 
 
@@ -32,16 +32,16 @@ def travels(
     rows_at: RowsAt,
     members: Sequence[BeamMember],
 ) -> list[Travel]:
-    """Return the motion of rows by the drive of each joint, or of several joints for stops."""
+    """Return the travels of each joint with a drive, and of stops that drives move."""
     return [_travel(boom, models, rows_at, members, group) for group in telescoping_stations(boom)]
 
 
 def moving_axial_forces(
     boom: Boom, models: Sequence[SegmentModel], members: Sequence[BeamMember], joint: int
 ) -> list[MovingAxialForce]:
-    """Return the axial force, if any, that moves with a telescoping joint.
+    """Return the axial force that moves with a telescoping joint; empty if there is none.
 
-    ``members`` are the models of the segments, beams or shells.
+    ``members`` are the load vectors and rows of all segments.
     """
     found = moving_force(boom.segments, boom.joints, joint)
     drive = boom.joints[joint].drive
@@ -79,7 +79,7 @@ def _travel(
 
 
 def _breaks(boom: Boom, models: Sequence[SegmentModel], group: TelescopingStations) -> list[float]:
-    """Return the extensions in m at which a node passes a station, and the ends of the reach."""
+    """Return the extensions in m at which a station passes a node, and the extreme extensions."""
     joint = boom.joints[group.joints[-1]]
     outer, inner = (
         np.concatenate([c.breaks for c in models[segment].components.values()])

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Local compliance of walls under slide pads, without a shell.
+"""Local compliance of walls under slide pads, estimated without a shell.
 
-A wall under a pad bends as a plate. Its folds stay in place, since each is in the plane of a
-neighbouring wall, which is stiff in its plane. So the unfolded walls of a segment form one plate,
-continuous over line supports at the folds, with a free edge at the end of the segment. It is
-discretised by the conforming rectangles of Bogner, Fox and Schmit (1965): products of cubic Hermite
-polynomials along the boom and around the section, whose matrices are Kronecker products. A section
-with sloping walls also deforms as a ring, unless a collar or diaphragm is near. This deformation is
-neglected, so that the estimate is then too small.
+A wall under a pad bends as a plate. Neighbouring walls, which are stiff in their planes, support it
+along its folds. So the unfolded walls of a segment form one continuous plate on line supports at
+the folds, with a free edge at the end of the segment. Elements are the conforming rectangles of
+Bogner, Fox and Schmit (1965): products of cubic Hermite polynomials along the boom and around the
+section, whose matrices are Kronecker products. The estimate neglects the distortion of the whole
+section, so that it is too small for sloping walls far from collars and diaphragms.
 """
 
 from __future__ import annotations
@@ -30,12 +29,12 @@ from geometry.contact_places import Pad, pads
 from geometry.section import Direction, Side
 from geometry.segment import Segment
 
-# Length of wall beyond a pad, over the larger side of the section, within which deformations decay.
+# Length of wall beyond a pad that is modelled, as a fraction of the larger side of the section.
 _REACH = 1.5
-# Length of elements over the smaller side of the section, and its growth away from a pad.
+# Element length as a fraction of the smaller side of the section, and its growth away from a pad.
 _LENGTH, _GROWTH = 0.2, 1.6
 
-# Gauss's rule that is exact for products of cubic polynomials.
+# Gauss points and weights, exact for products of two cubics.
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
@@ -45,7 +44,7 @@ class PressedArea(NamedTuple):
     Args:
         start, end: x in m.
         direction, side: direction and side of the wall's outward normal.
-        spans: intervals across the wall in m, from the segment's axis.
+        spans: intervals of the coordinate across the wall in m.
     """
 
     start: float
@@ -56,7 +55,7 @@ class PressedArea(NamedTuple):
 
 
 class _Axis:
-    """Cubic Hermite elements between nodes in m; a closed axis ends at its first node."""
+    """Cubic Hermite elements between nodes in m; on a closed axis, the last node is the first."""
 
     def __init__(self, nodes: Array, closed: bool) -> None:
         self.nodes = nodes
@@ -79,12 +78,12 @@ class _Axis:
         return [csc_matrix((scale * left).T @ right) for left, right in pairs]
 
     def mean(self, start: float, end: float) -> Array:
-        """Return the row (num_dofs,) that reads the mean between two places in m."""
+        """Return the row (num_dofs,) of the mean between two positions in m."""
         return np.asarray((self._sums(end) - self._sums(start)) / (end - start))
 
 
 def with_wall_springs(system: GapSystem, boom: Boom, factor: float = 1.0) -> GapSystem:
-    """Return a beam with springs that have the compliance of the walls under its pads.
+    """Return a beam with springs for the compliance of walls under its pads.
 
     Args:
         system: gap system with a contact row for each side, ``beam_model.segment_model.EACH_SIDE``.
@@ -99,9 +98,9 @@ def with_wall_springs(system: GapSystem, boom: Boom, factor: float = 1.0) -> Gap
 
 
 def contact_compliance(boom: Boom) -> Array:
-    """Return the local compliance (num_rows, num_rows) in m/N of walls at a boom's contact rows.
+    """Return the local compliance (num_rows, num_rows) in m/N of walls at contact rows.
 
-    Pads of a given size bend walls; the compliance of contacts at corners is neglected.
+    It is zero for contacts at corners.
 
     Args:
         boom: boom of beams with a contact row for each side,
@@ -121,14 +120,14 @@ def contact_compliance(boom: Boom) -> Array:
         inner = boom.segments[joint.inner]
         areas = [_pad_area(*rows[i], inner) for i in at]
         for segment in (inner, boom.segments[joint.outer]):
-            # Rows read displacements along their direction, areas those along outward normals.
+            # The sign relates the direction of a row to the outward normal of its area.
             outward = wall_compliance(segment, areas)
             found[np.ix_(at, at)] += np.outer(sides, sides) * outward
     return found
 
 
 def _pad_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
-    """Return the area of a pad in space, or of a symmetric pair in a flat boom."""
+    """Return the area of a pad in space, or of a symmetric pair of pads in a flat boom."""
     assert pad.patch is not None
     near, far = pad.patch.across(inner.section_at(pad.x).face(pad.direction, side))
     halves = (1, -1) if pad.face is None else (pad.half,)
@@ -137,13 +136,13 @@ def _pad_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
 
 
 def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
-    """Return the compliance (num_areas, num_areas) in m/N of a segment's walls at pressed areas.
+    """Return the compliance (num_areas, num_areas) in m/N of the walls of a segment.
 
-    It is the mean displacement of an area along its outward normal under a unit force on another.
+    An entry is the mean outward displacement of one area under a unit force on another.
 
     Args:
         segment: segment with a section, collars and diaphragms.
-        areas: areas that are near each other along the segment.
+        areas: pressed areas of one station.
     """
     start, end = min(area.start for area in areas), max(area.end for area in areas)
     section = segment.section_at(0.5 * (start + end))
@@ -151,7 +150,7 @@ def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
     low, high = max(segment.start, start - reach), min(segment.end, end + reach)
     length = _LENGTH * min(section.size("y"), section.size("z"))
 
-    # The axis around the section starts at the first fold, with nodes at folds and edges of pads.
+    # The axis around the section has nodes at folds and edges of pads.
     folds = np.concatenate([[0.0], np.cumsum([plate.length for plate in section.plates])])
     spans = []
     for area in areas:
@@ -161,14 +160,14 @@ def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
         places = folds[face.plate] + along * (np.array(area.spans) - plate.start[across])
         spans.append(np.sort(places, axis=1))
     edges = np.unique(np.concatenate([folds, *(span.ravel() for span in spans)]))
-    around = _Axis(_divided(edges, length, (0.0, folds[-1])), closed=True)
+    around = _Axis(_graded_nodes(edges, length, (0.0, folds[-1])), closed=True)
     plates = np.searchsorted(folds, around.nodes[:-1], side="right") - 1
 
     closed_at = [one.x for one in segment.diaphragms if low < one.x < high]
     cuts = [low, high, *(x for area in areas for x in (area.start, area.end))]
     ends = [x for collar in segment.collars for x in collar.span if low < x < high]
     along_x = _Axis(
-        _divided(np.unique([*cuts, *closed_at, *ends]), length, (start, end)), closed=False
+        _graded_nodes(np.unique([*cuts, *closed_at, *ends]), length, (start, end)), closed=False
     )
     middles = 0.5 * (along_x.nodes[:-1] + along_x.nodes[1:])
     doubled = np.zeros(middles.size)
@@ -202,8 +201,7 @@ def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
             for area, places in zip(areas, spans, strict=True)
         ]
     )
-    # The matrix is symmetric positive definite: no pivoting, and an ordering that preserves
-    # symmetry.
+    # The matrix is symmetric positive definite, so that the factorisation needs no pivoting.
     factor = splu(
         csc_matrix(stiffness)[free.ravel()][:, free.ravel()],
         permc_spec="MMD_AT_PLUS_A",
@@ -213,8 +211,8 @@ def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
     return np.asarray(rows @ factor.solve(rows.T))
 
 
-def _divided(cuts: Array, length: float, fine: tuple[float, float]) -> Array:
-    """Return nodes in m at cuts; elements have a length within an interval and grow outside it."""
+def _graded_nodes(cuts: Array, length: float, fine: tuple[float, float]) -> Array:
+    """Return nodes in m that include cuts. Elements grow outside the interval ``fine``."""
     count = int(np.ceil((fine[1] - fine[0]) / length))
     beyond = length * np.cumsum(_GROWTH ** np.arange(1, 30))
     nodes = np.concatenate([fine[0] - beyond, np.linspace(*fine, count + 1), fine[1] + beyond])

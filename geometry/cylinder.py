@@ -126,7 +126,9 @@ class Cylinder:
             foot: support of the segment along x.
         """
         along, up = self.direction
-        in_plane = up * body.force(self.x, "z") + along * self.depth * body.moment(self.x, "z")
+        in_plane = up * body.unit_load_vector(self.x, "z") + along * self.depth * body.moment(
+            self.x, "z"
+        )
         if foot is not None and foot.depth != 0.0:
             in_plane = in_plane - along * foot.depth * body.moment(foot.x, "z")
         yield in_plane
@@ -188,5 +190,5 @@ def ground_lines(boom: Boom, bodies: Sequence[Body]) -> Iterator[GroundLine]:
         for support in segment.supports:
             if support.dashpot > 0.0:
                 for direction in boom.directions:
-                    push = bodies[number].force(support.x, direction)
+                    push = bodies[number].unit_load_vector(support.x, direction)
                     yield GroundLine(number, push, 0.0, support.dashpot)

@@ -18,7 +18,7 @@ class Body(Protocol):
     The load vector of a unit force is also the row of the displacement of its point.
     """
 
-    def force(self, x: float, direction: Direction) -> Array:
+    def unit_load_vector(self, x: float, direction: Direction) -> Array:
         """Return the load vector of 1 N at x in m."""
 
     def moment(self, x: float, direction: Direction) -> Array:
@@ -40,7 +40,7 @@ class Member(Body, Protocol):
         ``force`` in N/m is the inertia load of the segment without stiffeners.
         """
 
-    def turning(self, direction: Direction) -> Array:
+    def rotation_load(self, direction: Direction) -> Array:
         """Return the load vector of an angular acceleration of 1 rad/s² about x = 0.
 
         It is positive towards a larger slope, and excludes point masses."""
@@ -83,7 +83,7 @@ class Load:
     def push(self, member: Member) -> Array:
         """Return the load vector (num_dofs,) at the value 1 of the history."""
         if self.x is not None:
-            return self.magnitude * member.force(self.x, self.direction)
+            return self.magnitude * member.unit_load_vector(self.x, self.direction)
         if self.inertial:
             return member.inertia(self.direction, self.magnitude)
         return self.magnitude * member.uniform(self.direction, None)
@@ -127,4 +127,4 @@ class AngularAcceleration(Load):
     """
 
     def push(self, member: Member) -> Array:
-        return self.magnitude * member.turning(self.direction)
+        return self.magnitude * member.rotation_load(self.direction)

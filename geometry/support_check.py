@@ -125,7 +125,7 @@ class _RigidBody(Member):
                 whole += float(load.history(np.zeros(()))) * load.push(self)
         return whole
 
-    def force(self, x: float, direction: Direction) -> Array:
+    def unit_load_vector(self, x: float, direction: Direction) -> Array:
         middle = 0.5 * (self.segment.start + self.segment.end)
         return self._row(0 if direction == "z" else 2, 1.0, (x - middle) / self.boom.length)
 
@@ -137,26 +137,27 @@ class _RigidBody(Member):
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
         start, end = span or (self.segment.start, self.segment.end)
-        return (end - start) * self.force(0.5 * (start + end), direction)
+        return (end - start) * self.unit_load_vector(0.5 * (start + end), direction)
 
     def inertia(self, direction: Direction, force: float) -> Array:
         segment, acceleration = self.segment, force / self.segment.mass_per_length
-        plain = force * segment.length * self.force(segment.mass_centre, direction)
+        plain = force * segment.length * self.unit_load_vector(segment.mass_centre, direction)
         added = (
-            acceleration * one.mass * self.force(one.x, direction)
+            acceleration * one.mass * self.unit_load_vector(one.x, direction)
             for one in segment.stiffener_masses
         )
         return sum(added, plain)
 
-    def turning(self, direction: Direction) -> Array:
+    def rotation_load(self, direction: Direction) -> Array:
         segment = self.segment if direction == "z" else self.segment.turned()
         mass, middle = segment.mass_per_length * segment.length, segment.mass_centre
         inertia = mass * segment.length**2 / 12.0 + segment.rotary_inertia * segment.length
-        plates = mass * middle * self.force(middle, direction) + inertia * self.moment(
+        plates = mass * middle * self.unit_load_vector(middle, direction) + inertia * self.moment(
             middle, direction
         )
         added = (
-            one.mass * one.x * self.force(one.x, direction) for one in segment.stiffener_masses
+            one.mass * one.x * self.unit_load_vector(one.x, direction)
+            for one in segment.stiffener_masses
         )
         return sum(added, plates)
 
@@ -187,7 +188,7 @@ def _bodies(boom: Boom) -> list[_RigidBody]:
 def _one_way(boom: Boom, bodies: list[_RigidBody]) -> list[Array]:
     """Return the load vectors of one-sided stops."""
     return [
-        -stop.sides[0] * bodies[stop.segment].force(stop.x, "z")
+        -stop.sides[0] * bodies[stop.segment].unit_load_vector(stop.x, "z")
         for stop in boom.stops
         if len(stop.sides) == 1
     ]
@@ -198,7 +199,7 @@ def _always(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
     for body in bodies:
         for support in body.segment.supports:
             for direction in boom.directions:
-                yield body.force(support.x, direction)
+                yield body.unit_load_vector(support.x, direction)
                 if support.holds_slope(direction) or support.rotation_stiffness is not None:
                     yield body.moment(support.x, direction)
             if boom.spatial:
@@ -208,12 +209,12 @@ def _always(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
         inner, outer = bodies[joint.inner], bodies[joint.outer]
         for x in joint.stations:
             for direction in boom.directions:
-                yield inner.force(x, direction) - outer.force(x, direction)
+                yield inner.unit_load_vector(x, direction) - outer.unit_load_vector(x, direction)
             if boom.spatial:
                 yield inner.torque(x) - outer.torque(x)
     for stop in boom.stops:
         if len(stop.sides) == 2:
-            yield bodies[stop.segment].force(stop.x, "z")
+            yield bodies[stop.segment].unit_load_vector(stop.x, "z")
 
 
 def _left(rows: Iterable[Array], bodies: list[_RigidBody]) -> Array:

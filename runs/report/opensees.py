@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from beam_model.calibration import Calibration, stiffened
+from beam_model.calibration import Calibration, with_stiffnesses
 from beam_model.component import Component
 from beam_model.finite_element import finite_element_segment
 from dynamics.contact import ContactLaw
@@ -84,7 +84,7 @@ def script(
     _check(case, model_boom)
     boom = model_boom.boom
     touching = _touching(boom, calibrated=calibration is not None)
-    stiff = boom if calibration is None else stiffened(boom, calibration.segments)
+    stiff = boom if calibration is None else with_stiffnesses(boom, calibration.segments)
     parts = [_part(stiff, number, model, touching) for number in range(len(boom.segments))]
     data = {
         "TITLE": f"{case.title}: {model.name}",

@@ -116,7 +116,7 @@ def probe_segment(boom: Boom, number: int, symmetry: SymmetryReduction) -> Probe
     places, shell = probe_places(boom, number), symmetry.shell
     probes: dict[ProbedMotion, list[Array]] = {
         direction: [
-            *(shell.force(x, direction) for x in places),
+            *(shell.unit_load_vector(x, direction) for x in places),
             *(shell.moment(x, direction) for x in (places[0], places[-1])),
         ]
         for direction in boom.directions

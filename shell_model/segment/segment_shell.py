@@ -70,7 +70,7 @@ class SegmentShell(Shell):
         parts = [kept[d] * self.unit_loads[d] for d in directions if d in kept]
         return np.asarray(np.sum(parts, axis=0))
 
-    def force(self, x: float, direction: Direction) -> Array:
+    def unit_load_vector(self, x: float, direction: Direction) -> Array:
         """Return the vector (num_owned,) of 1 N at x in m, spread over the shear-carrying walls."""
         return self.row(self.outline(x).wall_deflection(direction))
 
@@ -104,7 +104,7 @@ class SegmentShell(Shell):
         whole = force * self.plain_loads[direction]
         return whole + acceleration * (self.segment.material.density * of_stiffeners)
 
-    def turning(self, direction: Direction) -> Array:
+    def rotation_load(self, direction: Direction) -> Array:
         """Return the inertia load (num_owned,) of plates for 1 rad/s² about x = 0. Collective."""
         axis = np.cross([1.0, 0.0, 0.0], np.eye(3)[COMPONENT[direction]])
         # The mass couples free degrees of freedom with constrained ones.

@@ -136,11 +136,11 @@ class CalibratedTable(BeamTable):
 
     def motion_model(self, built: BuiltModel, shell: ReducedShell, boom: Boom) -> BuiltModel:
         """Return the model whose motion is integrated: by default the calibrated beam."""
-        from beam_model.calibration import stiffened
+        from beam_model.calibration import with_stiffnesses
         from beam_model.lines import lines
 
         assert built.calibration is not None
-        stiff = stiffened(boom, built.calibration.segments)
+        stiff = with_stiffnesses(boom, built.calibration.segments)
         along = lines(stiff, self.segments(stiff))
         # The coordinates of the springs come after those of the beam, and do not affect its lines.
         own = along[0].rows["deflection"].shape[1]

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal
 
 from beam_model.component import SegmentModel
-from beam_model.rigid import freedom, rigid_segment
+from beam_model.rigid import count_rigid_motions, rigid_segment
 from geometry.boom import Boom, BoomError
 from runs.case.kinds.model import BeamTable, ModelBoom, Surrogate
 
@@ -22,7 +22,7 @@ class Rigid(BeamTable):
     """the kind of model"""
 
     def check(self, where: str, model_boom: ModelBoom) -> None:
-        if not any(freedom(segment) for segment in model_boom.boom.segments):
+        if not any(count_rigid_motions(segment) for segment in model_boom.boom.segments):
             raise BoomError(
                 f"{where}.kind",
                 "every segment is held, and no rigid one could move; give another kind, or elastic "
