@@ -38,15 +38,15 @@ class ShellOptions:
 
     Args:
         mesh_size: edge length in m; in a graded mesh, the length far from contacts and supports.
-        contact_line: place of contact. ``near webs`` transfers forces between the webs of both
-            segments, as pads in the corners do. ``across`` spreads forces over the width of the
-            inner flanges, which then bend, in a flat boom. ``surface`` has contact over the whole
-            overlap of facing walls.
-        surface: options of surface contact, with their own shifts and moments of the reduction.
+        contact_line: position of contact. ``near webs``: forces act between the webs of both
+            segments, as those of pads in the corners. ``across``: forces act over the width of the
+            inner flanges, which bend, in a flat boom. ``surface``: contact is possible over the
+            whole overlap.
+        surface: options of surface contact.
         krylov: options of the reduction.
-        contact_tolerance: permitted relative error of the local compliance at contacts, which
-            grades the mesh (:mod:`geometry.refinement`). The mesh is uniform without it, and for
-            surface contact.
+        contact_tolerance: permitted relative error of the local compliance at contacts, for a
+            graded mesh (:mod:`geometry.refinement`). Without it, and for surface contact, the mesh
+            is uniform.
     """
 
     mesh_size: float = 0.1
@@ -62,7 +62,7 @@ class ShellOptions:
 
     @property
     def coarser(self) -> ShellOptions:
-        """The options with edges of twice the length, for the estimate of the mesh error."""
+        """The options for twice the edge length, to estimate the discretisation error."""
         tolerance = self.contact_tolerance
         return replace(
             self,
@@ -81,13 +81,13 @@ class BoomShell:
         stations: x in m and direction of each station.
         touching: possible contacts, friction and dashpots at any extension.
         rows: rows of contacts, friction and dashpots at t = 0.
-        ties: constraints: their rows stay at zero.
+        ties: readings that bonded joints constrain to zero.
         own_loads: uniform load vector (num_owned,) of each segment in N, constant from t = 0 on.
         loads: loads with a history, and their load vectors (num_owned,).
-        observed: readings that a motion records.
-        lines: connections to the ground, (num_owned,) each.
-        pin_moments: pin moments of axial forces, see :func:`geometry.axial.pin_moments`.
-        helper: second process that takes part in the reduction.
+        observed: outputs of a motion.
+        lines: springs and dashpots to the ground.
+        pin_moments: (segment, load vector), see :func:`geometry.axial.pin_moments`.
+        helper: second process for the reduction.
     """
 
     comm: MPI.Comm
@@ -119,30 +119,30 @@ class BoomShell:
 
     @property
     def resisting(self) -> list[Reading]:
-        """The rows of contacts, then of friction."""
+        """The readings of contacts, then of friction."""
         contacts = [contact.reading for contact in self.rows.contacts]
         return contacts + [friction.reading for friction in self.rows.frictions]
 
     def forces(self, number: int) -> Array:
-        """Return all forces (num_owned, num_forces) on a segment, contacts first."""
+        """Return all load vectors (num_owned, num_forces) on a segment, contacts first."""
         dashpots = self.columns(
             number, [r for dashpot in self.rows.dashpots.values() for _, r in dashpot.parts]
         )
         return np.column_stack([self.joined(number), dashpots, self.pushed(number)])
 
     def pushed(self, number: int) -> Array:
-        """Return the load vectors (num_owned, num_pushes) on a segment at fixed places."""
+        """Return the load vectors (num_owned, num_loads) of loads and ground lines of a segment."""
         own = [push for load, push in self.loads if load.segment == number]
         own += [push for segment, push in self.pin_moments if segment == number]
         own += [line.push for line in self.lines if line.segment == number]
         return np.column_stack([self.own_loads[number], *own])
 
     def joined(self, number: int) -> Array:
-        """Return the rows (num_owned, num_rows) of contacts, friction and ties on a segment."""
+        """Return the rows (num_owned, num_rows) of contacts, friction and bonded joints."""
         return self.columns(number, [*self.resisting, *self.ties])
 
     def columns(self, number: int, readings: Iterable[Reading]) -> Array:
-        """Return the rows that read a segment, as columns (num_owned, num_rows). Collective."""
+        """Return the rows of readings of a segment as columns (num_owned, num_rows). Collective."""
         shell = self.shells[number]
         rows = [shell.row(reading[number]) for reading in readings if number in reading]
         return np.array(rows).reshape(-1, shell.free.size).T
@@ -154,13 +154,13 @@ def assemble_boom(
     comm: MPI.Comm,
     stages: Stages | None = None,
 ) -> BoomShell:
-    """Assemble the unreduced shells of a boom with contacts, loads and observers. Collective.
+    """Assemble the unreduced shells of a boom with contacts, loads and outputs. Collective.
 
     Args:
         boom: boom whose segments all have sections.
-        options: mesh and contact points.
+        options: options of mesh and contact.
         comm: ranks that share the work.
-        stages: stages of the progress.
+        stages: progress reporter.
 
     Raises:
         BoomError: a segment has no section, or the contact line does not suit the boom.
@@ -229,7 +229,7 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
 
 
 def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, ObservedReading[Reading]]:
-    """Return the readings of the boom's ends and of all other observers. Collective."""
+    """Return the outputs of segment ends and observations. Collective."""
     ends: tuple[Quantity, ...] = ("deflection", "rotation", "distortion")
     if boom.spatial:
         ends += ("lateral", "twist")

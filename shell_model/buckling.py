@@ -11,10 +11,10 @@ neglected. Since K is positive definite, the lowest λ are the reciprocals of th
 of −K_G φ = μ K φ: shift-and-invert at λ = 0, with one Cholesky factorisation of K. Many modes of
 walls have nearly the same λ; a Krylov space with several vectors for each mode separates them.
 
-Supports, cylinders and the tangent stiffness of closed contacts hold a segment of a boom; the
-segments that it touches stay at rest. At these places the sideways motion and the twist are fixed,
-at one of them the motion along the boom. :func:`dynamics.second_order.buckling_factor` has the
-buckling modes of the whole boom, such as those of a column.
+Each segment buckles separately, on its supports, its cylinders and the tangent stiffness of its
+closed contacts. There, lateral motion and twist are fixed, and at one of them motion along the
+boom. :func:`dynamics.second_order.buckling_factor` covers buckling of the whole boom, such as
+column buckling.
 """
 
 from __future__ import annotations

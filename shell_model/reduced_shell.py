@@ -45,20 +45,19 @@ class ReducedShell:
         system: gap system of all segments.
         num_dofs: number of degrees of freedom before the reduction.
         fields: displacements of all mesh vertices for each mode, on rank 0 (see ``fields``).
-        errors: measured reduction errors, the maximum over the segments: ``contact_compliance`` as
-            a fraction of the local compliance, NaN without contacts; ``readings``, relative;
+        errors: reduction errors, the maximum over the segments: ``contact_compliance`` as a
+            fraction of the local compliance, NaN without contacts; ``readings``, relative;
             ``frequency_limit_in_hz``, up to which natural frequencies are accurate.
         local_compliance: local compliances (num_rows,) of the contacts in m/N, see
             :func:`shell_model.contact.local_compliance.local_compliance`.
         mesh_error: largest relative discretisation error of the local compliance; NaN without
             contacts.
-        seconds: wall time of each stage: mesh, assembly, rows of contacts and readings, reduction,
-            fields of displacement and stress, mesh error, unit responses.
+        seconds: wall time of each stage in s.
         meshes: mesh of each segment, on rank 0.
-        critical_factor: critical factor of the axial forces with closed joints, see
+        critical_factor: buckling factor of the axial forces with bonded joints, see
             :func:`dynamics.second_order.buckling_factor`; infinite without axial forces.
-        probe_responses: unit responses of the segments, to which beams are calibrated.
-        own_loads: contributions (num_segments, num_modes) of the segments' uniform loads to
+        probe_responses: probe responses of the segments, for the calibration of beams.
+        own_loads: contributions (num_segments, num_modes) of the uniform loads of segments to
             ``system.load``, in N/√kg.
     """
 
@@ -86,10 +85,10 @@ def reduce_boom(
 
     Args:
         boom: boom whose segments all have sections.
-        options: mesh, contact points, reduction.
+        options: options of mesh, contact and reduction.
         comm: ranks that share the work; the result is the same on each.
         progress: callback that receives the stage and its completed fraction.
-        helper: second process, which takes part in the work if there is only one rank.
+        helper: second process that shares the work, for a single rank.
 
     Raises:
         BoomError: a segment has no section, or the contact line does not suit the boom.
@@ -161,9 +160,9 @@ def _of_contacts(whole: Array, shell: BoomShell) -> Array:
 
 
 def _contact_compliance(full: BoomShell, segments: Sequence[ReducedSegment]) -> tuple[Array, Array]:
-    """Return the compliance (num_contacts, num_contacts) in m/N of the separate reduced segments.
+    """Return compliance and error of contacts for the separate reduced segments.
 
-    Also return the largest error (num_contacts,) of each contact's compliance.
+    The compliance is (num_contacts, num_contacts), its largest error (num_contacts,), in m/N.
     """
     apart = BoomCoordinates(full.comm, full.shells, segments, ())
     contacts = full.rows.contacts
@@ -178,7 +177,7 @@ def _contact_compliance(full: BoomShell, segments: Sequence[ReducedSegment]) -> 
 def _reduced(
     full: BoomShell, options: ShellOptions, stages: Stages, number: int, *beside: Array
 ) -> ReducedSegment:
-    """Reduce a segment to the motions that its forces excite and its observers read."""
+    """Reduce a segment for its applied forces, further forces, and outputs. Collective."""
     krylov, joined = options.krylov, full.joined(number)
     at_surface = options.contact_line == "surface"
     if at_surface:
@@ -195,7 +194,7 @@ def _reduced(
 
 
 def _gap_system(full: BoomShell, coordinates: BoomCoordinates, own_loads: Array) -> GapSystem:
-    """Return the gap system of the boom in the coordinates."""
+    """Return the gap system of the boom in reduced coordinates."""
     return full.rows.system(
         coordinates.row,
         coordinates.omega2,
@@ -211,12 +210,12 @@ def _gap_system(full: BoomShell, coordinates: BoomCoordinates, own_loads: Array)
 
 
 def _largest(parts: Array) -> float:
-    """Return the largest of all finite values; NaN without finite values."""
+    """Return the maximum of the finite values; NaN if there are none."""
     return float(np.nanmax(parts)) if np.isfinite(parts).any() else float("nan")
 
 
 def critical_factor(boom: Boom, full: BoomShell, reduced: Sequence[ReducedSegment]) -> float | None:
-    """Return the critical factor of the axial forces on the boom without play. Collective.
+    """Return the buckling factor of the axial forces with bonded joints. Collective.
 
     It is infinite without axial forces.
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Wall time and progress of the stages of a computation."""
+"""Progress reporter: wall time and progress of the stages of a computation."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from time import perf_counter
 
 
 class Stages:
-    """Wall time of stages in s, and their progress.
+    """Progress reporter that also sums the wall time of each stage in s.
 
     >>> stages = Stages(print)
     >>> with stages.stage("mesh") as progress:
@@ -30,7 +30,7 @@ class Stages:
     def stage(
         self, name: str, number: int = 0, count: int = 1
     ) -> Iterator[Callable[[float], None]]:
-        """Run part ``number`` of ``count`` parts of a stage; yield a function for its progress."""
+        """Measure part ``number`` of ``count`` parts of a stage, and yield a progress callback."""
         begin = perf_counter()
         self.progress(name, number / count)
         yield lambda part: self.progress(name, (number + part) / count)

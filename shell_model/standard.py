@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Reduced shell of all booms that differ only in plays and magnitudes of loads.
+"""Reduced shell of booms that differ only in play and magnitudes of loads.
 
-Neither plays nor magnitudes of loads affect the reduced coordinates. So the boom is reduced without
-play and under unit loads, and plays, loads and histories are then inserted into its system. In
-space, the lateral lever of a contact depends on the play, and booms share a shell only if they have
-the same play.
+The reduced coordinates do not depend on play and magnitudes of loads. So the boom is reduced
+without play and under unit loads, and its system then receives play, loads and histories. In space,
+contact points depend on the play, so that only booms of the same play share a shell.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from shell_model.reduced_shell import ReducedShell
 
 
 def standard_boom(boom: Boom) -> Boom:
-    """Return the boom under unit loads; a flat boom also without play."""
+    """Return the boom with unit loads, and without play if it is flat."""
     joints = boom.joints
     if not boom.spatial:
         joints = tuple(
@@ -49,7 +48,7 @@ def with_plays_and_loads(shell: ReducedShell, boom: Boom) -> ReducedShell:
         if not (joint.tied or boom.spatial or _shimmed(joint))
         for _ in joint.stations
     ]
-    # In space, and at stops, the rows already have their clearances.
+    # Rows of stops, and all rows in space, already have their clearances.
     more += [(0.0, 0.0)] * (len(system.stations) - len(more))
     factors = np.array([_own_load(segment) for segment in boom.segments])
     changing = [load for load in boom.loads if _changing(load)]
@@ -69,7 +68,7 @@ def with_plays_and_loads(shell: ReducedShell, boom: Boom) -> ReducedShell:
 
 
 def _own_load(segment: Segment) -> float:
-    """Return the magnitude of a segment's uniform loads in N/m."""
+    """Return the magnitude of the uniform loads of a segment in N/m."""
     return segment.load or (0.0 if segment.lateral is None else segment.lateral.load)
 
 
@@ -84,7 +83,7 @@ def _unit_segment(segment: Segment) -> Segment:
 
 
 def _changing(load: Load) -> bool:
-    """Return whether the load has a history and acts after t = 0."""
+    """Return whether a load acts after t = 0."""
     return not isinstance(load.history, ReleasedLoad | InitialImpulse)
 
 

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Shells of telescoping booms: modes for every extension, and springs that move with the pads.
+"""Shells of telescoping booms: modes of segments, and springs that move with pads.
 
-A basis of the responses to forces at all places would grow with the extension. But pads excite few
-modes of segments, and springs represent the remaining compliance of walls
-(:mod:`shell_model.reduction.pad_springs`). Rows and springs are sampled where pads pass the rings
-of the mesh, and are interpolated by splines, so that single rings have no effect. The geometric
-stiffness of an axial force that moves with a segment follows from the slope of the mean deflection,
-which is a spline between the mesh lines around the segment. Local bending of walls keeps the
-geometric stiffness of the initial extension.
+A Krylov basis for forces at all extensions would be large. But pads excite few modes of segments,
+and springs represent the remaining compliance of walls (:mod:`shell_model.reduction.pad_springs`).
+Rows and springs are sampled at extensions one mesh size apart, and interpolated by splines. The
+geometric stiffness of a moving axial force follows from the slope of the mean deflection, a spline
+between mesh lines. Local bending of walls has the geometric stiffness of the initial extension.
 """
 
 from __future__ import annotations
@@ -37,12 +35,11 @@ from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.stress.stresses import lines_around
 
-# Highest frequency of modes in Hz; frequency up to which all modes are kept; fraction of the
-# springs' compliance that a faster mode must contribute.
+# Maximum frequency of modes in Hz; frequency up to which all modes are kept; minimum contribution
+# of higher modes to the residual compliance, as a fraction.
 _CUTOFF, _SLOWEST, _PART = 1500.0, 100.0, 0.003
 
-# Moments of forces at fixed places; moments, and stride of extensions, of the reduction that finds
-# the modes.
+# Number of moments of the reduction, and stride of the extensions whose forces it includes.
 MOMENTS = 2
 _EVERY = 4
 
@@ -52,11 +49,11 @@ _FEWEST = 4
 
 @dataclass(frozen=True, slots=True)
 class _SampledRows:
-    """Rows of a boom at several extensions of the joints that its drives move together.
+    """Rows of a group of stations at several extensions.
 
     Args:
-        group: the drives; None for rows that do not move.
-        moving: kind and index of each row in the gap system.
+        group: stations and drives; None for rows that do not move.
+        moving: (kind, index) of each row in the gap system.
         extensions: extensions (num_extensions,) in m, ascending.
         touching: contacts, friction and dashpots at each extension.
     """
@@ -87,9 +84,10 @@ class _SampledRows:
         return np.asarray(np.concatenate(rows).T)
 
     def moving_and_staying(self, comm: MPI.Comm, columns: Array) -> tuple[Mask, Mask]:
-        """Return the mask (num_extensions · num_moving) of rows whose places move.
+        """Return two masks (num_extensions · num_moving,) of rows. Collective.
 
-        Also return the first one of each set of rows whose place does not change. Collective.
+        The first one marks rows that change on this segment, the second one rows that do not
+        change, at the first extension only.
         """
         rows = columns.T.reshape(self.extensions.size, len(self.moving), -1)
         same = comm.allreduce((rows[0] == rows[-1]).all(axis=1), MPI.LAND)
@@ -104,7 +102,7 @@ class _SampledRows:
 
 
 def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]:
-    """Sample all rows of a boom where stations pass the rings of a mesh with the size in m."""
+    """Sample all rows of a boom at extensions one mesh size (in m) apart."""
     found = []
     for group in telescoping_stations(boom):
         pieces = [
@@ -132,9 +130,9 @@ class TelescopingShell:
         boom: boom whose joints have drives.
         full: shells of the boom.
         size: edge length of the meshes in m.
-        reduce: function that returns a segment in reduced coordinates, from its index and the
-            forces (num_owned, num_columns) on it at several extensions.
-        test: frequency in Hz of the shift at which responses of springs are checked.
+        reduce: function that reduces a segment, from its index and the forces
+            (num_owned, num_columns) of pads at several extensions.
+        test: frequency in Hz at which the error of springs is measured.
 
     Attributes:
         reduced: reduced segments, without springs.
@@ -164,7 +162,7 @@ class TelescopingShell:
         self._springs = [springs(*self._residuals(k)) for k in range(len(self._sampled))]
 
     def lost(self, contacts: int) -> Array:
-        """Return the largest error (num_contacts,) of each compliance at any extension in m/N."""
+        """Return the largest error (num_contacts,) of the compliance at all extensions in m/N."""
         sigma, found = squared(self._test), np.zeros(contacts)
         for k, sampled in enumerate(self._sampled):
             omega2, pulls = self._springs[k]
@@ -213,13 +211,13 @@ class TelescopingShell:
     def _with_few_modes(
         self, number: int, segment: ReducedSegment, columns: Array
     ) -> ReducedSegment:
-        """Select the modes that pads excite, and the responses to forces at fixed places.
+        """Return the segment in modes that pads excite, and responses to all other forces.
 
         ``columns`` (num_owned, num_columns) are the rows of pads at all extensions.
         """
 
         def modal(columns: Array) -> Array:
-            """Return the modal values (num_columns, num_modes) of the segment."""
+            """Project columns on the modes of the segment."""
             rows = [exact_product(self._full.comm, column, segment.shapes) for column in columns.T]
             return np.array(rows).reshape(-1, segment.omega2.size)
 
@@ -253,10 +251,10 @@ class TelescopingShell:
         )
 
     def _transfer_error(self, many: tuple[Array, Array, Array], few: tuple[Array, Array]) -> float:
-        """Return the error of the readings' response to pads, relative to the geometric mean.
+        """Return the error of the response of outputs to pad forces.
 
-        ``many`` has ω² and the rows of pads and readings in all modes; ``few`` has ω² of the
-        selected modes, and their shapes in these.
+        It is relative to the geometric mean of both compliances. ``many`` is (ω², rows of pads,
+        rows of outputs) in all modes; ``few`` is (ω², shapes) of the selected modes.
         """
         omega2, rows, observed = many
         shifted, shapes = (1.0 / (one + squared(self._test)) for one in (omega2, few[0])), few[1]
@@ -268,7 +266,7 @@ class TelescopingShell:
         return float((np.abs(missed) / scale).max(initial=0.0))
 
     def _residuals(self, k: int) -> tuple[Array, Array]:
-        """Return the residual compliance and inertia of sampled rows, without the modes."""
+        """Return compliance and inertia of sampled rows less those of the modes."""
         rows, shifted = self._rows[k], self._apart.omega2 + squared(SLOW)
         compliance, inertia = (rows / shifted**power @ rows.swapaxes(1, 2) for power in (1, 2))
         return self._compliance(k, "compliance") - compliance, self._compliance(
@@ -276,7 +274,7 @@ class TelescopingShell:
         ) - inertia
 
     def _compliance(self, k: int, kind: str) -> Array:
-        """Return the compliance (num_extensions, num_moving, num_moving) of all full segments."""
+        """Return a response (num_extensions, num_moving, num_moving) of all full segments."""
         first, sampled = sum(one.count for one in self._sampled[:k]), self._sampled[k]
         own = slice(first, first + sampled.count)
         whole = np.sum([getattr(one, kind)[own, own] for one in self._responses], axis=0)
@@ -293,9 +291,9 @@ def _moving_axial_forces(
     group: TelescopingStations,
     behind: int,
 ) -> list[MovingAxialForce]:
-    """Return the axial force, if any, that moves with a telescoping joint. Collective.
+    """Return the axial force that moves with a telescoping joint, if any. Collective.
 
-    Further coordinates do not move sections as a whole.
+    Its rows are zero for the ``behind`` coordinates of springs.
     """
     found = moving_force(boom.segments, boom.joints, group.joints[0])
     if found is None or len(group.joints) > 1:
@@ -304,7 +302,7 @@ def _moving_axial_forces(
     if shell.mesh is not None:
         along = shell.mesh.points[shell.mesh.triangles, 0]
         around = lines_around(np.stack([along.min(axis=1), along.max(axis=1)], axis=1))
-        # Nodes are on these lines up to rounding.
+        # The exact x of nodes on these lines, which are rounded.
         x = np.unique(along)
         lines = x[np.searchsorted(0.5 * (x[1:] + x[:-1]), around)]
     # Extensions at which the force passes mesh lines.

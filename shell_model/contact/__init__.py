@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Contact, friction and ties between segments: rows, and the local compliance of walls."""
+"""Contact, friction and bonded joints of shells: rows, and the local compliance of walls."""

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Local compliance of walls at contacts, the reference of errors of mesh and reduction.
+"""Local compliance of walls at contacts, the scale of errors of mesh and reduction.
 
-Rigid motion dominates the compliance of a contact row, B (Ω² + σ)⁻¹ Bᵀ at a low shift: about 1e-6
-m/N, compared with 3e-9 m/N of the wall. Equal and opposite forces on the two sides of a station are
-in equilibrium. They cause no rigid motion and no beam bending, and half of the station's opening
-under unit forces is the *local compliance* of each side. Errors of the compliance are fractions of
-it.
+The compliance B (Ω² + σ)⁻¹ Bᵀ of a contact row at a low shift is mainly rigid motion, about 1e-6
+m/N compared with 3e-9 m/N of the wall. Opposite unit forces on both sides of a station cause no
+rigid motion and no beam bending. Half of their relative displacement is the *local compliance*.
 """
 
 from __future__ import annotations
@@ -24,15 +22,12 @@ from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import ShiftedSolver
 
-# Frequency of the shift in Hz, above rigid motion and below all elastic motion.
+# Frequency of the shift in Hz, between rigid and elastic modes.
 SLOW = 20.0
 
 
 def compliance(omega2: Array, rows: Array) -> Array:
-    """Return the compliance B (Ω² + σ)⁻¹ Bᵀ (num_rows, num_rows) in m/N of the rows B.
-
-    The shift is σ = (2π · ``SLOW``)².
-    """
+    """Return the compliance B (Ω² + σ)⁻¹ Bᵀ (num_rows, num_rows) in m/N of rows B at 20 Hz."""
     return np.asarray(rows / (omega2 + (2.0 * np.pi * SLOW) ** 2) @ rows.T)
 
 
@@ -45,7 +40,7 @@ def full_compliance(
         touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
         parts = [shell.row(contacts[i].reading[number]) for i in touching]
         rows = np.array(parts).reshape(-1, shell.free.size).T
-        # The function needs only the symmetry reductions of these shells.
+        # These symmetry reductions are used only once.
         found[np.ix_(touching, touching)] += shell_compliance(SymmetryReduction(shell), rows)
     return found
 
@@ -53,7 +48,7 @@ def full_compliance(
 def shell_compliance(symmetry: SymmetryReduction, rows: Array, frequency: float = SLOW) -> Array:
     """Return the compliance (num_rows, num_rows) in m/N of an unreduced shell. Collective.
 
-    Rows are (num_owned, num_rows); a frequency in Hz determines the shift.
+    Rows are (num_owned, num_rows). The frequency of the shift is in Hz.
     """
 
     def answers(_: int, job: Job) -> Array:
@@ -68,7 +63,7 @@ def shell_compliance(symmetry: SymmetryReduction, rows: Array, frequency: float 
 def local_compliance(
     whole: Array, laws: Sequence[ContactLaw], station_of_row: Sequence[int]
 ) -> Array:
-    """Return the local compliance (num_rows,) in m/N; NaN without a contact on the other side.
+    """Return the local compliance (num_rows,) in m/N; NaN without contact on the opposite side.
 
     Args:
         whole: compliance (num_rows, num_rows) in m/N.
@@ -94,9 +89,9 @@ def extrapolated_error(fine: Array, coarse: Array, order: float) -> Array:
 def _opposite(
     laws: Sequence[ContactLaw], station_of_row: Sequence[int]
 ) -> Iterator[tuple[int, int]]:
-    """Pair the rows that press up with those that press down at the same place of their station.
+    """Yield pairs of rows on opposite sides of a station.
 
-    If one side has more pads, several of them have the same opposite pad.
+    If one side has more rows, several of them have the same opposite row.
     """
     for station in set(station_of_row):
         there = [i for i, at in enumerate(station_of_row) if at == station]
@@ -108,10 +103,9 @@ def _opposite(
 
 
 def probe_segment(boom: Boom, number: int, symmetry: SymmetryReduction) -> ProbeResponses:
-    """Compute the unit responses of a segment with all degrees of freedom. Collective.
+    """Return the probe responses of the unreduced shell of a segment. Collective.
 
-    In space they include lateral bending and torsion. The mesh must have lines at the places of
-    unit loads.
+    In space they include lateral bending and torsion. The mesh needs mesh lines at all probes.
     """
     places, shell = probe_places(boom, number), symmetry.shell
     probes: dict[ProbedMotion, list[Array]] = {

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Rows of contacts, friction and ties between the shells of a boom.
+"""Rows of contacts, friction and bonded joints between the shells of a boom.
 
-At a station, the top flange of the inner segment can press upwards, its bottom flange downwards,
-and in space its webs sideways. The joint determines the sides, since the direction of facet normals
-is arbitrary in a mesh. With surface contact, stations have friction only.
-
-The points of each wall have weights that sum to one, so that a uniform approach gives the paper's
-law (4) exactly.
+At a station, contact is possible above and below the inner segment, in space also at its sides. The
+joint determines the sides, since facet normals of a mesh have arbitrary signs. With surface
+contact, stations have friction only. The weights of points on each wall sum to one, so that a
+uniform displacement gives the contact law exactly.
 """
 
 from __future__ import annotations
@@ -33,17 +31,18 @@ _SIDES: tuple[Side, Side] = (1, -1)
 _POINTS = 4
 
 
-# A pair of contact points: side, weight and approach.
+# Contact point: side, weight, and reading of the relative displacement u − w.
 _Point = tuple[Side, float, Reading]
 
 
 @dataclass(frozen=True, slots=True)
 class _PadReadings:
-    """Readings of the relative displacements u − w of the two segments at a pad.
+    """Readings of the relative displacements u − w at a pad.
 
     Args:
         pad: the pad.
-        corners, walls: corners and walls of all segments; walls are empty if no contact reads them.
+        corners: corner lines of all segments.
+        walls: walls of all segments; empty if no contact is on a wall.
     """
 
     pad: Pad
@@ -51,7 +50,7 @@ class _PadReadings:
     walls: Sequence[WallPoints]
 
     def contact(self, line: ContactLine) -> tuple[list[_Point], Reading]:
-        """Return the point pairs of the pad, and the reading of its sliding. Collective."""
+        """Return the contact points of the pad, and the reading of its sliding. Collective."""
         pad = self.pad
         if pad.joint.lateral_play is not None:
             if pad.patch is None:
@@ -72,18 +71,18 @@ class _PadReadings:
                 points.append((side, pad.weight, self.at_corners("z", at, at)))
         if pad.side:
             return points, points[0][2]
-        # The sliding of both flanges is their mean.
+        # The sliding displacement is the mean of both flanges.
         first, *others = (0.5 * weight * approach for _, weight, approach in points)
         return points, sum(others, first)
 
     def at_corners(self, direction: Direction, inner: Offset, outer: Offset) -> Reading:
-        """Return the approach along the corners at offsets (y, z) in m."""
+        """Return the reading u − w on the corners at offsets (y, z) in m."""
         places = zip(self._ends, self.pad.intervals, (inner, outer), strict=True)
         rows = (self.corners[n].deflection(at, direction, *offset) for n, at, offset in places)
         return self._approach(*rows)
 
     def across(self, side: Side) -> Iterator[_Point]:
-        """Return the approaches over the width of a face of the inner section. Collective."""
+        """Yield contact points over the width of a face of the inner section. Collective."""
         width = self._touching.face("z", side).width
         across, shares = gauss(-0.5 * width, 0.5 * width, 8)
         for y, share in zip(across[across > 0.0], 2.0 * shares[across > 0.0], strict=True):
@@ -98,10 +97,7 @@ class _PadReadings:
             yield side, share, self._approach(*rows)
 
     def over_patch(self, patch: Patch, side: Side, half: int) -> Reading:
-        """Return the mean approach over a patch. Collective.
-
-        The transposed row is a uniform pressure on both walls.
-        """
+        """Return the mean of u − w over a patch, on which the pressure is uniform. Collective."""
         x, along = gauss(patch.start, patch.end, _POINTS)
         near, far = patch.across(self._touching.face(self.pad.direction, side))
         y, over = gauss(half * near, half * far, _POINTS)
@@ -130,13 +126,14 @@ class _PadReadings:
 
 @dataclass(frozen=True, slots=True)
 class ShellContacts:
-    """Possible contacts, friction and dashpots of a boom's shells.
+    """Possible contacts, friction and dashpots between the shells of a boom.
 
     Args:
         boom: boom with joints and stops.
         line: contact line on the walls.
-        corners, walls: corners and walls of the segments; walls are empty if no contact reads them.
-        points: contact points of a surface; none without surface contact.
+        corners: corner lines of all segments.
+        walls: walls of all segments; empty if no contact is on a wall.
+        points: points of surface contact; none otherwise.
     """
 
     boom: Boom
@@ -156,7 +153,7 @@ class ShellContacts:
         """Create the contacts of shells. Collective.
 
         Args:
-            boom, line: boom and contact line of the class.
+            boom, line: as in the class.
             shells: shell of each segment.
             surface: options of surface contact, if it is used.
 
@@ -190,7 +187,7 @@ class ShellContacts:
             segment, drives = rest.stop.segment, drives_below(boom.joints, rest.stop.segment)
             extension = sum(extensions.get(number, 0.0) for number in drives)
             pressed, lines = rest.at_extension(boom, extension).interval, self.corners[segment]
-            # A stop touches a flange at both webs at once.
+            # A stop touches a flange at both webs.
             flanges = [
                 (side, 1.0, Reading({segment: lines.deflection(pressed, "z", 0.0, side)}))
                 for side in _SIDES
@@ -200,9 +197,9 @@ class ShellContacts:
 
 
 def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
-    """Return the constraints of bonded joints: deflections, and in space the twist. Collective.
+    """Return the constraints of bonded joints: deflections, and in space twist. Collective.
 
-    Each constraint reads the walls that carry its force in their own plane.
+    Their forces act in the planes of walls.
     """
     reads: list[Callable[[Outline], Row]] = [
         partial(Outline.wall_deflection, direction=direction) for direction in boom.directions

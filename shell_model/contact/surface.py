@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Surface contact over the whole overlap: points on the facing walls of two segments.
 
-The points follow Gauss's rule along the overlap, and across each half of the inner segment's wall,
-so that they are symmetric. The stiffness of a point is the penalty k_A in N/mⁿ⁺² times its area.
-Neither mesh needs a node at the point: both displacements are interpolated in the triangles that
-contain it. The joint determines the side in contact, since the direction of facet normals is
-arbitrary.
+They are Gauss points along the overlap and across each half of the wall of the inner segment. The
+stiffness of a point is the penalty k_A in N/mⁿ⁺² times its area. Displacements are interpolated in
+the triangles that contain the point. The joint determines the side in contact, since facet normals
+have arbitrary signs.
 """
 
 from __future__ import annotations
@@ -27,8 +26,8 @@ from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
 
-# Fraction of a row's compliance that may be neglected. It changes the tip of the paper's boom with
-# friction by 0.01 % of its range.
+# Fraction of the compliance of a row that is neglected. It changes the tip deflection of the
+# paper's boom with friction by 0.01 % of its range.
 STIFF = 1.0e-4
 
 # Default numbers of points; more points change the first tip peak of the paper's boom by less than
@@ -42,13 +41,12 @@ class SurfaceOptions:
 
     Args:
         points: numbers of points along the overlap, and across each half of a wall.
-        stiffness: k_A in N/mⁿ⁺² of the stiffer side of every joint. By default it is the sum of the
-            stations' laws over the area, so that a uniform approach causes the same force as at the
-            stations.
+        stiffness: k_A in N/mⁿ⁺² of the stiffer side of all joints. By default it is the stiffness
+            of all stations over the area, so that a uniform displacement causes the same force.
         shifts, moments: shifts and moments of the reduction, see
-            :class:`shell_model.reduction.krylov.KrylovOptions`. Every point is an input, so that
-            few shifts and moments suffice: more of them change the tip of the paper's boom with
-            friction by 0.05 % of its range.
+            :class:`shell_model.reduction.krylov.KrylovOptions`. Since all points are inputs, few
+            suffice: more of them change the tip deflection of the paper's boom with friction by
+            0.05 % of its range.
     """
 
     points: tuple[int, int] = POINTS
@@ -61,11 +59,11 @@ class SurfacePoint(NamedTuple):
     """Contact point of a surface; in a flat boom a symmetric pair of points.
 
     Args:
-        reading: reading of the mean approach.
-        law: one-sided contact law, with the penalty of the point's area.
-        station: nearest station of the joint in the same direction.
-        side: side of the inner segment's wall that touches, 1 or −1.
-        half: half of this wall on which the point lies, 1 or −1; 0 for a mirrored pair.
+        reading: reading of u − w, the mean for a pair.
+        law: one-sided contact law, with the penalty times the area of the point.
+        station: index of the nearest station of the joint in the same direction.
+        side: side of the inner segment in contact, 1 or −1.
+        half: half of the wall with the point, 1 or −1; 0 for a pair.
     """
 
     reading: Reading
@@ -75,7 +73,7 @@ class SurfacePoint(NamedTuple):
     half: int
 
     def presses(self, pad: Pad) -> bool:
-        """Return whether the point belongs to a pad of its station, in space of its corner."""
+        """Return whether the force of the point is a normal force of a pad."""
         if self.station != pad.station:
             return False
         return pad.side == 0 or (self.side, self.half) == (pad.side, pad.half)
@@ -111,27 +109,27 @@ def _on_wall(
     options: SurfaceOptions,
     first: int,
 ) -> Iterator[SurfacePoint]:
-    """Return the points on a wall of the inner segment; ``first`` is the joint's first station."""
+    """Yield the points on a wall; ``first`` is the index of the first station of the joint."""
     one_sided = law.one_sided(wall.side)
     if one_sided is None:
         return
     section = boom.segments[joint.inner].section
     assert section is not None
     width, (start, end) = section.face(wall.normal, wall.side).width, boom.overlap(joint)
-    # Ratio of the whole wall's penalty to the joint's stiffness at one station.
+    # Ratio of the stiffness of the whole wall to that of one station.
     share = float(len(joint.stations))
     if options.stiffness is not None:
         area = width * (end - start)
         share = options.stiffness * area / max(term.stiffness for term in law.terms)
     pressing = one_sided.shared(share)
     along, across = gauss(start, end, options.points[0]), gauss(0.0, 0.5 * width, options.points[1])
-    # Symmetric pairs represent fractions of the wall's area.
+    # Fraction of the area of the wall that a pair of points represents.
     weights = np.outer(along[1], across[1]).ravel()
     x, beside = np.repeat(along[0], across[0].size), np.tile(across[0], along[0].size)
     stations = np.abs(np.subtract.outer(x, joint.stations)).argmin(axis=1) + first
 
     def approaches(half: int) -> list[Reading]:
-        """Return the readings of u − w along the wall's normal at the points of one half."""
+        """Return the readings of u − w along the normal at the points of one half."""
         places, ends = np.column_stack([x, half * beside]), (joint.inner, joint.outer)
         rows = (walls[number].rows(wall, places, wall.normal) for number in ends)
         return [
@@ -150,15 +148,16 @@ def _on_wall(
 
 
 def without_stiff_modes(comm: MPI.Comm, reduced: ReducedSegment, rows: Array) -> ReducedSegment:
-    """Return the segment without its highest modes, which hardly affect any row. Collective.
+    """Return the segment without the highest modes, whose compliance is negligible. Collective.
 
     With many contact points, the basis has modes up to the frequencies of thickness shear of
-    plates. They would need short time steps, and do not contribute to the compliance of the rows.
+    plates, which would require short time steps.
 
     Args:
         comm: ranks that share the segment.
         reduced: reduced coordinates of the segment.
-        rows: (num_owned, num_rows) this rank's part of the rows of contacts, friction and ties.
+        rows: (num_owned, num_rows) this rank's part of the rows of contacts, friction and bonded
+            joints.
     """
     gains = np.array([exact_product(comm, row, reduced.shapes) for row in rows.T])
     elastic = reduced.omega2 > 0.0

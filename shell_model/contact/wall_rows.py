@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Rows that read a shell's walls: along the corners of a section, and at any point of a wall.
+"""Rows of displacements of a shell along the corners of a section, and at points of walls.
 
-The compliance under a point force at a fold diverges with the logarithm of the edge length; a force
-along an interval of the fold has a finite compliance. Corner rows are exact for any mesh, even
-without mesh lines at the ends of the interval. The row of a point on a wall consists of the six
-quadratic shape functions of the triangle that contains it. So the meshes of two segments need not
-match.
+The compliance under a point force at a fold diverges with the logarithm of the edge length, that
+under a force along an interval of the fold is finite. Corner rows are exact for any mesh. The row
+of a point on a wall has the six shape functions of the triangle that contains the point. So the
+meshes of two segments need not match.
 """
 
 from __future__ import annotations
@@ -25,10 +24,10 @@ from shell_model.segment.segment_shell import SegmentShell
 
 
 class _CornerLine(NamedTuple):
-    """Displacement nodes along a corner: ends and middles of edges in turn.
+    """Displacement nodes along a corner, alternately ends and middles of edges.
 
     Args:
-        x: (num_nodes,) in m, ascending.
+        x: (num_nodes,) x in m, ascending.
         dofs: (num_nodes, 3) global rows of the displacement components.
     """
 
@@ -36,7 +35,7 @@ class _CornerLine(NamedTuple):
     dofs: Indices
 
     def mean(self, stretch: ContactInterval, direction: Direction) -> Row:
-        """Return the mean displacement, weighted by the density of a force, by Simpson's rule."""
+        """Return the mean displacement, weighted by the line load, by Simpson's rule."""
         left, right = self.x[:-2:2], self.x[2::2]
         low, high = np.maximum(left, stretch.start), np.minimum(right, stretch.end)
         (edges,) = np.nonzero(low < high)
@@ -64,10 +63,10 @@ class CornerLines:
             self._lines.append(_CornerLine(x[order], dofs[order]))
 
     def deflection(self, stretch: ContactInterval, direction: Direction, y: float, z: float) -> Row:
-        """Return u_z or u_y of a face in m, on the straight line through its two corners.
+        """Return u_z or u_y of a face in m, linear between its two corners.
 
-        The corners share a force on the face by the law of the lever, as webs do under a flange.
-        The force bends no plate, and the reading of a section's rotation is exact.
+        A force on the face acts on its corners in static equilibrium, and bends no plate. The row
+        is exact for a rotation of the section.
 
         Args:
             stretch: interval of x on the corners.
@@ -106,17 +105,17 @@ class Wall:
 
 
 class _Candidate(NamedTuple):
-    """Corners (6,) of a triangle on the wall in m, and its row."""
+    """Coordinates (6,) in m of the corners of a triangle on a wall, and its row."""
 
     corners: tuple[float, ...]
     row: Row
 
 
 class WallPoints:
-    """Triangles of a segment's walls with their nodes. Collective.
+    """Triangles of the walls of a segment, and rows at points on walls. Collective.
 
     Attributes:
-        segment: segment with these walls.
+        segment: the segment.
     """
 
     def __init__(self, shell: SegmentShell) -> None:
@@ -130,15 +129,15 @@ class WallPoints:
         self._along = WallsAlong(shell.segment, self._places[:, 0])
 
     def rows(self, wall: Wall, places: Array, direction: Direction) -> list[Row]:
-        """Return a row for each place, the same on every rank. Collective.
+        """Return the row of each point, the same on every rank. Collective.
 
         Args:
-            wall: wall with the places.
+            wall: wall with the points.
             places: (num_places, 2) x and the coordinate across the wall, in m.
             direction: direction of the displacement.
 
         Raises:
-            ValueError: a place is not on the wall.
+            ValueError: a point is not on the wall.
         """
         cells = self._near(wall, places[:, 0])
         found = [self._candidate(cells, wall, place, direction) for place in places]
@@ -152,12 +151,12 @@ class WallPoints:
         return rows
 
     def mean(self, wall: Wall, places: Array, weights: Array, direction: Direction) -> Row:
-        """Return the weighted sum of the rows of several places. Collective."""
+        """Return the weighted sum of the rows of points. Collective."""
         rows = self.rows(wall, places, direction)
         return sum((w * row for w, row in zip(weights.tolist(), rows, strict=True)), Row())
 
     def _near(self, wall: Wall, x: Array) -> Indices:
-        """Return the nodes (num_cells, 6) of triangles that may contain places at these x."""
+        """Return the nodes (num_cells, 6) of triangles that may contain points at some x."""
         margin = self._along.near
         plate = self.segment.widest.face(wall.normal, wall.side).plate
         flat = self._along.distance(plate, self._places[:, 1:]) < margin
@@ -168,15 +167,14 @@ class WallPoints:
     def _candidate(
         self, cells: Indices, wall: Wall, place: Array, direction: Direction
     ) -> _Candidate | None:
-        """Return the row of the first triangle that contains a place; None if no triangle does."""
+        """Return the row of the first triangle that contains a point; None if no triangle does."""
         if not len(cells):
             return None
         corners = self._places[cells[:, :3]][:, :, [0, wall.across]]
         holding = np.flatnonzero(_shares(corners, place).min(axis=1) > -_ON_EDGE)
         if not holding.size:
             return None
-        # The order depends on places, not on ranks, so that round-off is the same for any number of
-        # ranks.
+        # The order depends only on coordinates, so that round-off does not depend on ranks.
         orders = [np.lexsort(corners[cell].T[::-1]) for cell in holding]
         first = min(
             range(holding.size),
@@ -198,13 +196,13 @@ class WallPoints:
 
 
 def gauss(start: float, end: float, count: int) -> tuple[Array, Array]:
-    """Return points (count,) of Gauss's rule on an interval, and weights that sum to one."""
+    """Return Gauss points (count,) on an interval, and weights that sum to one."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return 0.5 * (start + end) + 0.5 * (end - start) * nodes, 0.5 * weights
 
 
 def _shares(corners: Array, place: Array) -> Array:
-    """Return the barycentric coordinates (num_triangles, 3) of a place.
+    """Return the barycentric coordinates (num_triangles, 3) of a point.
 
     Corners are (num_triangles, 3, 2).
     """

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Model reduction of a shell: symmetry classes, Krylov bases, distributed products."""
+"""Model reduction of a shell by Krylov bases of its symmetry classes."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Modal coordinates of the boom: those of its segments under the constraints of bonded joints."""
+"""Modal coordinates of a boom of shells, with the constraints of bonded joints."""
 
 from __future__ import annotations
 
@@ -19,28 +19,28 @@ from shell_model.segment.segment_shell import SegmentShell
 # Fraction of the largest stiffness below which a constraint is neglected.
 ROUND_OFF = 1.0e-9
 
-# Number of rows whose products are in memory at once.
+# Number of rows of a batch, whose products are in memory.
 _AT_ONCE = 1 << 14
 
-# Fraction of the terms' magnitudes below which a sum is round-off.
+# Fraction of the sum of absolute terms below which a sum is round-off.
 _CANCELLED = 1.0e-14
 
 
 class BoomCoordinates:
-    """Mass-normalised coordinates a of a boom with its ties and cylinders. Collective.
+    """Mass-normalised coordinates of a boom with bonded joints and cylinders. Collective.
 
     Args:
         comm: ranks that share the shells.
         shells, reduced: shell and reduced coordinates of each segment.
-        ties: constraints: their rows stay at zero.
-        lines: connections to the ground; the shells do not include their springs.
+        ties: readings that bonded joints constrain to zero.
+        lines: springs to the ground, which the shells do not include.
 
     Attributes:
-        omega2: (num_modes,) in rad²/s², rigid motions exactly 0; negative if an axial force
+        omega2: ω² (num_modes,) in rad²/s², exactly 0 for rigid motions, negative if an axial force
             makes a segment unstable.
-        critical_factor: critical factor of the axial forces, see
-            :func:`dynamics.second_order.buckling_factor`; infinite without axial forces, None if a
-            rigid motion is free.
+        critical_factor: buckling factor of the axial forces, see
+            :func:`dynamics.second_order.buckling_factor`; infinite without axial forces, None for a
+            mechanism.
     """
 
     def __init__(
@@ -74,18 +74,18 @@ class BoomCoordinates:
             self._combination = tied @ turn
 
     def row(self, reading: Reading) -> Array:
-        """Return the modal values (num_modes,) of a reading, the same on every rank."""
+        """Return the row (num_modes,) of a reading, the same on every rank."""
         rows = [self.push(number, self._shells[number].row(row)) for number, row in reading.items()]
         return np.asarray(np.sum(rows, axis=0))
 
     def push(self, number: int, force: Array) -> Array:
-        """Return the modal load (num_modes,) of a force, given by this rank's part (num_owned,)."""
+        """Return the modal load (num_modes,) of this rank's part (num_owned,) of a load vector."""
         parts = [np.zeros(segment.omega2.size) for segment in self._reduced]
         parts[number] = exact_product(self._comm, force, self._reduced[number].shapes)
         return self.of_rows(np.concatenate(parts))
 
     def of_rows(self, apart: Array) -> Array:
-        """Return rows (…, num_modes) in the boom's modes, from rows in the segments' modes."""
+        """Return rows (…, num_modes) in the modes of the boom from rows in those of segments."""
         if self._combination is None:
             return apart
         return np.asarray(apart @ self._combination.astype(apart.dtype, copy=False))
@@ -96,13 +96,13 @@ def _constrained_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array,
 
     Args:
         omega2: ω² (num_modes,) without constraints and springs.
-        tied: rows (num_ties, num_modes) that stay at zero.
-        pulls: rows √k p (num_springs, num_modes) of the springs in 1/s.
+        tied: rows (num_ties, num_modes) of displacements that are zero.
+        pulls: rows (num_springs, num_modes) of springs times the root of their stiffness in 1/s.
     """
     free = null_space(tied) if tied.size else np.eye(omega2.size)
     held = pulls @ free
     held_omega2, combination = eigh(free.T @ (omega2[:, None] * free) + held.T @ held)
-    # The rigid motions that the constraints leave keep the frequency 0.
+    # Rigid motions that satisfy all constraints are rigid modes.
     rigid = [rows[:, omega2 == 0.0] for rows in (tied, pulls) if rows.size]
     scaled = np.concatenate(
         [rows / np.abs(rows).max(initial=np.finfo(float).tiny) for rows in rigid]
@@ -114,7 +114,7 @@ def _constrained_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array,
 
 
 def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
-    """Return products (num_columns,) that are bitwise equal on any number of ranks. Collective.
+    """Return left · right (num_columns,), bitwise equal for any number of ranks. Collective.
 
     The factors are (num_owned,) and (num_owned, num_columns). Sums have twice the precision, so
     that their order has no effect.
@@ -132,7 +132,7 @@ def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
     gathered = comm.allgather((np.concatenate(parts), lost, size))
     total, off = _sum(np.concatenate([part for part, _, _ in gathered]))
     total += off + np.sum([lost for _, lost, _ in gathered], axis=0)
-    # A sum that cancels except for the last bits of its terms is zero.
+    # A sum that is only round-off is zero.
     total[np.abs(total) < _CANCELLED * np.sum([size for _, _, size in gathered], axis=0)] = 0.0
     return total
 

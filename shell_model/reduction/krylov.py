@@ -26,16 +26,15 @@ _MAX_MOMENTS = 12
 
 @dataclass(frozen=True, slots=True)
 class KrylovOptions:
-    """Shifts and moments of the basis, or its permitted error.
+    """Shifts and moments of a Krylov basis, or its permitted error.
 
     Args:
-        shifts: frequencies in Hz at which the response is matched.
-        moments: number of moments (derivatives with respect to ω²) that are matched at each shift.
-        tolerance: permitted relative error of the contact compliance and of the transfer to the
-            readings. With it, moments are added at the shifts in turn until the error is small
-            enough.
-        most: maximum number of coordinates of a segment; each symmetry class keeps its rigid
-            motions and at least one coordinate.
+        shifts: frequencies in Hz at which moments match.
+        moments: number of matched moments (derivatives with respect to ω²) at each shift.
+        tolerance: permitted relative error of the contact compliance and of the response of
+            outputs. If it is given, the number of moments increases until the error is permitted.
+        most: maximum number of coordinates of a segment. Each symmetry class keeps its rigid
+            motions and at least one further coordinate.
     """
 
     shifts: tuple[float, ...] = (5.0, 50.0, 300.0, 1500.0)
@@ -45,10 +44,10 @@ class KrylovOptions:
 
     @property
     def order(self) -> Iterator[float]:
-        """The shifts of the blocks, in order.
+        """The shifts of successive blocks in Hz.
 
-        Several blocks at a shift need only one factorisation. A basis with a tolerance may end
-        early, and therefore starts with one block at each shift.
+        Successive blocks at the same shift save factorisations. But a basis that may end early
+        needs a block at each shift first.
         """
         if self.tolerance is None and self.most is None:
             return chain.from_iterable(repeat(shift, self.moments) for shift in self.shifts)
@@ -57,7 +56,7 @@ class KrylovOptions:
 
     @property
     def tests(self) -> Sequence[float]:
-        """The test frequencies in Hz between the shifts, in descending order."""
+        """The frequencies in Hz between the shifts at which errors are measured, descending."""
         shifts = np.sort(self.shifts)
         between = np.sqrt(shifts[:-1] * shifts[1:]) if shifts.size > 1 else shifts
         return [float(frequency) for frequency in between[::-1]]
@@ -70,8 +69,8 @@ class ClassCoordinates(NamedTuple):
         omega2: ω² (num_modes,) in rad²/s², ascending, rigid motions first and exactly 0.
         shapes: shapes (num_rows, num_modes) in 1/√kg.
         compliance_error, reading_error, lost_compliance: errors as in ``ReducedSegment``.
-        accurate: (num_modes,) whether a natural frequency is within 0.1 %.
-        geometric: K_G (num_modes, num_modes), which axial forces subtract from diag(ω²).
+        accurate: mask (num_modes,) of modes with a natural frequency within 0.1 %.
+        geometric: K_G (num_modes, num_modes), to be subtracted from diag(ω²).
     """
 
     omega2: Array
@@ -94,9 +93,9 @@ def reduce_class(
 
     Args:
         shell: the full model.
-        inputs: forces (num_rows, num_inputs) in any order; they may be zero or dependent.
-        readings: rows (num_rows, num_readings).
-        options: options; ``most`` counts the coordinates of this shell.
+        inputs: load vectors (num_rows, num_inputs); they may be zero or dependent.
+        readings: rows (num_rows, num_readings) of outputs.
+        options: options; ``most`` is for this shell.
         progress: callback that receives the completed fraction, 0 to 1.
 
     Raises:
@@ -121,7 +120,7 @@ def reduce_class(
         ):
             break
     if shell.geometric is not None:
-        # These vectors come last, since blocks build on the vectors of the previous block.
+        # These vectors come last, since each block follows from the previous block.
         solve.move(order[0])
         basis.add_axial_responses(shell.geometric, solve)
     if options.tolerance is None:
@@ -148,14 +147,14 @@ def reduce_class(
 
 
 class _FullResponse(NamedTuple):
-    """Responses of the full model at a frequency, with their scales.
+    """Responses of the full model at a frequency, with the scales of their errors.
 
     Args:
         sigma: (2π frequency)² in rad²/s².
-        compliance: compliance (num_inputs, num_inputs) of the forces.
-        scale: geometric means of pairs of its diagonal entries.
-        transfer: responses (num_readings, num_inputs) of the readings to the forces.
-        transfer_scale: geometric means of both compliances.
+        compliance: compliance (num_forces, num_forces) of the forces.
+        scale: geometric means of pairs of diagonal entries of ``compliance``.
+        transfer: responses (num_readings, num_forces) of outputs to forces.
+        transfer_scale: geometric means of the compliances of outputs and forces.
     """
 
     sigma: float
@@ -183,7 +182,7 @@ class _FullResponse(NamedTuple):
 
 
 class _Basis:
-    """M-orthonormal basis, rigid motions first, with the stiffness in its space."""
+    """M-orthonormal basis, rigid motions first, and the projected stiffness."""
 
     def __init__(self, shell: Shell, forces: Array, most: int | None) -> None:
         self._shell, self._forces = shell, forces
@@ -201,20 +200,20 @@ class _Basis:
         return int(self._vectors.shape[1])
 
     def grow(self, solve: ShiftedSolver) -> bool:
-        """Add the next block; return whether the basis grew."""
+        """Add the next block, and return whether it has new vectors."""
         block = self._append(solve(self._pushes))
         self._pushes = times(self._shell.mass, block)
         return bool(block.shape[1])
 
     def add_axial_responses(self, geometric: PETSc.Mat, solve: ShiftedSolver) -> None:
-        """Add the responses of the rigid motions and the first block to axial forces."""
+        """Add the responses to K_G times the rigid motions and the first block."""
         pushes = times(geometric, self._vectors[:, : self._rigid + self._pushed])
         sizes = np.linalg.norm(pushes, axis=0)
-        # Translations and twist are excited by round-off only.
+        # K_G times a translation or a twist is round-off.
         self._append(solve(pushes[:, sizes > _DEPENDENT * sizes.max(initial=0.0)]))
 
     def errors(self, full: Sequence[_FullResponse], rows: Array) -> tuple[float, float]:
-        """Return the relative errors of the compliance and of the transfer to the readings."""
+        """Return the relative errors of the compliance and of the response of outputs."""
         gains, read = self._vectors.T @ self._forces, self._vectors.T @ rows
         compliance = transfer = 0.0
         for response in full:
@@ -227,11 +226,11 @@ class _Basis:
         return compliance, transfer
 
     def lost(self, full: Sequence[_FullResponse], parts: Array) -> Array:
-        """Return the largest loss of compliance (num_inputs,) against the full model in m/N.
+        """Return the largest error (num_inputs,) of the compliance of inputs in m/N.
 
         Args:
             full: responses of the full model.
-            parts: components (num_forces, num_inputs) of the inputs in the forces.
+            parts: coefficients (num_forces, num_inputs) of the inputs in the basis of forces.
         """
         gains = self._vectors.T @ self._forces @ parts
         lost = np.zeros(parts.shape[1])
@@ -243,14 +242,14 @@ class _Basis:
         return lost
 
     def modes(self) -> tuple[Array, Array]:
-        """Return ω² and the shapes in the basis, rigid motions first."""
+        """Return ω² and shapes of the modes, rigid motions first."""
         rigid, elastic = self._vectors[:, : self._rigid], self._vectors[:, self._rigid :]
         omega2, combination = eigh(self._stiffness[self._rigid :, self._rigid :])
-        # The translation along x must be in the basis, where round-off would otherwise add it; no
-        # force excites it.
+        # Rigid motions that no force excites, such as translation along x, are omitted. The basis
+        # contains them so that round-off does not add them to other modes.
         moved = np.abs(rigid.T @ self._forces).max(axis=1, initial=0.0) > _DEPENDENT
         shapes = np.hstack([rigid[:, moved], elastic @ combination])
-        # The sign of every shape is positive for an input that excites it strongly.
+        # Signs are such that an input with a large modal load has a positive one.
         gains = shapes.T @ self._forces
         much = np.abs(gains) > 0.5 * np.abs(gains).max(axis=1, keepdims=True)
         first = gains[np.arange(len(gains)), much.argmax(axis=1)]
@@ -258,7 +257,7 @@ class _Basis:
         return np.concatenate([np.zeros(moved.sum()), omega2]), shapes * signs
 
     def _append(self, block: Array) -> Array:
-        """Append the new directions of a block to the basis; return them orthonormalised."""
+        """Orthonormalise a block, append it to the basis, and return the new vectors."""
         before = self.size
         vectors = np.empty((len(block), before + block.shape[1]), order="F")
         vectors[:, :before] = self._vectors
@@ -290,7 +289,7 @@ class _Basis:
 
 
 def _independent(block: Array) -> Array:
-    """Return an orthonormal basis of a block, column by column."""
+    """Return an orthonormal basis of the columns of a block."""
     lengths = np.linalg.norm(block, axis=0)
     found = np.empty((len(block), 0))
     for column in (block[:, lengths > 0.0] / lengths[lengths > 0.0]).T[:, :, None]:
@@ -303,7 +302,9 @@ def _independent(block: Array) -> Array:
 
 
 def _find_accurate(shell: Shell, omega2: Array, shapes: Array, solve: ShiftedSolver) -> Mask:
-    """Return whether each ω is within 0.1 % of a natural frequency, up to the first failure.
+    """Return the mask (num_modes,) of ω that are within 0.1 % of a natural frequency.
+
+    Modes above the first inaccurate one are not tested.
 
     With the residual r = (K − ω² M) x of a mass-normalised x, some eigenvalue λ satisfies
     (λ − ω²)² / (λ + σ) ≤ rᵀ (K + σ M)⁻¹ r (expand r in eigenvectors). The error itself is of the

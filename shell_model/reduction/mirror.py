@@ -4,8 +4,8 @@
 Symmetric and antisymmetric motions do not couple. In a segment with both mirrors, vertical bending,
 lateral bending, twist, and breathing with stretching are separate classes. With the mirror in y
 only, vertical bending couples with breathing and stretching, and lateral bending with twist. The
-motion of a class is computed on the part of the section on the positive side of its mirrors, a
-quarter or a half, with symmetry conditions on the cut edges; mirror images complete it.
+symmetry cell, a quarter or a half of the segment on the positive side of the mirrors, represents a
+class, with symmetry conditions in the mirror planes.
 """
 
 from __future__ import annotations
@@ -23,15 +23,14 @@ from geometry.arrays import Array, Indices, Mask
 from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT, Direction
 
-# Distance of a node from a place, as a fraction of the mesh's extent, that counts as zero; meshes
-# are exact to round-off.
+# Distance below which points coincide, as a fraction of the extent of a mesh.
 _ON_PLACE = 1.0e-8
 
 
 class SymmetryClass(NamedTuple):
-    """Symmetry class of motions, with a number for each mirror.
+    """Symmetry class of motions, given by the parity of each mirror.
 
-    It is 1 for symmetric motions, −1 for antisymmetric ones, and 0 if the section lacks the mirror.
+    The parity is 1 for symmetric motions, −1 for antisymmetric motions, 0 without the mirror.
     """
 
     y: int
@@ -39,10 +38,10 @@ class SymmetryClass(NamedTuple):
 
     @property
     def signs(self) -> Array:
-        """The factors (4, 6) of the components in each image relative to the cell.
+        """The factors (4, 6) of components in each image (:func:`image_of`) relative to the cell.
 
-        Rows are images (see :func:`image_of`). Columns are the components of the displacement, a
-        polar vector, then those of the rotation, an axial vector.
+        Columns are the components of the displacement, a polar vector, then those of the rotation,
+        an axial vector.
         """
         signs = np.ones((4, 6))
         for axis, parity in ((1, self.y), (2, self.z)):
@@ -80,16 +79,16 @@ def symmetry_classes(mirrors: Sequence[Direction]) -> list[SymmetryClass]:
 
 
 def image_of(places: Array, mirrors: Sequence[Direction]) -> Indices:
-    """Return the image of each place: 1 at negative y, 2 at negative z, 3 at both, 0 at neither.
+    """Return the image (num_places,) of points: 1 at negative y, 2 at negative z, 3 at both, or 0.
 
-    The result is (num_places,). Without the mirror in z there are only the halves 0 and 1.
+    Only coordinates along ``mirrors`` count.
     """
     beyond = [COMPONENT[axis] * (places[:, COMPONENT[axis]] < -_near(places)) for axis in mirrors]
     return np.asarray(sum(beyond, np.zeros(len(places))), dtype=np.int64)
 
 
 def to_cell(places: Array, mirrors: Sequence[Direction]) -> Array:
-    """Return places (num_places, 3), mirrored to the positive side of all mirrors."""
+    """Return points (num_places, 3), mirrored to the positive side of all mirrors."""
     images = places.copy()
     for axis in mirrors:
         images[:, COMPONENT[axis]] = np.abs(images[:, COMPONENT[axis]])
@@ -97,12 +96,12 @@ def to_cell(places: Array, mirrors: Sequence[Direction]) -> Array:
 
 
 def on_plane(places: Array, axis: int) -> Mask:
-    """Return the mask (num_places,) of places (num_places, 3) in the mirror plane of an axis."""
+    """Return the mask (num_places,) of points (num_places, 3) in the mirror plane of an axis."""
     return np.asarray(np.abs(places[:, axis]) <= _near(places))
 
 
 def matches(places: Array, among: Array) -> Indices | None:
-    """Return the indices (num_places,) of the same places in a list; None if a place is missing."""
+    """Return the indices (num_places,) of points in other points; None if a point is missing."""
     distance, number = cKDTree(among).query(places)
     if distance.max(initial=0.0) > _near(among):
         return None
@@ -110,7 +109,7 @@ def matches(places: Array, among: Array) -> Indices | None:
 
 
 def cell_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
-    """Return the part of a segment's mesh on the positive side of its section's mirrors.
+    """Return the part of a mesh on the positive side of the mirrors of its section.
 
     Raises:
         NumericsError: the mesh or its thickness is not symmetric.
@@ -142,7 +141,7 @@ def cell_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
 
 
 def _sorted(triangles: Indices, thickness: Array) -> tuple[Indices, Array]:
-    """Return triangles and their thickness in an order that is independent of the input's."""
+    """Return triangles and their thickness in a unique order."""
     corners = np.sort(triangles, axis=1)
     order = np.lexsort(corners.T)
     return corners[order], thickness[order]

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Springs that move with pads: the compliance of walls that modes of segments do not contain.
+"""Springs that move with pads, for the compliance of walls that modes of segments do not include.
 
-The residual response to forces at x, R(x, σ) = B(x) (K + σ M)⁻¹ B(x)ᵀ − Σ_k b_k(x) b_k(x)ᵀ / (ω_k²
-+ σ), with the rows b_k(x) of the modes ω_k, is a compliance of walls with small inertia, up to
-about 1000 Hz. It is represented by coordinates with the frequencies W^½ and the rows L(x) = R^½ Q
-(W + σ)^½. At the shift σ of springs, L (W + σ)⁻¹ Lᵀ equals R for all x (residual flexibility;
-MacNeal 1971). W and the orthogonal Q represent the inertia R′ = −dR/dσ (Rubin 1975), by the mean of
-R^−½ R′ R^−½ = Q (W + σ)⁻¹ Qᵀ over all extensions. The symmetric root is smooth where R is smooth.
+The residual response to pad forces at the extension x, R(x, σ) = B(x) (K + σ M)⁻¹ B(x)ᵀ −
+Σ_k b_k(x) b_k(x)ᵀ / (ω_k² + σ), with the rows b_k(x) of the modes ω_k, is a compliance of walls
+with small inertia up to about 1000 Hz. Springs with the frequencies W^½ and the rows
+L(x) = R^½ Q (W + σ)^½ represent it: L (W + σ)⁻¹ Lᵀ = R for all x at one shift σ (residual
+flexibility; MacNeal 1971). W and the orthogonal Q represent the inertia R′ = −dR/dσ (Rubin 1975)
+by the mean of R^−½ R′ R^−½ = Q (W + σ)⁻¹ Qᵀ over all extensions. The symmetric root is smooth.
 """
 
 from __future__ import annotations
@@ -19,21 +19,20 @@ from geometry.arrays import Array
 from shell_model.reduction.symmetry import Job, SymmetryReduction
 from shell_model.segment.solver import ShiftedSolver, times
 
-# Frequencies in Hz: the shift at which springs are matched, above rigid motions and below all
-# residual modes, and the fastest spring.
+# Frequencies in Hz: the shift σ, between rigid and residual modes, and the maximum of springs.
 SLOW, _FASTEST = 50.0, 10000.0
 
-# Fraction of the largest compliance below which a force pattern meets rigid walls.
+# Fraction of the largest compliance below which the compliance of a force pattern is neglected.
 _NOTHING = 1.0e-4
 
 
 class PadResponses(NamedTuple):
-    """Responses of the full model to rows of a segment, (num_columns, num_columns).
+    """Responses (num_columns, num_columns) of a full segment to pad forces.
 
     Args:
-        compliance: B (K + σ M)⁻¹ Bᵀ in m/N at ``SLOW``.
-        inertia: B (K + σ M)⁻¹ M (K + σ M)⁻¹ Bᵀ in m s²/N, the decrease of the compliance with σ.
-        tested: compliance at another shift.
+        compliance: B (K + σ M)⁻¹ Bᵀ in m/N at the shift of springs.
+        inertia: B (K + σ M)⁻¹ M (K + σ M)⁻¹ Bᵀ in m s²/N, the negative derivative by σ.
+        tested: compliance in m/N at another shift.
     """
 
     compliance: Array
@@ -42,15 +41,12 @@ class PadResponses(NamedTuple):
 
 
 def pad_responses(symmetry: SymmetryReduction, columns: Array, test: float) -> PadResponses:
-    """Return responses to columns (num_owned, num_columns) at ``SLOW`` and ``test`` Hz.
-
-    Collective.
-    """
+    """Return the responses to columns (num_owned, num_columns); ``test`` is in Hz. Collective."""
 
     def of_class(_: int, job: Job) -> Array:
         shell = job.shell(symmetry.cell)
         solve = ShiftedSolver(shell, SLOW)
-        # Pads press at few places, so that columns are sparse.
+        # Pads press on few nodes, so that columns are sparse.
         pressed = np.flatnonzero((job.forces != 0.0).any(axis=1))
         forces = job.forces[pressed]
         moved = solve(job.forces)
@@ -67,8 +63,8 @@ def pad_responses(symmetry: SymmetryReduction, columns: Array, test: float) -> P
 def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
     """Return ω² (num_springs,) and rows (num_extensions, num_rows, num_springs) of springs.
 
-    The springs represent R (num_extensions, num_rows, num_rows) in m/N at the shift ``SLOW``, and
-    R′ in m s²/N. ω² is in rad²/s², rows in 1/√kg.
+    ω² is in rad²/s², rows in 1/√kg. The residual R (num_extensions, num_rows, num_rows) is in m/N,
+    its inertia R′ in m s²/N.
     """
     sizes = np.sqrt(np.einsum("wjj->j", residual) / len(residual))
     scale = np.outer(sizes, sizes)

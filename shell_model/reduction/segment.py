@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Reduction of a segment: a block rational Krylov basis of its loads and contact points.
+"""Reduction of a segment by a block rational Krylov basis of its loads and contact forces.
 
-The basis spans (K + σ M)⁻¹ F and its moments for several shifts σ > 0. So the response to contact
-forces is accurate from statics to the frequencies of the shifts, including local compliance, for
-which natural modes would need thousands of vectors (Ruhe 1984; the static modes of Craig and Hurty
-are the case σ = 0 with one moment). Rigid motions are separate, so that their frequency is exactly
-zero. Each symmetry class has its own basis, on a quarter of the shell and on one rank, so that the
-coordinates are the same to the last bit on any number of ranks
-(:mod:`shell_model.reduction.symmetry`). Errors are measured against full solves at frequencies
-between the shifts.
+The basis spans (K + σ M)⁻¹ F and its moments for several shifts σ > 0 (Ruhe 1984; the static modes
+of Craig and Hurty are the case σ = 0 with one moment). So the response to contact forces is
+accurate from statics to the frequencies of the shifts. It includes local compliance, for which
+natural modes would need thousands of vectors. Rigid motions are separate, so that their frequency
+is exactly zero. Each symmetry class has its own basis on one rank, so that results are bitwise
+equal for any number of ranks (:mod:`shell_model.reduction.symmetry`). Errors are measured against
+full solves at frequencies between the shifts.
 """
 
 from __future__ import annotations
@@ -33,16 +32,14 @@ class ReducedSegment:
     Args:
         omega2: ω² (num_modes,) in rad²/s², ascending, rigid motions first and exactly 0.
         shapes: this rank's rows (num_owned, num_modes) of the shapes in 1/√kg.
-        compliance_error: largest relative error of the contact compliance matrix at the test
-            frequencies between the shifts, against full solves.
-        reading_error: largest error of the readings' response to the inputs, relative to the
-            geometric mean of both compliances.
-        lost_compliance: largest loss (num_inputs,) of each input's compliance against the full
-            model at these frequencies in m/N; the loss of a pair is at most the geometric mean of
-            both (Galerkin).
-        frequency_limit: frequency in Hz up to which every natural frequency is accurate within 0.1
-            %.
-        geometric: K_G (num_modes, num_modes), which axial forces subtract from diag(ω²).
+        compliance_error: largest relative error of the contact compliance at frequencies between
+            the shifts.
+        reading_error: largest error of the response of outputs to inputs, relative to the geometric
+            mean of both compliances.
+        lost_compliance: largest error (num_inputs,) of the compliance of each input in m/N. The
+            error of a pair is at most the geometric mean of both (Galerkin).
+        frequency_limit: frequency in Hz up to which natural frequencies are accurate to 0.1 %.
+        geometric: K_G (num_modes, num_modes), to be subtracted from diag(ω²).
     """
 
     omega2: Array
@@ -62,15 +59,14 @@ def reduce_segment(
     readings: Array | None = None,
     helper: Executor | None = None,
 ) -> ReducedSegment:
-    """Reduce a segment to the space that its inputs excite. Collective.
+    """Reduce a segment for its inputs and outputs. Collective.
 
     Args:
         symmetry: symmetry reduction of the full model.
-        inputs: forces (num_owned, num_inputs) on the segment, in any order; they may be zero or
-            dependent.
+        inputs: load vectors (num_owned, num_inputs); they may be zero or dependent.
         options: shifts and moments, or a tolerance.
         progress: callback that receives the completed fraction, 0 to 1.
-        readings: rows (num_owned, num_readings) whose response must be accurate, too.
+        readings: rows (num_owned, num_readings) of outputs, whose error is also measured.
         helper: second process, which reduces every second symmetry class of this rank.
 
     Raises:
@@ -82,7 +78,7 @@ def reduce_segment(
     if not symmetry_classes:
         raise NumericsError("nothing acts on a segment, and it has no motion: give it a load")
     report = progress or (lambda part: None)
-    # Each symmetry class may have the same number of coordinates for each of its forces.
+    # The maximum number of coordinates of a symmetry class is proportional to that of its forces.
     counts = comm.bcast([np.count_nonzero(job.forces.any(axis=0)) for job in jobs])
 
     most = options.most
@@ -107,14 +103,14 @@ def reduce_segment(
     omega2 = np.concatenate([part.omega2 for part in parts])
     accurate = np.concatenate([part.accurate for part in parts])
     order = np.argsort(omega2, kind="stable")
-    # The shapes of a class are inserted immediately, since a second block of all shapes is large.
+    # The shapes of a class are inserted at once, since a second array of all shapes would be large.
     shapes = np.empty((len(inputs), omega2.size), order="F")
     places = np.split(np.argsort(order), np.cumsum([part.omega2.size for part in parts])[:-1])
     for symmetry_class, (root, one), columns in zip(symmetry_classes, found, places, strict=True):
         on_cell = None if one is None else one.shapes
         shapes[:, columns] = symmetry.expand(on_cell, symmetry_class, root)
     report(1.0)
-    # All natural frequencies up to this one are accurate.
+    # The limit is the last frequency before the first inaccurate one.
     accurate = accurate[order]
     first_inaccurate = accurate.size if accurate.all() else int(np.argmin(accurate))
     limit = (

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Symmetry classes of a segment's motions, each as a quarter or half of its shell on one rank.
+"""Symmetry reduction: each symmetry class of motions is computed on one rank, on a symmetry cell.
 
-The matrices of a class are those of a part of the segment. So they are small, a motion cannot drift
-into another class, and results are the same to the last bit on any rank. Ranks exchange only forces
-and shapes, by sums of fixed order. Round-off must not depend on the number of ranks, since contact
+A symmetry cell is a quarter or half of the shell of a segment. So matrices are small, round-off
+does not mix classes, and results are bitwise equal on any rank. Ranks exchange only forces and
+shapes, in sums of fixed order. Round-off must not depend on the number of ranks, since contact
 amplifies it.
 """
 
@@ -49,15 +49,15 @@ _Found = TypeVar("_Found")
 # Components of the displacement, and of the rotation.
 _COMPONENTS = np.arange(6).reshape(2, 3)
 
-# Fraction of a force's largest value below which its part in a class is zero.
+# Fraction of the largest value of a force below which its part in a class is round-off.
 _NO_PART = 1.0e-9
 
 
 @dataclass(frozen=True)
 class SymmetryCell:
-    """Part of a segment, a quarter or half, which mirror images complete.
+    """Quarter or half of a segment, whose mirror images complete the segment.
 
-    Each rank assembles and keeps its matrices for all classes that it computes.
+    Each rank assembles its matrices once for all classes.
 
     Args:
         segment: the whole segment.
@@ -71,7 +71,7 @@ class SymmetryCell:
 
     @cached_property
     def plates(self) -> Plates:
-        """The plates of the cell on this rank only, with the energies of the whole segment."""
+        """The plates of the cell on this rank, with the matrices of the whole segment."""
         copies = 2.0 ** len(self.mirrors)
         return assemble_plates(MPI.COMM_SELF, self.segment, self.mesh, copies)
 
@@ -92,11 +92,11 @@ class SymmetryCell:
 
     @cached_property
     def _matrices(self) -> dict[Any, _FreeMatrix]:
-        """The assembled matrices of the plates without supports, by form."""
+        """The cache of assembled matrices, by form."""
         return {}
 
     def matrix(self, form: Any) -> _FreeMatrix:
-        """Return the matrix of the whole segment's plates without supports, for all classes."""
+        """Return the matrix of a form without supports, with the energy of the whole segment."""
         if form not in self._matrices:
             whole = compat.assemble_matrix(form, [], 0.0)
             first, columns, values = whole.getValuesCSR()
@@ -123,8 +123,7 @@ class _FreeMatrix(NamedTuple):
 class _ClassShell(Shell):
     """Shell of a symmetry class on one rank, with the matrices of its cell.
 
-    The matrices omit zeros in the sparsity pattern of their forms, which factors would store:
-    in-plane and out-of-plane motions of a wall do not couple, and masses do not couple components.
+    Matrices omit the zeros of the sparsity pattern of their forms, which factors would store.
     """
 
     cell: SymmetryCell
@@ -144,12 +143,13 @@ class _ClassShell(Shell):
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """Data for the rank that computes a symmetry class.
+    """Data of a symmetry class for the rank that computes it.
 
     Args:
         symmetry_class: the symmetry class.
-        forces, readings: sums over the images, (num_rows, num_columns) on the cell's rows.
-        springs, masses: springs and masses of the segment on these rows.
+        forces, readings: load vectors and rows of outputs (num_rows, num_columns) on the cell,
+            sums over all images.
+        springs, masses: springs and masses of the segment on the rows of the cell.
     """
 
     symmetry_class: SymmetryClass
@@ -159,7 +159,7 @@ class Job:
     masses: Attached
 
     def shell(self, cell: SymmetryCell) -> Shell:
-        """Return the shell of a cell in this class, with the energies of the whole segment."""
+        """Return the shell of a cell in this class, with the energy of the whole segment."""
         conditions = [
             dirichlet_condition(cell.plates.space, kind, component, partial(on_plane, axis=axis))
             for axis in (COMPONENT[mirror] for mirror in cell.mirrors)
@@ -211,9 +211,9 @@ class SymmetryReduction:
             self._component[dofs - first] = _COMPONENTS[part]
 
     def jobs(self, inputs: Array, readings: Array) -> list[Job]:
-        """Return a job for each class that an input excites, on rank 0. Collective.
+        """Return the jobs of all classes that an input excites, on rank 0. Collective.
 
-        Inputs and readings are (num_owned, num_columns) of the whole segment.
+        Inputs and readings are (num_owned, num_columns) on the whole segment.
         """
         shell = self.shell
         blocks = inputs, readings, shell.springs.rows, shell.masses.rows
@@ -234,9 +234,10 @@ class SymmetryReduction:
     def sum_classes(
         self, columns: Array, total: Array, compute: Callable[[int, Job], Array]
     ) -> Array:
-        """Add the results of each class that columns (num_owned, num_columns) excite to ``total``.
+        """Add the results of all classes to ``total``, and return it. Collective.
 
-        Collective.
+        ``compute`` returns the result of a class from its index and job; columns
+        (num_owned, num_columns) are the forces of jobs.
         """
         jobs = self.jobs(columns, columns[:, :0])
         for root, found in share_jobs(self._comm, jobs, compute):
@@ -246,8 +247,7 @@ class SymmetryReduction:
     def expand(self, shapes: Array | None, symmetry_class: SymmetryClass, root: int) -> Array:
         """Return shapes (num_owned, num_shapes) of a class on the whole segment. Collective.
 
-        The given shapes are (num_rows, num_shapes) on the cell, on the rank ``root``; None
-        elsewhere.
+        ``shapes`` are (num_rows, num_shapes) on the cell, on rank ``root``; None elsewhere.
         """
         comm = self._comm
         count = comm.bcast(None if shapes is None else shapes.shape[1], root)
@@ -294,15 +294,15 @@ def share_jobs(
     compute: Callable[[int, Job], _Found],
     submit: Callable[[int, Job], Future[Any]] | None = None,
 ) -> Iterator[tuple[int, _Found | None]]:
-    """Compute each job of rank 0 on one rank; yield the rank and the result. Collective.
+    """Compute the jobs of rank 0 on all ranks, and yield (rank, result) of each. Collective.
 
-    ``submit`` passes every second job of this rank to another process.
+    The result is None on other ranks. ``submit`` passes every second job to another process.
     """
     roots = [number % comm.size for number in range(comm.bcast(len(jobs)))]
     mine = {number: job for number, job in enumerate(_sent(comm, jobs, roots)) if job is not None}
     futures: dict[int, Future[Any]] = {}
     if submit is not None:
-        # If the other process has died, this one computes its jobs.
+        # If the other process has ended, this process computes its jobs.
         with suppress(BrokenExecutor):
             futures |= {number: submit(number, mine[number]) for number in list(mine)[1::2]}
 
@@ -317,7 +317,7 @@ def share_jobs(
 
 
 def outcome(future: Future[Any] | None, compute: Callable[[], _Found]) -> _Found:
-    """Return the result of the other process; compute it here if there is none or it has died."""
+    """Return the result of another process, or compute it here if that process has ended."""
     with suppress(BrokenExecutor):
         if future is not None:
             found: _Found = future.result()
@@ -326,7 +326,7 @@ def outcome(future: Future[Any] | None, compute: Callable[[], _Found]) -> _Found
 
 
 def run_collectively(comm: MPI.Comm, work: Callable[[], _Found]) -> _Found:
-    """Return each rank's result of its own work. Collective, but the work must not communicate.
+    """Return the result of ``work``, which must not communicate, on each rank. Collective.
 
     Raises:
         NumericsError: the work of a rank raises this error or needs too much memory; it is raised
@@ -376,7 +376,7 @@ _IMAGES: Mapping[Direction, Sequence[tuple[int, int]]] = {
 
 
 def _sum_of_class(images: Array, signs: Array) -> Array:
-    """Return the part (num_rows, num_columns) in a symmetry class; round-off is set to 0."""
+    """Return the part (num_rows, num_columns) of images in a symmetry class, without round-off."""
     part = np.zeros(images.shape[1:])
     for image, sign in zip(images, signs, strict=True):
         part += sign[:, None] * image

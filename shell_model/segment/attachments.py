@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Springs and masses attached to a reading of the section, such as its mean deflection.
+"""Springs and masses on a displacement of a section, such as its mean deflection.
 
-A spring k on the reading r adds k r rᵀ to the stiffness. The reading distributes its force, and all
-other motions of the section stay free.
+A spring k on the displacement with the row r adds k r rᵀ to the stiffness. The row distributes its
+force over the section, and other motions stay free.
 """
 
 from __future__ import annotations
@@ -19,13 +19,12 @@ from geometry.arrays import Array
 from geometry.boom import Direction, Segment
 from shell_model.segment.cross_section import Outline, Row
 
-# Stiffness of a support that fixes a rotation, relative to G J_t / L or E J / L of its segment,
-# which makes it practically rigid.
+# Stiffness of a rigid rotational restraint, relative to G J_t / L or E J / L of its segment.
 RIGID_TURN = 1.0e5
 
 
 class Attached(NamedTuple):
-    """Springs or masses with the rows on which they act.
+    """Springs or masses with the rows of their displacements.
 
     Args:
         rows: this rank's parts (num_owned, num_attached) of the rows.
@@ -37,7 +36,7 @@ class Attached(NamedTuple):
 
     @classmethod
     def of(cls, rows: Sequence[Array], factors: Sequence[float], num_owned: int) -> Attached:
-        """Create attachments with one column for each of the rows (num_owned,)."""
+        """Return attachments of several rows (num_owned,)."""
         return cls(np.array(rows).reshape(-1, num_owned).T, np.array(factors, dtype=np.float64))
 
     def add_to(self, comm: MPI.Comm, matrix: PETSc.Mat) -> None:
@@ -47,7 +46,7 @@ class Attached(NamedTuple):
 
 
 def springs(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
-    """Return the springs of elastic supports and of those that constrain a rotation."""
+    """Yield (x in m, function that returns the row, stiffness) of the springs of supports."""
     for support in segment.supports:
         section = segment.section_at(support.x)
         torsion = segment.material.shear_modulus * section.torsion_constant
@@ -68,7 +67,7 @@ def springs(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row],
 
 
 def masses(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
-    """Return the rows and values of point masses."""
+    """Yield (x in m, function that returns the row, mass in kg) of point masses."""
     for mass in segment.masses:
         yield mass.x, partial(Outline.mean_displacement, component=0), mass.mass
         yield mass.x, partial(Outline.wall_deflection, direction="y"), mass.mass

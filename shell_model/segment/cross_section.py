@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Rows that read a section of the shell: mean deflection, rotation, distortion, points.
+"""Rows of displacements of a section of the shell: mean deflection, rotation, distortion, twist.
 
 An outline is a mesh line around the section. Displacements are quadratic along each of its edges,
-so that Simpson's rule and quadratic interpolation are exact. The transpose of a row is a force that
-is distributed over the section.
+so that Simpson's rule and quadratic interpolation are exact. A row is also the load vector of a
+force that is distributed over the section.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Row(dict[int, float]):
 
     @classmethod
     def of(cls, dofs: Indices, weights: Array) -> Row:
-        """Create a row from degrees of freedom with weights; weights of repeated ones are added."""
+        """Return the row with weights of degrees of freedom; weights of repeated ones are added."""
         row = cls()
         for dof, weight in zip(dofs.tolist(), weights.tolist(), strict=True):
             row[dof] = row.get(dof, 0.0) + weight
@@ -44,10 +44,10 @@ class Row(dict[int, float]):
 
 
 class Reading(dict[int, Row]):
-    """Reading of a boom's segments: rows by the number of the segment."""
+    """Displacement of a boom: rows by index of the segment."""
 
     def __add__(self, other: Reading) -> Reading:
-        """Return the sum of two readings in the same unit."""
+        """Return the sum of two readings."""
         both = {number: self.get(number, Row()) + row for number, row in other.items()}
         return Reading(self | both)
 
@@ -56,13 +56,13 @@ class Reading(dict[int, Row]):
 
 
 def on_outline(places: Array, section: Section, x: float) -> Mask:
-    """Return the mask (num_places,) of places (num_places, 3) that are on the walls at x."""
+    """Return the mask (num_places,) of points (num_places, 3) that are on the walls at x in m."""
     at_x = np.abs(places[:, 0] - x) < section.near
     return np.asarray(section.on_plates(places[:, 1:]) & at_x)
 
 
 def quadratic(s: Array) -> Array:
-    """Return an edge's shape functions (..., 3): first end, middle, last end; s from 0 to 1."""
+    """Return shape functions (..., 3) of first end, middle and last end of an edge, s in [0, 1]."""
     return np.stack([(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)], axis=-1)
 
 
@@ -72,7 +72,7 @@ class Outline:
 
     Args:
         x: x in m.
-        places: (num_nodes, 3) in m.
+        places: (num_nodes, 3) positions in m.
         dofs: (num_nodes, 3) global rows of the displacement components.
         section: section of the plates.
     """
@@ -86,7 +86,7 @@ class Outline:
     def around(
         cls, comm: MPI.Comm, nodes: Array, node_dofs: Indices, section: Section, x: float
     ) -> Outline:
-        """Create the outline at x, the same on every rank. Collective.
+        """Return the outline at x, the same on every rank. Collective.
 
         Args:
             comm: ranks that share the nodes.
@@ -100,25 +100,25 @@ class Outline:
         return cls(x, places, dofs, section)
 
     def mean_deflection(self, direction: Direction = "z") -> Row:
-        """Return the mean of u_z or u_y over the area in m, the deflection of the neutral axis."""
+        """Return the row of the mean of u_z or u_y over the area in m, the axis deflection."""
         return self.mean_displacement(COMPONENT[direction])
 
     def mean_displacement(self, component: int) -> Row:
-        """Return the mean of one displacement component over the section's area, in m."""
+        """Return the row of the mean of a displacement component over the area in m."""
         nodes, areas = self._area_weights()
         return Row.of(self.dofs[nodes, component], areas / areas.sum())
 
     def rotation(self, direction: Direction = "z") -> Row:
-        """Return the slope w′ of the best-fit plane u_x = −w′ z over the section's area, in rad."""
+        """Return the row of the rotation in rad: w′ of the best fit u_x = −w′ z over the area."""
         nodes, areas = self._area_weights()
         z = self.places[nodes, COMPONENT[direction]]
         z = z - (areas @ z) / areas.sum()
         return Row.of(self.dofs[nodes, _X], -areas * z / (areas @ z**2))
 
     def distortion(self) -> Row:
-        """Return the increase of the section's height: mean u_z of the top less the bottom, in m.
+        """Return the row of the increase of the section's height in m.
 
-        If these are folds or bends, the plates with the highest and lowest middles count.
+        It is the difference of mean u_z of the plates with the highest and the lowest middles.
         """
         plates = self.section.plates
         levels = np.array([plate.middle[1] for plate in plates])
@@ -133,21 +133,20 @@ class Outline:
         return next(rows) - next(rows)
 
     def wall_deflection(self, direction: Direction) -> Row:
-        """Return the mean u_z or u_y of the shear-carrying plates in m.
+        """Return the row of the mean u_z or u_y of the shear-carrying plates in m.
 
-        Each plate contributes its in-plane displacement, weighted by its share of the shear force,
-        so that the transposed force bends no plate.
+        The in-plane displacements of plates are weighted by their fractions of the shear force. So
+        a force on this row bends no plate.
         """
         carriers = self.section.shear_plates(direction)
         plates = self.section.plates
         return sum((force * self._slide(plates[n]) for n, force in carriers), Row())
 
     def twist(self) -> Row:
-        """Return the twist about x in rad: the circulation of displacement over twice the area.
+        """Return the row of the twist about x in rad: circulation over twice the enclosed area.
 
-        It is exact for a rigid rotation by Stokes' theorem; the area is the enclosed one. The
-        distortion of a box into a parallelogram, which rotates webs and flanges by opposite angles,
-        does not contribute.
+        By Stokes' theorem it is exact for a rigid rotation. The distortion of a box into a
+        parallelogram does not contribute.
         """
         turn = Row()
         for plate in self.section.plates:
@@ -155,7 +154,7 @@ class Outline:
         return turn
 
     def flange_deflection(self, side: float, y: float) -> Row:
-        """Return the mean u_z in m of the points ±y on the top (``side`` 1) or bottom (−1)."""
+        """Return the row of the mean u_z in m of points ±y on the top (side 1) or bottom (−1)."""
         face = self.section.face("z", side)
         nodes, along = self._along(self.section.plates[face.plate])
         rows = []
@@ -168,18 +167,18 @@ class Outline:
         return 0.5 * rows[0] + 0.5 * rows[1]
 
     def _slide(self, plate: Plate) -> Row:
-        """Return the mean displacement along one plate, in m."""
+        """Return the row of the mean displacement along the tangent of a plate in m."""
         slopes = zip(COMPONENT, plate.tangent.tolist(), strict=True)
         parts = (slope * self._mean(plate, axis) for axis, slope in slopes if slope != 0.0)
         return sum(parts, Row())
 
     def _mean(self, plate: Plate, direction: Direction) -> Row:
-        """Return the mean displacement over one plate's line, in m."""
+        """Return the row of the mean displacement of a plate in a direction in m."""
         nodes, lengths = self._simpson(plate)
         return Row.of(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
 
     def _along(self, plate: Plate) -> tuple[Indices, Array]:
-        """Return the nodes of one plate's line, ends and middles in turn, and their positions in m.
+        """Return the nodes of a plate, alternately ends and middles, and their positions in m.
 
         They are in the order of y, or of z if the plate is steep.
         """
@@ -190,7 +189,7 @@ class Outline:
         return on_plate[order], along[order]
 
     def _simpson(self, plate: Plate) -> tuple[Indices, Array]:
-        """Return the nodes of one plate's line, and their weights in m by Simpson's rule."""
+        """Return the nodes of a plate, and their weights in m by Simpson's rule."""
         nodes, along = self._along(plate)
         lengths = along[2::2] - along[:-2:2]
         weights = np.zeros(nodes.size)
@@ -200,7 +199,7 @@ class Outline:
         return nodes, weights
 
     def _area_weights(self) -> tuple[Indices, Array]:
-        """Return the nodes of all plates (corners twice), and their shares of the area in m²."""
+        """Return the nodes of all plates (corners twice), and their weights in m²."""
         parts = [(*self._simpson(plate), plate.thickness) for plate in self.section.plates]
         return (
             np.concatenate([nodes for nodes, _, _ in parts]),

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Shell forms in UFL: flat facets with displacement u and rotation θ, both vectors in space.
+"""Shell forms in UFL: flat facets with displacement u and rotation θ, both 3D vectors.
 
-Reissner-Mindlin kinematics in the facet's own frame: membrane strain ε, bending strain κ,
+Reissner-Mindlin kinematics in the frame of the facet: membrane strain ε, bending strain κ,
 transverse shear γ. The rotation about the normal (drilling) has no stiffness in this theory. A
 penalty couples it to the in-plane rotation of the displacement (Hughes and Brezzi 1989), so that
-folded plates transfer bending moments to one another. Quadratic displacements with Crouzeix-Raviart
-rotations (Campello, Pimenta and Wriggers 2003) do not lock in thin walls.
+bending moments pass folds. Quadratic displacements with Crouzeix-Raviart rotations (Campello,
+Pimenta and Wriggers 2003) do not lock in thin walls.
 """
 
 from __future__ import annotations
@@ -26,22 +26,21 @@ SHEAR_CORRECTION = 5.0 / 6.0
 # stiffen the shell. The drilling frequency is at least √(12 DRILLING G/ρ)/(2π t), 27 kHz for a wall
 # of 6.5 mm.
 #
-# Where plates meet at an angle, the penalty must be soft: the in-plane rotation of one plate, which
-# includes half of its shear strain, is the slope of the other. A stiff penalty equates both and
-# resists the shear flow around a box.
+# At a fold, the penalty must be soft: it couples the slope of one plate to the in-plane rotation of
+# the other, which includes half of its shear strain. A stiff penalty would resist the shear flow.
 DRILLING = 1.0e-2
 
-# Drilling penalty as a fraction of G t for facets of a curved surface, where it must be stiff. A
-# surface with the twist b (1/m) transfers a couple b M about its normal, and a soft penalty yields
-# by about (b t)² / DRILLING of the bending. This fraction is the modulus G, since the skew strain
-# counts twice (Hughes and Brezzi 1989).
+# Drilling penalty as a fraction of G t for facets of a curved surface, where it must be stiff: a
+# surface with the twist b (1/m) has a couple b M about its normal, and a soft penalty adds about
+# (b t)² / DRILLING of the bending. The fraction 2 corresponds to the modulus G, since the skew
+# strain counts twice (Hughes and Brezzi 1989).
 DRILLING_OF_CURVED = 2.0
 
 
 class Strains(NamedTuple):
-    """Strains of the mid-surface, in the facet's frame (e1, e2, e3).
+    """Strains of the mid-surface in the frame (e1, e2, e3) of the facet.
 
-    At the height ζ along e3 the strain in the facet is ``membrane`` + ζ ``bending``.
+    At the coordinate ζ along e3, the in-plane strain is ``membrane`` + ζ ``bending``.
 
     Args:
         membrane: (2, 2) ε.
@@ -57,10 +56,7 @@ class Strains(NamedTuple):
 
 
 def facet_frame(domain: Any) -> tuple[Any, Any, Any]:
-    """Return orthonormal e1, e2 in the facet and e3 normal to it, from the cell's Jacobian.
-
-    The sign of e3 is arbitrary: the energy does not depend on it.
-    """
+    """Return orthonormal e1 and e2 in the facet, and its normal e3, whose sign is arbitrary."""
     jacobian = ufl.Jacobian(domain)
     t1, t2 = (ufl.as_vector([jacobian[i, k] for i in range(3)]) for k in range(2))
     e3 = ufl.cross(t1, t2)
@@ -89,9 +85,7 @@ def plane_stress(young: Any, nu: Any, strain: Any) -> Any:
 
 
 class ShellForms:
-    """Bilinear forms of one shell and the linear form of a unit load, compiled on first use.
-
-    The load is 1 N/m³ along ``load_direction`` on the thickness that carries it.
+    """Bilinear forms of a shell, and the linear form of a load of 1 N/m³, compiled on first use.
 
     Args:
         space: displacement and rotation, see :func:`compat.shell_space`.
@@ -103,9 +97,9 @@ class ShellForms:
         compression: membrane force along x in N/m, constant on each cell, positive in compression.
 
     Attributes:
-        loaded: thickness in m that carries the unit load, constant on each cell; the caller may
+        loaded: thickness in m on which the unit load acts, constant on each cell; the caller may
             change it before assembly.
-        load_direction: (3,) constant that the caller sets before assembly.
+        load_direction: direction (3,) of the unit load; the caller sets it before assembly.
     """
 
     def __init__(
@@ -125,10 +119,7 @@ class ShellForms:
 
     @cached_property
     def stiffness(self) -> Any:
-        """The bilinear form of K (num_dofs, num_dofs), in N/m, N and N·m between u and θ.
-
-        Its value for a motion with itself is twice the strain energy.
-        """
+        """The bilinear form of the stiffness matrix K (num_dofs, num_dofs)."""
         domain, t, material = self._space.mesh, self._thickness, self._material
         young, nu = map(self._constant, (material.youngs_modulus, material.poissons_ratio))
         correction, drilling = map(self._constant, (self._shear_correction, self._drilling))
@@ -145,10 +136,7 @@ class ShellForms:
 
     @cached_property
     def mass(self) -> Any:
-        """The bilinear form of M (num_dofs, num_dofs), in kg for u and kg·m² for θ.
-
-        Its value for a velocity with itself is twice the kinetic energy; u and θ do not couple.
-        """
+        """The bilinear form of the mass matrix M (num_dofs, num_dofs)."""
         t, density = self._thickness, self._constant(self._material.density)
         (u, theta), (v, eta) = self._trial_and_test()
         inertia = density * (t * ufl.inner(u, v) + t**3 / 12.0 * ufl.inner(theta, eta))
@@ -156,18 +144,14 @@ class ShellForms:
 
     @cached_property
     def geometric(self) -> Any:
-        """The bilinear form of K_G (num_dofs, num_dofs), in N/m for u and 0 for θ.
-
-        Its value for a motion with itself is twice the work of the membrane forces in the
-        shortening of the walls along x.
-        """
+        """The bilinear form of the geometric stiffness K_G (num_dofs, num_dofs)."""
         (u, _), (v, _) = self._trial_and_test()
         work = self._compression * ufl.dot(ufl.grad(u)[:, 0], ufl.grad(v)[:, 0])
         return fem.form(work * ufl.dx(degree=2, domain=self._space.mesh))
 
     @cached_property
     def unit_load(self) -> Any:
-        """The linear form of the unit load (num_dofs,), in N for u and 0 for θ."""
+        """The linear form of the unit load (num_dofs,)."""
         _, (v, _) = self._trial_and_test()
         load = self.loaded * ufl.dot(self.load_direction, v)
         return fem.form(load * ufl.dx(degree=2, domain=self._space.mesh))
@@ -177,5 +161,5 @@ class ShellForms:
         return ufl.split(ufl.TrialFunction(self._space)), ufl.split(ufl.TestFunction(self._space))
 
     def _constant(self, value: float) -> Any:
-        """Return a constant of the form, so that one compiled form serves all materials."""
+        """Return a constant whose value is not compiled, so that all materials share a form."""
         return fem.Constant(self._space.mesh, PETSc.ScalarType(value))

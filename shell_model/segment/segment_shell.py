@@ -26,11 +26,11 @@ _ROUND_OFF = 1.0e-10
 
 @dataclass(frozen=True)
 class SegmentShell(Shell):
-    """Shell of one segment, with the loads of a :class:`geometry.load.Member`.
+    """Shell of one segment, and its load vectors; a :class:`geometry.load.Member`.
 
     Args:
-        section: section of the plates.
-        segment: geometry and material.
+        section: section of the plates at the tail.
+        segment: the segment.
         mesh: mesh of the segment, on rank 0.
     """
 
@@ -40,19 +40,18 @@ class SegmentShell(Shell):
 
     @cached_property
     def unit_loads(self) -> Mapping[Direction, Array]:
-        """The uniform loads (num_owned,) of 1 N/m in each direction, zero in fixed rows.
-        Collective.
+        """The load vectors (num_owned,) of 1 N/m in each direction. Collective.
 
-        They act on the plain section, without collars and diaphragms.
+        Loads act on the walls without collars and diaphragms, and are zero in fixed rows.
         """
         loads = self._loads_on(lambda mesh: mesh.load_weight)
         return {direction: load / self.segment.area for direction, load in loads.items()}
 
     @cached_property
     def plain_loads(self) -> Mapping[Direction, Array]:
-        """The inertia loads (num_owned,) of the plain section in each direction. Collective.
+        """The inertia loads (num_owned,) of the walls in each direction. Collective.
 
-        They are 1 N/m on average, and equal ``unit_loads`` unless the segment tapers.
+        Collars and diaphragms are excluded. The mean load is 1 N/m; without taper it is uniform.
         """
         loads = self._loads_on(lambda mesh: mesh.plain)
         return {direction: load / self.segment.area for direction, load in loads.items()}
@@ -63,7 +62,7 @@ class SegmentShell(Shell):
         return Outline.around(self.comm, self.nodes, self.node_dofs, section, x)
 
     def own_load(self, directions: Iterable[Direction]) -> Array:
-        """Return the uniform loads (num_owned,) that are applied at t = 0 and kept, in N."""
+        """Return the load vector (num_owned,) of the constant uniform loads in N."""
         kept = {"z": self.segment.load}
         if self.segment.lateral is not None:
             kept["y"] = self.segment.lateral.load
@@ -71,20 +70,21 @@ class SegmentShell(Shell):
         return np.asarray(np.sum(parts, axis=0))
 
     def unit_load_vector(self, x: float, direction: Direction) -> Array:
-        """Return the vector (num_owned,) of 1 N at x in m, spread over the shear-carrying walls."""
+        """Return the load vector (num_owned,) of 1 N at x in m on the shear-carrying walls."""
         return self.row(self.outline(x).wall_deflection(direction))
 
     def moment(self, x: float, direction: Direction) -> Array:
-        """Return the vector (num_owned,) of 1 N·m at x in m, as bending stress of all walls."""
+        """Return the load vector (num_owned,) of 1 N·m at x in m, distributed as bending stress."""
         return self.row(self.outline(x).rotation(direction))
 
     def torque(self, x: float) -> Array:
-        """Return the vector (num_owned,) of a torque of 1 N·m at x in m, spread along all walls."""
+        """Return the load vector (num_owned,) of a torque of 1 N·m at x in m on all walls."""
         return self.row(self.outline(x).twist())
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
-        """Return the load (num_owned,) of 1 N/m between two mesh lines, or along the segment.
-        Collective.
+        """Return the load vector (num_owned,) of 1 N/m between two mesh lines. Collective.
+
+        The load acts along the whole segment if ``span`` is None.
         """
         if span is None:
             return self.unit_loads[direction]
@@ -95,9 +95,9 @@ class SegmentShell(Shell):
         return loads[direction] / self.segment.area
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        """Return the inertia load (num_owned,) of an acceleration. Collective.
+        """Return the inertia load (num_owned,) of a uniform acceleration. Collective.
 
-        ``force`` is the load in N/m on the plain segment.
+        ``force`` is the load in N/m without collars and diaphragms.
         """
         acceleration = force / self.segment.mass_per_length
         of_stiffeners = self._loads_on(lambda mesh: mesh.thickness - mesh.plain)[direction]
@@ -105,7 +105,7 @@ class SegmentShell(Shell):
         return whole + acceleration * (self.segment.material.density * of_stiffeners)
 
     def rotation_load(self, direction: Direction) -> Array:
-        """Return the inertia load (num_owned,) of plates for 1 rad/s² about x = 0. Collective."""
+        """Return the load (num_owned,) of an angular acceleration of 1 rad/s². Collective."""
         axis = np.cross([1.0, 0.0, 0.0], np.eye(3)[COMPONENT[direction]])
         # The mass couples free degrees of freedom with constrained ones.
         mass = compat.assemble_matrix(self.plates.forms.mass, [], 0.0)
@@ -114,11 +114,12 @@ class SegmentShell(Shell):
         return np.asarray(inertia)
 
     def _loads_on(self, thickness: Callable[[PlatedMesh], Array]) -> dict[Direction, Array]:
-        """Return loads (num_owned,) by direction: 1 N/m³ on a thickness (num_triangles,) in m.
+        """Return load vectors (num_owned,) of 1 N/m³ on a thickness in m. Collective.
 
-        They are zero in fixed rows, and exactly zero at vertices, where the integral of a quadratic
-        shape function vanishes. Elsewhere at most two cells contribute in a plain box, so that the
-        order of summation has no effect. Collective.
+        The function ``thickness`` returns it (num_triangles,). Loads are zero in fixed rows, and
+        exactly zero at vertices, where the integral of a quadratic shape function vanishes.
+        Elsewhere at most two cells contribute in a plain box, so that the order of summation has no
+        effect.
         """
         of_cells = self.comm.bcast(None if self.mesh is None else thickness(self.mesh))
         forms = self.plates.forms
@@ -133,19 +134,17 @@ class SegmentShell(Shell):
         return found
 
     def row(self, weights: Row) -> Array:
-        """Return this rank's part (num_owned,) of a row, given as weights by global dof."""
+        """Return this rank's part (num_owned,) of a row."""
         return _local_row(self.owned[0], self.free, weights)
 
 
 def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) -> SegmentShell:
-    """Assemble a segment's shell. Collective.
+    """Assemble the shell of a segment. Collective.
 
-    A rigid support fixes the section's outline along y and z, and leaves its slope free; a clamped
-    support fixes all displacements and rotations of the outline. An elastic support is a spring on
-    the mean deflection of the walls, along z and y, with the twist fixed. A support that fixes or
-    elastically restrains only a slope is a spring on the rotation of the section. Point masses move
-    with the same mean deflections. The segment is neither fixed nor loaded along x. Supports, loads
-    and readings act on the outline of a diaphragm only.
+    A rigid support fixes the outline of the section along y and z; a clamped support fixes all its
+    displacements and rotations. An elastic support is a spring on the mean deflections of the walls
+    along z and y, and fixes the twist. Rotational restraints are springs on the rotation of the
+    section. Point masses act on the same mean deflections. The segment is free along x.
 
     Args:
         comm: ranks that share the shell.

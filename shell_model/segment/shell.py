@@ -23,12 +23,12 @@ from shell_model.segment.attachments import Attached
 from shell_model.segment.cross_section import on_outline
 from shell_model.segment.forms import ShellForms
 
-# Distance in m of a node from a place that counts as zero; mesh lines are exact to round-off.
+# Distance in m below which a node is on a mesh line.
 ON_LINE = 1.0e-7
 
 
-# Condition of a support: 0 (displacement) or 1 (rotation), component, and a function that selects
-# places (num_places, 3) in m.
+# Condition of a support: 0 (displacement) or 1 (rotation), component, and a function that returns
+# the mask of points (num_places, 3) in m.
 _Condition = tuple[int, int, Callable[[Array], Mask]]
 
 
@@ -38,10 +38,10 @@ class Plates:
 
     Args:
         space: function space, which owns the communicator of the matrices.
-        forms: compiled forms of one part, see :class:`ShellForms`.
+        forms: compiled forms of the mesh, see :class:`ShellForms`.
         supports: Dirichlet conditions of the rigid supports.
-        compressed: whether the plates carry an axial force.
-        copies: number of congruent parts whose total energy the forms give.
+        compressed: True if the plates carry an axial force.
+        copies: factor of the forms: the number of congruent parts of the segment.
     """
 
     space: Any
@@ -52,9 +52,9 @@ class Plates:
 
     @cached_property
     def nodes(self) -> Sequence[tuple[Array, Indices]]:
-        """The positions (num_owned, 3) in m and global rows (num_owned, 3) of this rank's nodes.
+        """The (positions in m, global rows) of this rank's nodes, each (num_owned_nodes, 3).
 
-        Nodes of the displacement come first, then those of the rotation.
+        The first pair is for nodes of the displacement, the second for nodes of the rotation.
         """
         return [self._nodes(part) for part in (0, 1)]
 
@@ -69,7 +69,7 @@ class Plates:
 
 @dataclass(frozen=True)
 class Shell:
-    """Shell model K u = f and M ü, distributed by rows; matrices are assembled on first use.
+    """Shell model M ü + K u = f, distributed by rows. Matrices are assembled on first use.
 
     Args:
         comm: ranks that share the shell.
@@ -93,15 +93,13 @@ class Shell:
     def mass(self) -> PETSc.Mat:
         """The mass matrix (num_dofs, num_dofs), with 0 on the diagonal of fixed rows. Collective.
 
-        So fixed degrees of freedom have infinite frequency.
+        So modes of fixed degrees of freedom have infinite frequency.
         """
         return self._assembled(self.plates.forms.mass, 0.0, self.masses)
 
     @cached_property
     def geometric(self) -> PETSc.Mat | None:
-        """The matrix K_G (num_dofs, num_dofs) of axial forces; None without axial forces.
-        Collective.
-        """
+        """The matrix K_G (num_dofs, num_dofs); None without axial forces. Collective."""
         if not self.plates.compressed:
             return None
         return self._assembled(
@@ -146,10 +144,9 @@ class Shell:
         return int(first), int(last)
 
     def rigid_motions(self) -> Array:
-        """Return the free rigid motions (num_owned, num_free), six for a segment without supports.
+        """Return a basis (num_owned, num_free) of the unrestrained rigid motions. Collective.
 
-        Displacement nodes have ω × (x − middle), rotation nodes ω. Motions of fixed rows, or with
-        strained springs, are not free. Collective.
+        Without supports and springs there are six.
         """
         first, _ = self.owned
         motions = np.zeros((self.free.size, 6))
@@ -160,8 +157,8 @@ class Shell:
             motions[:, 3 + i] = self.turn(axis, middle)
         held = np.concatenate(self.comm.allgather(motions[~self.free]))
         held = np.concatenate([held, self.comm.allreduce(self.springs.rows.T @ motions)])
-        # One rank chooses the basis of the free motions for all ranks. The translation along x
-        # comes first, separately, since no force excites it.
+        # All ranks use the basis of rank 0. The translation along x is separate, since no force
+        # excites it.
         unheld = np.eye(6)
         if held.size:
             slides = 0 if held[:, 0].any() else 1
@@ -170,7 +167,7 @@ class Shell:
         return np.asarray(motions @ self.comm.bcast(unheld))
 
     def turn(self, axis: Array, x: float) -> Array:
-        """Return the motion (num_owned,) of a rotation by 1 rad about an axis (3,) through x."""
+        """Return the motion (num_owned,) of a rotation by 1 rad about an axis (3,) at x in m."""
         first, _ = self.owned
         motion = np.zeros(self.free.size)
         motion[self.node_dofs - first] = np.cross(axis, self.nodes - [x, 0.0, 0.0])
@@ -179,7 +176,7 @@ class Shell:
 
 
 def free_rows(space: Any, conditions: list[Any]) -> Mask:
-    """Return the mask (num_owned,) of the rows of a space that Dirichlet conditions leave free."""
+    """Return the mask (num_owned,) of the rows of a space without Dirichlet conditions."""
     free = np.ones(space.dofmap.index_map.size_local, dtype=bool)
     for condition in conditions:
         fixed, _ = condition.dof_indices()
@@ -192,7 +189,7 @@ def dirichlet_condition(
 ) -> Any:
     """Return the condition of zero displacement (part 0) or rotation (part 1) in a component.
 
-    ``where`` returns the mask of the fixed ones among places (num_places, 3) in m.
+    ``where`` returns the mask of fixed points from points (num_places, 3) in m.
     """
     fixed = space.sub(part).sub(component)
     collapsed, _ = fixed.collapse()
@@ -205,10 +202,10 @@ def dirichlet_condition(
 def assemble_plates(
     comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None, copies: float = 1.0
 ) -> Plates:
-    """Assemble the plates of a mesh of a whole segment or a part of it. Collective."""
+    """Return the plates of a mesh of a segment or of one of its ``copies`` parts. Collective."""
     points, triangles, of_cells = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64), None
     if mesh is not None:
-        # Only the plain walls carry the axial force, so that it is the same in each section.
+        # Collars do not carry the axial force, so that it is the same in all sections.
         pressed = segment.compression(mesh.along) / segment.area * mesh.load_weight
         points, triangles, of_cells = mesh.points, mesh.triangles, (mesh.thickness, pressed)
     domain = compat.create_triangle_mesh(comm, points, triangles)
@@ -222,7 +219,7 @@ def assemble_plates(
 
 
 def _rigid_supports(segment: Segment) -> Iterator[_Condition]:
-    """Return the conditions of rigid supports: y and z of the outline, or all if clamped."""
+    """Yield the conditions of rigid supports."""
     for support in segment.supports:
         if support.stiffness is not None:
             continue

@@ -48,17 +48,14 @@ def gram(comm: MPI.Comm, left: Array, right: Array) -> Array:
 
 
 # ICNTL(7) of MUMPS: approximate minimum fill. For a long and thin boom, this ordering has as little
-# fill as nested dissection, and takes half the time. PETSc accepts it only as an option: values
-# that are set on a factor matrix before its analysis are lost. The option is removed after use,
-# since PETSc reports unused options at the end of a process.
+# fill as nested dissection, and takes half the time. PETSc accepts it only as an option, since it
+# loses values that are set before the analysis. The option is removed after use, since PETSc
+# reports unused options at the end of a process.
 _PREFIX, _ORDERING = "shifted_", "mat_mumps_icntl_7"
 
 
 class ShiftedSolver:
-    """Solver (K + σ M)⁻¹ with σ = (2π frequency)². Collective.
-
-    It is factorised for one frequency in Hz at a time.
-    """
+    """Direct solver for K + σ M with σ = (2π f)² at a frequency f in Hz. Collective."""
 
     def __init__(self, shell: Shell, frequency: float) -> None:
         self._mass = shell.mass
@@ -82,7 +79,7 @@ class ShiftedSolver:
         options.delValue(_ORDERING)
 
     def move(self, frequency: float) -> None:
-        """Factorise at another frequency and reuse the symbolic analysis."""
+        """Factorise at another frequency in Hz, with the same symbolic analysis."""
         sigma = (2.0 * np.pi * frequency) ** 2
         if sigma == self.sigma:
             return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Field series for ParaView: one ``.vtu`` for each time, and a ``.pvd`` that lists them."""
+"""Field series for ParaView: a ``.vtu`` file for each time, and a ``.pvd`` file that lists them."""
 
 from __future__ import annotations
 
@@ -14,9 +14,8 @@ import xarray as xr
 
 from shell_model.stress.stresses import COMPONENTS, FACES, ShellStress, Stress
 
-# Maximum number of frames of a series, and of triangles in all frames: with about 110 bytes per
-# triangle, a series has at most 110 MB. Stresses are stored uncompressed, since they hardly
-# compress.
+# Maximum number of frames of a series, and of triangles in all frames: at about 110 bytes per
+# triangle, a series has at most 110 MB. Compression would hardly reduce the size.
 FRAMES, TRIANGLES = 51, 1_000_000
 
 
@@ -28,11 +27,10 @@ def series_times(fields: xr.Dataset) -> list[float]:
 
 
 def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float]) -> list[Path]:
-    """Write displacements and stresses at some times; ParaView opens the ``.pvd`` file.
+    """Write displacements and stresses for ParaView at the output times nearest to given times.
 
     Each ``.vtu`` file has displacements in m at points, and on triangles the number of the segment,
-    the von Mises stresses of both faces and the middle, and the six ``COMPONENTS``, in Pa. The
-    ``.pvd`` file has the output times nearest to the given times.
+    the von Mises stresses of both faces and the middle, and six stress components, in Pa.
 
     Args:
         fields: fields of ``shell_model.stress.fields``, and the modal coordinates ``state``
@@ -79,7 +77,7 @@ def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float])
 
 
 def _named(stress: Stress) -> dict[str, list[npt.NDArray[np.float32]]]:
-    """Return the data of the block of triangles by name."""
+    """Return the von Mises stresses and stress components of triangles, by name."""
     components = np.concatenate([stress.membrane, stress.bending], axis=1)
     return {f"von Mises, {face} (Pa)": [stress.von_mises(face)] for face in FACES} | {
         f"{name.replace('_', ' ')} (Pa)": [values]

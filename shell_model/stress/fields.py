@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Displacement and stress fields of a reduced shell: the data of pictures and field files."""
+"""Displacement and stress fields of the modes of a reduced shell."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ from shell_model.stress.stresses import COMPONENTS, Modes, triangle_areas
 
 
 def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:
-    """Return ``COMPONENTS`` (num_modes, num_triangles, 6) in Pa of shapes, on rank 0. Collective.
+    """Return stress components (num_modes, num_triangles, 6) of shapes in Pa. Collective.
 
-    Shapes are this rank's rows (num_owned, num_modes); other ranks return None.
+    Shapes are this rank's rows (num_owned, num_modes). The result is on rank 0, None elsewhere.
     """
     form, component = _stress_form(shell.space, shell.segment)
     columns = []
@@ -54,18 +54,17 @@ def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:
     for triangles, values in gathered:
         modes[:, triangles, :] = values.transpose(2, 1, 0)
     modes /= triangle_areas(mesh.points, mesh.triangles)[:, None].astype(np.float32)
-    # The form gives the stress per distance from the mid-surface; faces are half a thickness away.
+    # The form gives bending stress per distance from the mid-surface.
     modes[:, :, 3:] *= 0.5 * mesh.thickness[:, None].astype(np.float32)
     return modes
 
 
 def wall_frame(domain: Any) -> tuple[Any, Any, Any]:
-    """Return the unit vectors x, s and the outward normal of each triangle."""
+    """Return the unit vectors along x and s, and the outward normal, of each triangle."""
     _, _, e3 = facet_frame(domain)
     place = ufl.SpatialCoordinate(domain)
-    # A length that is larger than any section, so that a diaphragm's normal dominates.
+    # A length larger than any section, so that the second term dominates on a diaphragm.
     far = fem.Constant(domain, PETSc.ScalarType(1.0e6))
-    # One of the two is zero: the distance of the place from the axis, or the slope to the axis.
     side = place[1] * e3[1] + place[2] * e3[2] + far * e3[0]
     outward = ufl.conditional(ufl.gt(side, 0.0), 1.0, -1.0) * e3
     across = ufl.gt(abs(e3[0]), 0.5)
@@ -77,9 +76,9 @@ def wall_frame(domain: Any) -> tuple[Any, Any, Any]:
 
 
 def _stress_form(space: Any, segment: Segment) -> tuple[Any, Any]:
-    """Compile the (cell, dof) form of a stress component times the area; return both.
+    """Return the (cell, dof) form of stress times area, and the constant that selects a component.
 
-    The bending component is per unit of distance from the mid-surface.
+    Bending stress is per unit of distance from the mid-surface.
     """
     domain = space.mesh
     component = fem.Constant(domain, np.zeros(len(COMPONENTS), dtype=PETSc.ScalarType))
@@ -115,13 +114,13 @@ def gather_fields(
     coordinates: BoomCoordinates,
     system: GapSystem,
 ) -> xr.Dataset | None:
-    """Gather the shapes and their stresses on rank 0. Collective; None elsewhere.
+    """Return displacements and stresses of all modes on rank 0, None elsewhere. Collective.
 
     Args:
-        boom: boom whose foot supports carry the forces of its cylinders.
+        boom: boom of the shells.
         shells, reduced: shell and reduced coordinates of each segment.
-        coordinates: coordinates of the boom, which are the first ones of the system.
-        system: gap system whose observers read the forces of cylinders.
+        coordinates: coordinates of the boom, the first coordinates of the system.
+        system: gap system, whose observers include the forces of cylinders.
 
     Returns:
         ``points`` (point, component) in m, ``triangles`` (triangle, corner), ``segment`` and
@@ -145,7 +144,7 @@ def gather_fields(
     begins = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
     triangles = [mesh.triangles + begin for mesh, begin in zip(meshes, begins[:-1], strict=True)]
     numbers = np.repeat(np.arange(len(meshes)), [len(mesh.triangles) for mesh in meshes])
-    # Springs that move with pads follow the coordinates, and have no displacement field.
+    # The last coordinates are springs that move with pads; they have no displacement field.
     count = coordinates.omega2.size
     modes = np.zeros((system.num_modes, begins[-1], 3), dtype=np.float32)
     modes[:count] = coordinates.of_rows(block_diag(*shapes)).T.reshape(count, -1, 3)
@@ -172,7 +171,7 @@ def gather_fields(
 
 
 def vertex_displacements(shell: SegmentShell, shapes: Array) -> _Numbers | None:
-    """Return displacements (3 num_points, num_modes) of a mesh's points on rank 0. Collective."""
+    """Return displacements (3 num_points, num_modes) of mesh points on rank 0. Collective."""
     points = shell.comm.bcast(None if shell.mesh is None else shell.mesh.points)
     distance, vertex = cKDTree(points).query(shell.nodes)
     at_vertex = distance < ON_LINE
@@ -188,9 +187,9 @@ def vertex_displacements(shell: SegmentShell, shapes: Array) -> _Numbers | None:
 
 
 def _along(segment: Segment, mesh: PlatedMesh, force: Callable[[Array], Array]) -> Array:
-    """Return the axial stress (num_triangles,) in Pa of normal forces in N at x in m.
+    """Return the axial stress (num_triangles,) in Pa of a normal force in N as a function of x.
 
-    The plain walls carry the forces and share them with collars.
+    The force acts on the walls, and spreads over the thickness of collars.
     """
     return force(mesh.along) / segment.area * mesh.load_weight / mesh.thickness
 
@@ -213,7 +212,7 @@ def _own_stresses(
     coordinates: BoomCoordinates,
     system: GapSystem,
 ) -> dict[str, _Variable]:
-    """Return the variables of each segment that determine its stresses."""
+    """Return ``coordinates_k`` and ``stress_k`` of each segment, see :func:`gather_fields`."""
     modes = [one for one in stresses if one is not None]
     sizes = [len(one) for one in modes]
     every = coordinates.of_rows(np.eye(sum(sizes)))
@@ -231,9 +230,9 @@ def _own_stresses(
 
 
 def _pushed(boom: Boom, number: int, mesh: PlatedMesh) -> Iterator[tuple[str, Modes]]:
-    """Return a segment's cylinder forces, and stresses (1, num_triangles, 6) in Pa per 1 N.
+    """Yield the name of each cylinder force on a segment, and its axial stress in Pa per N.
 
-    Each 1 N acts along the boom.
+    Stresses are (1, num_triangles, 6).
     """
     segment = boom.segments[number]
     for k, cylinder in enumerate(boom.cylinders, start=1):

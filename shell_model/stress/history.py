@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Stress maxima of a run: near stations and supports at every output time, and overall.
 
-Where a force acts along a line, for example beside a web, the stress of the nearest triangles grows
-with mesh refinement. It gives the place and time of the maximum, but is no design stress. The mean
-over a patch of fixed size converges.
+At a line force, for example beside a web, the stress of the nearest triangles increases with mesh
+refinement. It gives position and time of the maximum, but is no design stress. The mean over a
+patch of fixed size converges.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from shell_model.stress.stresses import Face, Modes, ShellStress, Stress, WallFo
 
 @dataclass(frozen=True, slots=True)
 class LargestPatch:
-    """Largest mean stress of a patch in Pa, with time in s, segment, and nearest x in m."""
+    """Largest mean stress of a patch in Pa, with time in s, segment, and x of its band in m."""
 
     von_mises: float
     time: float
@@ -85,7 +85,7 @@ class StressSummary:
     history: StressHistory
 
 
-# Half-width in m of the band at a place; a patch is half of a wall in the band.
+# Half-length in m of the band at a position. A patch is half of a wall in the band.
 BAND = 0.25
 
 # Number of intervals in the history of a summary.
@@ -98,12 +98,12 @@ _FACES: tuple[Face, ...] = ("outer", "inner")
 # above which motions are principal, the round-off of bounds, and a stress in Pa that is zero.
 _INTERVAL, _REST, _ROUND_OFF, _TINY = 24, 1.0e-6, 1.0e-3, 1.0e-30
 
-# Number of instants for stresses outside the bands, which follow the slow motion.
+# Minimum number of instants at which stresses outside bands are evaluated.
 INSTANTS = 400
 
 
 class Largest(NamedTuple):
-    """Von Mises stress in Pa, with the indices of its output time and its triangle."""
+    """Largest von Mises stress in Pa, with the indices of its output time and triangle."""
 
     von_mises: float
     step: int
@@ -219,7 +219,7 @@ def _summed_history(history: xr.Dataset) -> StressHistory:
 
 
 def _largest(shell: ShellStress, history: xr.Dataset) -> Largest:
-    """Return the largest stress, of the bands at every output time and of all triangles at some."""
+    """Return the largest stress of bands at all output times, and of all triangles at some."""
     bands = history["von_mises"].values
     stride = max(1, shell.time.size // INSTANTS)
     segments = np.unique(shell.segment)
@@ -234,7 +234,7 @@ def _largest(shell: ShellStress, history: xr.Dataset) -> Largest:
 
 
 def _search(shell: ShellStress, triangles: Indices, first: int, stride: int) -> Largest:
-    """Return the largest stress of some triangles at every n-th output time from a first one on."""
+    """Return the largest stress of triangles at output times ``first``, ``first + stride``, …"""
     values, at = _peaks(shell, triangles, slice(first, None, stride))
     step = int(values.argmax())
     return Largest(float(values[step]), first + stride * step, int(at[step]))

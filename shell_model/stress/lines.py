@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Deflections and section forces along segments of shells.
 
-Mesh lines all around a segment divide it into bands. Deflections of a band are means over its
-walls; section forces are integrals of the walls' membrane and bending stresses, divided by the
-length of the band. Walls under an axial force P also contribute P times their mean slope to the
-shear force.
+Mesh lines around the whole section divide a segment into bands. Deflections of a band are means
+over its walls; section forces are integrals of membrane and bending stresses over its walls,
+divided by its length. An axial force P adds P times the mean slope to the shear force.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ _BANDS = 60
 
 
 def lines(fields: xr.Dataset, boom: Boom) -> list[Line]:
-    """Return the lines of each segment, with cuts at all supports, loads and contacts."""
+    """Return the rows along each segment, with band boundaries at supports, loads and contacts."""
     still = fields.assign(
         state=(("time", "mode"), np.zeros((1, fields.sizes["mode"]))), time=("time", np.zeros(1))
     )
@@ -64,11 +63,11 @@ def _line(shell: ShellStress, fields: xr.Dataset, boom: Boom, number: int) -> Li
 
 
 def cuts_around(spans: Array, places: Sequence[float]) -> Array:
-    """Return ascending x in m of mesh lines that no triangle crosses, with the segment's ends.
+    """Return ascending x in m of mesh lines around the whole section that bound bands.
 
     Args:
         spans: smallest and largest x (num_triangles, 2) of the triangles in m.
-        places: ascending x in m of lines that must be cuts.
+        places: ascending x in m of required boundaries.
     """
     free = lines_around(spans)
     near = np.abs(np.subtract.outer(free, places)).min(axis=1, initial=np.inf) < SAME_LINE
@@ -116,8 +115,7 @@ def _slopes(
     corners = fields["triangles"].values[triangles]
     points = fields["points"].values[corners]
     across = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
-    # The gradient of a corner's linear shape function is the normal times the opposite edge over 2
-    # A.
+    # The gradient of a linear shape function is normal × opposite edge / (2 A).
     opposite = np.roll(points, 1, axis=1) - np.roll(points, -1, axis=1)
     along = np.cross(across[:, None], opposite)[..., 0] / (across**2).sum(axis=1)[:, None]
     volume = shell.areas[triangles] * shell.thickness[triangles]
@@ -129,7 +127,7 @@ def _slopes(
 
 
 def _reaches(corners: Array, part: Indices) -> tuple[Array, Array]:
-    """Return the extents (num_parts,) of a wall along z and y in m within each band."""
+    """Return the extents (num_parts,) along z and y in m of each wall in each band."""
     found = []
     for way in (2, 1):
         low, high = np.full((2, int(part.max()) + 1), [[np.inf], [-np.inf]])
@@ -148,7 +146,10 @@ def _forces(
     lengths: Array,
     reaches: tuple[Array, Array],
 ) -> Array:
-    """Return V, M, lateral V and M, torque (5, num_bands, num_own) per unit of each coordinate."""
+    """Return section forces (5, num_bands, num_own) per unit of each coordinate.
+
+    They are shear, moment, lateral shear, lateral moment and torque.
+    """
     strength = shell.thickness[triangles] * shell.areas[triangles] / lengths[band]
     y, z = shell.centroids[triangles, 1:].T
     slope, across, up = shell.outward[triangles].T

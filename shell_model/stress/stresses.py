@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Stresses of a reduced shell in motion: at an instant, over time, and as wall forces."""
+"""Stresses and wall forces of a reduced shell over time."""
 
 from __future__ import annotations
 
@@ -14,15 +14,14 @@ import xarray as xr
 from geometry.arrays import Array, Indices
 
 if TYPE_CHECKING:
-    # Imported only for types: gmsh takes long to load, and a run of beams needs no mesh.
+    # Imported only for types, since gmsh takes long to load.
     from geometry.plating import PlatedMesh
 
 Modes = npt.NDArray[np.float32]
 
 Face = Literal["outer", "middle", "inner"]
 
-# Stress components along x, along s and in shear: of the membrane, then of bending at the outer
-# face.
+# Stress components along x, along s and in shear: membrane, then bending at the outer face.
 COMPONENTS = (
     "membrane_x",
     "membrane_s",
@@ -41,7 +40,7 @@ SAME_LINE = 1.0e-6
 # Tolerance in m² for areas.
 _NOTHING = 1.0e-300
 
-# Number of values in memory during the computation of a history, for the processor's cache.
+# Number of values of a batch of times, which fits in the cache of the processor.
 _AT_ONCE = 1_000_000
 
 # Number of instants that are computed together.
@@ -50,14 +49,14 @@ _TOGETHER = 10
 
 @dataclass(frozen=True, slots=True)
 class WallForces:
-    """Forces of one wall at a cross-section, on the side towards the tip.
+    """Forces of one wall at a cross-section.
 
     Args:
         axial: force along x in N, positive in tension.
-        shear: in-plane force in N of the part beyond the section on the part before it, along y in
-            a flange, along z in a web or in any wall steeper than 45°.
-        moment: moment of the wall's axial stresses about the section's y-axis in N m, positive in
-            tension at the top.
+        shear: in-plane force in N on the part nearer the base, along y in a wall below 45°, else
+            along z.
+        moment: moment in N·m of the axial stresses of the wall about the y-axis of the section,
+            positive for tension at the top.
     """
 
     axial: float
@@ -70,8 +69,8 @@ class Stress(NamedTuple):
 
     Args:
         membrane: σ_x, σ_s, τ_xs (..., 3) of the mid-surface.
-        bending: difference (..., 3) of the outer face from the mid-surface; the inner face has its
-            opposite.
+        bending: stress (..., 3) of the outer face less that of the mid-surface; the inner face has
+            the opposite difference.
     """
 
     membrane: npt.NDArray[np.float32]
@@ -100,16 +99,16 @@ class ShellStress:
         areas: areas (num_triangles,) in m².
         thickness: thicknesses (num_triangles,) in m.
         spans: smallest and largest x (num_triangles, 2) in m.
-        segment: segment (num_triangles,) of each triangle, ascending.
+        segment: index (num_triangles,) of the segment of each triangle, ascending.
         outward: unit normals (num_triangles, 3) away from the axis.
         wall: index (num_triangles,) of the wall in its segment's ``plates``; larger indices are
             diaphragms.
         plates: names of the plates of each segment.
-        modes: ``COMPONENTS`` (num_own, num_triangles_of_it, 6) in Pa of each segment, for unit
+        modes: stress components (num_own, num_own_triangles, 6) in Pa of each segment, for unit
             values of its coordinates.
         states: coordinates (num_times, num_own) of each segment.
         time: times (num_times,) in s.
-        axial: constant axial stress (num_triangles,) of axial forces in Pa.
+        axial: constant stress (num_triangles,) of axial forces in Pa.
     """
 
     centroids: Array
@@ -127,7 +126,7 @@ class ShellStress:
 
     @classmethod
     def of(cls, fields: xr.Dataset) -> ShellStress:
-        """Create the stresses from the fields of a run (:mod:`shell_model.stress.fields`)."""
+        """Return the stresses of the fields of a run, see :mod:`shell_model.stress.fields`."""
         segment, state = fields["segment"].values, fields["state"].values
         numbers = range(1, int(segment.max()) + 2)
         own = [fields[f"coordinates_{k}"].values for k in numbers]
@@ -147,7 +146,7 @@ class ShellStress:
 
     @classmethod
     def still(cls, mesh: PlatedMesh, modes: Modes) -> ShellStress:
-        """Return the stresses of one segment in one state, given as ``COMPONENTS`` in Pa."""
+        """Return the stresses of one segment at rest, from its stress components in Pa."""
         return cls(
             **_geometry(mesh.points, mesh.triangles),
             thickness=mesh.thickness,
@@ -167,7 +166,7 @@ class ShellStress:
     def instants(self, times: Sequence[float]) -> Iterator[Stress]:
         """Yield the stress of all triangles at the output times nearest to ``times`` in s."""
         steps = [int(np.abs(self.time - t).argmin()) for t in times]
-        # The modes exceed a processor's cache, so that each is read once for a batch of times.
+        # Modes exceed the cache of a processor, so that each is read once for a batch of times.
         for begin in range(0, len(steps), _TOGETHER):
             some = steps[begin : begin + _TOGETHER]
             values = [
@@ -186,7 +185,8 @@ class ShellStress:
         Args:
             triangles: indices of triangles of one segment.
             steps: output times; the yielded slices count from the first of them.
-            means: weights (num_means, num_triangles) of means, which replace the triangles.
+            means: weights (num_means, num_triangles) of means, which are yielded instead of
+                triangles.
         """
         (number,) = np.unique(self.segment[triangles])
         first = int(np.searchsorted(self.segment, number))
@@ -220,10 +220,10 @@ class ShellStress:
         return np.flatnonzero(close & (self.segment == segment))
 
     def row(self, segment: int, x: float) -> Indices:
-        """Return the row of triangles around a segment at x in m.
+        """Return the triangles of walls between two neighbouring mesh lines around x in m.
 
-        The row is between two neighbouring mesh lines all around. If x is on such a line, it is the
-        row towards the tip.
+        Mesh lines are around the whole section. If x is on such a line, the triangles are beyond
+        it.
         """
         mine = (self.segment == segment) & (self.wall < len(self.plates[segment]))
         lines = lines_around(self.spans[mine])
@@ -238,7 +238,7 @@ class ShellStress:
 
 
 def lines_around(spans: Array) -> Array:
-    """Return ascending x in m of mesh lines that no triangle's span (num_triangles, 2) crosses."""
+    """Return ascending x in m that no triangle crosses; ``spans`` are (num_triangles, 2) in m."""
     first, last = np.sort(spans[:, 0]), np.sort(spans[:, 1])
     lines = np.unique(spans.round(6))
     started = np.searchsorted(first, lines - SAME_LINE)
@@ -266,7 +266,7 @@ def triangle_areas(points: Array, triangles: Indices) -> Array:
 
 
 def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[str, WallForces]:
-    """Return the forces of each wall at t in s, as means over the row of triangles at x in m."""
+    """Return the forces of each wall at t in s, as means over the triangles around x in m."""
     row, step = shell.row(segment, x), int(np.abs(shell.time - t).argmin())
     ((_, found),) = shell.over_time(row, slice(step, step + 1))
     length = shell.spans[row, 1].max() - shell.spans[row, 0].min()
@@ -293,10 +293,10 @@ def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[st
 
 
 def within(part: Indices, reach: Array, strength: Array, place: Array) -> Array:
-    """Return the moment correction (num_triangles,) in m³ for linear stresses in triangles.
+    """Return additional moment weights (num_triangles,) in m³ for linear stress in triangles.
 
     Args:
-        part: wall (num_triangles,) of each triangle within a band.
+        part: index (num_triangles,) of the wall in its band.
         reach: extents (num_parts,) of the walls in m.
         strength: thickness times width (num_triangles,) in m².
         place: coordinates (num_triangles,) of the centroids in m.
