@@ -17,7 +17,7 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.client import judge
 from runs.folder.cache import Cache
-from runs.folder.files import whole_folder
+from runs.folder.files import atomic_folder
 from runs.pipeline.context import RunContext, ignore_progress
 from runs.pipeline.results import Results, prepare
 from runs.pipeline.run import run_case as run_models
@@ -137,7 +137,7 @@ def run_case(
     if path is not None:
         from runs.report.output import write
 
-        with whole_folder(path) as part:
+        with atomic_folder(path) as part:
             write(run, judge(run.results), part)
     return run.results
 
@@ -155,9 +155,9 @@ def report(folder: str | Path, *, excel: bool = False) -> Results:
     Raises:
         BadInput: it is not the folder of a run, or openpyxl is missing for the workbook.
     """
-    from runs.report.output import rendered_again
+    from runs.report.output import rerender_report
 
-    with rendered_again(str(folder), "excel" if excel else None) as (results, _, _):
+    with rerender_report(str(folder), "excel" if excel else None) as (results, _, _):
         return results
 
 

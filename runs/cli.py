@@ -110,7 +110,7 @@ def run(
     # Imported after the check of the case, so that errors in it appear at once.
     from runs.client import judge
     from runs.folder.cache import Cache
-    from runs.folder.files import whole_folder
+    from runs.folder.files import atomic_folder
     from runs.pipeline import estimates
     from runs.pipeline.context import RunContext
     from runs.pipeline.results import prepare
@@ -124,17 +124,17 @@ def run(
     cache = None if no_cache else Cache.of_user()
     comm = ranks.enter_mpi(effective, case)
     if comm is None and effective.ensemble is not None:
-        comm = ranks.launched_world(case)
-    with ranks.all_end_together(comm):
+        comm = ranks.launched_ranks(case)
+    with ranks.end_all_ranks_on_error(comm):
         if ending.launched_rank() if comm is None else comm.rank:
             if comm is not None:
                 run_case(effective, case, RunContext(comm, cache=cache))
             return 0
         folder = prepare(out or f"runs/out/{Path(case).stem}", case)
         with (
-            whole_folder(folder) as part,
+            atomic_folder(folder) as part,
             progress.display([model.name for model in effective.models]) as report_progress,
-            workers.helper(opengl.hush) as helper,
+            workers.helper(opengl.silence_stderr) as helper,
         ):
             if helper and not no_pictures and any(model.meshed for model in effective.models):
                 # The helper imports the renderer while this process meshes.
@@ -142,7 +142,7 @@ def run(
             context = RunContext(comm, report_progress, cache, cache, helper)
             finished = run_case(effective, case, context)
             assert finished is not None
-            with output.writing(finished, part, not no_pictures, helper) as write:
+            with output.write_in_two_steps(finished, part, not no_pictures, helper) as write:
                 finished.evaluate()
                 judged = judge(finished.results)
                 report_progress("report", "pictures and figures", 0.0)
@@ -162,12 +162,12 @@ def report(
     ] = False,
 ) -> int:
     """Render the reports of runs again from their data, and print their tables."""
-    from runs.report.output import rendered_again
+    from runs.report.output import rerender_report
     from runs.report.terminal_tables import print_runs
 
     runs, judged = {}, {}
     for folder in folders:
-        with rendered_again(folder, "--excel" if excel else None) as (results, addition, _):
+        with rerender_report(folder, "--excel" if excel else None) as (results, addition, _):
             runs[folder], judged[folder] = results, addition
     return print_runs(runs, judged)
 
@@ -184,18 +184,18 @@ def snapshot(
     from runs.pipeline.results import TRAJECTORIES
     from runs.report import snapshots
     from runs.report.opengl import RenderingUnavailable
-    from runs.report.output import rendered_again
+    from runs.report.output import rerender_report
 
-    with rendered_again(folder) as (results, _, part):
+    with rerender_report(folder) as (results, _, part):
         last = results.case.time.duration
         for t in time or []:
             if not 0.0 <= t <= last:
                 raise BadInput(folder, "--time", f"must be between 0 and {last:g} s, got {t:g}")
-        shells = snapshots.shells_in(Path(folder))
+        shells = snapshots.shell_files(Path(folder))
         try:
             times = sorted(set(time)) if time else None
             motion = Path(folder) / TRAJECTORIES
-            with snapshots.drawing(results, shells, motion, part, times) as gather:
+            with snapshots.start_rendering(results, shells, motion, part, times) as gather:
                 drawn = gather()
         except RenderingUnavailable as reason:
             raise BadInput(folder, snapshots.SNAPSHOTS, f"cannot be made: {reason}") from None
@@ -276,8 +276,8 @@ def sweep(
     bound = None if until is None else search.parse_bound(until, plan)
     if not large:
         estimates.refuse_large(estimates.sweep_cost([point.case for point in plan.points]), case)
-    comm = ranks.enter_mpi(plan.points[0].case, case) or ranks.launched_world(case)
-    with ranks.all_end_together(comm):
+    comm = ranks.enter_mpi(plan.points[0].case, case) or ranks.launched_ranks(case)
+    with ranks.end_all_ranks_on_error(comm):
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
         if comm is None or comm.rank == 0:
             sweep_runs.prepare(folder, case)
@@ -296,7 +296,7 @@ def sweep(
             table = changes.changes(plan, outcomes)
             changes.write(table, folder)
             print(printable(str(folder / changes.CSV)))
-            changes.show(table, plan.points[0].case, refused, Terminal())
+            changes.print_influences(table, plan.points[0].case, refused, Terminal())
             return sweep_runs.print_failures(plan, outcomes)
         if samples is not None:
             results = sampling.results_of(plan, outcomes)
@@ -306,9 +306,9 @@ def sweep(
             return sweep_runs.print_failures(plan, outcomes)
         data = charts.write(plan, outcomes, folder)
         print(printable(str(folder / charts.CSV)))
-        charts.show(data, plan, Terminal())
+        charts.print_ranges(data, plan, Terminal())
         if bound is not None:
-            search.show(plan, outcomes, bound, Terminal())
+            search.print_bracket(plan, outcomes, bound, Terminal())
         return sweep_runs.print_failures(plan, outcomes)
 
 
@@ -331,7 +331,7 @@ def frequencies(
     cases = [point.case for point in plan.points]
     comm = ranks.enter_mpi(cases[0], case)
     cache = None if no_cache else Cache.of_user()
-    with ranks.all_end_together(comm):
+    with ranks.end_all_ranks_on_error(comm):
         if ending.launched_rank() if comm is None else comm.rank:
             if comm is not None:
                 charts.measure(cases, comm, cache)
@@ -388,7 +388,7 @@ def prove(
     from runs.case.kinds.model import BuildContext
     from runs.folder.cache import Cache
 
-    with ranks.all_end_together(comm), progress.display([shell]) as report_progress:
+    with ranks.end_all_ranks_on_error(comm), progress.display([shell]) as report_progress:
         stages = partial(report_progress, shell)
         workshop = BuildContext(comm, stages, None if no_cache else Cache.of_user())
         return print_proofs(checked, case, Terminal(), (model, workshop))
@@ -461,7 +461,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     os.environ["MPLBACKEND"] = "agg"
     command = typer.main.get_command(app)
     try:
-        with terminal.flushed():
+        with terminal.flush_output():
             status = command.main(arguments, prog_name="protractile", standalone_mode=False)
     except Exception as error:
         known = ranks.explain(error)

@@ -23,7 +23,7 @@ from matplotlib.figure import Figure as Sheet
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 from rich.console import Console
 
-from runs.folder.files import whole_folder, write_whole
+from runs.folder.files import atomic_folder, write_atomically
 from runs.process.terminal import show_notices
 from runs.report import theme
 from runs.report.figure_context import Figure
@@ -174,7 +174,7 @@ def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
         proof_table(study).show(console)
     tables = [table for study in studies for table in study.tables]
     write(folder, "convergence", TITLE, {one.name: one.data for one in studies}, tables)
-    write_whole(folder / "verification.md", markdown(studies))
+    write_atomically(folder / "verification.md", markdown(studies))
     _write_report(studies, folder)
     return studies
 
@@ -201,7 +201,7 @@ def main() -> None:
 
 
 def _write_report(studies: Sequence[Study], folder: Path) -> None:
-    with whole_folder(folder / "figures") as pictures:
+    with atomic_folder(folder / "figures") as pictures:
         drawn = {one.name: [draw(plot, pictures) for plot in one.plots] for one in studies}
         content = page(
             "convergence.html",
@@ -210,7 +210,7 @@ def _write_report(studies: Sequence[Study], folder: Path) -> None:
             figures=drawn,
             proofs={one.name: proof_table(one) for one in studies if one.proofs},
         )
-    write_whole(folder / "report.html", content)
+    write_atomically(folder / "report.html", content)
 
 
 if __name__ == "__main__":

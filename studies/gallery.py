@@ -23,7 +23,7 @@ from geometry.typography import TO_MILLI, digits
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.messages import BadInput
-from runs.folder.files import whole
+from runs.folder.files import atomic_path
 from runs.pipeline.results import FIELDS, Results, read_fields
 from runs.process.terminal import show_notices
 from runs.report import theme
@@ -192,7 +192,7 @@ def main() -> int:
     try:
         for name, picture in pictures(RUNS):
             path = GALLERY / f"{name}.png"
-            with whole(path) as part:
+            with atomic_path(path) as part:
                 # A page loads all of them; more colours are not visible.
                 picture.quantize(256).save(part, format="PNG", optimize=True)
             print(f"{path}  {path.stat().st_size // 1000} kB")

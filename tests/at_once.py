@@ -8,7 +8,7 @@ from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 from typing import Any
 
-from runs.report.opengl import first_picture
+from runs.report.opengl import render_test_picture
 
 
 class AtOnce(Executor):
@@ -16,7 +16,7 @@ class AtOnce(Executor):
 
     def submit(self, work: Callable[..., Any], /, *given: Any, **named: Any) -> Future[Any]:
         done: Future[Any] = Future()
-        if work is first_picture:
+        if work is render_test_picture:
             # Where OpenGL does not work it would end this very process.
             done.set_result(None)
             return done

@@ -10,7 +10,7 @@ import stat
 from pathlib import Path
 
 from runs.case.messages import BadInput
-from runs.folder.files import real
+from runs.folder.files import resolve_path
 
 # Maximum size of a text file; a case with the largest permitted tables is smaller.
 MAX_BYTES = 16_000_000
@@ -42,7 +42,7 @@ def check_not_working_folder(folder: Path, file: str, key: str) -> None:
     Raises:
         BadInput: the folder, or a folder within it, is the working folder.
     """
-    if Path.cwd().is_relative_to(real(folder)):
+    if Path.cwd().is_relative_to(resolve_path(folder)):
         raise BadInput(
             file, key, "is where you are, and will be replaced; start from another folder"
         )

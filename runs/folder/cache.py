@@ -23,7 +23,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from runs.folder import records
-from runs.folder.files import whole
+from runs.folder.files import atomic_path
 from runs.folder.versions import program
 from runs.process.terminal import NOTICES, shorten
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from shell_model.reduced_shell import ReducedShell
 
-Kept = TypeVar("Kept")
+Entry = TypeVar("Entry")
 
 # Maximum total size in bytes of the entries of a user.
 MAX_SIZE = 4 * 1024**3
@@ -88,7 +88,7 @@ class Cache:
             return None
         return cls(Path(caches) / "protractile")
 
-    def load(self, key: str, kind: type[Kept]) -> Kept | None:
+    def load(self, key: str, kind: type[Entry]) -> Entry | None:
         """Return the entry, an object of a class; None if it is missing or damaged."""
         entry = self._entry(key)
         # The entry may belong to another user.
@@ -114,7 +114,7 @@ class Cache:
         return None
 
     @contextmanager
-    def making(self, key: str) -> Iterator[None]:
+    def entry_lock(self, key: str) -> Iterator[None]:
         """Make other processes and threads that compute the same entry wait.
 
         They do not wait if the cache is not writable.
@@ -129,14 +129,14 @@ class Cache:
                 fcntl.fcntl(lock, fcntl.F_OFD_SETLKW, byte)
             yield
 
-    def keep(self, key: str, thing: Any) -> None:
+    def store(self, key: str, thing: Any) -> None:
         """Store an entry.
 
         Raises:
             OSError: the entry cannot be written.
             TypeError: the entry is not valid as a record.
         """
-        with whole(self._entry(key)) as part, part.open("w+b") as file:
+        with atomic_path(self._entry(key)) as part, part.open("w+b") as file:
             file.write(bytes(_HEAD))
             records.write(thing, file)
             file.seek(_HEAD)
@@ -144,10 +144,10 @@ class Cache:
             file.seek(0)
             file.write(head)
 
-    def remember(self, key: str, thing: Any) -> None:
+    def try_to_store(self, key: str, thing: Any) -> None:
         """Store an entry and remove old ones; give a notice if the cache is not writable."""
         try:
-            self.keep(key, thing)
+            self.store(key, thing)
             self.make_room()
         except OSError as error:
             NOTICES.warning(
@@ -198,7 +198,7 @@ def load_or_compute(
 
     start = perf_counter()
     name = key(list(content))
-    with cache.making(name) if comm.rank == 0 else nullcontext():
+    with cache.entry_lock(name) if comm.rank == 0 else nullcontext():
         found = cache.load(name, ReducedShell) if comm.rank == 0 else None
         # Fields and meshes are on the first rank only.
         shared = comm.bcast(None if found is None else replace(found, fields=None, meshes=[]))
@@ -206,7 +206,7 @@ def load_or_compute(
             return replace(found or shared, seconds={"cache": perf_counter() - start})
         reduced = compute()
         if comm.rank == 0:
-            cache.remember(name, reduced)
+            cache.try_to_store(name, reduced)
     return reduced
 
 

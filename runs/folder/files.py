@@ -30,7 +30,7 @@ MANIFEST = ".manifest"
 _AT_FDCWD, _RENAME_EXCHANGE = -100, 2
 
 
-def real(path: Path) -> Path:
+def resolve_path(path: Path) -> Path:
     """Return a path with its links resolved.
 
     Raises:
@@ -44,21 +44,21 @@ def real(path: Path) -> Path:
 
 
 @contextmanager
-def whole(path: Path) -> Iterator[Path]:
+def atomic_path(path: Path) -> Iterator[Path]:
     """Yield a temporary path to write to; the complete file gets the final name."""
     with scratch_folder(path) as folder:
         yield folder / path.name
         os.replace(folder / path.name, path)
 
 
-def write_whole(path: Path, text: str) -> None:
+def write_atomically(path: Path, text: str) -> None:
     """Write a text file, which appears when it is complete."""
-    with whole(path) as part:
+    with atomic_path(path) as part:
         part.write_text(text, encoding="utf-8")
 
 
 @contextmanager
-def whole_folder(folder: Path) -> Iterator[Path]:
+def atomic_folder(folder: Path) -> Iterator[Path]:
     """Yield an empty folder to write to, which replaces ``folder`` when it is complete.
 
     Args:
@@ -66,17 +66,17 @@ def whole_folder(folder: Path) -> Iterator[Path]:
     """
     with scratch_folder(folder) as part:
         yield part
-        with exclusive(folder):
+        with folder_lock(folder):
             _take_the_place(part, folder, _files(part))
 
 
 @contextmanager
-def changed_folder(folder: Path) -> Iterator[Path]:
+def modified_folder(folder: Path) -> Iterator[Path]:
     """Yield a copy of ``folder`` to change, which replaces it when it is complete.
 
     The copies share their content with the files in ``folder``: replace them, do not write to them.
     Files that the user has added stay, and are not in the manifest. Call it within
-    :func:`exclusive`.
+    :func:`folder_lock`.
     """
     with scratch_folder(folder) as part:
         for source in folder.rglob("*"):
@@ -86,15 +86,17 @@ def changed_folder(folder: Path) -> Iterator[Path]:
             elif target != part / MANIFEST:
                 _link(source, target)
         yield part
-        listed = _listed(folder)
-        own = [name for name in _files(part) if name in listed or not _same(name, part, folder)]
+        listed = _manifest_checksums(folder)
+        own = [
+            name for name in _files(part) if name in listed or not _same_file(name, part, folder)
+        ]
         _take_the_place(part, folder, own)
 
 
 @contextmanager
-def exclusive(folder: Path) -> Iterator[None]:
+def folder_lock(folder: Path) -> Iterator[None]:
     """Hold a lock under which only this process replaces folders beside this path."""
-    path = real(folder)
+    path = resolve_path(folder)
     with ExitStack() as stack:
         with suppress(OSError):
             parent = os.open(path.parent, os.O_RDONLY)
@@ -103,14 +105,14 @@ def exclusive(folder: Path) -> Iterator[None]:
             with suppress(OSError):
                 fcntl.flock(parent, fcntl.LOCK_EX)
             if not path.exists():
-                _away(path).rename(path)
+                _exchange_path(path).rename(path)
         yield
 
 
 @contextmanager
 def scratch_folder(path: Path) -> Iterator[Path]:
     """Yield an empty folder beside a path; remove it at the end, with those of killed processes."""
-    path = real(path)
+    path = resolve_path(path)
     part = path.with_name(f"{_hidden(path)}{token_hex(4)}")
     # Other processes cannot find the folder before it is locked.
     unlocked = path.with_name(f".{part.name}")
@@ -138,12 +140,12 @@ def scratch_folder(path: Path) -> Iterator[Path]:
         raise OSError(error.errno, why, place.removeprefix(f"{Path.cwd()}/")) from error
 
 
-def damaged(folder: Path) -> str | None:
+def find_damaged_file(folder: Path) -> str | None:
     """Return the first file whose checksum differs from the manifest; None if all agree.
 
     Missing files and files of the user do not count.
     """
-    for name, digest in _listed(folder).items():
+    for name, digest in _manifest_checksums(folder).items():
         path = folder / name
         if path.is_file() and not path.is_symlink() and digest != _digest(path):
             return name
@@ -155,7 +157,7 @@ def _hidden(path: Path) -> str:
     return f".{path.name[:50]}.protractile-"
 
 
-def _away(path: Path) -> Path:
+def _exchange_path(path: Path) -> Path:
     """Return the temporary path of an old folder, for an exchange in two steps."""
     return path.with_name(f".{path.name[:50]}.away")
 
@@ -179,7 +181,7 @@ def _take_the_place(part: Path, folder: Path, own: Iterable[str]) -> None:
     """
     lines = [f"{_digest(part / name)}  {name}\n" for name in sorted(own)]
     (part / MANIFEST).write_text("".join(lines), "utf-8")
-    folder = real(folder)
+    folder = resolve_path(folder)
     if folder.is_dir():
         shutil.copymode(folder, part)
     try:
@@ -191,9 +193,9 @@ def _take_the_place(part: Path, folder: Path, own: Iterable[str]) -> None:
         names = _AT_FDCWD, os.fsencode(part), _AT_FDCWD, os.fsencode(folder)
         # Some systems and some disks cannot exchange two names at once.
         if not hasattr(libc, "renameat2") or libc.renameat2(*names, _RENAME_EXCHANGE) != 0:
-            folder.rename(_away(folder))
+            folder.rename(_exchange_path(folder))
             part.rename(folder)
-            _away(folder).rename(part)
+            _exchange_path(folder).rename(part)
 
 
 def _files(folder: Path) -> list[str]:
@@ -202,12 +204,12 @@ def _files(folder: Path) -> list[str]:
     return [name for path in paths if (name := str(path.relative_to(folder))) != MANIFEST]
 
 
-def _same(name: str, one: Path, other: Path) -> bool:
+def _same_file(name: str, one: Path, other: Path) -> bool:
     """Return whether two folders have the same file under a name."""
     return (other / name).is_file() and filecmp.cmp(one / name, other / name)
 
 
-def _listed(folder: Path) -> dict[str, str]:
+def _manifest_checksums(folder: Path) -> dict[str, str]:
     """Return the checksums in a folder's manifest, by relative path."""
     manifest = folder / MANIFEST
     try:

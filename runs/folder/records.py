@@ -45,7 +45,7 @@ def write(thing: Any, file: Writable) -> None:
         TypeError: it contains another type.
     """
     arrays: list[np.ndarray[Any, Any]] = []
-    file.write(json.dumps(_written(thing, arrays)).encode() + b"\n")
+    file.write(json.dumps(_encode(thing, arrays)).encode() + b"\n")
     for array in arrays:
         np.lib.format.write_array(file, array, allow_pickle=False)
 
@@ -56,13 +56,13 @@ def read(file: IO[bytes], kind: type[Kind]) -> Kind:
     Raises:
         Exception: the file is not a record of this class.
     """
-    thing = _read(json.loads(file.readline()), file)
+    thing = _decode(json.loads(file.readline()), file)
     if not isinstance(thing, kind):
         raise ValueError(f"the record is no {kind.__qualname__}")
     return thing
 
 
-def _written(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
+def _encode(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
     """Return an object in JSON types, and append its arrays to ``arrays``."""
     if thing is None or isinstance(thing, bool | int | float | str):
         return thing
@@ -77,23 +77,21 @@ def _written(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
             for name, variable in thing.variables.items()
         }
         content = [variables, [str(name) for name in thing.coords], thing.attrs]
-        return {"dataset": _written(content, arrays)}
+        return {"dataset": _encode(content, arrays)}
     if isinstance(thing, Mapping):
-        entries = [
-            [_written(name, arrays), _written(value, arrays)] for name, value in thing.items()
-        ]
+        entries = [[_encode(name, arrays), _encode(value, arrays)] for name, value in thing.items()]
         return {"mapping": entries}
     if (names := _names(type(thing))) is not None:
         # Only the fields of a pydantic model that were set are written.
         own = thing.model_fields_set if isinstance(thing, BaseModel) else names
-        parts = {name: _written(getattr(thing, name), arrays) for name in names if name in own}
+        parts = {name: _encode(getattr(thing, name), arrays) for name in names if name in own}
         return {"record": [type(thing).__module__, type(thing).__name__], "parts": parts}
     if isinstance(thing, list | tuple):
-        return {type(thing).__name__: [_written(part, arrays) for part in thing]}
+        return {type(thing).__name__: [_encode(part, arrays) for part in thing]}
     raise TypeError(f"{type(thing).__qualname__} cannot be kept: it is no data")
 
 
-def _read(written: Any, file: IO[bytes]) -> Any:
+def _decode(written: Any, file: IO[bytes]) -> Any:
     """Return the object of JSON types, with its arrays from the file in the same order."""
     match written:
         case None | bool() | int() | float() | str():
@@ -101,17 +99,17 @@ def _read(written: Any, file: IO[bytes]) -> Any:
         case {"array": _}:
             return np.lib.format.read_array(file, allow_pickle=False)
         case {"dataset": content}:
-            variables, coordinates, attributes = _read(content, file)
+            variables, coordinates, attributes = _decode(content, file)
             # Variables keep the order in which they are written to a file.
             return xr.Dataset(variables, attrs=attributes).set_coords(coordinates)
         case {"mapping": list(entries)}:
-            return {_read(name, file): _read(value, file) for name, value in entries}
+            return {_decode(name, file): _decode(value, file) for name, value in entries}
         case {"list": list(parts)}:
-            return [_read(part, file) for part in parts]
+            return [_decode(part, file) for part in parts]
         case {"tuple": list(parts)}:
-            return tuple(_read(part, file) for part in parts)
+            return tuple(_decode(part, file) for part in parts)
         case {"record": [str(module), str(name)], "parts": dict(parts)}:
-            return _class(module, name)(**{key: _read(v, file) for key, v in parts.items()})
+            return _class(module, name)(**{key: _decode(v, file) for key, v in parts.items()})
     raise ValueError("no record")
 
 

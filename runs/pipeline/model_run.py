@@ -125,7 +125,7 @@ def run_model(
             # The first model of a process compiles the time loop for the others.
             begin += moving.seconds["compilation"]
             if store is not None:
-                store.remember(name, motion)
+                store.try_to_store(name, motion)
     summary, reduced = motion.summary, built.shell
     if boom.compressed:
         summary.critical_factor = built.critical_factor

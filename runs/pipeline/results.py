@@ -24,7 +24,14 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput, first_error
 from runs.case.schema import Case, Model
 from runs.case.user_files import check_not_working_folder, check_regular
-from runs.folder.files import MANIFEST, damaged, real, scratch_folder, whole_folder, write_whole
+from runs.folder.files import (
+    MANIFEST,
+    atomic_folder,
+    find_damaged_file,
+    resolve_path,
+    scratch_folder,
+    write_atomically,
+)
 from runs.pipeline.design_results import PlayEffect
 from runs.pipeline.model_quality import cautions, main_models, reference_of
 from runs.pipeline.motion_results import MotionResult
@@ -82,7 +89,7 @@ class Results:
         if not folder.is_dir():
             what = "is a file" if folder.exists() else "does not exist"
             raise BadInput(str(folder), "folder", f"{what}; give the folder of a run")
-        if name := damaged(folder):
+        if name := find_damaged_file(folder):
             what = f"is damaged, its SHA-256 is not that of {MANIFEST}; remove it, or run the case"
             raise BadInput(str(folder), name, f"{what} again")
         trajectories = _read(folder / TRAJECTORIES, read_netcdf)
@@ -121,7 +128,7 @@ class Results:
         Raises:
             BadInput: the folder cannot be written, contains other files, or is the current one.
         """
-        with whole_folder(prepare(str(folder), self.case.title)) as part:
+        with atomic_folder(prepare(str(folder), self.case.title)) as part:
             self.write(part)
 
     def write(self, folder: Path) -> None:
@@ -131,8 +138,8 @@ class Results:
         self.trajectories.drop_dims(empty).to_netcdf(folder / TRAJECTORIES, engine="scipy")
         if self.ensembles is not None:
             self.ensembles.to_netcdf(folder / ENSEMBLES, engine="scipy")
-        write_whole(folder / CASE, toml.dumps(self.case))
-        write_whole(folder / SUMMARY, str(self.summary))
+        write_atomically(folder / CASE, toml.dumps(self.case))
+        write_atomically(folder / SUMMARY, str(self.summary))
 
     @property
     def completed_models(self) -> list[Model]:
@@ -218,7 +225,7 @@ def prepare(out: str, file: str) -> Path:
     key = f"--out {out}"
     if folder.exists() and not folder.is_dir():
         raise BadInput(file, key, "is a file; give a folder")
-    if real(folder).is_mount():
+    if resolve_path(folder).is_mount():
         raise BadInput(
             file, key, "is where a disk begins, and cannot be replaced; give a folder in it"
         )

@@ -53,7 +53,7 @@ def enter_mpi(
     return None
 
 
-def launched_world(file: str) -> MPI.Intracomm | None:
+def launched_ranks(file: str) -> MPI.Intracomm | None:
     """Return all ranks if a launcher such as ``mpirun`` started several, else None.
 
     Raises:
@@ -95,7 +95,7 @@ def explain(error: Exception) -> tuple[str, int] | None:
 
 
 @contextmanager
-def all_end_together(comm: MPI.Comm | None) -> Iterator[None]:
+def end_all_ranks_on_error(comm: MPI.Comm | None) -> Iterator[None]:
     """End all ranks if one of them fails, since the others would wait for it for ever."""
     try:
         yield

@@ -43,7 +43,7 @@ def prepare() -> None:
 
 
 @contextmanager
-def flushed() -> Iterator[None]:
+def flush_output() -> Iterator[None]:
     """Flush all output of the context, so that errors can still be reported.
 
     Raises:

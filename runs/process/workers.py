@@ -17,17 +17,17 @@ from runs.process.terminal import show_notices
 
 # Environment of workers: one thread, since libraries would use all cores; no warnings during
 # import, nor from Python's resource tracker when the workers are killed.
-_OF_WORKERS = dict.fromkeys(
+_WORKER_VARIABLES = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 ) | {"PYTHONWARNINGS": "ignore"}
 # Time in s to wait for a killed process.
-_SECONDS_TO_DIE = 1.0
+_KILL_TIME = 1.0
 # Prefixes of environment variables that make a process a rank: Open MPI, PMIx, MPICH and its
 # derivatives.
-_OF_RANKS = ("OMPI_", "PMIX_", "PMI_")
+_RANK_PREFIXES = ("OMPI_", "PMIX_", "PMI_")
 
 
-class _Shielded(ProcessPoolExecutor):
+class _SignalProofPool(ProcessPoolExecutor):
     """Pool of processes that ignore signals to the process group, such as Ctrl-C."""
 
     def submit(self, work: Callable[..., Any], /, *given: Any, **named: Any) -> Future[Any]:
@@ -51,9 +51,9 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
         prepare: function that each process calls first.
     """
     # New processes inherit these variables.
-    outside = {name: os.environ[name] for name in _OF_WORKERS if name in os.environ}
-    os.environ.update(_OF_WORKERS)
-    pool = _Shielded(count or os.cpu_count(), get_context("spawn"), _start, (prepare,))
+    outside = {name: os.environ[name] for name in _WORKER_VARIABLES if name in os.environ}
+    os.environ.update(_WORKER_VARIABLES)
+    pool = _SignalProofPool(count or os.cpu_count(), get_context("spawn"), _start, (prepare,))
     try:
         with when_interrupted(end):
             yield pool
@@ -62,7 +62,7 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
         raise
     finally:
         pool.shutdown(cancel_futures=True)
-        for name in _OF_WORKERS:
+        for name in _WORKER_VARIABLES:
             del os.environ[name]
         os.environ.update(outside)
 
@@ -89,13 +89,13 @@ def end() -> None:
     for process in children:
         process.kill()
     for process in children:
-        process.join(_SECONDS_TO_DIE)
+        process.join(_KILL_TIME)
 
 
 def _start(prepare: Callable[[], object]) -> None:
     """Initialise a worker: it is no rank, ends with its parent, and leaves interrupts to it."""
     show_notices()
-    for name in [name for name in os.environ if name.startswith(_OF_RANKS)]:
+    for name in [name for name in os.environ if name.startswith(_RANK_PREFIXES)]:
         del os.environ[name]
     Thread(target=_end_with_parent, daemon=True).start()
     prepare()

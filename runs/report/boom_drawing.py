@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Drawing of a case's boom in its initial position, with supports, loads and sections."""
+"""Drawing of the boom of a case in its initial position, with supports, loads and sections."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ from geometry.typography import with_minus_signs
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
-from runs.folder.files import whole
+from runs.folder.files import atomic_path
 from runs.report import formatting, theme
-from runs.report.figure_context import LETTERS, Figure, FigureContext
-from runs.report.symbols import PINNED, Symbol, abbreviated, boom_symbols, edges, marker_style
+from runs.report.figure_context import LEGEND_CHARACTERS, Figure, FigureContext
+from runs.report.symbols import PINNED, Symbol, abbreviate, boom_symbols, edges, marker_style
 
-# Height of the outermost section as a fraction of the panel, if heights are exaggerated.
+# Height of the outermost section over the height of the panel, if heights are exaggerated.
 SECTION_SHARE = 0.2
-# Size of the symbols in pt: standard, and for many symbols.
+# Sizes of symbols in pt: standard, and if there are many.
 SIGN, SMALL = 15.0, 9.0
 # Heights in inches: panel along the boom, panel to scale (maximum, minimum), sections, line of the
 # legend.
-LYING, HIGHEST, LEAST, SECTIONS, LEGEND_LINE = 1.8, 2.6, 0.7, 1.6, 0.24
-# Above this angle in degrees, so many sections fit beside the boom.
+ALONG_HEIGHT, MAX_HEIGHT, MIN_HEIGHT, SECTIONS, LEGEND_LINE = 1.8, 2.6, 0.7, 1.6, 0.24
+# A boom steeper than this angle in degrees leaves room for so many sections beside it.
 STEEP, BESIDE = 25.0, 3
 # Margin beside the boom, as a fraction of its length.
 MARGIN = 0.06
@@ -61,8 +61,8 @@ class Panel:
         boom: the boom.
         angle: angle of the boom in degrees.
         larger: factor by which heights are exaggerated.
-        whole: whether the panel shows the whole boom without details.
-        meanings: symbols by their texts in the legend.
+        whole: True for the whole boom without details.
+        meanings: symbol of each text of the legend.
     """
 
     axes: Axes
@@ -89,7 +89,7 @@ class Panel:
         """Draw the symbol of a support or load at its places."""
         places = [(x, symbol.z(self.boom, x)) for x in symbol.places]
         size = SIGN if len(places) == 1 else SMALL
-        shown = marker_style(symbol.turned(self.angle), symbol.color, size)
+        shown = marker_style(symbol.rotated(self.angle), symbol.color, size)
         self.line(places, clip_on=False, zorder=5, **shown)
         corners = np.asarray(symbol.path.vertices)
         centred = corners - 0.5 * (corners.min(axis=0) + corners.max(axis=0))
@@ -106,7 +106,7 @@ def boom(run: FigureContext) -> list[Figure]:
 
 
 def draw_boom_of(case: Case, path: Path) -> None:
-    """Draw a case's boom to scale, then with exaggerated heights, and its sections.
+    """Draw the boom of a case to scale, with exaggerated heights, and its sections.
 
     Args:
         case: case with the boom.
@@ -117,7 +117,7 @@ def draw_boom_of(case: Case, path: Path) -> None:
 
 
 def save_drawing(case: Case, file: str, picture: str) -> None:
-    """Draw a case's boom into a file, which is complete or absent.
+    """Draw the boom of a case into a file, atomically.
 
     Args:
         case: case with the boom.
@@ -129,7 +129,7 @@ def save_drawing(case: Case, file: str, picture: str) -> None:
     """
     if Path(picture).suffix.lower() != ".png":
         raise BadInput(file, f"--picture {picture}", "must end in .png")
-    with whole(Path(picture)) as part:
+    with atomic_path(Path(picture)) as part:
         draw_boom_of(case, part)
 
 
@@ -144,12 +144,12 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
     ][:MOST]
     beside = abs(angle) > STEEP and 0 < len(sections) <= BESIDE
     room = (0.45 if beside else 1.0) * theme.WIDTH
-    standing = min(max(LEAST, room * (high - low)[1] / (high - low)[0]), HIGHEST)
+    standing = min(max(MIN_HEIGHT, room * (high - low)[1] / (high - low)[0]), MAX_HEIGHT)
     rows: list[HashableList[str]] = [
         ["whole", "sections" if beside else "whole"],
         ["along", "along"],
     ]
-    heights = [standing, LYING]
+    heights = [standing, ALONG_HEIGHT]
     if sections and not beside:
         rows.append(["sections", "sections"])
         heights.append(SECTIONS)
@@ -158,12 +158,12 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
     panels: dict[str, Axes] = sheet.subplot_mosaic(rows, height_ratios=heights)
     symbols = list(boom_symbols(case, boom))
     _draw_whole(Panel(panels["whole"], boom, angle, 1.0, whole=True), symbols)
-    lying = Panel(panels["along"], boom, 0.0, _larger(boom), whole=False)
+    lying = Panel(panels["along"], boom, 0.0, _height_factor(boom), whole=False)
     _draw_along(lying, symbols)
     if sections:
         _draw_sections(panels["sections"], sections)
     entries = lying.meanings | dict.fromkeys(_remarks(case, boom), Line2D([], [], linestyle=""))
-    columns = 2 if max(map(len, entries)) <= LETTERS else 1
+    columns = 2 if max(map(len, entries)) <= LEGEND_CHARACTERS else 1
     lines = -(-len(entries) // columns)
     sheet.set_size_inches(theme.WIDTH, sum(heights) + 0.4 + LEGEND_LINE * (lines + 1))
     sheet.legend(
@@ -206,7 +206,7 @@ def _draw_along(panel: Panel, symbols: Sequence[Symbol]) -> None:
     _draw(panel, symbols)
     boom, axes, larger = panel.boom, panel.axes, panel.larger
     for number, segment in enumerate(boom.segments):
-        # Many names are written on two lines above the visible part.
+        # Each name stands above the visible part; many names alternate between two lines.
         hidden = boom.segments[number - 1].end if number else segment.start
         middle = 0.5 * (max(hidden, segment.start) + segment.end)
         axes.annotate(
@@ -269,7 +269,7 @@ def _draw_segment(panel: Panel, number: int) -> None:
 
 
 def _draw_stations(panel: Panel, joint: Joint) -> None:
-    """Draw bars across the clearance of two segments, above and below."""
+    """Draw each station as bars across the clearance, above and below."""
     outer, inner = (panel.boom.segments[number] for number in (joint.outer, joint.inner))
     color = theme.PLAY_FREE if joint.tied else theme.INK
     bar: dict[str, Any] = {"color": color, "linewidth": 4.0, "solid_capstyle": "butt"}
@@ -292,7 +292,7 @@ def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
     if panel.whole:
         panel.line([ground], **marker_style(PINNED, theme.INK, SIGN))
     thick = Line2D([], [], color=theme.INK, linewidth=4.0)
-    panel.meanings[f"cylinder, {abbreviated(cylinder.stiffness, 'N/m')}"] = thick
+    panel.meanings[f"cylinder, {abbreviate(cylinder.stiffness, 'N/m')}"] = thick
 
 
 def _extent(boom: Boom, angle: float) -> tuple[Array, Array]:
@@ -305,46 +305,48 @@ def _extent(boom: Boom, angle: float) -> tuple[Array, Array]:
 
 
 def _farthest(boom: Boom) -> float:
-    """Return the maximum extension of the tip beyond its initial position, in m."""
+    """Return the largest travel of the tip from its initial position in m."""
     return max(0.0, farthest_travel(boom, len(boom.segments) - 1))
 
 
-def _larger(boom: Boom) -> float:
+def _height_factor(boom: Boom) -> float:
     """Return the factor by which heights are exaggerated."""
     tallest = max(np.ptp(edges(boom, s, x)) for s in boom.segments for x in s.ends)
-    wanted = SECTION_SHARE * LYING * (1.0 + 2.0 * MARGIN) * boom.length / theme.WIDTH / tallest
+    wanted = (
+        SECTION_SHARE * ALONG_HEIGHT * (1.0 + 2.0 * MARGIN) * boom.length / theme.WIDTH / tallest
+    )
     return max(1.0, float(f"{wanted:.1g}"))
 
 
 def _remarks(case: Case, boom: Boom) -> Iterator[str]:
-    """Yield remarks on loads and supports that have no symbol."""
+    """Yield remarks on loads and supports without a symbol."""
     loose = [joint for joint in boom.joints if not joint.tied]
     if loose:
-        yield f"play {_several(1e3 * joint.play for joint in loose)} mm"
+        yield f"play {_join_values(1e3 * joint.play for joint in loose)} mm"
     if boom.spatial:
         sideways = (1e3 * (joint.lateral_play or 0.0) for joint in loose)
-        yield f"sideways {_several(sideways)} mm"
+        yield f"sideways {_join_values(sideways)} mm"
     if any(joint.friction for joint in loose):
-        yield f"friction {_several(joint.friction for joint in loose)}"
+        yield f"friction {_join_values(joint.friction for joint in loose)}"
     for base in case.base:
         yield f"the ground shakes along {base.direction}"
     if case.gravity is not None:
         yield f"weights by {formatting.number(case.gravity.acceleration, 4)} m/s²"
 
 
-def _several(values: Iterable[float]) -> str:
+def _join_values(values: Iterable[float]) -> str:
     return ", ".join(f"{value:g}" for value in sorted(set(values)))
 
 
 def _draw_sections(axes: Axes, sections: Sequence[tuple[str, Section]]) -> None:
-    """Draw sections side by side to one scale, with their dimensions in mm below them."""
+    """Draw sections side by side at the same scale, with dimensions in mm."""
     widest = max(section.size("y") for _, section in sections)
     lowest = min(section.reach("z")[0] for _, section in sections)
     highest = max(section.reach("z")[1] for _, section in sections)
     pitch = (1.0 + GAP) * widest
     for number, (color, section) in enumerate(sections):
         for plate in section.plates:
-            corners = _thick(plate) + np.array([number * pitch, 0.0])
+            corners = _plate_outline(plate) + np.array([number * pitch, 0.0])
             axes.add_patch(Polygon(corners, closed=True, facecolor=color, edgecolor=color, lw=0.3))
         size = f"{1e3 * section.size('z'):.0f} × {1e3 * section.size('y'):.0f}"
         axes.annotate(
@@ -363,15 +365,15 @@ def _draw_sections(axes: Axes, sections: Sequence[tuple[str, Section]]) -> None:
     axes.set_title("sections to scale; mid-lines\nand walls in mm", fontsize=10.0)
 
 
-def _thick(plate: Plate) -> Array:
-    """Return the corners (4, 2) of a plate, extended by half its thickness at both ends."""
+def _plate_outline(plate: Plate) -> Array:
+    """Return the corners (4, 2) of a plate that extends half its thickness beyond both ends."""
     half = 0.5 * plate.thickness * plate.tangent
     start, end, across = plate.start - half, plate.end + half, np.array([-half[1], half[0]])
     return np.array([start - across, end - across, end + across, start + across])
 
 
 def _walls(section: Section) -> str:
-    """Return the wall thicknesses in mm as text, of webs (shear along z) and flanges."""
+    """Return the thicknesses of webs and flanges in mm as text."""
     webs = {number for number, _ in section.shear_plates("z")}
     thick = [round(1e3 * plate.thickness, 1) for plate in section.plates]
     web, flange = (

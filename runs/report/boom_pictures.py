@@ -27,7 +27,7 @@ from runs.report.symbols import marker_style
 
 PIXELS = (SHEET[0], 470)
 
-# Size of the symbols in pt, and drawn length of a cylinder in pixels.
+# Size of symbols in pt, and length of a cylinder in the picture in pixels.
 SIGN, CYLINDER = 30.0, 70.0
 
 
@@ -39,7 +39,7 @@ class BoomView:
         scene: scene of the boom in motion.
         scale: magnification of displacements and play.
         largest: largest magnitude of the deflection in mm.
-        camera: camera that shows the boom at every instant.
+        camera: camera whose view contains the boom at every instant.
         span: smallest and largest x of the boom in m.
         rest: pyvista surface of the undeformed boom.
         edges: sharp edges of the undeformed boom.
@@ -61,9 +61,9 @@ class BoomView:
         pixels: tuple[int, int] = PIXELS,
         displacement: float = DISPLACEMENT_DRAWN,
     ) -> BoomView:
-        """Return the view for pictures of these instants, with a size in pixels.
+        """Return the view for pictures of given instants.
 
-        Displacements are magnified up to a fraction of the boom's length.
+        Displacements are magnified up to a fraction ``displacement`` of the length of the boom.
         """
         times = [instant.time for instant in instants]
         heights = [moved[:, 2] for moved in scene.displacements(times)]
@@ -79,7 +79,7 @@ class BoomView:
         return cls(
             scene=scene,
             scale=scale,
-            # A colour scale needs two different ends, even for a boom at rest.
+            # The ends of a colour scale must differ, even without deflection.
             largest=1.0e3 * max(high, -low, SAME_PLACE),
             camera=Camera(centre, width, pixels, elevation=10.0),
             span=(begin, end),
@@ -88,7 +88,7 @@ class BoomView:
         )
 
     def places(self, moved: Array, time: float) -> Array:
-        """Return the displayed points (num_points, 3), for displacements (num_points, 3) in m."""
+        """Return the displayed points (num_points, 3) for displacements (num_points, 3) in m."""
         places = self.scene.magnify(moved, self.scale)
         places[:, 0] += self.scene.along(time)
         return places
@@ -100,7 +100,7 @@ class BoomView:
         return edges
 
     def draw_marks(self, sheet: Sheet, places: Array) -> str:
-        """Draw the symbols of supports and loads on a sheet; return the text of a legend."""
+        """Draw the symbols of supports and loads on a sheet, and return their legend."""
         scene, axes = self.scene, sheet.picture
         shown = [symbol for symbol in scene.symbols if len(symbol.places) == 1]
         for symbol in shown:
@@ -109,7 +109,7 @@ class BoomView:
             place, _ = scene.at(around, symbol.segment, x, symbol.z(scene.boom, x))
             place[2] += (1.0 if symbol.edge == "top" else -1.0) * self.scale * symbol.clearance
             sign = marker_style(symbol.path, symbol.color, SIGN)
-            sheet.pass_by(*axes.plot(*self.camera.project(place), clip_on=False, **sign))
+            sheet.show_once(*axes.plot(*self.camera.project(place), clip_on=False, **sign))
         cylinders = () if scene.from_above else scene.boom.cylinders
         for cylinder in cylinders:
             side = 0 if cylinder.direction[1] > 0.0 else 1
@@ -118,9 +118,9 @@ class BoomView:
             start = self.camera.project(lug)
             rod = np.array([start, start - CYLINDER * np.array(cylinder.direction)])
             black: dict[str, Any] = {"color": theme.INK, "clip_on": False}
-            sheet.pass_by(*axes.plot(*rod.T, linewidth=4.0, **black))
+            sheet.show_once(*axes.plot(*rod.T, linewidth=4.0, **black))
             rod[0] = rod.mean(axis=0)
-            sheet.pass_by(*axes.plot(*rod.T, linewidth=9.0, **black))
+            sheet.show_once(*axes.plot(*rod.T, linewidth=9.0, **black))
         kinds = [str(symbol.kind) for symbol in shown]
         return join_words(dict.fromkeys(kinds + ["cylinders"] * bool(cylinders))) if kinds else ""
 
@@ -133,9 +133,9 @@ def draw_boom(
     Args:
         view: view of the boom.
         instants: instants of the pictures.
-        until: last time in s of the tip's curve.
-        pace: speed of a film relative to real time.
-        part: size factor of the sheet, see :class:`runs.report.sheet.Sheet`.
+        until: last time in s of the curve of the tip.
+        pace: speed of an animation relative to real time, as text.
+        part: size factor of the sheet.
     """
     scene, camera = view.scene, view.camera
     time, tip = scene.motion["time"].values, 1.0e3 * scene.motion["tip"].values
@@ -151,8 +151,8 @@ def draw_boom(
     curve.plot(time, tip, color=theme.FAINT, linewidth=2)
     curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
     with stage(camera.pixels, part) as plotter:
-        # The undeformed boom is drawn slightly behind, so that it does not show through parts that
-        # hardly move.
+        # The undeformed boom is slightly farther from the camera, so that the deformed boom hides
+        # it where both coincide.
         behind = view.edges_at(view.rest.points + np.array([0.0, 0.02, 0.0]))
         plotter.add_mesh(behind, color=theme.FAINT, line_width=3.0 * part, lighting=False)
         boom = view.rest.copy()
@@ -166,11 +166,11 @@ def draw_boom(
             places = view.places(moved, instant.time)
             boom.points, edges.points = places, places[edges["number"]]
             boom["deflection"] = 1.0e3 * np.abs(moved[:, 2])
-            sheet.show(camera.see(plotter))
+            sheet.show(camera.render(plotter))
             symbols = view.draw_marks(sheet, places)
             last = int(np.abs(time - instant.time).argmin())
             now: dict[str, Any] = {"color": theme.FORCE, "markersize": 13, "clip_on": False}
-            sheet.pass_by(
+            sheet.show_once(
                 *curve.plot(time[: last + 1], tip[: last + 1], color=theme.INK, linewidth=3),
                 *curve.plot(time[last], tip[last], "o", **now),
             )

@@ -19,7 +19,7 @@ from runs.report.sheet import MATTE, SHEET, Camera, Sheet, sharp_edges, stage, s
 
 PIXELS = (SHEET[0], 560)
 
-# Length of the picture over the section's height, and largest displacement over the same.
+# Length of the picture, and largest displacement in it, over the height of the section.
 _LENGTH, _DRAWN = 4.0, 0.12
 
 
@@ -31,7 +31,7 @@ def render_buckling(
     Args:
         views: scenes of a shell, see :meth:`Scene.views`.
         folder: folder of the pictures.
-        times: requested instants; modes belong to no instant and are drawn without them only.
+        times: requested times; if there are any, no modes are drawn, since they have no time.
     """
     scene = views[0]
     if scene.buckling is None or times is not None:
@@ -55,7 +55,7 @@ def render_buckling(
 
 
 def _draw(heading: str, points: Array, triangles: Numbers, shape: Array, path: Path) -> None:
-    """Draw a mode (num_points, 3), with the wall of its largest displacement towards the viewer."""
+    """Draw a mode (num_points, 3) with the wall of its largest displacement in front."""
     size = np.linalg.norm(shape, axis=1)
     most = int(size.argmax())
     height = float(np.ptp(points[:, 2]))
@@ -84,7 +84,7 @@ def _draw(heading: str, points: Array, triangles: Numbers, shape: Array, path: P
         )
         edges = sharp_edges(surface(sides * points, triangles[near]))
         plotter.add_mesh(edges, color=theme.INK, line_width=2.4, lighting=False)
-        sheet.show(camera.see(plotter))
+        sheet.show(camera.render(plotter))
     seen = " and ".join(
         name
         for name, turned in zip(("from behind", "upside down"), flip < 0.0, strict=True)

@@ -28,7 +28,7 @@ from runs.case.kinds.shell import Shell
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.folder.cache import Cache
-from runs.folder.files import write_whole
+from runs.folder.files import write_atomically
 from runs.pipeline.models import build
 
 if TYPE_CHECKING:
@@ -229,4 +229,4 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
         loads[n] = loads[n] + moment
     for n, shell in enumerate(shells):
         springs += [SpringRow("held sideways", {n: row}, k) for row, k in sideways(boom, n, shell)]
-    write_whole(path, deck(f"{case.title}: {model.name}", shells, springs, loads))
+    write_atomically(path, deck(f"{case.title}: {model.name}", shells, springs, loads))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Interactive charts of curves over time by plotly, in addition to static pictures.
+"""Interactive charts of curves by plotly, in addition to static pictures.
 
-A page contains plotly.js once, compressed, and the numbers of each chart as 32-bit floats, which
-have seven digits.
+A page contains plotly.js once, compressed, and the data of each chart as 32-bit floats with seven
+digits.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ import numpy as np
 from geometry.arrays import Array
 from runs.report import theme
 
-# Maximum number of samples of a curve. Longer curves are reduced to the minimum and maximum of half
-# as many intervals, which are more than a screen has columns.
+# Maximum number of samples of a curve. A longer curve is reduced to the minimum and maximum of half
+# as many intervals, still more than a screen has columns.
 MOST = 12_000
-# Heights in pixels: panel; legend and axis below all panels.
+# Heights in pixels of a panel, and of axis and legend below all panels.
 PANEL, BELOW = 150, 314
-# Fraction of the height between panels.
+# Distance between panels over the height.
 GAP = 0.14
 
 
@@ -38,9 +38,9 @@ class Curve:
         values: (num_times,) in the unit of the chart.
         color: colour in CSS notation.
         dashes: plotly's name of the line style.
-        shown: whether the curve is visible at first, or only on demand.
+        shown: True if the curve is visible at first, False if only on demand.
         panel: index of its panel.
-        band: lower and upper limit, (num_times,) each.
+        band: lower and upper limit (num_times,) of a band.
         at: abscissa (num_times,); that of the chart unless given.
     """
 
@@ -81,7 +81,7 @@ class Chart:
 
     @property
     def figure(self) -> Any:
-        """Figure of plotly, checked by its library; see :attr:`plain`."""
+        """The figure as an object of plotly, which checks it."""
         from plotly.graph_objects import Figure
 
         plain = self.plain
@@ -89,7 +89,7 @@ class Chart:
 
     @property
     def plain(self) -> dict[str, Any]:
-        """The figure for plotly; curves without an abscissa use ``layout.meta.x``."""
+        """The figure as JSON data; the common abscissa is in ``layout.meta.x``."""
         count = len(self.panels)
         layout: dict[str, Any] = {
             "template": "none",
@@ -131,7 +131,7 @@ class Chart:
         return {"data": traces, "layout": layout}
 
     def _traces(self, curve: Curve, named: bool) -> Iterator[dict[str, Any]]:
-        """Yield the limits of a curve's band, then its line; ``named`` puts it into the legend."""
+        """Yield the traces of a curve: its band and its line, in the legend if ``named``."""
         common: dict[str, Any] = {
             "type": "scatter",
             "mode": "lines",
@@ -166,12 +166,12 @@ class Chart:
 
 
 def _axis(name: str, panel: int) -> str:
-    """Return plotly's name of an axis of a panel: ``y``, ``y2`` and so on."""
+    """Return the name in plotly of the axis of a panel: ``y``, ``y2`` and so on."""
     return f"{name}{panel + 1 if panel else ''}"
 
 
 def extremes(values: Array, stretches: int) -> np.ndarray[Any, np.dtype[np.intp]]:
-    """Return the sorted indices (num_kept,) of the minimum and maximum sample of each interval."""
+    """Return the indices (num_kept,), ascending, of the extreme samples of each interval."""
     ends = np.linspace(0, values.size, stretches + 1).astype(int)
     known = np.nan_to_num(values)
     kept = {
@@ -183,7 +183,7 @@ def extremes(values: Array, stretches: int) -> np.ndarray[Any, np.dtype[np.intp]
 
 
 def pack_charts(charts: Mapping[str, Chart]) -> str:
-    """Return the charts of a page, by the names of their figures, as JSON escaped for HTML."""
+    """Return charts by the names of their figures as JSON that is escaped for HTML."""
     from plotly.io.json import to_json_plotly
 
     return str(to_json_plotly({name: chart.figure.to_dict() for name, chart in charts.items()}))
@@ -194,9 +194,9 @@ def pack_plotly() -> str:
     """Return plotly.js from its wheel, compressed, in base 64."""
     from plotly.offline import get_plotlyjs
 
-    return compressed(get_plotlyjs())
+    return compress(get_plotlyjs())
 
 
-def compressed(text: str) -> str:
+def compress(text: str) -> str:
     """Return a text compressed by gzip, in base 64."""
     return base64.b64encode(gzip.compress(text.encode(), 6, mtime=0)).decode("ascii")

@@ -26,7 +26,7 @@ from runs.report.summary_table import (
 )
 from runs.report.tables import Table
 
-# Kinds of pictures, in the order of their numbers.
+# Parts of the report in which figures are numbered, in order.
 PARTS = "case", "motion", "rest", "snapshots", "horizons", "numerics"
 
 
@@ -39,14 +39,14 @@ def render(
 ) -> str:
     """Return the report as HTML, with all pictures and scripts embedded.
 
-    Without plotly the report has only static pictures of curves.
+    Without plotly the report has no interactive charts.
 
     Args:
         results: results of the run.
-        addition: addition of a client.
+        addition: addition of the client.
         figures: figures on the disk.
         snapshots: snapshots on the disk.
-        viewer: file of the interactive viewer beside the report.
+        viewer: file name of the interactive viewer; empty for none.
     """
     texts, proofs = tables_by_part(results), results.summary.design.proofs
     pictures = {part: [figure for figure in figures if figure.part == part] for part in PARTS}
@@ -88,7 +88,7 @@ def render(
 
 
 def tables_by_part(results: Results) -> dict[str, list[Table]]:
-    """Return the tables of a report that have rows, by its parts, in its order."""
+    """Return the tables with rows of each part of the report."""
     first_screen = [summary_table(results), limit_table(results)]
     tables: dict[str, list[Table]] = {
         "summary": [table for table in first_screen if table],
@@ -101,12 +101,12 @@ def tables_by_part(results: Results) -> dict[str, list[Table]]:
 
 
 def _numbered(kind: str, things: Iterable[Table | Figure]) -> list[tuple[Table | Figure, str]]:
-    """Return each item with its label, such as *Table 1*, with a no-break space."""
+    """Return each table or figure with its label, such as *Table 1* (with a no-break space)."""
     return [(thing, f"{kind}\N{NO-BREAK SPACE}{i}") for i, thing in enumerate(things, start=1)]
 
 
 def _costs(results: Results) -> Mapping[str, str]:
-    """Return computing times of the stages of each model, and the accuracy of a reduction."""
+    """Return a text on stages, computing times and reduction errors for each model."""
     costs = {}
     for name, model in results.summary.models.items():
         parts = [f"{stage} {seconds:.2f} s" for stage, seconds in model.seconds.items()]

@@ -27,16 +27,16 @@ from runs.report.charts import Chart, Curve
 # Parts of the report to which figures belong.
 Part = Literal["case", "motion", "rest", "horizons", "numerics"]
 
-# Widths of background curves, as a fraction of those of the leading curves.
-BEHIND = 0.5
-# Duration of a close-up, as a multiple of the time of the first peak.
-PAST = 1.3
+# Width of the curves of other models over the width of the curves of main models.
+BACKGROUND_WIDTH = 0.5
+# Duration of a close-up over the time of the first peak.
+CLOSE_UP = 1.3
 # Least span of an axis, as a fraction of the scale of its quantity.
-HARDLY_CHANGES = 0.02
+MIN_SPAN = 0.02
 # Line styles of drives.
 EXTENSIONS = ("-", "--", "-.", ":")
-# Number of characters that fit in one of two columns of a legend.
-LETTERS = 30
+# Number of characters that fit into one of two columns of a legend.
+LEGEND_CHARACTERS = 30
 # Plotly's names of the line styles.
 CHART_DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
 THINNED = (
@@ -51,8 +51,8 @@ class Figure:
 
     Args:
         path: path of the PNG or GIF file.
-        title: one line.
-        caption: sentences.
+        title: title of one line.
+        caption: caption in sentences.
         part: part of the report to which the figure belongs.
         chart: interactive chart of the same curves.
     """
@@ -70,7 +70,7 @@ class Figure:
 
 
 class FigureContext:
-    """Context for drawing one run's figures, with one line style per model."""
+    """Data, folder and line styles for the figures of a run."""
 
     def __init__(self, results: Results, folder: Path) -> None:
         self.case = results.case
@@ -92,14 +92,14 @@ class FigureContext:
         self.design = results.summary.design.models
         self.main_models = results.main_models
 
-    def of(self, name: str, variable: str) -> Array:
-        """Return a result (num_times,) of a model, at stations (num_times, num_stations)."""
+    def result(self, name: str, variable: str) -> Array:
+        """Return a result of a model (num_times,), or (num_times, num_stations) at stations."""
         values = self.data[variable].sel(model=name)
         dims = [dim for dim in ("time", "station") if dim in values.dims]
         return np.asarray(values.transpose(*dims).values, dtype=float)
 
     def stations(self) -> list[str]:
-        """Return the titles of the stations' panels."""
+        """Return the title of each station's panel."""
         places = self.data["station"]
         lateral = places["direction"] == "y" if "direction" in places.coords else places.isnull()
         return [
@@ -117,7 +117,7 @@ class FigureContext:
         marker: str = "",
         alone: bool = False,
     ) -> None:
-        """Draw a curve of one model; it has no dashes if it is alone in its panel."""
+        """Draw the curve of a model, without dashes if it is ``alone`` in its panel."""
         stroke = self.strokes[name]
         behind = not alone and name not in self.main_models
         axes.plot(
@@ -125,7 +125,7 @@ class FigureContext:
             y,
             color=stroke.color,
             linestyle="-" if alone else stroke.linestyle,
-            linewidth=BEHIND * linewidth if behind else linewidth,
+            linewidth=BACKGROUND_WIDTH * linewidth if behind else linewidth,
             zorder=1.9 if behind else 2.0,
             marker=marker,
             markersize=2.5,
@@ -133,7 +133,7 @@ class FigureContext:
         )
 
     def curve(self, name: str, values: Array, panel: int = 0, **more: Any) -> Curve:
-        """Return a model's curve for a chart; values are in the unit of the axis."""
+        """Return the curve of a model for a chart, with values in the unit of the axis."""
         stroke = self.strokes[name]
         dashes, shown = CHART_DASHES[stroke.linestyle], name in self.main_models
         return Curve(self.labels[name], values, stroke.color, dashes, shown, panel, **more)
@@ -141,7 +141,7 @@ class FigureContext:
     def plot(
         self, axes: Axes, values: Mapping[str, Array], panel: int = 0, linewidth: float = 1.5
     ) -> list[Curve]:
-        """Draw a line over time for each model; return the curves of the chart."""
+        """Draw a line over time for each model, and return the curves for the chart."""
         for name, curve in values.items():
             self.line(axes, name, self.time, curve, linewidth)
         return [self.curve(name, curve, panel) for name, curve in values.items()]
@@ -149,17 +149,21 @@ class FigureContext:
     def over_time(
         self, panels: int, height: float, end: float | None = None, share_y: bool = False
     ) -> tuple[Sheet, list[Axes]]:
-        """Return a sheet of :func:`new_sheet` over time, with the extension by drives.
+        """Return a sheet over time with panels, and below them the extension by drives, if any.
 
-        Time ends with the run unless an end is given in s.
+        Args:
+            panels: number of panels.
+            height: height of the sheet in inches.
+            end: end of the time axis in s; the end of the run unless given.
+            share_y: True for a common vertical scale.
         """
         sheet, column = new_sheet(panels, height, share_y)
         column[-1].set(xlabel="time (s)", xlim=(0.0, self.time[-1] if end is None else end))
-        # Segments that move together share one line.
+        # Segments with the same extension share a line.
         together: dict[tuple[float, ...], list[str]] = {}
         for suffix, inner in self.case.driven.items():
             if f"extension{suffix}" in self.data:
-                travel = self.of(self.models[0], f"extension{suffix}")
+                travel = self.result(self.models[0], f"extension{suffix}")
                 together.setdefault(tuple(travel.tolist()), []).append(inner)
         look: dict[str, Any] = {"color": theme.INK, "linewidth": 0.9, "alpha": 0.5}
         for axes in column if together else ():
@@ -181,16 +185,16 @@ class FigureContext:
     def stays_in_contact(self) -> bool:
         """True if no contact opens, so that no impact amplifies small differences."""
         touching = self.with_play if "contact_force" in self.data else ()
-        forces = [self.of(name, "contact_force") for name in touching]
+        forces = [self.result(name, "contact_force") for name in touching]
         return all(bool((np.nan_to_num(force) != 0.0).all()) for force in forces)
 
     @property
-    def first_stretch(self) -> float:
-        """The time in s until shortly after the first tip peaks; the whole run without peaks."""
+    def first_peak_window(self) -> float:
+        """The end in s of a close-up of the first tip peaks; the end of the run without peaks."""
         found = (self.summary[name].first_peak[self.tips[0]].time for name in self.models)
         peaks = [time for time in found if time is not None]
         end = float(self.time[-1])
-        return min(float(f"{PAST * max(peaks):.2g}"), end) if peaks else end
+        return min(float(f"{CLOSE_UP * max(peaks):.2g}"), end) if peaks else end
 
     def finish(
         self,
@@ -202,17 +206,17 @@ class FigureContext:
         part: Part = "motion",
         chart: Chart | None = None,
     ) -> Figure:
-        """Add title and legend to a sheet, write the file, and return the :class:`Figure`."""
+        """Add title and legend to a sheet, write its file, and return the figure."""
         if legend_of is not None:
             named: dict[str, Artist] = {}
             for axes in sheet.axes:
                 handles, labels = axes.get_legend_handles_labels()
                 named = dict(zip(labels, handles, strict=True)) | named
-            columns = 2 if max(map(len, named)) <= LETTERS else 1
+            columns = 2 if max(map(len, named)) <= LEGEND_CHARACTERS else 1
             sheet.legend([*named.values()], [*named], loc="outside lower left", ncols=columns)
         sheet.suptitle(title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
         path = self.folder / f"{stem}.png"
-        # An existing file has the same data.
+        # An existing file shows the same data.
         if not path.exists():
             sheet.savefig(path)
         if chart is not None and chart.thinned:
@@ -233,7 +237,7 @@ def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet,
     Args:
         panels: number of panels.
         height: height of the sheet in inches.
-        share_y: whether the panels share the vertical scale.
+        share_y: True for a common vertical scale.
     """
     sheet = Sheet(figsize=(theme.WIDTH, height))
     theme.Canvas(sheet)
@@ -241,10 +245,10 @@ def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet,
     return sheet, list(column[:, 0])
 
 
-def no_closer(axes: Axes) -> None:
+def widen_limits(axes: Axes) -> None:
     """Widen the limits of an axis around an almost constant curve, to hide round-off."""
     low, high = axes.get_ylim()
-    least = HARDLY_CHANGES * max(abs(low), abs(high))
+    least = MIN_SPAN * max(abs(low), abs(high))
     if high - low < least:
         middle = 0.5 * (low + high)
         axes.set_ylim(middle - 0.5 * least, middle + 0.5 * least)
@@ -262,12 +266,12 @@ def highest(values: Sequence[float] | Array) -> float:
     return float(finite.max()) if finite.size else float("nan")
 
 
-def of_start(case: Case) -> str:
-    """Return the sentence that x is the initial position; empty without telescoping."""
+def initial_position_note(case: Case) -> str:
+    """Return a note that x is the position at t = 0; empty without telescoping."""
     return " Positions x are those of t = 0 and move with their segments." if case.driven else ""
 
 
-def of_rests(case: Case, rests: Iterable[StaticResult]) -> str:
-    """Return a sentence on the extensions of the states at rest; empty without telescoping."""
+def extension_note(case: Case, rests: Iterable[StaticResult]) -> str:
+    """Return a note on the extensions of static states; empty without telescoping."""
     times = [f"{time:g}" for time in sorted({rest.time for rest in rests})]
     return f" Extension as at {join_words(times)} s." if case.driven and times else ""

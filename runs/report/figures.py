@@ -14,7 +14,7 @@ from pathlib import Path
 
 import matplotlib
 
-from runs.folder.files import write_whole
+from runs.folder.files import write_atomically
 from runs.folder.versions import program
 from runs.pipeline.results import CASE, ENSEMBLES, TRAJECTORIES, Results
 from runs.pipeline.summary import Snapshots
@@ -73,15 +73,15 @@ def draw(results: Results, folder: Path, helper: Executor | None = None) -> list
     Args:
         results: results of the run.
         folder: folder of the PNG files; it must exist. Existing files are kept.
-        helper: second process, which draws from the last figure on as soon as it is idle.
+        helper: second process, which draws figures from the last one backwards.
     """
     there = {}
     with suppress(BrokenExecutor):
         if helper is not None:
-            # Pickled here, since the results grow as this process uses them.
+            # Pickled before use, since results cache what they compute.
             content = pickle.dumps(results)
             for figures in reversed(FIGURES):
-                there[figures] = helper.submit(_draw_there, figures, content, folder)
+                there[figures] = helper.submit(_draw_in_helper, figures, content, folder)
     drawn: list[Figure] = []
     for figures in FIGURES:
         with suppress(BrokenExecutor):
@@ -92,7 +92,7 @@ def draw(results: Results, folder: Path, helper: Executor | None = None) -> list
     return drawn
 
 
-def _draw_there(figures: Draw, results: bytes, folder: Path) -> list[Figure]:
+def _draw_in_helper(figures: Draw, results: bytes, folder: Path) -> list[Figure]:
     return _draw_some(figures, pickle.loads(results), folder)
 
 
@@ -101,8 +101,8 @@ def _draw_some(figures: Draw, results: Results, folder: Path) -> list[Figure]:
         return figures(FigureContext(results, folder))
 
 
-def draw_in(results: Results, folder: Path, helper: Executor | None = None) -> list[Figure]:
-    """Draw the figures into a run's folder; remove figures of other data."""
+def draw_in_folder(results: Results, folder: Path, helper: Executor | None = None) -> list[Figure]:
+    """Draw the figures into the folder of a run, and remove figures of other data."""
     figures, known = folder / FOLDER, folder / FIGURE_DIGEST
     figure_digest = _figure_digest(results, folder)
     figures.mkdir(exist_ok=True)
@@ -112,12 +112,12 @@ def draw_in(results: Results, folder: Path, helper: Executor | None = None) -> l
     drawn = draw(results, figures, helper)
     for earlier in set(figures.iterdir()) - {figure.path for figure in drawn}:
         earlier.unlink()
-    write_whole(known, figure_digest)
+    write_atomically(known, figure_digest)
     return drawn
 
 
 def _figure_digest(results: Results, folder: Path) -> str:
-    """Return the SHA-256 of the data and of this program, which determine the figures."""
+    """Return the SHA-256 of the data and the program from which figures follow."""
     bare = results.summary.model_copy(update={"snapshots": Snapshots(written=[], skipped=None)})
     digest = sha256(json.dumps([str(bare), program(), matplotlib.__version__]).encode())
     for path in (folder / name for name in (CASE, TRAJECTORIES, ENSEMBLES)):

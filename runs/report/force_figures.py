@@ -18,17 +18,17 @@ from runs.report.figure_context import (
     FigureContext,
     farthest,
     highest,
+    initial_position_note,
     new_sheet,
-    no_closer,
-    of_start,
+    widen_limits,
 )
 from runs.report.formatting import fixed
 
-# Number of intervals of a run whose maxima are drawn.
+# Number of intervals into which a run is divided; the maximum of each is drawn.
 FORCE_BINS = 100
-# Contact force in N below which it counts as zero in a picture.
+# Smaller contact forces in N count as zero in a figure.
 LEAST_FORCE = 1000.0
-# Averaging time in s of contact forces: impacts follow one another within milliseconds.
+# Averaging time of contact forces in s. Successive impacts are milliseconds apart.
 FORCE_WINDOW = 0.010
 # Number of labels of a logarithmic axis that fit a panel of two inches.
 MOST_LABELS = 7
@@ -38,26 +38,26 @@ LOG_MARGIN = 1.2
 
 def first_contacts(run: FigureContext) -> list[Figure]:
     """Draw the mean contact force at each station during the first contacts."""
-    if not _touches(run):
+    if not _has_contacts(run):
         return []
-    end = run.first_stretch
+    end = run.first_peak_window
     shown = run.time <= end
     stations = run.stations()
     sheet, panels = run.over_time(len(stations), 1.3 + 2.0 * len(stations), end)
     curves = []
     for i, (axes, station) in enumerate(zip(panels, stations, strict=True)):
         for name in run.with_play:
-            mean = running_mean(run, run.of(name, "contact_force")[:, i] * TO_KILO)
+            mean = running_mean(run, run.result(name, "contact_force")[:, i] * TO_KILO)
             run.line(axes, name, run.time[shown], mean[shown], linewidth=1.3)
             curves.append(run.curve(name, mean, i))
         axes.set(title=station, ylabel="force (kN)")
-        no_closer(axes)
+        widen_limits(axes)
     title = f"Mean contact forces, first {end:g} s"
     caption = (
         f"Contact force at each station, mean over {TO_MILLI * FORCE_WINDOW:g} ms"
         + ("" if run.stays_in_contact else " of many short impacts")
         + ". Positive where the inner segment presses up."
-        + of_start(run.case)
+        + initial_position_note(run.case)
     )
     chart = Chart(run.time, "force (kN)", curves, stations, (0.0, end))
     return [run.finish(sheet, panels[0], "contact-first", title, caption, chart=chart)]
@@ -65,7 +65,7 @@ def first_contacts(run: FigureContext) -> list[Figure]:
 
 def contact_peaks(run: FigureContext) -> list[Figure]:
     """Draw the maximum contact force at each station in each interval of the run."""
-    if not _touches(run):
+    if not _has_contacts(run):
         return []
     bins = np.array_split(np.arange(run.time.size), min(FORCE_BINS, run.time.size))
     middle = np.array([run.time[part].mean() for part in bins])
@@ -74,7 +74,7 @@ def contact_peaks(run: FigureContext) -> list[Figure]:
     drawn = []
     for i, (axes, station) in enumerate(zip(panels, stations, strict=True)):
         for name in run.with_play:
-            force = np.abs(run.of(name, "contact_force_peak")[:, i])
+            force = np.abs(run.result(name, "contact_force_peak")[:, i])
             largest = np.array([highest(force[part]) for part in bins])
             largest[~(largest > LEAST_FORCE)] = np.nan
             drawn.append(largest * TO_KILO)
@@ -88,17 +88,17 @@ def contact_peaks(run: FigureContext) -> list[Figure]:
         f"Largest contact force at each station in every {run.time[-1] / len(bins):.2g} s, "
         "upwards or downwards, on a logarithmic scale. Forces below "
         f"{LEAST_FORCE * TO_KILO:g} kN are not plotted. Use the mean contact force to size pads "
-        "and walls." + of_start(run.case)
+        "and walls." + initial_position_note(run.case)
     )
     return [run.finish(sheet, panels[0], "contact-peaks", title, caption)]
 
 
 def friction(run: FigureContext) -> list[Figure]:
-    """Draw the friction force at each station of the most detailed model with friction."""
+    """Draw the friction force at each station, of the last model with friction."""
     if "friction_force" not in run.data or not run.with_play:
         return []
     name = run.with_play[-1]
-    force = np.nan_to_num(run.of(name, "friction_force")) * TO_KILO
+    force = np.nan_to_num(run.result(name, "friction_force")) * TO_KILO
     places = [(i, label) for i, label in enumerate(run.stations()) if force[:, i].any()]
     if not places:
         return []
@@ -116,19 +116,19 @@ def friction(run: FigureContext) -> list[Figure]:
 
 
 def running_mean(run: FigureContext, force: Array) -> Array:
-    """Return the running mean (num_times,) of a force over the averaging time, at most the run."""
+    """Return the running mean (num_times,) of a force. The window does not exceed the run."""
     width = min(max(1, round(FORCE_WINDOW / (run.time[1] - run.time[0]))), force.size)
     window = np.ones(width)
     held = np.convolve(np.ones(force.size), window, mode="same")
     return np.convolve(force, window, mode="same") / held
 
 
-def _touches(run: FigureContext) -> bool:
+def _has_contacts(run: FigureContext) -> bool:
     return bool(run.with_play) and bool(run.data.sizes["station"])
 
 
 def _log_scale(panels: Sequence[Axes], values: Array) -> None:
-    """Set one logarithmic scale for all panels, with labels even if it spans few decades."""
+    """Set a common logarithmic scale for all panels, with enough labels within a decade."""
     known = values[np.isfinite(values)]
     if known.size == 0:
         return
@@ -150,7 +150,7 @@ def _log_scale(panels: Sequence[Axes], values: Array) -> None:
 
 
 def drives(run: FigureContext) -> list[Figure]:
-    """Draw force and power of each drive; of elastic drives also their force and deflection."""
+    """Draw force and power of each drive, and force and deflection of each elastic drive."""
     return [
         draw(run, suffix, inner)
         for suffix, inner in run.case.driven.items()
@@ -163,8 +163,8 @@ def hoisting(run: FigureContext) -> list[Figure]:
     """Draw the force of the rope and the height of the hoisted load."""
     if "rope_force" not in run.data:
         return []
-    forces = _of_models(run, "rope_force", TO_KILO)
-    shown = {"rope force (kN)": forces, "height (mm)": _of_models(run, "load_height", TO_MILLI)}
+    forces = _model_results(run, "rope_force", TO_KILO)
+    shown = {"rope force (kN)": forces, "height (mm)": _model_results(run, "load_height", TO_MILLI)}
     weight = TO_KILO * run.data["rope_force_peak"].attrs["weight"]
     caption = (
         "Above: force of all falls of the rope, means of the output intervals. Below: height of "
@@ -172,13 +172,13 @@ def hoisting(run: FigureContext) -> list[Figure]:
     )
     largest = farthest([farthest(force) for force in forces.values()])
     title = f"Hoisting: rope force up to {fixed(largest, 1)} kN"
-    return [_of_drive(run, "hoist", shown, "force (kN), height (mm)", title, caption)]
+    return [_draw_panels(run, "hoist", shown, "force (kN), height (mm)", title, caption)]
 
 
 def _stick_slip(run: FigureContext, suffix: str, inner: str) -> Figure:
     shown = {
-        "force of the drive (kN)": _of_models(run, f"drive_force{suffix}", TO_KILO),
-        "speed (m/s)": _of_models(run, f"extension_speed{suffix}", 1.0),
+        "force of the drive (kN)": _model_results(run, f"drive_force{suffix}", TO_KILO),
+        "speed (m/s)": _model_results(run, f"extension_speed{suffix}", 1.0),
     }
     records = [
         of for own in run.summary.values() if (of := own.stick_slip.get(f"drive_force{suffix}"))
@@ -189,14 +189,16 @@ def _stick_slip(run: FigureContext, suffix: str, inner: str) -> Figure:
         f"of the segment, which is 0 while it sticks."
     )
     title = f"Drive of {inner}: sticks {sticks} times, slips by up to {TO_MILLI * slip:.2g} mm"
-    return _of_drive(run, f"stick-slip{suffix}", shown, "force (kN), speed (m/s)", title, caption)
+    return _draw_panels(
+        run, f"stick-slip{suffix}", shown, "force (kN), speed (m/s)", title, caption
+    )
 
 
 def _drive(run: FigureContext, suffix: str, inner: str) -> Figure:
     shown = {
         heading: {
             name: running_mean(run, values)
-            for name, values in _of_models(run, f"{result}{suffix}", TO_KILO).items()
+            for name, values in _model_results(run, f"{result}{suffix}", TO_KILO).items()
         }
         for heading, result in (
             ("force against friction (kN)", "drive_friction"),
@@ -211,14 +213,14 @@ def _drive(run: FigureContext, suffix: str, inner: str) -> Figure:
         f"Means over {TO_MILLI * FORCE_WINDOW:g} ms."
     )
     title = f"Drive of {inner}: up to {fixed(force, 2)} kN against friction"
-    return _of_drive(run, f"drive{suffix}", shown, "force (kN), power (kW)", title, caption)
+    return _draw_panels(run, f"drive{suffix}", shown, "force (kN), power (kW)", title, caption)
 
 
-def _of_models(run: FigureContext, result: str, unit: float) -> dict[str, Array]:
-    return {name: unit * run.of(name, result) for name in run.models}
+def _model_results(run: FigureContext, result: str, unit: float) -> dict[str, Array]:
+    return {name: unit * run.result(name, result) for name in run.models}
 
 
-def _of_drive(
+def _draw_panels(
     run: FigureContext,
     stem: str,
     shown: Mapping[str, Mapping[str, Array]],
@@ -226,7 +228,7 @@ def _of_drive(
     title: str,
     caption: str,
 ) -> Figure:
-    """Draw several results of a drive, one panel for each, in all models."""
+    """Draw several results in all models, with a panel for each."""
     sheet, panels = run.over_time(2, 5.2)
     curves = []
     for panel, (axes, (label, values)) in enumerate(zip(panels, shown.items(), strict=True)):
@@ -237,7 +239,7 @@ def _of_drive(
 
 
 def stress_history(run: FigureContext) -> list[Figure]:
-    """Draw the maximum von Mises stresses of each shell per interval and position."""
+    """Draw the maximum von Mises stress of each shell in each interval, at each station."""
     figures = []
     for name in run.models:
         stress = run.summary[name].stress

@@ -13,7 +13,7 @@ _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def scientific(number: float, digits: int = 1) -> str:
-    """Return a number in scientific notation, such as 8 × 10⁻⁵, with at most some digits."""
+    """Return a number in scientific notation, such as 8 × 10⁻⁵, with ``digits`` at most."""
     mantissa, exponent = f"{number:.{digits - 1}e}".split("e")
     power = str(int(exponent)).translate(_SUPERSCRIPT)
     return f"{with_minus_signs(f'{float(mantissa):g}')} × 10{power}"
@@ -57,10 +57,10 @@ def fixed(value: float | None, decimals: int, factor: float = 1.0) -> str:
 
 
 def repeated(values: Sequence[float]) -> str:
-    """Return the median of repeated measurements, with the digits that their spread leaves.
+    """Return the median of repeated measurements as text, rounded to the first digit of the spread.
 
-    The spread is half the range; its first digit is the last digit of the text. The text starts
-    with ``~`` if no digit is left. A single value has no known spread and gets one digit.
+    The spread is half the range. If it exceeds the median, the text starts with ``~``. A single
+    value has one digit.
     """
     middle = median(values)
     if middle == 0.0 or not math.isfinite(middle):

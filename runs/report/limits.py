@@ -11,7 +11,7 @@ from runs.report.tables import Column, Table
 
 
 def limit_table(results: Results) -> Table | None:
-    """Return the table of the case's limits and the numbers of the leading models."""
+    """Return the table of the limits of a case and the values of the main models."""
     checks = list(check_limits(results))
     if not checks:
         return None
@@ -28,7 +28,7 @@ def limit_table(results: Results) -> Table | None:
 
 
 def limit_faults(results: Results) -> Iterator[str]:
-    """Yield the key, the number and the model of each limit that does not hold."""
+    """Yield a line with key, value and model for each limit that is exceeded."""
     for check in check_limits(results):
         if check.holds:
             continue

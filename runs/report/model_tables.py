@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def model_tables(results: Results) -> list[Table]:
-    """Return the tables of the models' results and methods that apply to a run."""
+    """Return the tables of a run on its models and their numerics."""
     found = (
         model_table(results),
         step_table(results),
@@ -35,7 +35,7 @@ def model_tables(results: Results) -> list[Table]:
 
 
 def model_table(results: Results) -> Table:
-    """Return the table of the models' results, in the order of the case; failed models are last."""
+    """Return the table of the models, in the order of the case; failed models are last."""
     summary, duration = results.summary, results.case.time.duration
     models = list(summary.models.values())
     failed = [model for model in results.case.models if model.name in summary.failures]
@@ -86,7 +86,7 @@ def metric_columns(kind: type, rows: Sequence[object]) -> list[Column]:
 
 
 def _is_unresolved(model: ModelSummary) -> bool:
-    """Return whether the motion has impacts that the step does not resolve."""
+    """Return True if the step does not resolve the impacts of a motion."""
     return bool(model.resolving_step and model.contact_changes)
 
 
@@ -98,9 +98,9 @@ def _peak_force(model: ModelSummary) -> Cell:
 
 
 def horizon_column(models: list[ModelSummary], share: float, duration: float) -> Column:
-    """Return the times at which members of each ensemble differ by a share of the tip's range.
+    """Return the column of the times at which members differ by a share of the range of the tip.
 
-    A cell is, for example, ``> 10`` if they do not differ so much within 10 s.
+    A cell is ``> 10`` if they do not differ so much within a run of 10 s.
     """
 
     def horizon(model: ModelSummary) -> Cell:
@@ -114,7 +114,7 @@ def horizon_column(models: list[ModelSummary], share: float, duration: float) ->
 
 
 def step_table(results: Results) -> Table:
-    """Return the table of the models' numbers of steps, and of the necessary numbers."""
+    """Return the table of steps: computed, and necessary for the first peaks."""
     models = results.summary.models.values()
     columns = [
         Column("model", list(results.summary.models)),
@@ -191,13 +191,18 @@ def space_table(results: Results) -> Table | None:
         columns += [
             Column(way, [time for time, _ in shown], ".3f", "s"),
             Column(way, [height for _, height in shown], ".1f", "mm"),
-            Column(f"{way}, off {reference}", [_off(p.height, other) for p in peaks], ".2g", "%"),
+            Column(
+                f"{way}, off {reference}",
+                [_relative_difference(p.height, other) for p in peaks],
+                ".2g",
+                "%",
+            ),
         ]
     return Table("First peaks of the tip in space", columns, name="space")
 
 
 def buckling_table(results: Results) -> Table | None:
-    """Return the table of axial forces over buckling loads; None without axial forces."""
+    """Return the table of buckling factors of axial forces; None without axial forces."""
     models = results.summary.models
     factors = [model.critical_factor for model in models.values()]
     tips = [model.static_tip for model in models.values()]
@@ -221,7 +226,7 @@ def _first_peak(peak: FirstPeak, duration: float) -> tuple[Cell, Cell]:
     return peak if peak.height is not None else ("no peak", f"within {duration:g} s")
 
 
-def _off(height: float | None, other: float | None) -> float | None:
+def _relative_difference(height: float | None, other: float | None) -> float | None:
     return None if height is None or other is None else height / other - 1.0
 
 
@@ -257,10 +262,10 @@ def wall_table(results: Results) -> Table | None:
 
 
 def _largest(boom: Boom, stress: StressSummary) -> str:
-    """Return the design stress, which is a mean over a patch, and the stress at the instant."""
+    """Return the largest mean stress over a patch, and the stress of a triangle at that time."""
     triangle = (
         f"single element, which grows with mesh refinement beside a line of contact: "
-        f"{number(TO_MEGA * stress.von_mises, 3)} MPa{_of_yield(boom, stress)} at "
+        f"{number(TO_MEGA * stress.von_mises, 3)} MPa{_yield_utilisation(boom, stress)} at "
         f"x = {stress.x:.2f} m in {stress.segment!r}, {stress.face} face of the wall "
         f"{stress.wall!r}, at {stress.time:.3f} s, the instant of this table."
     )
@@ -269,13 +274,13 @@ def _largest(boom: Boom, stress: StressSummary) -> str:
     return (
         "largest von Mises stress over a patch of half a wall, which converges with mesh "
         "refinement: "
-        f"{number(TO_MEGA * patch.von_mises, 3)} MPa{_of_yield(boom, patch)} near "
+        f"{number(TO_MEGA * patch.von_mises, 3)} MPa{_yield_utilisation(boom, patch)} near "
         f"x = {patch.x:.2f} m in {patch.segment!r}, at {patch.time:.3f} s; of a {triangle}"
     )
 
 
-def _of_yield(boom: Boom, stress: StressSummary | LargestPatch) -> str:
-    """Return the utilisation of the yield strength, if the case specifies it."""
+def _yield_utilisation(boom: Boom, stress: StressSummary | LargestPatch) -> str:
+    """Return the utilisation of the yield strength as text; empty without a strength."""
     (segment,) = (one for one in boom.segments if one.name == stress.segment)
     strength = segment.yield_strength
     if strength is None:
@@ -284,7 +289,7 @@ def _of_yield(boom: Boom, stress: StressSummary | LargestPatch) -> str:
 
 
 def calibration_tables(results: Results) -> list[Table]:
-    """Return the tables of segments and springs of calibrated beams, one pair per shell."""
+    """Return the tables of stiffness and springs of calibrated beams, a pair for each shell."""
     cards = {
         name: model.calibration
         for name, model in results.summary.models.items()

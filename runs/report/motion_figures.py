@@ -17,17 +17,17 @@ from runs.report.charts import Chart, Curve
 from runs.report.figure_context import Figure, FigureContext, farthest, highest, new_sheet
 from runs.report.formatting import fixed, scientific
 
-# Percentage of an ensemble's members in its band.
+# Lower and upper percentile of the band of an ensemble.
 BAND = (5.0, 95.0)
-# Opacity of the bands, which overlap.
+# Opacity of overlapping bands.
 SHADE = 0.8
 # Line style of each share of the range.
 DASHES = ("-", ":", "--")
-# Energies that are sums of others, which the figure omits.
+# Relative energy that counts as zero.
 ROUND_OFF = 1.0e-16
-# Shades of stored energies, which have the model's colour, and of dissipated energies.
-HELD = {"strain_energy": 0.65, "kinetic_energy": 0.3, "contact_energy": 1.0}
-LOST = (0.75, 0.45, 0.2)
+# Strength of the colour of each stored energy, and of dissipated energies.
+STORED = {"strain_energy": 0.65, "kinetic_energy": 0.3, "contact_energy": 1.0}
+DISSIPATED = (0.75, 0.45, 0.2)
 
 
 # Direction of each tip displacement in titles and captions.
@@ -35,35 +35,35 @@ DIRECTIONS = {"tip": "", "tip_lateral": ", lateral"}
 
 
 def tip(run: FigureContext) -> list[Figure]:
-    """Draw the tip displacements of all models, one panel per direction, larger amplitude first."""
+    """Draw the tip deflection of all models, with a panel for each direction."""
     figures = []
     for place in run.tips:
         sheet, (axes,) = run.over_time(1, 3.9)
         axes.set_ylabel("deflection (mm)")
         for name in run.models:
-            run.line(axes, name, run.time, TO_MILLI * run.of(name, place))
+            run.line(axes, name, run.time, TO_MILLI * run.result(name, place))
             _members(run, axes, name, place)
         if limit := _limit(run, place):
             axes.axhline(limit, label="limit", **theme.LIMIT)
         way = DIRECTIONS[place]
-        caption = f"Deflection of the tip{way}, all models.{_sampled(run, place)}"
-        title, stem = f"Tip{way}: {_reach(run, place)}", place.replace("_", "-")
+        caption = f"Deflection of the tip{way}, all models.{_accuracy_note(run, place)}"
+        title, stem = f"Tip{way}: {_largest_deflection(run, place)}", place.replace("_", "-")
         figures.append(run.finish(sheet, axes, stem, title, caption, chart=_chart(run, place)))
     return figures
 
 
 def close_up(run: FigureContext) -> list[Figure]:
-    """Draw the tip until shortly after its first peak; nothing if no model has a peak."""
+    """Draw a close-up of the first peak of the tip; nothing if no model has a peak."""
     place = run.tips[0]
     if not any(run.summary[name].first_peak[place].time for name in run.models):
         return []
-    end = run.first_stretch
+    end = run.first_peak_window
     shown = run.time <= end
     sheet, (axes,) = run.over_time(1, 3.9, end)
     contacts, peakless = [], []
     circle: dict[str, Any] = {"mfc": "white", "ms": 7, "mew": 1.6}
     for name in run.models:
-        deflection = TO_MILLI * run.of(name, place)
+        deflection = TO_MILLI * run.result(name, place)
         run.line(axes, name, run.time[shown], deflection[shown])
         color = run.strokes[name].color
         contact = run.summary[name].first_contact
@@ -92,7 +92,7 @@ def close_up(run: FigureContext) -> list[Figure]:
 
 
 def heads(run: FigureContext) -> list[Figure]:
-    """Draw the heads of the outer segments, one panel per model, since they rattle."""
+    """Draw the deflection of the heads of outer segments, with a panel for each model."""
     joints = range(1, len(run.case.joints) + 1)
     places = ["head", *(f"head-{number}" for number in joints if number > 1)]
     return [_head(run, place) for place in places if place in run.data]
@@ -103,7 +103,7 @@ def _head(run: FigureContext, place: str) -> Figure:
     # A single panel has room for the names of its axes.
     height = 1.1 + max(1.25 * len(models), 2.2)
     sheet, panels = run.over_time(len(models), height, share_y=True)
-    curves = {name: TO_MILLI * run.of(name, place) for name in run.models}
+    curves = {name: TO_MILLI * run.result(name, place) for name in run.models}
     for axes, name in zip(panels, models, strict=True):
         for other in run.bonded:
             if other != name:
@@ -118,16 +118,16 @@ def _head(run: FigureContext, place: str) -> Figure:
     dashed = f" Dashed: {', '.join(tied)}, without play." if tied else ""
     caption = (
         f"Deflection of the head of the segment {which!r}, model by model.{dashed}"
-        f"{_sampled(run, place)}"
+        f"{_accuracy_note(run, place)}"
     )
-    title = f"Head of {which!r}: {_reach(run, place)}"
+    title = f"Head of {which!r}: {_largest_deflection(run, place)}"
     return run.finish(sheet, panels[0], place, title, caption, chart=_chart(run, place))
 
 
 def _chart(run: FigureContext, place: str) -> Chart:
-    """Return the chart of one place in all models, with bands of ensembles."""
+    """Return the chart of an output in all models, with bands of ensembles."""
     curves = [
-        run.curve(name, TO_MILLI * run.of(name, place), band=_band(run, name, place))
+        run.curve(name, TO_MILLI * run.result(name, place), band=_band(run, name, place))
         for name in run.models
     ]
     if limit := _limit(run, place):
@@ -136,24 +136,24 @@ def _chart(run: FigureContext, place: str) -> Chart:
 
 
 def _limit(run: FigureContext, place: str) -> float | None:
-    """Return the permitted tip deflection in mm on the side of the farthest one, if any."""
+    """Return the permitted tip deflection in mm, with the sign of the largest; None for none."""
     limits = run.case.limits
     if place != "tip" or limits is None or limits.tip is None:
         return None
-    reaches = [farthest(run.of(name, place)) for name in run.models]
+    reaches = [farthest(run.result(name, place)) for name in run.models]
     return float(np.copysign(TO_MILLI * limits.tip, max(reaches, key=abs)))
 
 
-def _reach(run: FigureContext, place: str) -> str:
-    """Return the largest deflection at one place over the models with play, or else all models."""
-    reaches = {name: farthest(run.of(name, place)) for name in run.with_play or run.models}
+def _largest_deflection(run: FigureContext, place: str) -> str:
+    """Return a text on the largest deflection of the models with play, or else of all models."""
+    reaches = {name: farthest(run.result(name, place)) for name in run.with_play or run.models}
     name = max(reaches, key=lambda one: np.nan_to_num(abs(reaches[one]), nan=-1.0))
     most = fixed(reaches[name], 0, TO_MILLI)
     return f"up to {most} mm" + (f" in {name}" if len(reaches) > 1 else "")
 
 
 def _members(run: FigureContext, axes: Axes, name: str, place: str) -> None:
-    """Draw the band of a model's ensemble behind its curve, and its horizons."""
+    """Draw band and horizons of the ensemble of a model."""
     band = _band(run, name, place)
     if band is None:
         return
@@ -168,7 +168,7 @@ def _members(run: FigureContext, axes: Axes, name: str, place: str) -> None:
 
 
 def _band(run: FigureContext, name: str, place: str) -> tuple[Array, Array] | None:
-    """Return the limits (num_times,) in mm of the band that contains most of an ensemble."""
+    """Return the limits (num_times,) in mm of the band of an ensemble; None without one."""
     if run.ensembles is None or name not in run.ensembles["model"] or place not in run.ensembles:
         return None
     members = TO_MILLI * run.ensembles[place].sel(model=name).values
@@ -176,8 +176,8 @@ def _band(run: FigureContext, name: str, place: str) -> tuple[Array, Array] | No
     return low, high
 
 
-def _sampled(run: FigureContext, place: str) -> str:
-    """Return a sentence on the accuracy of a curve and on the marks of its ensemble."""
+def _accuracy_note(run: FigureContext, place: str) -> str:
+    """Return sentences on the accuracy of curves and on the marks of ensembles."""
     if not run.with_play or run.stays_in_contact:
         return ""
     if run.ensembles is None or place not in run.ensembles:
@@ -204,7 +204,7 @@ def _sampled(run: FigureContext, place: str) -> str:
 
 
 def slow_peaks(run: FigureContext) -> list[Figure]:
-    """Draw the peaks of the slow motion that all members of an ensemble share, with spreads."""
+    """Draw the peaks of the slow motion that all members of an ensemble have, with spreads."""
     found = {
         name: peaks
         for name in run.with_play
@@ -242,7 +242,7 @@ def slow_peaks(run: FigureContext) -> list[Figure]:
 
 
 def horizons(run: FigureContext) -> list[Figure]:
-    """Draw horizons over the size of the perturbation, for models with measured growth."""
+    """Draw the horizons of each model over the relative change of its data."""
     measured = {name: found for name in run.with_play if (found := run.summary[name].horizons)}
     if not measured:
         return []
@@ -274,34 +274,34 @@ def horizons(run: FigureContext) -> list[Figure]:
 
 
 def energies(run: FigureContext) -> list[Figure]:
-    """Draw the energies of one model: the last one with play, which is the most detailed."""
+    """Draw the energies of the last model with play."""
     name = (run.with_play or run.models)[-1]
     columns = dict(zip(DRIVEN_ENERGIES, _energies(run, name).T, strict=False))
     drawn = columns.pop("drive_work", None)
     work = columns.pop("work") + (0.0 if drawn is None else drawn)
     of = "work of loads" if drawn is None else "work of loads and drives"
-    held = {energy: columns.pop(energy) for energy in HELD}
+    held = {energy: columns.pop(energy) for energy in STORED}
     lost = {energy: values for energy, values in columns.items() if values.any()}
     parts = held | lost
     color = run.strokes[name].color
-    tints = [theme.tint(color, strength) for strength in HELD.values()]
-    tints += [theme.tint(theme.LOSS, strength) for strength in LOST[: len(lost)]]
+    tints = [theme.tint(color, strength) for strength in STORED.values()]
+    tints += [theme.tint(theme.LOSS, strength) for strength in DISSIPATED[: len(lost)]]
     sheet, (axes,) = run.over_time(1, 3.9)
     areas = axes.stackplot(
         run.time,
         *parts.values(),
-        labels=[_named(energy) for energy in parts],
+        labels=[_energy_name(energy) for energy in parts],
         colors=tints,
         linewidth=0,
     )
     for area in areas[len(held) :]:
-        # The colour of losses is independent of the model's colour.
+        # Losses have the same colour in all models.
         area.set(hatch="///", edgecolor="white")
     start = float(sum(values[0] for values in parts.values()))
     total = f"initial energy + {of}" if start else of
     axes.plot(run.time, start + work, color=theme.INK, linewidth=1.3, label=total)
     axes.set_ylabel("energy (J)")
-    losses = " and ".join(_named(energy) for energy in lost)
+    losses = " and ".join(_energy_name(energy) for energy in lost)
     hatched = f"; hatched: {losses}" if lost else ""
     more = " and the initial energy" if start else ""
     caption = (
@@ -313,7 +313,7 @@ def energies(run: FigureContext) -> list[Figure]:
 
 
 def residuals(run: FigureContext) -> list[Figure]:
-    """Draw the running maximum of every model's energy residual."""
+    """Draw the running maximum of the energy residual of each model."""
     sheet, (axes,) = new_sheet(1, 3.9)
     worst = []
     for name in run.models:
@@ -333,9 +333,9 @@ def residuals(run: FigureContext) -> list[Figure]:
 def _energies(run: FigureContext, name: str) -> Array:
     """Return energies (num_times, num_energies) in J by :func:`dynamics.energy.energy_residual`."""
     known = [energy for energy in DRIVEN_ENERGIES if energy in run.data]
-    return np.array([run.of(name, energy) for energy in known]).T
+    return np.array([run.result(name, energy) for energy in known]).T
 
 
-def _named(energy: str) -> str:
+def _energy_name(energy: str) -> str:
     """Return the displayed name of an energy: *strain* for ``strain_energy``."""
     return energy.removesuffix("_energy").replace("_", " ")

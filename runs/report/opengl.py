@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Test of VTK's rendering in another process, since VTK aborts without a working OpenGL."""
+"""Test of rendering by VTK in another process, since VTK aborts without OpenGL."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ import signal
 import subprocess
 import sys
 
-PROBE = f"from {__name__} import first_picture; first_picture()"
+PROBE = f"from {__name__} import render_test_picture; render_test_picture()"
 PROBE_SECONDS = 60.0
 REMEDY = "install libegl1 and libgl1-mesa-dri beside pip's vtk, or give Debian's VTK a display"
 
 
 class RenderingUnavailable(RuntimeError):
-    """Error for rendering on this machine; the message is the reason, in one line."""
+    """Error if VTK cannot render on this machine, with the reason."""
 
 
-def first_picture() -> None:
-    """Draw a ball as a test.
+def render_test_picture() -> None:
+    """Render a sphere as a test.
 
     Raises:
         ImportError: VTK is not installed.
@@ -34,7 +34,7 @@ def first_picture() -> None:
         raise RuntimeError("VTK draws nothing")
 
 
-def hush() -> None:
+def silence_stderr() -> None:
     """Silence stderr of this process, to which VTK and OpenGL write."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
 
@@ -50,7 +50,7 @@ def require_opengl() -> None:
             [sys.executable, "-c", PROBE], capture_output=True, text=True, timeout=PROBE_SECONDS
         )
     except subprocess.TimeoutExpired:
-        raise too_late() from None
+        raise timeout_error() from None
     if probe.returncode < 0:
         name = signal.Signals(-probe.returncode).name
         raise RenderingUnavailable(f"VTK finds no working OpenGL and dies of {name}; {REMEDY}")
@@ -61,6 +61,6 @@ def require_opengl() -> None:
         )
 
 
-def too_late() -> RenderingUnavailable:
-    """Return the error for a process of VTK that neither renders nor ends."""
+def timeout_error() -> RenderingUnavailable:
+    """Return the error for a rendering process that does not respond."""
     return RenderingUnavailable(f"VTK makes no picture within {PROBE_SECONDS:g} s; {REMEDY}")

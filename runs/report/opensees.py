@@ -30,7 +30,7 @@ from runs.case.kinds.model import BuildContext, ModelBoom, select_kind
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.folder.cache import Cache
-from runs.folder.files import write_whole
+from runs.folder.files import write_atomically
 from runs.pipeline.models import build
 
 if TYPE_CHECKING:
@@ -316,4 +316,4 @@ def write(
         text = script(case, model.model_boom(boom), model, calibration)
     except BoomError as error:
         raise BadInput.from_boom(file, error) from None
-    write_whole(path, text)
+    write_atomically(path, text)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Files of a run, in a folder that replaces an earlier one when it is complete."""
+"""Writer of the files of a run."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ import xarray as xr
 
 from runs.case.user_files import check_not_working_folder
 from runs.client import judge
-from runs.folder.files import changed_folder, exclusive, write_whole
+from runs.folder.files import folder_lock, modified_folder, write_atomically
 from runs.pipeline.results import FIELDS, SUMMARY, TRAJECTORIES, Results
 from runs.pipeline.run import Run
 from runs.pipeline.summary import Snapshots
 from runs.report import snapshots
 from runs.report.document import render
 from runs.report.figure_context import Figure
-from runs.report.figures import draw_in
+from runs.report.figures import draw_in_folder
 from runs.report.opengl import RenderingUnavailable
 from runs.report.pages import Addition
 from runs.report.tables import as_json
@@ -35,23 +35,23 @@ LATER = "not requested; protractile snapshot draws them"
 
 
 @contextmanager
-def rendered_again(
+def rerender_report(
     folder: str, excel: str | None = None
 ) -> Iterator[tuple[Results, Addition, Path]]:
-    """Yield a run, the client's evaluation, and a copy of its folder to change.
+    """Yield results, additions of the client, and a copy of the folder of a run.
 
-    At the end, the report of the copy is rendered, and the copy replaces the folder.
+    At the end the report is rendered in the copy, and the copy replaces the folder.
 
     Args:
         folder: folder of a run.
-        excel: name of the option in messages, if a workbook is to be written, too.
+        excel: name of the option in messages if a workbook is written, too.
     """
     path = Path(folder)
-    with exclusive(path):
+    with folder_lock(path):
         results = Results.load(path)
         check_not_working_folder(path, folder, "folder")
         judged = judge(results)
-        with changed_folder(path) as part:
+        with modified_folder(path) as part:
             yield results, judged, part
             write_report(results, judged, part)
             if excel is not None:
@@ -59,18 +59,18 @@ def rendered_again(
 
 
 @contextmanager
-def writing(
+def write_in_two_steps(
     run: Run, folder: Path, snapshots_now: bool = True, helper: Executor | None = None
 ) -> Iterator[Callable[[Addition], None]]:
-    """Write the motion of a run; yield the function that writes all other files.
+    """Write the motion of a run, and yield a function that writes all other files.
 
-    Meanwhile another process draws snapshots, before the run is evaluated.
+    Another process draws snapshots while the caller evaluates the run.
 
     Args:
         run: a run.
         folder: an empty folder.
-        snapshots_now: whether snapshots are drawn now, or later on request.
-        helper: process that draws them and figures; a new one for snapshots alone unless given.
+        snapshots_now: False to draw no snapshots.
+        helper: process for snapshots and figures; None for a new process for snapshots.
     """
     results = run.results
     results.write(folder)
@@ -82,7 +82,7 @@ def writing(
     later = LATER if files and not pictured else None
     results.summary.snapshots = Snapshots(written=[], skipped=later)
     motion = folder / TRAJECTORIES
-    with snapshots.drawing(results, pictured, motion, folder, helper=helper) as gather:
+    with snapshots.start_rendering(results, pictured, motion, folder, helper=helper) as gather:
 
         def write_others(addition: Addition) -> None:
             write_csv(results.trajectories, folder / "trajectories.csv")
@@ -90,8 +90,8 @@ def writing(
                 prefix = path.name.removesuffix(FIELDS)
                 run.shells[name].write_files(folder, prefix)
             if turned := viewer(run):
-                write_whole(folder / VIEWER, turned)
-            figures = draw_in(results, folder, helper if pictured else None)
+                write_atomically(folder / VIEWER, turned)
+            figures = draw_in_folder(results, folder, helper if pictured else None)
             try:
                 gather()
             except RenderingUnavailable as reason:
@@ -103,19 +103,19 @@ def writing(
 
 def write(run: Run, addition: Addition, folder: Path) -> None:
     """Write all files of an evaluated run to an empty folder."""
-    with writing(run, folder) as write_others:
+    with write_in_two_steps(run, folder) as write_others:
         write_others(addition)
 
 
 def write_report(results: Results, addition: Addition, folder: Path) -> None:
-    """Write the files derived from the trajectories: summary, figures, report.
+    """Write summary, figures, tables and report.
 
     Args:
         results: results of the run.
-        addition: addition of a client.
+        addition: additions of the client.
         folder: folder of the files.
     """
-    _write_pages(results, addition, folder, draw_in(results, folder))
+    _write_pages(results, addition, folder, draw_in_folder(results, folder))
 
 
 def _write_pages(
@@ -135,11 +135,11 @@ def _write_pages(
     }:
         texts[CALIBRATION] = as_json(cards)
     for name, text in texts.items():
-        write_whole(folder / name, text)
+        write_atomically(folder / name, text)
 
 
 def write_csv(trajectories: xr.Dataset, path: Path) -> None:
-    """Write trajectories as CSV: a line per model and time, columns ``NAME@PLACE`` of stations."""
+    """Write trajectories as CSV: a line for each model and time. Stations are ``NAME@PLACE``."""
     columns = {}
     places = trajectories["place"].values if "place" in trajectories.coords else ()
     for name, variable in trajectories.data_vars.items():
@@ -156,7 +156,7 @@ def write_csv(trajectories: xr.Dataset, path: Path) -> None:
         table = csv.writer(file)
         table.writerow(["model", "time", *columns])
         for name, rows in zip(trajectories["model"].values, values, strict=True):
-            # This is four times as fast as csv.writer.
+            # numpy writes four times as fast as csv.writer.
             begin = StringIO()
             csv.writer(begin, lineterminator="").writerow([name])
             numbers = np.column_stack([time, rows]).tolist()

@@ -44,42 +44,42 @@ from runs.report.sheet import (
 )
 from shell_model.stress.stresses import ShellStress
 
-# Limits of the drawn clearance, and of the drawn wall displacements relative to the outer segment,
-# as fractions of the outer section's height; margin in m beside the stations.
+# Limits of the magnified clearance and of magnified wall displacements relative to the outer
+# segment, over the height of the outer section; margin beside the stations in m.
 CLEARANCE_DRAWN, DISPLACEMENT_DRAWN, MARGIN = 0.08, 0.25, 0.6
 
 PIXELS = (SHEET[0], 625)
 
-# Sizes in pixels of the stress pictures of the overlap and of the whole boom; limit of the boom's
-# drawn displacements as a fraction of its length.
+# Sizes in pixels of the stress pictures of the overlap and of the whole boom; limit of magnified
+# displacements of the boom over its length.
 STRESS_PIXELS, BOOM_PIXELS = (SHEET[0], 475), (1160, 195)
 BOOM_DISPLACEMENT = 0.1
 
 # Colours of the segments' cut walls in stress pictures.
 CUT_OUTER, CUT_INNER = "#ffffff", "#c8c8c8"
 
-# Factor between peak and mean below which only the mean is shown.
+# A peak force is shown beside the mean if it exceeds the mean by this factor.
 PEAK = 1.02
 
-# Shortest and longest arrow, and the space for arrows above and below the section, in pixels.
+# Lengths in pixels of the shortest and the longest arrow; room for arrows above and below.
 SHORTEST, LONGEST, ARROW_ROOM = 60.0, 110.0, 120.0
 
-# Fraction of the walls' area within the stress scale. A few triangles at a line of contact would
-# otherwise use most of the scale.
+# Share of the area of the walls within the stress scale. A few triangles at a line contact would
+# otherwise stretch the scale.
 SHOWN_AREA = 0.995
 
-# Stress in Pa below which it counts as zero.
+# Smaller stresses in Pa count as zero.
 LEAST = 1.0
 
-# Number of elements across a web that resolve its stresses.
+# Least number of elements across a web that resolve its stresses.
 ENOUGH = 4
 
-# Fraction of the scale above which its end leaves no space for a number.
+# A round number above this fraction of the scale would overlap the number at its end.
 LAST_TICK = 0.65
 
 
-class Half(NamedTuple):
-    """Half of a segment's box in a picture: pyvista surface, style, colour of the cut."""
+class HalfBox(NamedTuple):
+    """Half of a segment behind a cut: pyvista surface, its style, and colour of the cut walls."""
 
     surface: Any
     look: Mapping[str, Any]
@@ -88,7 +88,7 @@ class Half(NamedTuple):
 
 @dataclass(frozen=True)
 class OverlapView:
-    """View settings that all pictures of an overlap share, with stations and contact forces.
+    """View of an overlap that all its pictures share.
 
     Args:
         scene: scene of the boom in motion.
@@ -125,12 +125,14 @@ class OverlapView:
 
     @cached_property
     def scale(self) -> float:
-        """The magnification of displacements and play, which the larger of both limits."""
+        """The magnification of displacements and play by both limits."""
         height = 2.0 * self.scene.half_height(self.overlap.outer)
         half = 0.5 * np.ptp(self.stations) + MARGIN
         near = np.abs(self.scene.points[:, 0] - self.middle) <= half
         near &= np.isin(self.scene.owner, self.numbers)
-        largest = max(float(np.abs(self._beside(time)[near]).max()) for time in self.times)
+        largest = max(
+            float(np.abs(self._relative_displacements(time)[near]).max()) for time in self.times
+        )
         return round_scale(
             height
             * min(
@@ -149,7 +151,7 @@ class OverlapView:
 
     @cached_property
     def behind(self) -> Mask:
-        """The mask (num_triangles,) of the half behind the cut."""
+        """The mask (num_triangles,) of the triangles behind the cut."""
         corners = self.scene.points[self.scene.triangles]
         near = (np.abs(corners[..., 0] - self.middle) < self.width).all(axis=1)
         return np.asarray(near & (corners[..., 1].mean(axis=1) > 0.0))
@@ -167,41 +169,41 @@ class OverlapView:
 
     def places(self, time: float) -> Array:
         """Return the displayed points (num_points, 3) in m at a time in s."""
-        return self.scene.magnify(self._beside(time), self.scale, 1.0)
+        return self.scene.magnify(self._relative_displacements(time), self.scale, 1.0)
 
-    def _beside(self, time: float) -> Array:
+    def _relative_displacements(self, time: float) -> Array:
         """Return the displacements (num_points, 3) in m relative to the outer segment."""
         between = (float(self.stations.min()), float(self.stations.max()))
-        return self.scene.beside(time, self.overlap.outer, between)
+        return self.scene.relative_displacements(time, self.overlap.outer, between)
 
     def flange(self, places: Array, segment: int, side: int) -> Array:
-        """Return the points (num_points, 3) of a flange in the plane of bending, base to tip."""
+        """Return points (num_points, 3) of a flange in the plane of bending, from base to tip."""
         return places[self.scene.flange_in_plane(segment, side)]
 
     def ends(self, places: Array) -> tuple[float, float]:
         """Return the lowest and highest z in m of the outer flanges at the stations."""
         flanges = [self.flange(places, self.overlap.outer, side) for side in (-1, 1)]
-        heights = [_at(line, x)[2] for line in flanges for x in self.stations]
+        heights = [_point_at(line, x)[2] for line in flanges for x in self.stations]
         return min(heights), max(heights)
 
     def camera(self, places: Array) -> Camera:
-        """Return a camera that shows the stations of the displayed outer segment."""
+        """Return a camera whose view contains the stations."""
         centre = np.array([self.middle, 0.0, np.mean(self.ends(places))])
         return Camera(centre, self.width, self.pixels, elevation=8.0)
 
     def half(self, segment: int) -> Numbers:
-        """Return the triangles (num_seen, 3) of half a segment's box."""
+        """Return the triangles (num_seen, 3) of a segment behind the cut."""
         mine = self.scene.segment == segment
         return np.asarray(self.scene.triangles[self.behind & mine])
 
-    def draw(self, sheet: Sheet, time: float, places: Array, halves: Sequence[Half]) -> None:
+    def draw(self, sheet: Sheet, time: float, places: Array, halves: Sequence[HalfBox]) -> None:
         """Draw both segments and the forces between them on a sheet.
 
         Args:
             sheet: sheet of the picture.
             time: time in s.
             places: displayed points at that time.
-            halves: halves of the outer and the inner segment.
+            halves: outer and inner segment behind the cut.
         """
         camera, wall = self.camera(places), self.scene.wall(self.overlap)
         with stage(self.pixels) as plotter:
@@ -213,7 +215,7 @@ class OverlapView:
                     plotter.add_mesh(
                         sharp_edges(cut), color=theme.INK, line_width=4.0, lighting=False
                     )
-            sheet.show(camera.see(plotter))
+            sheet.show(camera.render(plotter))
         sheet.mark_x(camera, self.middle - 0.475 * self.width, self.middle + 0.475 * self.width)
         strongest = np.abs(self.motion["contact_force"].values).max()
         now = self.motion.sel(time=time, method="nearest")
@@ -223,7 +225,7 @@ class OverlapView:
             if force == 0.0:
                 continue
             side = int(np.sign(force))
-            outside = _at(self.flange(places, self.overlap.outer, side), x)
+            outside = _point_at(self.flange(places, self.overlap.outer, side), x)
             outside[2] += 0.5 * side * wall
             length = SHORTEST + (LONGEST - SHORTEST) * abs(force) / strongest
             text = f"{digits(1e-3 * abs(force))} kN"
@@ -232,7 +234,7 @@ class OverlapView:
             sheet.arrow(camera.project(outside), side * length, text)
 
     def explain_forces(self, time: float) -> str:
-        """Return a sentence on the arrows' numbers, or that no forces act at a time in s."""
+        """Return a sentence on the numbers at the arrows, or that no forces act at a time in s."""
         now = self.motion.sel(time=time, method="nearest")
         forces = np.nan_to_num(now["contact_force"].values)
         if not forces.any():
@@ -247,7 +249,7 @@ class OverlapView:
 def draw_overlap(
     scene: Scene, instants: Sequence[Instant], overlap: Overlap
 ) -> Iterator[Image.Image]:
-    """Draw the rear half of an overlap, with the forces at its stations."""
+    """Draw a sectional view of an overlap, with the forces at its stations."""
     view = OverlapView(scene, overlap, [instant.time for instant in instants])
     outer, inner = view.names
     labels = {theme.OUTER: outer, theme.INNER: inner, theme.FORCE: f"force of {inner} on {outer}"}
@@ -263,7 +265,7 @@ def draw_overlap(
         )
         places = view.places(instant.time)
         halves = [
-            Half(surface(places, view.half(number)), {"color": color}, color)
+            HalfBox(surface(places, view.half(number)), {"color": color}, color)
             for number, color in zip(view.numbers, labels, strict=False)
         ]
         view.draw(sheet, instant.time, places, halves)
@@ -280,8 +282,8 @@ class StressScale:
     """Colour scale of von Mises stresses, the same in all pictures of a shell.
 
     Args:
-        end: stress of the darkest colour in Pa, to three digits.
-        largest: largest stress of all triangles and instants in Pa.
+        end: stress at the end of the scale in Pa, with three digits.
+        largest: largest stress of all triangles and times in Pa.
     """
 
     end: float
@@ -298,7 +300,7 @@ class StressScale:
             place = int(np.searchsorted(covered, SHOWN_AREA * covered[-1]))
             end = max(end, float(values[rising[place]]))
             largest = max(largest, float(values.max()))
-        # The end is rounded down to three digits, so that its text does not exceed the value.
+        # The end is rounded down, so that the displayed number does not exceed a stress.
         unit = 10.0 ** (np.floor(np.log10(end)) - 2.0)
         return cls(float(f"{np.floor(end / unit + 1.0e-9) * unit:.3g}"), largest)
 
@@ -321,7 +323,7 @@ class StressScale:
         last = f"≥ {end:.3g}" if goes_on else f"{end:.3g}"
         labels = {**{t: f"{t:g}" for t in ticks}, end: last}
         if self.largest < self.end:
-            # A scale without stresses has no end.
+            # Without stresses the scale has only its zero.
             labels = {0.0: "0"}
         bar.set_ticks(list(labels), labels=list(labels.values()))
         bar.set_label("von Mises stress (MPa),\nlarger of both faces", fontsize=18)
@@ -343,14 +345,14 @@ def draw_stress(
         )
         places = whole.places(scene.displacement(instant.time), instant.time)
         with stage(BOOM_PIXELS) as plotter:
-            plotter.add_mesh(_coloured(places, scene.triangles, values), **scale.look)
+            plotter.add_mesh(_surface_with_values(places, scene.triangles, values), **scale.look)
             edges = whole.edges_at(places)
             plotter.add_mesh(edges, color=theme.INK, line_width=2.4, lighting=False)
-            sheet.show(whole.camera.see(plotter), 20, 550)
+            sheet.show(whole.camera.render(plotter), 20, 550)
         places = view.places(instant.time)
         halves = [
-            Half(
-                _coloured(
+            HalfBox(
+                _surface_with_values(
                     places, view.half(number), values[view.behind & (scene.segment == number)]
                 ),
                 scale.look,
@@ -369,10 +371,13 @@ def draw_stress(
         yield sheet.image()
 
 
-def _coloured(points: Array, triangles: Numbers, values: Array) -> Any:
-    """Return a surface whose triangles do not share points, so that colours may jump.
+def _surface_with_values(points: Array, triangles: Numbers, values: Array) -> Any:
+    """Return a surface with stresses. Its triangles share no points, so that colours may jump.
 
-    Points (num_points, 3) are in m, stresses (num_triangles, 3) at the corners in Pa.
+    Args:
+        points: (num_points, 3) in m.
+        triangles: (num_triangles, 3) point numbers.
+        values: stresses (num_triangles, 3) at the corners in Pa.
     """
     own = np.arange(triangles.size, dtype=np.int32).reshape(triangles.shape)
     found = surface(points[triangles].reshape(-1, 3), own)
@@ -381,7 +386,7 @@ def _coloured(points: Array, triangles: Numbers, values: Array) -> Any:
 
 
 def smooth_corners(shell: ShellStress, triangles: Numbers, values: npt.ArrayLike) -> Array:
-    """Return corner values (num_triangles, 3): means over a wall's triangles around each point."""
+    """Return corner values (num_triangles, 3): means over triangles of a wall at a point."""
     walls = int(shell.wall.max()) + 1
     of = (triangles.astype(np.int64) * walls + shell.wall[:, None]).ravel()
     _, number = np.unique(of, return_inverse=True)
@@ -390,7 +395,7 @@ def smooth_corners(shell: ShellStress, triangles: Numbers, values: npt.ArrayLike
 
 
 def _largest(view: OverlapView, time: float) -> str:
-    """Return the largest triangle stress of both segments, even if hidden, and its place."""
+    """Return a text on the largest triangle stress of both segments, hidden walls included."""
     stress, segment = view.stress.at(time).largest(), view.scene.segment
     triangle = int(np.where(np.isin(segment, view.numbers), stress, 0.0).argmax())
     x, _, _ = view.stress.centroids[triangle]
@@ -402,7 +407,7 @@ def _largest(view: OverlapView, time: float) -> str:
 
 
 def _ring_largest(sheet: Sheet, view: OverlapView, places: Array, values: Array) -> str:
-    """Mark the largest smoothed stress of the visible half with a ring; return a legend text."""
+    """Mark the largest smoothed stress of the visible walls with a ring; return its legend."""
     scene = view.scene
     shown = view.behind & np.isin(scene.segment, view.numbers)
     triangle = int(np.where(shown, values.max(axis=1), 0.0).argmax())
@@ -434,7 +439,7 @@ def _across_web(scene: Scene, segment: int) -> int:
 def _band(line: Array, thickness: float) -> Any:
     """Return the cut wall along a line (num_points, 3) in m as a pyvista surface.
 
-    It is slightly in front of the plane of bending, where the halves of the boxes end.
+    It lies slightly in front of the cut, so that the walls do not hide it.
     """
     low, high = (line + np.array([0.0, -0.002, 0.5 * side * thickness]) for side in (-1.0, 1.0))
     number = np.arange(len(line) - 1, dtype=np.int32)
@@ -442,6 +447,6 @@ def _band(line: Array, thickness: float) -> Any:
     return surface(np.concatenate([low, high]), quads)
 
 
-def _at(line: Array, x: float) -> Array:
+def _point_at(line: Array, x: float) -> Array:
     """Return the point (3,) in m of a line (num_points, 3) at x."""
     return np.array([np.interp(x, line[:, 0], line[:, i]) for i in range(3)])

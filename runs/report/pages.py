@@ -14,11 +14,11 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from PIL import Image
 
 TEMPLATES = Path(__file__).parent / "templates"
-# Quality and largest width of pictures in a page: a third of their size on the disk without visible
-# loss, and at most two pixels per pixel of the page.
+# Largest width of pictures in a page, two pixels per pixel of the page, and their compression to a
+# third of the size on the disk without visible loss.
 WIDEST = 1240
 _WEBP: dict[str, Any] = {"format": "WEBP", "quality": 85, "method": 1}
-# CSS classes of cells that contain only a mark.
+# CSS class of cells with each mark.
 TONES = {"✓": "yes", "✗": "no", "?": "open"}
 
 
@@ -30,7 +30,7 @@ class Addition:
         template: path of a template that extends ``report.html`` and fills its blocks ``added_…``.
         content: further variables of the template.
         remarks: sentences below tables and figures, by anchor.
-        files: texts of further files for the run's folder, by name.
+        files: contents of further files in the folder of the run, by name.
     """
 
     template: Path = TEMPLATES / "report.html"
@@ -43,7 +43,7 @@ def page(template: str | Path, **content: Any) -> str:
     """Return a page as HTML, with escaped content.
 
     Args:
-        template: name of a template in ``TEMPLATES``, or path of another template that extends one.
+        template: name of a template of this package, or path of one that extends it.
         content: variables of the template.
     """
     path = TEMPLATES / template

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Tables of the predictability of a run's motion, and of the comparison of its models."""
+"""Tables of the predictability of motions, and of the comparison of models."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ VARIED_DATA = {"load": "loads", "clearance": "clearances", "velocity": "initial 
 
 
 def predictability_tables(results: Results) -> list[Table]:
-    """Return the tables of the models' ensembles; empty without ensembles."""
+    """Return the tables of the ensembles of a run; empty without ensembles."""
     models, ensembles = results.summary.models, results.summary.ensemble
     sampled = {name: model for name, model in models.items() if model.ensemble}
     measured = {name: model.horizons for name, model in models.items() if model.horizons}
@@ -129,14 +129,14 @@ def _peak_columns(peaks: Mapping[str, Sequence[str]]) -> list[Column]:
 
 
 def _heights(found: SlowPeaks) -> list[str]:
-    """Return time and height of each peak."""
+    """Return time and height of each peak as text."""
     times = map(partial(_spread, decimals=3), found.time, found.time_spread)
     heights = map(partial(_spread, decimals=2, factor=TO_MILLI), found.height, found.height_spread)
     return [f"{time} s\n{height} mm" for time, height in zip(times, heights, strict=True)]
 
 
 def _differences(found: PeakDifferences) -> list[str]:
-    """Return the differences of each peak from the reference, in time and in height."""
+    """Return the differences of each peak from the reference, in time and height, as text."""
     signed_milli = partial(_spread, factor=TO_MILLI, sign="+")
     times = map(partial(signed_milli, decimals=0), found.time, found.time_spread)
     heights = map(partial(signed_milli, decimals=2), found.height, found.height_spread)
@@ -209,7 +209,7 @@ def _whole_table(reference: str, whole: Mapping[str, WholeRun]) -> Table:
 def _spread(
     value: float | None, spread: float | None, decimals: int, factor: float = 1.0, sign: str = ""
 ) -> str:
-    """Return a mean and its spread, such as ``1.058 ± 0.031``; ``NONE`` without a value."""
+    """Return a mean and its spread as text, ``1.058 ± 0.031``; a dash without a value."""
     if value is None or spread is None:
         return NONE
     return (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Figures along the boom: deflections and section forces at rest, envelopes, modes."""
+"""Figures along the boom: static deflections and section forces, envelopes, modes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,13 @@ from runs.pipeline.motion_results import Envelope
 from runs.pipeline.static_results import StaticResult
 from runs.report import formatting, theme
 from runs.report.charts import Chart, Curve
-from runs.report.figure_context import Figure, FigureContext, new_sheet, of_rests, of_start
+from runs.report.figure_context import (
+    Figure,
+    FigureContext,
+    extension_note,
+    initial_position_note,
+    new_sheet,
+)
 
 # Heading of each quantity's panel, and conversion factor to its unit.
 _PANELS: Mapping[str, tuple[str, float]] = {
@@ -29,7 +35,7 @@ _PANELS: Mapping[str, tuple[str, float]] = {
 }
 # Quantities of an envelope.
 _FORCES = ("normal", "shear", "moment", "lateral_moment", "torque")
-# Displacement that is drawn for each kind of mode.
+# Quantity that is drawn for each kind of mode.
 _DISPLACED = {"bending in z": "deflection", "bending in y": "lateral", "twist": "twist"}
 # Number of modes in the figure.
 MODES = 4
@@ -46,14 +52,14 @@ class Line(NamedTuple):
 
 
 def at_rest(run: FigureContext) -> list[Figure]:
-    """Draw deflection and section forces at rest, with and without play."""
+    """Draw static deflection and section forces, with and without play."""
     found = dict(_read_first(run))
     farthest = {name: own.farthest_static for name, own in found.items()}
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     if not rests:
         return []
     lines = {name: rest_lines(rest, name, run.strokes[name].color) for name, rest in rests.items()}
-    # None means the position at the end of telescoping.
+    # The boom without play has no static state at the end of telescoping.
     tied = [
         rest
         for name in rests
@@ -66,16 +72,16 @@ def at_rest(run: FigureContext) -> list[Figure]:
     caption = (
         "Static under the maximum load: deflection and section forces. Positive normal forces are "
         "tension, positive moments give tension at the top. In an overlap each segment has its own "
-        "curve." + of_start(run.case) + of_rests(run.case, rests.values())
+        "curve." + initial_position_note(run.case) + extension_note(run.case, rests.values())
     )
     far = max(rests.values(), key=lambda rest: abs(rest.tip)).tip
     tip = with_minus_signs(f"{TO_MILLI * far:.1f}")
     title = f"Static deflection under the maximum load: the tip at {tip} mm"
-    return _stacked(run, lines, "at-rest", title, caption)
+    return _draw_panels(run, lines, "at-rest", title, caption)
 
 
 def envelopes(run: FigureContext) -> list[Figure]:
-    """Draw the limits of the section forces in motion."""
+    """Draw the envelopes of the section forces in motion."""
     found = {name: own.motion.envelopes for name, own in _read_first(run) if own.motion is not None}
     lines = {
         name: {
@@ -90,13 +96,13 @@ def envelopes(run: FigureContext) -> list[Figure]:
     }
     caption = (
         "Minimum and maximum of the section forces of each segment over the run, at every place."
-        + of_start(run.case)
+        + initial_position_note(run.case)
     )
-    return _stacked(run, lines, "envelopes", "Section forces in motion", caption)
+    return _draw_panels(run, lines, "envelopes", "Section forces in motion", caption)
 
 
 def mode_shapes(run: FigureContext) -> list[Figure]:
-    """Draw the first modes of the leading model."""
+    """Draw the first modes of the first main model that has modes."""
     found = [(name, own.modes) for name, own in _read_first(run) if own.modes]
     if not found:
         return []
@@ -126,7 +132,7 @@ def _read_first(run: FigureContext) -> Iterator[tuple[str, ModelDesignResults]]:
 
 
 def rest_lines(rest: StaticResult, name: str, color: str) -> dict[str, list[Line]]:
-    """Return the lines of a static state by their quantity, under the name of its source."""
+    """Return the lines of each quantity of a static state, with a name for the legend."""
     lines: dict[str, list[Line]] = {what: [] for what in _PANELS}
     dashes = "--" if color == theme.PLAY_FREE else "-"
     for diagram in rest.diagrams:
@@ -144,15 +150,15 @@ def _both_ends(envelope: Envelope, what: str, name: str, color: str) -> Iterator
             yield Line(name, np.array(envelope.x), np.array(side[what]), color, dashes)
 
 
-def _stacked(
+def _draw_panels(
     run: FigureContext,
     lines: Mapping[str, Mapping[str, Sequence[Line]]],
     stem: str,
     title: str,
     caption: str,
 ) -> list[Figure]:
-    """Draw panels of the non-zero quantities above one another; nothing where all are zero."""
-    if not (shown := _shown(lines)):
+    """Draw a panel for each quantity that is not zero; nothing if all are zero."""
+    if not (shown := _nonzero_quantities(lines)):
         return []
     sheet, panels = new_sheet(len(shown), 1.2 + 1.4 * len(shown))
     for axes, what in zip(panels, shown, strict=True):
@@ -176,9 +182,9 @@ def chart_along(lines: Mapping[str, Mapping[str, Sequence[Line]]]) -> Chart:
     """Return the chart of the non-zero quantities along the boom.
 
     Args:
-        lines: those of each quantity, by the name of their source, see :func:`rest_lines`.
+        lines: lines of each quantity by the names of their sources, see :func:`rest_lines`.
     """
-    shown = _shown(lines)
+    shown = _nonzero_quantities(lines)
     ends = [
         edge(line.x)
         for edge in (np.min, np.max)
@@ -202,7 +208,7 @@ def chart_along(lines: Mapping[str, Mapping[str, Sequence[Line]]]) -> Chart:
     return Chart(np.sort(ends)[[0, -1]], "", curves, titles, along="x along the boom (m)")
 
 
-def _shown(lines: Mapping[str, Mapping[str, Sequence[Line]]]) -> list[str]:
+def _nonzero_quantities(lines: Mapping[str, Mapping[str, Sequence[Line]]]) -> list[str]:
     """Return the quantities that are not zero everywhere."""
     return [
         what

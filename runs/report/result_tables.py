@@ -17,19 +17,19 @@ from runs.pipeline.motion_results import Peak
 from runs.pipeline.proofs import proof_table
 from runs.pipeline.results import Results
 from runs.pipeline.static_results import StaticResult
-from runs.report.figure_context import of_rests
+from runs.report.figure_context import extension_note
 from runs.report.formatting import NONE, amount, number
 from runs.report.model_tables import metric_columns
 from runs.report.tables import Cell, Column, Table
 
-# Fraction of a number that is negligible.
-HARDLY = 0.005
-# Fraction of other models' values that counts as zero.
+# Relative difference that is negligible.
+NEGLIGIBLE = 0.005
+# Fraction of the values of other models that counts as zero.
 ROUND_OFF = 1.0e-9
 
 
 def result_tables(results: Results) -> list[Table]:
-    """Return all tables for which a run has data, except the summary, in the report's order."""
+    """Return the tables of design results in the order of the report, without the summary."""
     design = results.summary.design
     found = [
         play_table(results),
@@ -57,23 +57,23 @@ def play_table(results: Results) -> Table | None:
     if found is None:
         return None
     rows = found.numbers
-    added = ["negligible" if hardly(one) else amount(one.increase, one.unit) for one in rows]
+    added = ["negligible" if is_negligible(one) else amount(one.increase, one.unit) for one in rows]
     columns = (
         Column("", [_named(one.what, one.where) for one in rows]),
         Column("with play", [amount(one.with_play, one.unit) for one in rows]),
         Column("without play", [amount(one.bonded, one.unit) for one in rows]),
         Column("play adds", added),
-        Column("", [None if hardly(one) else one.share for one in rows], ".3g", "%"),
+        Column("", [None if is_negligible(one) else one.share for one in rows], ".3g", "%"),
     )
     notes = ("Absolute values.",)
     return Table(f"Effect of play: {found.model}", columns, notes, "play")
 
 
 def rest_tables(results: Results) -> list[Table]:
-    """Return the tables of tilts by play, contact forces and support reactions at rest."""
+    """Return the tables of static tilts by play, contact forces and support reactions."""
     farthest = {name: own.farthest_static for name, own in results.summary.design.models.items()}
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
-    as_extended = of_rests(results.case, rests.values())
+    as_extended = extension_note(results.case, rests.values())
     found = (
         _tilt_table(rests, as_extended),
         _contact_table(rests, as_extended),
@@ -133,7 +133,7 @@ def _reaction_table(results: Results) -> Table | None:
 
 
 def _unless_none(title: str, carried: list[float], form: str, unit: str) -> Iterator[Column]:
-    """Yield columns of section forces, with round-off set to zero; columns of zeros are omitted."""
+    """Yield a column of forces with round-off set to zero; nothing if all are zero."""
     most = max(map(abs, carried), default=0.0)
     if most > 0.0:
         cells = [each if abs(each) > ROUND_OFF * most else 0.0 for each in carried]
@@ -179,9 +179,9 @@ def peak_table(results: Results) -> Table | None:
     return Table("Forces and deflections in motion", columns, notes, "peaks")
 
 
-def hardly(one: PlayDifference) -> bool:
-    """Return whether play adds a negligible amount."""
-    return one.share is not None and abs(one.share) < HARDLY
+def is_negligible(one: PlayDifference) -> bool:
+    """Return True if the effect of play is negligible."""
+    return one.share is not None and abs(one.share) < NEGLIGIBLE
 
 
 def _peak_cell(peak: Peak | None) -> str:
@@ -191,7 +191,7 @@ def _peak_cell(peak: Peak | None) -> str:
 
 
 def times(peak: Peak) -> str:
-    """Return the ratio of a maximum to the value at rest; empty if the latter is zero."""
+    """Return the ratio of a maximum to its static value as text; empty if this value is zero."""
     return "" if peak.factor is None else f" (× {number(peak.factor)})"
 
 

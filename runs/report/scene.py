@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Scene of a boom in motion: its surfaces, supports and loads, with magnified displacements.
 
-Displacements of millimetres are invisible on a boom of many metres, so pictures magnify them. They
-magnify the play by the same factor and reduce the inner section accordingly: segments touch in the
-picture when they touch in the run. Scenes of shells and of beams have the same interface for VTK's
-pictures (:mod:`runs.report.boom_pictures`) and the interactive page (:mod:`runs.report.viewer`).
+Pictures magnify displacements and play by the same factor, and reduce the inner section
+accordingly. So segments touch in the picture when they touch in the run. Scenes of shells and of
+beams have the same interface.
 """
 
 from __future__ import annotations
@@ -34,19 +33,18 @@ from shell_model.stress.stresses import ShellStress
 
 Numbers = npt.NDArray[np.int32]
 
-# Limit of drawn displacements as a fraction of the boom's length; magnification of sections;
-# largest fraction of the section that the drawn play may take.
+# Limit of magnified displacements over the length of the boom; magnification of sections; limit of
+# the magnified play over the size of the section.
 DISPLACEMENT_DRAWN, SECTION_DRAWN, PLAY_OF_SECTION = 0.2, 2.0, 0.5
 
-# Drawn thickness of walls as a fraction of the outer section's height; true thicknesses are
-# invisible.
+# Displayed wall thickness over the height of the outer section. True thicknesses are invisible.
 WALL_DRAWN = 0.03
 
 # Tolerance in m for equal lengths.
 SAME_PLACE = 1.0e-6
 
-# Number of times in a batch of displacements.
-AT_ONCE = 10
+# Number of times for which displacements are computed together.
+BATCH = 10
 
 # Rotation for the view from above: x stays, y points up, z points to the viewer.
 _FROM_ABOVE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
@@ -56,10 +54,11 @@ class Overlap(NamedTuple):
     """Two telescoping segments that overlap.
 
     Args:
-        outer, inner: numbers of the segments.
-        stations: indices of the contact stations in the trajectories.
-        centres: x in m of the centres of the stations' pads.
-        clearance: Δ in m.
+        outer: index of the outer segment.
+        inner: index of the inner segment.
+        stations: indices of the stations in the trajectories.
+        centres: x in m of the pad centres of the stations.
+        clearance: clearance Δ in m.
     """
 
     outer: int
@@ -70,7 +69,7 @@ class Overlap(NamedTuple):
 
 
 class Instant(NamedTuple):
-    """A time in s with its event."""
+    """A time in s, with the name of its event."""
 
     time: float
     title: str = ""
@@ -95,10 +94,10 @@ class Scene:
         triangles: (num_triangles, 3) point numbers.
         segment: (num_triangles,) segment of each triangle.
         modes: (num_modes, num_points, 3) displacements for unit coordinates.
-        state: (time, mode) coordinates.
-        motion: trajectories of this model, in which ``tip`` is along the third direction.
+        state: modal coordinates (time, mode).
+        motion: trajectories of the model; ``tip`` is the deflection upwards in the picture.
         stress: stresses of the triangles of a shell.
-        from_above: whether y replaces z, see :meth:`views`.
+        from_above: True if y replaces z, see :meth:`views`.
         buckling: first buckling modes of a shell, see
             :class:`runs.pipeline.wall_buckling.BuckledShell`; None without any.
     """
@@ -117,14 +116,13 @@ class Scene:
 
     @classmethod
     def views(cls, fields: xr.Dataset, motion: xr.Dataset, case: Case) -> list[Scene]:
-        """Return the scenes of a shell from a run's files: from the side, in space also from above.
+        """Return the scenes of a shell: seen from the side, in space also from above.
 
         For the view from above the boom is rotated about x, so that y points up.
 
         Args:
             fields: dataset of ``shell_model.stress.fields``, with ``state`` (time, mode).
-            motion: dims ``time``, ``station``: ``tip``, in space ``tip_lateral``, in m,
-                ``contact_force`` and ``contact_force_peak`` in N, of drives ``extension`` in m.
+            motion: trajectories of the shell.
             case: case of the run.
         """
         boom = build_boom(case)
@@ -165,7 +163,7 @@ class Scene:
         Args:
             case: case of the run.
             boom: boom of the model.
-            output: further output of the motion.
+            output: deflections and section forces of the beam.
             motion: trajectories of the model.
         """
         tubes = [
@@ -174,7 +172,7 @@ class Scene:
         ]
         first = np.cumsum([0, *(len(tube.points) for tube in tubes)])
         numbered = [tube.triangles + k for tube, k in zip(tubes, first, strict=False)]
-        # Every frame becomes a mode.
+        # Each frame serves as a mode.
         frames = np.eye(output.time.size)
         scene = cls(
             boom=boom,
@@ -192,19 +190,19 @@ class Scene:
 
     @property
     def direction(self) -> Direction:
-        """The third direction of the picture."""
+        """The direction that points upwards in the picture."""
         return "y" if self.from_above else "z"
 
     @cached_property
     def owner(self) -> Numbers:
-        """The segments (num_points,) of the points."""
+        """The segment (num_points,) of each point."""
         owner = np.zeros(len(self.points), dtype=np.int32)
         owner[self.triangles] = self.segment[:, None]
         return owner
 
     @cached_property
     def overlaps(self) -> list[Overlap]:
-        """The overlaps of joints with play along the third direction, from base to tip."""
+        """The overlaps of joints with play in the plane of the picture, from base to tip."""
         middles: dict[int, list[float]] = {}
         for pad in pads(self.boom):
             middles.setdefault(pad.station, []).append(pad.middle)
@@ -228,13 +226,13 @@ class Scene:
     def displacements(self, times: Sequence[float]) -> Iterator[Array]:
         """Yield the displacements (num_points, 3) in m at the output times nearest to ``times``."""
         states = self.state.sel(time=list(times), method="nearest").values
-        # The modes exceed a processor's cache, so that each is read once for a batch of times.
-        for begin in range(0, len(states), AT_ONCE):
-            moved = np.tensordot(states[begin : begin + AT_ONCE], self.modes, axes=1)
+        # The modes exceed the cache of the processor; a batch of times reads each mode once.
+        for begin in range(0, len(states), BATCH):
+            moved = np.tensordot(states[begin : begin + BATCH], self.modes, axes=1)
             yield from moved.astype(np.float64)
 
     def travel(self, segment: int) -> Array:
-        """Return the extension (num_times,) in m of a segment by drives, at the output times."""
+        """Return the travel (num_times,) of a segment by drives in m, at the output times."""
         names = [
             f"extension-{n + 1}" if n else "extension"
             for n in drives_below(self.boom.joints, segment)
@@ -243,26 +241,26 @@ class Scene:
         return np.asarray(sum((self.motion[name].values for name in names), none))
 
     def along(self, t: float) -> Array:
-        """Return the extension (num_points,) in m of each point by drives, at a time in s."""
+        """Return the travel (num_points,) of each point by drives in m, at a time in s."""
         step = int(np.abs(self.motion["time"].values - t).argmin())
         ways = [self.travel(number)[step] for number in range(len(self.boom.segments))]
         return np.array(ways)[self.owner]
 
-    def slides(self, overlap: Overlap) -> bool:
-        """Return whether a drive moves the inner segment of an overlap within the outer one."""
+    def telescopes(self, overlap: Overlap) -> bool:
+        """Return True if a drive moves the inner segment of an overlap in the outer one."""
         return bool((self.travel(overlap.outer) != self.travel(overlap.inner)).any())
 
     def reach(self, times: Sequence[float]) -> tuple[float, float]:
-        """Return the minimum and maximum x in m of the boom at given times, with telescoping."""
+        """Return the smallest and largest x in m of the boom over given times."""
         x = self.points[:, 0]
         places = [x, *(x + self.along(time) for time in times)]
         return float(np.min(places)), float(np.max(places))
 
-    def beside(self, t: float, segment: int, between: tuple[float, float]) -> Array:
+    def relative_displacements(self, t: float, segment: int, between: tuple[float, float]) -> Array:
         """Return the displacements (num_points, 3) in m relative to a part of a segment.
 
-        The in-plane rigid motion of the part ``between`` two x in m is subtracted from all points:
-        it does not affect contacts, and magnification would tilt the boom.
+        The in-plane rigid motion of the part ``between`` two x in m is subtracted from all points,
+        since its magnification would tilt the boom.
         """
         moved = self.displacement(t)
         x, _, z = self.points.T
@@ -275,14 +273,15 @@ class Scene:
         )
 
     def at(self, places: Array, segment: int, x: float, z: float) -> tuple[Array, int]:
-        """Return the displayed position (3,) in m of a point in a section's plane of symmetry.
+        """Return the displayed position (3,) in m of a point in the plane of symmetry.
 
-        The section is that at the mesh line nearest to x. Its lowest point is returned, too.
+        The second result is the number of the lowest mesh point of the nearest cross-section.
 
         Args:
             places: (num_points, 3) displayed points in m.
             segment: number of the segment.
-            x, z: x and z of the point in m.
+            x: x of the point in m.
+            z: z of the point in m.
         """
         mine = np.flatnonzero(self.owner == segment)
         off = np.abs(self.points[mine, 0] - x)
@@ -298,7 +297,7 @@ class Scene:
         return edges(self.boom, self.boom.segments[segment], x, self.direction)
 
     def half_height(self, segment: int, x: float | None = None) -> float:
-        """Return half the height in m of a segment's section at x, by default the largest."""
+        """Return half the height in m of a segment at x, or the largest half height."""
         ends = self.boom.segments[segment].ends if x is None else (x,)
         return max(0.5 * float(np.ptp(self.edges(segment, end))) for end in ends)
 
@@ -314,13 +313,13 @@ class Scene:
         return np.asarray(order[outermost], dtype=np.int32)
 
     def wall(self, overlap: Overlap) -> float:
-        """Return the drawn wall thickness in m of an overlap."""
+        """Return the displayed wall thickness in m of an overlap."""
         return 2.0 * WALL_DRAWN * self.half_height(overlap.outer)
 
     def fitting_scale(self, times: Sequence[float], part: float = DISPLACEMENT_DRAWN) -> float:
-        """Return a rounded magnification of displacements and play for the whole boom.
+        """Return a round magnification of displacements and play for the whole boom.
 
-        Magnified displacements at these times in s stay below a fraction of the boom's length.
+        Magnified displacements at given times in s stay below a fraction of the length.
         """
         largest = max(float(np.abs(moved[:, 2]).max()) for moved in self.displacements(times))
         tallest = max(self.half_height(number) for number in range(len(self.boom.segments)))
@@ -335,8 +334,8 @@ class Scene:
     def magnify(self, moved: Array, scale: float, section: float = SECTION_DRAWN) -> Array:
         """Return the displayed points (num_points, 3) in m.
 
-        A magnified section also rotates with its magnified height. Displacements along the line of
-        sight are not magnified.
+        The rotation of a section moves its points in proportion to the magnified height.
+        Displacements along the line of sight are not magnified.
 
         Args:
             moved: (num_points, 3) displacements in m.
@@ -363,7 +362,7 @@ class Scene:
 
 
 class _Tube(NamedTuple):
-    """Tube of one segment: points (num_points, 3) and triangles.
+    """Tube that represents a beam segment: points (num_points, 3) and triangles.
 
     Displacements are (num_frames, num_points, 3), stresses (num_frames, num_points) in Pa.
     """
@@ -409,15 +408,14 @@ def _corners(boom: Boom, segment: Segment, x: float) -> Array:
 
 
 def _bending(moments: Array, there: Sequence[Segment], number: str) -> Array:
-    """Return the curvature times Young's modulus, (num_frames, num_places, 1) in Pa/m."""
+    """Return moment over second moment of area (num_frames, num_places, 1) in Pa/m."""
     return np.asarray(moments / [attrgetter(number)(segment) for segment in there])[..., None]
 
 
 def rigid_motion(places: Array, moved: Array) -> Array:
     """Return two translations and a rotation (3,) that fit the motion of points (num_places, 2).
 
-    The first coordinate moves by its translation − rotation · second, the second coordinate by its
-    translation + rotation · first.
+    The displacements are u₁ = t₁ − r x₂ and u₂ = t₂ + r x₁.
     """
     first, second = places.T
     none, unit = np.zeros_like(first), np.ones_like(first)
@@ -428,7 +426,7 @@ def rigid_motion(places: Array, moved: Array) -> Array:
 
 
 def means_around(groups: Numbers, areas: Array, values: npt.ArrayLike) -> Array:
-    """Return the area-weighted means (num_groups,) of triangles' values around points.
+    """Return area-weighted means (num_groups,) over the triangles at each point.
 
     Args:
         groups: (num_triangles, 3) group of each corner, usually its point.
@@ -441,6 +439,6 @@ def means_around(groups: Numbers, areas: Array, values: npt.ArrayLike) -> Array:
 
 
 def round_scale(largest: float) -> float:
-    """Return the largest number of …, 1, 2, 5, 10, 20, … that does not exceed ``largest``."""
+    """Return the largest of the numbers …, 1, 2, 5, 10, … that does not exceed ``largest``."""
     decade = 10.0 ** np.floor(np.log10(largest))
     return float(decade * max(step for step in (1.0, 2.0, 5.0) if step * decade <= largest))

@@ -26,22 +26,21 @@ from runs.report import theme
 
 Pixels = npt.NDArray[np.uint8]
 
-# Light that is bright enough for faces to match the colour bar, and dark enough to distinguish
-# them.
+# Lights: faces differ in brightness; with COLOUR_READ they match the colour bar, too.
 MATTE = {"ambient": 0.35, "diffuse": 0.75, "specular": 0.0, "show_scalar_bar": False}
 COLOUR_READ = MATTE | {"ambient": 0.75, "diffuse": 0.3}
 MESHED = {"show_edges": True, "edge_color": theme.INK, "line_width": 1.5}
 
-# Width and height of a sheet in pixels, and pixels per inch. VTK renders four pixels per pixel of
-# the sheet, for smooth edges.
+# Width and height of a sheet in pixels, pixels per inch, and oversampling in both directions for
+# smooth edges.
 SHEET = (1600, 900)
 DPI = 100
-FINER = 2
+OVERSAMPLING = 2
 
 # Angle in degrees between two walls above which their edge is drawn.
 SHARP = 30.0
 
-# Vertical angle of view in degrees: enough perspective for a box.
+# Vertical angle of view in degrees, for a little perspective.
 VIEW_ANGLE = 12.0
 
 
@@ -83,27 +82,27 @@ class Camera:
         middle = 0.5 * np.array(self.pixels)
         return np.asarray(np.stack([right, up], axis=-1) * magnification[..., None] + middle)
 
-    def see(self, plotter: Any) -> Pixels:
-        """Return the pixels (height, width, 3) of a :func:`stage`."""
+    def render(self, plotter: Any) -> Pixels:
+        """Return the rendered pixels (height, width, 3) of a plotter."""
         plotter.camera_position = [self.position, self.centre, self.axes[1]]
         plotter.camera.view_angle = VIEW_ANGLE
         plotter.reset_camera_clipping_range()
         plotter.render()
         fine = Image.fromarray(np.asarray(plotter.screenshot(return_img=True)))
-        return np.asarray(fine.reduce(FINER))
+        return np.asarray(fine.reduce(OVERSAMPLING))
 
 
 @contextmanager
 def stage(pixels: tuple[int, int], part: float = 1.0) -> Iterator[Any]:
-    """Yield an off-screen pyvista plotter on white, for a sheet of reduced size."""
-    # Imported here, since VTK's libraries may be missing on a machine that draws no pictures.
+    """Yield an off-screen pyvista plotter; ``part`` is the size factor of the sheet."""
+    # Imported here, since a machine that draws no pictures may lack VTK.
     import pyvista
     from vtkmodules.vtkCommonCore import vtkLogger
 
-    # VTK warns about a missing display before it uses EGL, which needs no display.
+    # Without a display VTK warns, and then renders by EGL.
     verbosity = vtkLogger.GetCurrentVerbosityCutoff()
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
-    size = [FINER * round(part * n) for n in pixels]
+    size = [OVERSAMPLING * round(part * n) for n in pixels]
     look = pyvista.themes.DocumentTheme()
     look.multi_samples = 1
     plotter = pyvista.Plotter(off_screen=True, window_size=size, theme=look)
@@ -123,21 +122,21 @@ def surface(points: Array, triangles: npt.NDArray[np.int32]) -> Any:
 
 
 def sharp_edges(mesh: Any) -> Any:
-    """Return the free and the sharp edges of a surface; ``number`` numbers their end points."""
+    """Return free and sharp edges of a surface, with the point numbers of the surface."""
     mesh["number"] = np.arange(mesh.n_points)
     return mesh.extract_feature_edges(feature_angle=SHARP)
 
 
 class Sheet:
-    """Sheet with heading, picture, x axis along the picture's lower edge, and space below.
+    """Sheet with heading, picture, x axis at the lower edge of the picture, and space below.
 
     The coordinates of ``picture`` are the pixels of :meth:`Camera.project`. Temporary artists
-    belong to one image; all others are drawn once, for the first image.
+    appear in one image, all others in all images.
 
     Args:
         pixels: width and height of the picture.
-        floor: height of the picture's lower edge in pixels.
-        part: factor of the sheet's size in each direction.
+        floor: height of the lower edge of the picture in pixels.
+        part: size factor of the sheet.
     """
 
     def __init__(self, pixels: tuple[int, int], floor: int, part: float = 1.0) -> None:
@@ -158,7 +157,7 @@ class Sheet:
         )
 
     def mark_x(self, camera: Camera, first: float, last: float) -> None:
-        """Draw ticks at round values of x at the depth of the camera's centre."""
+        """Draw the x axis with ticks at round values, in the plane of the camera's centre."""
         _, y, z = camera.centre
         ticks = np.asarray(MaxNLocator(20, steps=[1, 2, 5, 10]).tick_values(first, last))
         ticks = ticks[(ticks > first - 1.0e-9) & (ticks < last + 1.0e-9)]
@@ -167,27 +166,27 @@ class Sheet:
         self.picture.set_xlabel("x along the boom (m)")
 
     def show(self, pixels: Pixels, left: int = 0, bottom: int | None = None) -> None:
-        """Show a camera's pixels in the picture, or at a position on the sheet."""
+        """Show rendered pixels in the picture, or at a position on the sheet."""
         up = self._floor if bottom is None else bottom
         self._seen.append((pixels, round(self._part * left), round(self._part * up)))
 
-    def pass_by(self, *artists: Artist) -> None:
-        """Show a temporary artist in the next image only."""
+    def show_once(self, *artists: Artist) -> None:
+        """Show artists in the next image only."""
         for artist in artists:
             artist.set_animated(True)
         self._passing += artists
 
     def write(self, heading: str, explanation: str) -> None:
-        """Write the heading of this image, and the explanation of all images, above the picture."""
+        """Write the heading of this image and the explanation of all images above the picture."""
         centred: dict[str, Any] = {"ha": "center", "va": "top"}
-        self.pass_by(self.figure.text(0.5, 0.98, heading, size=26, weight="bold", **centred))
+        self.show_once(self.figure.text(0.5, 0.98, heading, size=26, weight="bold", **centred))
         if self._still is None:
-            # Three lines have smaller letters, since the longest would exceed the sheet's width.
+            # Three lines have smaller letters, so that the longest fits the sheet.
             size = 17 if explanation.count("\n") > 1 else 19
             self.figure.text(0.5, 0.925, explanation, size=size, **centred)
 
     def arrow(self, foot: Array, length: float, text: str) -> None:
-        """Draw a vertical arrow with a label from (2,) pixels; negative lengths point down."""
+        """Draw a vertical arrow with a label from a pixel (2,); negative lengths point down."""
         x, y = (float(pixel) for pixel in foot)
         shaft = {"width": 8, "headwidth": 24, "headlength": 22, "color": theme.FORCE}
         letters: dict[str, Any] = {
@@ -196,8 +195,8 @@ class Sheet:
             "va": "center",
         }
         mark = self.picture.annotate
-        self.pass_by(
-            # Matplotlib omits an arrow whose tip is outside the picture.
+        self.show_once(
+            # By default matplotlib omits an arrow whose tip is outside the picture.
             mark("", (x, y + length), (x, y), arrowprops=shaft, annotation_clip=False),
             mark(text, (x + 22.0, y + 0.6 * length), **letters),
         )
@@ -205,7 +204,7 @@ class Sheet:
     def ring(self, x: float, y: float, text: str) -> None:
         """Draw a ring with a label around a position in pixels."""
         look: dict[str, Any] = {"ms": 26, "mfc": "none", "mec": theme.INK, "mew": 3}
-        self.pass_by(
+        self.show_once(
             *self.picture.plot([x], [y], "o", path_effects=theme.OUTLINED, **look),
             self.picture.annotate(text, (x + 24.0, y - 30.0), size=18, path_effects=theme.OUTLINED),
         )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Snapshots of a run's shells: instants, files and captions."""
+"""Snapshots of the shells of a run: times, files and captions."""
 
 from __future__ import annotations
 
@@ -34,8 +34,7 @@ from runs.report.scene import Instant, Scene
 
 SNAPSHOTS = "snapshots"
 
-# Animation: seconds of the run, number of pictures, seconds on the screen, size factor of the
-# sheet.
+# Animation: duration in the run and on the screen in s, number of frames, size factor of the sheet.
 ANIMATION = "motion.gif"
 ANIMATED, FRAMES, SHOWN, SMALL = 2.5, 50, 5.0, 0.6
 
@@ -46,10 +45,10 @@ TITLES = {
     "first-contact": "first contact",
 }
 
-# Events at one station, of a joint or a stop.
+# Events that happen at a station.
 AT_A_STATION = ("largest-force", "first-contact")
 
-# Fraction of the run below which two instants look the same.
+# Two times closer than this fraction of the run count as one.
 SAME = 0.02
 
 # Meaning of an arrow if a station has several contact points.
@@ -58,7 +57,7 @@ ON_SURFACES = (
     "station."
 )
 
-# Name of an instant whose time in s the user requests.
+# File name of a time that the user requests.
 _GIVEN = re.compile(r"[0-9.e+-]+s")
 _NAME = re.compile(
     r"(?P<view>boom|overlap|stress)(?P<above>-above)?(-(?P<joint>\d+))?-(?P<when>.+)"
@@ -70,13 +69,12 @@ Render = Callable[[Sequence[Scene], Path, Times], list[Path]]
 
 
 def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Path]:
-    """Draw a shell at given instants.
+    """Draw a shell at given times.
 
     Args:
         views: scenes of its motion, see :meth:`Scene.views`.
-        folder: folder of ``boom-WHEN.png``, ``overlap-WHEN.png`` and ``stress-WHEN.png`` of each
-            instant (from the second joint on ``overlap-2-WHEN.png``), for a boom in space also
-            ``boom-above-WHEN.png``, from above.
+        folder: folder of the files ``boom-WHEN.png``, ``overlap-WHEN.png`` (from the second joint
+            on ``overlap-2-WHEN.png``), ``stress-WHEN.png``, and in space ``boom-above-WHEN.png``.
         times: times in s; those of :func:`characteristic_instants` unless given.
 
     Returns:
@@ -101,8 +99,8 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
             view = BoomView.of(seen, [*instants, *_film(seen)])
             pictures = {f"boom{above}": draw_boom(view, instants, end)}
             for number, overlap in enumerate(seen.overlaps, start=1):
-                if seen.slides(overlap):
-                    # The stations of a driven overlap move out of the view.
+                if seen.telescopes(overlap):
+                    # The view does not follow the stations of a driven overlap.
                     continue
                 joint = above if number == 1 else f"{above}-{number}"
                 pictures[f"overlap{joint}"] = draw_overlap(seen, instants, overlap)
@@ -115,8 +113,8 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
 
 
 def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Path]:
-    """Draw a shell's initial motion as ``motion.gif``, magnified as by :func:`render_stills`."""
-    # Choose the view in whose direction the tip moves most.
+    """Draw the first seconds of the motion of a shell as ``motion.gif``."""
+    # The view is the one in which the tip moves most.
     scene = max(views, key=lambda seen: float(np.ptp(seen.motion["tip"].values)))
     film, (begin, _) = _film(scene), _ends(scene)
     with rc_context(theme.PAGE_RC):
@@ -125,7 +123,7 @@ def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> li
         slow = SHOWN / (last - begin) if last > begin else 1.0
         pace = f"; {slow:.3g} times slower than real time" if slow > 1.0 else ""
         pictures = list(draw_boom(view, film, last, pace, SMALL))
-    # All frames share one palette, computed from several frames; otherwise colours would flicker.
+    # All frames share a palette, since colours would flicker otherwise.
     some = np.concatenate([np.asarray(picture) for picture in pictures[:: len(pictures) // 5 or 1]])
     palette = Image.fromarray(some).quantize(256, Image.Quantize.FASTOCTREE)
     first, *rest = (
@@ -148,7 +146,7 @@ RENDERED: Sequence[Render] = (render_stills, render_film, render_buckling)
 def render_files(
     render: Render, fields: Path, trajectories: Path, case: Case, folder: Path, times: Times
 ) -> list[Path]:
-    """Draw the pictures of a shell from netCDF files; the fields have its name as ``model``."""
+    """Draw the pictures of a shell from the files of its fields and of all trajectories."""
     shell, motion = (xr.load_dataset(path, engine="scipy") for path in (fields, trajectories))
     views = Scene.views(shell, motion.sel(model=shell.attrs["model"]), case)
     return render(views, folder, times)
@@ -166,7 +164,7 @@ def _film(scene: Scene) -> list[Instant]:
 
 
 def _when(motion: xr.Dataset, times: Times) -> dict[str, float]:
-    """Return the times in s, by their names in file names."""
+    """Return the times in s by their names in file names."""
     return characteristic_instants(motion) if times is None else {f"{t:g}s": t for t in times}
 
 
@@ -182,12 +180,11 @@ def _instants(views: Sequence[Scene], when: Mapping[str, float]) -> list[Instant
 
 
 def characteristic_instants(motion: xr.Dataset) -> dict[str, float]:
-    """Return characteristic times in s of a model's trajectories, by event.
+    """Return the times in s of characteristic events of a motion, by event.
 
     The events are ``first-peak`` of the tip, or ``largest-deflection`` without a peak;
-    ``largest-force`` of the run at any station, unless it occurs at nearly the same time; and
-    ``first-contact``, unless a contact is closed from the start. Without contact only the first
-    event exists.
+    ``largest-force`` at any station, unless it is at nearly the same time; ``first-contact``,
+    unless a contact is closed from the start.
     """
     time = np.asarray(motion["time"].values)
     peak, _ = Trajectory(motion, np.empty((time.size, 0))).first_peak()
@@ -206,7 +203,7 @@ def characteristic_instants(motion: xr.Dataset) -> dict[str, float]:
 
 
 def place_of_largest_force(views: Sequence[Scene], time: float) -> str:
-    """Return text with the place of the maximum force at a time in s, if there are several."""
+    """Return the location of the largest force at a time in s as text; empty for one station."""
     scene = views[0]
     places = [
         (f"joint {number}{' sideways' if seen.from_above else ''}", overlap.stations)
@@ -220,8 +217,8 @@ def place_of_largest_force(views: Sequence[Scene], time: float) -> str:
     return f" ({next((place for place, stations in places if hardest in stations), 'a stop')})"
 
 
-def shells_in(folder: Path) -> list[Path]:
-    """Return the files of the fields of all shells in a run's folder.
+def shell_files(folder: Path) -> list[Path]:
+    """Return the files of the fields of all shells in the folder of a run.
 
     Raises:
         BadInput: files are missing, damaged, or written by another version.
@@ -235,7 +232,7 @@ def shells_in(folder: Path) -> list[Path]:
 
 
 @contextmanager
-def drawing(
+def start_rendering(
     results: Results,
     shells: Sequence[Path],
     trajectories: Path,
@@ -243,22 +240,25 @@ def drawing(
     times: Times = None,
     helper: Executor | None = None,
 ) -> Iterator[Callable[[], list[str]]]:
-    """Render the deformed shells of a run in another process.
+    """Start rendering in another process, and yield a function that collects the pictures.
 
-    The yielded function waits for the pictures, adds them to the summary, and returns their names.
-    It raises RenderingUnavailable if rendering is impossible.
+    The function waits for the pictures, adds them to the summary, and returns their names. It
+    raises RenderingUnavailable if rendering is impossible.
 
-    Args: results: results of the run. shells: files of fields, ``[SHELL-]fields.nc``. trajectories:
-        file of all models. folder: folder of the run; pictures of other instants stay in it. times:
-        times in s; the characteristic times unless given.
+    Args:
+        results: results of the run.
+        shells: files of the fields of shells.
+        trajectories: file of all trajectories.
+        folder: folder of the run; pictures of other times stay in it.
+        times: times in s; the characteristic times unless given.
         helper: process that renders; a new one unless given.
     """
     if not shells:
         yield list
         return
-    beside = workers.workers(1, opengl.hush) if helper is None else nullcontext(helper)
+    beside = workers.workers(1, opengl.silence_stderr) if helper is None else nullcontext(helper)
     with TemporaryDirectory(dir=folder) as easel, beside as pool:
-        first = pool.submit(opengl.first_picture)
+        first = pool.submit(opengl.render_test_picture)
         drawn = []
         for number, path in enumerate(sorted(shells)):
             place = Path(easel) / str(number)
@@ -272,7 +272,7 @@ def drawing(
         def gather() -> list[str]:
             pictures = {
                 f"{prefix}{picture.name}": picture
-                for prefix, several in _finished(first, drawn)
+                for prefix, several in _collect_pictures(first, drawn)
                 for picture in several
             }
             (folder / SNAPSHOTS).mkdir(exist_ok=True)
@@ -287,7 +287,7 @@ def drawing(
         yield gather
 
 
-def _finished(
+def _collect_pictures(
     first: Future[None], drawn: Sequence[tuple[str, Future[list[Path]]]]
 ) -> list[tuple[str, list[Path]]]:
     """Wait for all pictures, and return those of each shell."""
@@ -295,9 +295,9 @@ def _finished(
         first.result(opengl.PROBE_SECONDS)
         return [(prefix, pictures.result()) for prefix, pictures in drawn]
     except TimeoutError:
-        raise opengl.too_late() from None
+        raise opengl.timeout_error() from None
     except BrokenProcessPool:
-        # The other process reports why it ended.
+        # This raises the reason why the other process ended.
         opengl.require_opengl()
         raise MemoryError("the system has killed the process that draws") from None
     except (ImportError, RuntimeError):
@@ -306,7 +306,7 @@ def _finished(
 
 
 def describe(results: Results, folder: Path) -> list[Figure]:
-    """Return the snapshots in a run's folder, each with a title and a caption."""
+    """Return the snapshots in the folder of a run, with titles and captions."""
     return [
         describe_one(results, folder / SNAPSHOTS / name)
         for name in results.summary.snapshots.written
@@ -318,8 +318,7 @@ def describe_one(results: Results, path: Path) -> Figure:
 
     Args:
         results: results of the run.
-        path: path with a name of :func:`render_stills`, after the name of the shell if the case has
-            several shells.
+        path: path of the picture; the file name tells shell, kind and time.
     """
     lines = {m.name: m.contact_line for m in select_kind(Shell, results.case.models)}
     shells = list(lines)
@@ -379,7 +378,7 @@ def describe_one(results: Results, path: Path) -> Figure:
 
 
 def _instant(name: str, motion: xr.Dataset) -> tuple[str, str]:
-    """Return texts on an event and on the tip at its time; only the first without such a time."""
+    """Return a text on the event of a picture, and one on the tip at that time."""
     event = TITLES.get(name, name.replace("-", " "))
     instants = characteristic_instants(motion)
     if name in instants:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Summary of the design results at the top of a report: effect of play, results, model quality."""
+"""Summary at the top of a report: effect of play, governing results, model quality."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ from runs.pipeline.results import Results
 from runs.pipeline.utilisation import Utilisation, utilisations
 from runs.report.figure_context import farthest, tip_directions
 from runs.report.formatting import NONE, SHOWN, amount, fixed, number, percent
-from runs.report.result_tables import hardly, times
+from runs.report.result_tables import is_negligible, times
 from runs.report.tables import Column, Table
 
-# Utilisation above which a number is highlighted.
+# Higher utilisations are highlighted.
 NEAR = 0.9
 
 
 def summary_table(results: Results) -> Table | None:
-    """Return the table of the leading models' design results, starting with the reference."""
+    """Return the table of governing results of the main models, starting with the reference."""
     names, design = results.main_models, results.summary.design.models
     if not design:
         return None
     own = [design[name] for name in names]
     tips = [results.trajectories["tip"].sel(model=name).values for name in names]
     hertz = [one.modes[0].frequency if one.modes else None for one in own]
-    # The decay follows from modal damping, without other dissipation.
+    # Decay by modal damping alone.
     decay_times = [decay_time(results.case.damping.modal, f) for f in hertz]
     used = [utilisations(results, name) for name in names]
     walls, fibres = ([one.get(part) for one in used] for part in ("plate", "outer fibre"))
@@ -42,7 +42,7 @@ def summary_table(results: Results) -> Table | None:
     pads = {name: pad_text(pad) for name, pad in hardest.items()}
     stations = [None if hardest else _largest(one, "contact force", at="\nat {} m") for one in own]
     time = np.asarray(results.trajectories["time"].values, dtype=float)
-    # Take the direction in which the tip moves most.
+    # Direction in which the tip moves most.
     main = results.trajectories[tip_directions(results.trajectories)[0]]
     found = [mean_period(time, main.sel(model=name).values) for name in names]
     periods = [period if np.isfinite(period) else None for period in found]
@@ -61,7 +61,7 @@ def summary_table(results: Results) -> Table | None:
         Column("Static tip deflection (maximum load)", at_most, ".1f", "mm"),
         Column("Static tip deflection (end of telescoping)", extended, ".1f", "mm"),
         Column("Maximum dynamic tip deflection (factor φ)", dynamic, unit="mm"),
-        # A motion that starts undeformed has no static state at t = 0 to show.
+        # A motion that starts undeformed is not in static equilibrium at t = 0.
         Column("Tip travel from t = 0", travel, ".1f", "mm"),
         Column("Residual vibration of the tip", [_vibration(one) for one in own], unit="mm"),
         Column("Lateral tip deflection, maximum", _each(own, "lateral deflection"), unit="mm"),
@@ -123,22 +123,22 @@ def play_effect(results: Results) -> str:
         by_kind.setdefault(each.what, []).append(each)
     first = {what: max(several, key=lambda one: one.with_play) for what, several in by_kind.items()}
     kinds = [(_PHRASES[what], one) for what, one in first.items() if what in _PHRASES]
-    more = [f"{_more(one)} to {what}" for what, one in kinds if not hardly(one)]
-    same = [what for what, one in kinds if hardly(one)]
+    more = [f"{_more(one)} to {what}" for what, one in kinds if not is_negligible(one)]
+    same = [what for what, one in kinds if is_negligible(one)]
     sentences = [f"Play adds {join_words(more)}."] if more else []
     sentences += [f"It hardly changes {join_words(same)}."] if same else []
     frequency = first.get("first frequency")
-    if frequency is not None and frequency.bonded and not hardly(frequency):
+    if frequency is not None and frequency.bonded and not is_negligible(frequency):
         both = f"{amount(frequency.with_play, 'Hz')} in place of {amount(frequency.bonded, 'Hz')}"
         sentences.append(f"The first frequency is {both}.")
     return " ".join(sentences)
 
 
 def utilisation_verdict(results: Results, model: str | None = None) -> str:
-    """Return text with the utilisations of a model, the governing one first.
+    """Return a text on the utilisations of a model, by default the first main model.
 
-    The model is by default the leading one. The text is empty if the case gives no strengths,
-    allowable pressures or fatigue life.
+    The governing utilisation comes first. Without strengths, allowable pressures and detail
+    categories the text is empty.
     """
     model = model or results.main_models[0]
     known = [one for one in utilisations(results, model).values() if one.value is not None]
@@ -150,7 +150,7 @@ def utilisation_verdict(results: Results, model: str | None = None) -> str:
 
 
 def _not_given(results: Results, model: str) -> str:
-    """Return text with the missing strengths: steel, and pads that carry load in a model."""
+    """Return a text on missing strengths of steel and of loaded pads."""
     steels = [one.name for one in results.boom.segments if one.yield_strength is None]
     pressed = (pad for pad in results.summary.pads if pad.model == model and pad.force > 0.0)
     pads = {pad.inner: None for pad in pressed if pad.utilisation is None}
@@ -173,7 +173,7 @@ def _more(one: PlayDifference) -> str:
 
 
 def governing_pads(results: Results) -> dict[str, PadLoad]:
-    """Return each model's pad with the highest utilisation, or with the largest pressure."""
+    """Return the pad of each model with the highest utilisation, or the highest pressure."""
     pads = results.summary.pads[::-1]
     pads = sorted(pads, key=lambda pad: (pad.utilisation or 0.0, pad.pressure))
     return {pad.model: pad for pad in pads}
@@ -195,7 +195,7 @@ def _stress(most: Utilisation) -> str:
 
 
 def _buckling(own: ModelDesignResults) -> str | None:
-    """Return the lowest buckling factor of walls with its segment, by the shell if there is one."""
+    """Return a text on the lowest buckling factor of walls, by the shell or by panel formulas."""
     shells = [(one.factors[0], one.segment) for one in own.buckling if one.factors]
     panels = [(one.factor, f"{one.segment}, panel formulas") for one in own.panels]
     lowest = min(shells or panels, default=None)

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Symbols of supports and loads in pictures.
 
-Most symbols keep their size and orientation at any angle of the boom. A symbol is a matplotlib path
-in units of its own size, relative to its position.
+A symbol is a matplotlib path in units of its size, relative to its position.
 """
 
 from __future__ import annotations
@@ -24,10 +23,10 @@ from runs.case.schema import Case, LoadTable
 from runs.report import theme
 from runs.report.formatting import number
 
-# Drawn height of a segment without plates, as a fraction of the boom's length.
-UNKNOWN = 0.015
-# Distance of the arrows of a distributed load, as a fraction of the boom's length.
-APART = 0.07
+# Displayed height of a segment without plates, over the length of the boom.
+DEFAULT_HEIGHT = 0.015
+# Distance of the arrows of a distributed load, over the length of the boom.
+ARROW_DISTANCE = 0.07
 # Number of strokes of a zigzag, and their amplitude.
 TURNS, SWING = 6, 0.18
 
@@ -92,14 +91,14 @@ class Symbol:
     Args:
         kind: name of the kind.
         segment: number of the segment.
-        places: x in m of its positions.
-        edge: edge of the segment where it is drawn, or z in m.
+        places: positions x in m.
+        edge: edge of the segment at which it is drawn, or z in m.
         path: path of the symbol.
         meaning: text of the legend.
         color: colour of the symbol.
-        turns: whether the symbol rotates with the boom.
-        clearance: distance in m between edge and symbol.
-        grounded: whether the symbol stays in place when the boom moves.
+        turns: True if the symbol rotates with the boom.
+        clearance: distance between edge and symbol in m.
+        grounded: True if the symbol does not move with the boom.
     """
 
     kind: Literal["supports", "springs", "stops", "masses", "loads"]
@@ -113,8 +112,8 @@ class Symbol:
     clearance: float = 0.0
     grounded: bool = False
 
-    def turned(self, angle: float) -> Path:
-        """Return the symbol on a boom at an angle in degrees."""
+    def rotated(self, angle: float) -> Path:
+        """Return the path of the symbol on a boom at an angle in degrees."""
         return _rotated(self.path, angle) if self.turns else self.path
 
     def z(self, boom: Boom, x: float) -> float:
@@ -139,13 +138,13 @@ def marker_style(path: Path, color: str, size: float) -> dict[str, Any]:
 def edges(
     boom: Boom, segment: Segment, x: float, direction: Direction = "z"
 ) -> tuple[float, float]:
-    """Return the lowest and highest z in m of a section at x in m; without plates an estimate."""
-    half = 0.5 * UNKNOWN * boom.length
+    """Return the lowest and highest z in m of a segment at x in m, estimated without plates."""
+    half = 0.5 * DEFAULT_HEIGHT * boom.length
     return (-half, half) if segment.section is None else segment.section_at(x).reach(direction)
 
 
-def abbreviated(value: float, unit: str) -> str:
-    """Return a number with its unit; large numbers have the prefixes k or M."""
+def abbreviate(value: float, unit: str) -> str:
+    """Return a number with its unit as text, with prefix k or M for large numbers."""
     for larger, factor in _MORE.get(unit, ()):
         if abs(value) >= factor:
             return f"{number(value / factor, 4)} {larger}"
@@ -173,7 +172,7 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
         yield _load(table, boom, names.index(table.segment))
     for thrust in actions.thrusts(case, boom.segments):
         sign = FORCE_BACK if thrust.force > 0.0 else FORCE_ON
-        along = f"{abbreviated(abs(thrust.force), 'N')} along the boom"
+        along = f"{abbreviate(abs(thrust.force), 'N')} along the boom"
         yield Symbol("loads", thrust.segment, (thrust.x,), 0.0, sign, along)
 
 
@@ -189,7 +188,7 @@ def _support_symbols(boom: Boom) -> Iterator[Symbol]:
             elif support.stiffness is None:
                 yield Symbol("supports", index, place, edge, PINNED, "support", **upright)
             else:
-                meaning = f"elastic support, {abbreviated(support.stiffness, 'N/m')}"
+                meaning = f"elastic support, {abbreviate(support.stiffness, 'N/m')}"
                 yield Symbol("springs", index, place, edge, ELASTIC, meaning, **upright)
     for stop in boom.stops:
         grey = {**upright, "color": theme.PLAY_FREE, "clearance": 0.5 * stop.play}
@@ -216,7 +215,7 @@ def _load(table: LoadTable, boom: Boom, index: int) -> Symbol:
     if table.moment:
         sign = MOMENT if largest > 0.0 else CLOCKWISE
         return Symbol(
-            "loads", index, place, 0.0, sign, f"moment {abbreviated(abs(largest), 'N m')}{how}"
+            "loads", index, place, 0.0, sign, f"moment {abbreviate(abs(largest), 'N m')}{how}"
         )
     return _force(index, place, largest, table.direction, "N", how)
 
@@ -226,7 +225,7 @@ def _spread(
 ) -> Symbol:
     """Return the symbol of a distributed load along a part of a segment."""
     start, end = span
-    arrows = max(2, round((end - start) / (APART * boom.length)))
+    arrows = max(2, round((end - start) / (ARROW_DISTANCE * boom.length)))
     places = start + (np.arange(arrows) + 0.5) / arrows * (end - start)
     on = f"{how}, {boom.segments[index].name}"
     return _force(index, tuple(places.tolist()), load, direction, "N/m", on)
@@ -235,7 +234,7 @@ def _spread(
 def _force(
     index: int, places: tuple[float, ...], value: float, direction: str, unit: str, how: str
 ) -> Symbol:
-    size = abbreviated(abs(value), unit)
+    size = abbreviate(abs(value), unit)
     if direction == "y":
         sign = AWAY if value > 0.0 else TOWARDS
         return Symbol("loads", index, places, 0.0, sign, f"{size} sideways{how}")

@@ -18,13 +18,13 @@ from rich.table import Table as Grid
 from rich.text import Text
 
 from geometry.typography import TO_KILO, TO_MEGA, TO_MICRO, TO_MILLI, TO_PERCENT
-from runs.folder.files import write_whole
+from runs.folder.files import write_atomically
 from runs.report.formatting import NONE, count, fixed, number, repeated
 
 if TYPE_CHECKING:
     import pandas as pd
 
-# Characters per line in the report with its standard font, on a telephone, and in a file.
+# Characters per line in the report, on a telephone, and in a file.
 ROOMY, NARROW = 115, 40
 WIDE = 180
 
@@ -40,7 +40,7 @@ Plain = str | float | list[float | None] | None
 
 
 def wide_console() -> Console:
-    """Return the console for tables; it is as wide as the tables if the output is no terminal."""
+    """Return the console for tables. Without a terminal its width does not limit them."""
     console = Console()
     return console if console.is_terminal else Console(width=WIDE)
 
@@ -52,11 +52,11 @@ class Column:
     Args:
         title: the heading.
         cells: one cell per row: a number in SI units, text, or None for an empty cell; repeated
-            measurements are shown with the digits that their spread leaves.
-        form: number format: ".2f" with two decimals, ".3g" with three significant digits, else a
-            count.
-        unit: displayed unit, such as "kN m" or "% of the range"; numbers are not converted if it is
-            empty.
+            measurements are displayed as their median, rounded by their spread.
+        form: number format: ".2f" for two decimals, ".3g" for three significant digits, empty for
+            a count.
+        unit: displayed unit, such as "kN m" or "% of the range"; empty to leave numbers as they
+            are.
     """
 
     title: str
@@ -107,7 +107,7 @@ class Column:
         return cell if isinstance(cell, str) or cell is None else self._number(cell)
 
     def _number(self, value: float) -> float | None:
-        """Return a number in its displayed unit; integers without conversion stay integers."""
+        """Return a number in the displayed unit; an integer that is not converted stays one."""
         if isinstance(value, int) and self.factor == 1.0:
             return value
         return float(self.factor * value) if math.isfinite(value) else None
@@ -120,7 +120,7 @@ class Table:
     Args:
         title: title above the table.
         columns: columns; the first is aligned left, the others right. Missing cells at the end of a
-            column are empty. A cell may have several lines.
+            column are empty.
         notes: sentences below the table.
         name: name of its anchor in the report.
         strong: texts of highlighted cells.
@@ -144,9 +144,11 @@ class Table:
         """Return the table of rows whose numbers are already in the units of the headings.
 
         Args:
-            name, title, notes: name, title and notes of the table.
+            name: name of the anchor in the report.
+            title: title above the table.
             columns: number format by heading; only headings if all cells are text.
             rows: rows with a cell for each heading.
+            notes: sentences below the table.
         """
         forms = columns if isinstance(columns, Mapping) else dict.fromkeys(columns, "")
         parts = [
@@ -157,7 +159,7 @@ class Table:
 
     @property
     def headings(self) -> tuple[str, ...]:
-        """The headings of the columns, with the unit in the second line."""
+        """The headings of the columns, with units in the second line."""
         return tuple(column.heading for column in self.columns)
 
     @property
@@ -167,7 +169,7 @@ class Table:
 
     @property
     def frame(self) -> pd.DataFrame:
-        """The cells by their headings, numbers in displayed units; None for empty cells.
+        """The table as a data frame, with numbers in displayed units and None for empty cells.
 
         Raises:
             ValueError: two columns have the same heading.
@@ -206,12 +208,12 @@ class Table:
 
     @property
     def stacked(self) -> bool:
-        """True if a telephone shows a row's cells below one another, each with its heading."""
+        """True if a telephone shows the cells of a row below one another, with their headings."""
         return self._letters > NARROW
 
     @property
     def _letters(self) -> int:
-        """The number of characters in a line; headings break at spaces, cells at line breaks."""
+        """The number of characters in a line, if headings break at spaces."""
         letters = [
             max(len(part) for part in ("", *of.heading.split(), *"\n".join(of.text).split("\n")))
             for of in self.columns
@@ -221,11 +223,11 @@ class Table:
     def show(self, console: Console) -> None:
         """Print the table."""
         if self.title:
-            # Printed separately, since the title of a grid would be broken at the grid's width.
+            # Printed separately, since rich would break the title at the width of the table.
             console.print(Text(self.title, style="italic"))
         grid = Grid(box=SIMPLE_HEAD, pad_edge=False)
         for i, heading in enumerate(self.headings):
-            # Small numbers, such as 1 × 10⁻¹², stay on one line.
+            # Numbers such as 1 × 10⁻¹² must not break.
             whole = i == 0 or ("\n" in heading and any(" × 10" in row[i] for row in self.rows))
             grid.add_column(heading, justify="right" if i else "left", no_wrap=whole)
         for row in self.rows:
@@ -259,10 +261,10 @@ def as_json(data: Any) -> str:
 def write(
     folder: Path, name: str, title: str, data: Mapping[str, Any], tables: Sequence[Table]
 ) -> None:
-    """Write NAME.json and NAME.md; each is complete or absent.
+    """Write NAME.json and NAME.md atomically.
 
     Args:
-        folder: folder, which is created if it is missing.
+        folder: folder of the files, which is created if it is missing.
         name: name of the files.
         title: heading of the Markdown file.
         data: data of the JSON file.
@@ -274,4 +276,4 @@ def write(
         "md": "\n".join([f"# {title}\n", *(table.markdown() for table in tables)]),
     }
     for suffix, text in texts.items():
-        write_whole(folder / f"{name}.{suffix}", text)
+        write_atomically(folder / f"{name}.{suffix}", text)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Output of a run in the terminal: models and numerics, then the results."""
+"""Tables of runs in the terminal."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ SHOWN = {
 
 
 def print_runs(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
-    """Print models, numerics, judgements and results of runs; return the exit status.
+    """Print models, numerics, verdicts of the client and results; return the exit status.
 
     Args:
-        runs: the runs, by the file or folder that messages name.
-        judged: the client's additions, by the same names.
+        runs: runs by their names in messages.
+        judged: additions of the client by the same names.
     """
     console = Terminal()
     for results in runs.values():
@@ -57,7 +57,7 @@ def print_runs(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> i
 
 
 def print_failures(file: str, results: Results) -> int:
-    """Print a line for each model of a run that failed; return the exit status."""
+    """Print a line for each failed model of a run, and return the exit status."""
     failures = results.summary.failures
     if not failures:
         return 0
@@ -69,7 +69,7 @@ def print_failures(file: str, results: Results) -> int:
 
 
 def print_models(results: Results, console: Console) -> None:
-    """Print the table of a run's models, the accuracy of shells, and cautions."""
+    """Print the table of models, notes on accuracy, and cautions."""
     found = {column.heading: column.text for column in model_table(results).columns}
     columns = [Column(SHOWN[one], found[one]) for one in found if one in SHOWN]
     Table(f"Models: {results.case.title}", columns).show(console)
@@ -80,7 +80,7 @@ def print_models(results: Results, console: Console) -> None:
 
 
 def print_results(results: Results, console: Console) -> None:
-    """Print the governing design results of each model, then the leading model's utilisation."""
+    """Print the governing results of each model, then the utilisations of the first main model."""
     if not results.summary.design.models:
         return
     for table in filter(None, (result_table(results), limit_table(results))):

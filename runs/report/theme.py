@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Style of figures: readable on a telephone, one colour per model in all figures."""
+"""Style of figures, with the same colour of a model in all of them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 
-# A telephone shows a figure at about half its width: 11 pt stay readable.
+# Width of a figure in inches. A telephone shows it at half the size, where 11 pt stay readable.
 WIDTH = 5.4
 DPI = 150
 
@@ -22,11 +22,10 @@ FAINT = "#a8a8a8"
 # Colours of energy losses.
 LOSS = "#8c6d1f"
 
-# Okabe and Ito (2008), without colours too pale for lines on white; the purple is slightly darker;
-# violet and ochre are added for more models.
+# Colours of Okabe and Ito (2008) without those too pale for lines; a darker purple, and two more.
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#111111", "#b0568c", "#6a3fd0", "#8a6d00")
 
-# Colours of two segments and their contact force, distinguishable by the colour-blind.
+# Colours of two segments and their contact force, which the colour-blind can distinguish.
 OUTER, INNER, FORCE = "#56b4e9", "#e69f00", "#b03000"
 # Outline of letters on a picture.
 OUTLINED: list[AbstractPathEffect] = [withStroke(linewidth=3, foreground="white")]
@@ -64,8 +63,7 @@ RC: dict[Any, Any] = {
     "lines.solid_capstyle": "round",
     "legend.frameon": False,
     "legend.fontsize": 11.0,
-    # Long trajectories are split, since they overflow the renderer's path buffer; the gap between
-    # two pieces is too short to be visible.
+    # Long lines are split, since they overflow the path buffer of the renderer.
     "agg.path.chunksize": 1_000_000,
 }
 
@@ -76,10 +74,10 @@ PAGE_RC: dict[Any, Any] = {
 
 
 class Canvas(FigureCanvasAgg):
-    """Canvas that draws a sheet only once to save it, where matplotlib draws it twice."""
+    """Canvas that draws a figure once to save it, while matplotlib draws it twice."""
 
     def print_figure(self, filename: Any, *_: Any, **__: Any) -> None:
-        """Write a PNG file; the suffix of its name does not matter."""
+        """Write a PNG file, whatever the suffix of its name."""
         canvas: Any = self
         canvas.print_png(filename)
 
@@ -91,7 +89,7 @@ def segment_color(number: int) -> str:
 
 
 def tint(color: str, strength: float) -> tuple[float, float, float]:
-    """Return a colour mixed with white; strength 1 returns the colour itself."""
+    """Return a colour mixed with white; strength 1 is the pure colour."""
     red, green, blue = to_rgb(color)
     paper = 1.0 - strength
     return strength * red + paper, strength * green + paper, strength * blue + paper
@@ -106,7 +104,7 @@ class Stroke:
 
 
 def strokes(models: Sequence[str], bonded: Sequence[str]) -> dict[str, Stroke]:
-    """Return the stroke of each model, the same in all figures.
+    """Return colour and dashes of each model, the same in all figures.
 
     Args:
         models: names in the order of the case.

@@ -26,22 +26,22 @@ from runs.pipeline.model_output import frame_indices
 from runs.pipeline.model_quality import main_models
 from runs.pipeline.run import Run
 from runs.report import theme
-from runs.report.charts import compressed, pack_plotly
+from runs.report.charts import compress, pack_plotly
 from runs.report.pages import page
 from runs.report.scene import SECTION_DRAWN, Scene, means_around
 
 VIEWER = "viewer.html"
 
-# Truncation error of the shapes, as a fraction of the largest displacement.
-LEFT = 2.0e-3
-# Maximum number of triangles in a page; finer meshes need dedicated programs.
+# Largest truncation error of the shapes, over the largest displacement.
+TRUNCATION = 2.0e-3
+# Maximum number of points in a page; finer meshes need other programs.
 MOST_POINTS = 60_000
 # Percentile of the stresses at the end of the colour scale.
 PERCENTILE = 99.0
-# Size of a symbol as a fraction of the boom's length, of a small symbol as a fraction of this, and
-# margin around the boom.
+# Size of a symbol over the length of the boom, size of a small symbol over this, and margin around
+# the boom over its length.
 SYMBOL, SMALL, MARGIN = 0.03, 0.6, 0.02
-# Scale at which matplotlib converts a symbol's curves into smooth polygons.
+# Scale at which matplotlib converts the curves of a symbol into polygons.
 FINE = 100.0
 # Largest integers of 16 and of 8 bits.
 _SHORT, _BYTE = 32767, 255
@@ -71,7 +71,7 @@ class View(NamedTuple):
 
     @classmethod
     def of_shell(cls, model: str, scene: Scene, time: Array) -> View:
-        """Return a shell's view, with larger von Mises stresses of both faces, averaged."""
+        """Return the view of a shell, with the larger stress of both faces, averaged at points."""
         stress = scene.stress
         assert stress is not None
         means = [
@@ -82,26 +82,23 @@ class View(NamedTuple):
 
 
 def viewer(run: Run) -> str | None:
-    """Return the page as HTML, with library and data embedded.
-
-    Return None without plotly, or if the mesh is too fine for a page.
-    """
+    """Return the page as HTML; None without plotly, or if the mesh is too fine for a page."""
     view = _view(run) if find_spec("plotly") else None
     if view is None:
         return None
     case = run.results.case
-    content = packed(view, 0.0 if case.gravity is None else case.gravity.angle)
+    content = pack_view(view, 0.0 if case.gravity is None else case.gravity.angle)
     return page(
         "viewer.html",
         title=case.title,
         view=content,
         plotly=pack_plotly(),
-        content=compressed(json.dumps(content, default=_typed)),
+        content=compress(json.dumps(content, default=_typed)),
     )
 
 
 def _view(run: Run) -> View | None:
-    """Return the view of the first shell or the leading beam; None if its mesh is too fine."""
+    """Return the view of the first shell or main beam; None if its mesh is too fine."""
     results = run.results
     for name, shell in run.shells.items():
         if shell.fields.sizes["point"] > MOST_POINTS:
@@ -118,8 +115,8 @@ def _view(run: Run) -> View | None:
     return View(name, scene, beam.time, TO_MEGA * stress, "bending stress (MPa)")
 
 
-def packed(view: View, angle: float) -> dict[str, Any]:
-    """Return the data of a page, for a boom at an angle in degrees about y."""
+def pack_view(view: View, angle: float) -> dict[str, Any]:
+    """Return the data of the page, for a boom at an angle in degrees about y."""
     scene = view.scene
     scale = scene.fitting_scale(view.time.tolist())
     rest = scene.magnify(np.zeros_like(scene.points), scale)
@@ -131,14 +128,14 @@ def packed(view: View, angle: float) -> dict[str, Any]:
     )
     parts, flat = few_shapes(moved.reshape(view.time.size, -1))
     ways = extensions(scene, view.time)
-    # Telescoping is not magnified: drives move segments along x by true distances.
+    # The travel of drives along x is not magnified.
     along = [own[None, :, None] * [1.0, 0.0, 0.0] for own, _ in ways.values()]
     parts = np.column_stack([parts, *(way for _, way in ways.values())])
-    rise = Rotation.from_euler("y", -angle, degrees=True).as_matrix().T
-    shapes = np.concatenate([flat.reshape(len(flat), -1, 3), *along]) @ rise
+    rotation = Rotation.from_euler("y", -angle, degrees=True).as_matrix().T
+    shapes = np.concatenate([flat.reshape(len(flat), -1, 3), *along]) @ rotation
     size = np.abs(shapes).max(axis=(1, 2)) + 1.0e-300
-    lines = symbol_lines(scene, rest, rise, angle, scale)
-    points = rest @ rise
+    lines = symbol_lines(scene, rest, rotation, angle, scale)
+    points = rest @ rotation
     places = points + np.tensordot(parts, shapes, axes=1)
     still = [line.offset + points[line.anchor] * (line.anchor >= 0)[:, None] for line in lines]
     everything = np.concatenate([places.reshape(-1, 3), *still])
@@ -164,9 +161,10 @@ def packed(view: View, angle: float) -> dict[str, Any]:
 
 
 class Lines(NamedTuple):
-    """Lines of one style: vertices (num_vertices, 3) in m relative to mesh points that they follow.
+    """Lines of one style. Each vertex follows a mesh point.
 
-    The point is -1 for a fixed vertex, and for a gap in a line, whose vertex is NaN.
+    ``anchor`` has the point numbers, -1 for fixed vertices and for gaps. ``offset``
+    (num_vertices, 3) has the vertices relative to these points in m, NaN for gaps.
     """
 
     color: str
@@ -175,15 +173,17 @@ class Lines(NamedTuple):
     offset: Array
 
 
-def symbol_lines(scene: Scene, rest: Array, rise: Array, angle: float, scale: float) -> list[Lines]:
-    """Return the lines of cylinders and of the symbols of supports and loads.
+def symbol_lines(
+    scene: Scene, rest: Array, rotation: Array, angle: float, scale: float
+) -> list[Lines]:
+    """Return the lines of cylinders, and of symbols of supports and loads.
 
     Args:
         scene: scene of the boom.
         rest: (num_points, 3) displayed points of the undeformed boom in m.
-        rise: (3, 3) rotation by the boom's angle.
+        rotation: rotation matrix (3, 3) of the angle.
         angle: angle of the boom in degrees.
-        scale: scale of displacements and play.
+        scale: magnification of displacements and play.
     """
     found: dict[tuple[str, float], list[tuple[Array, Array]]] = {}
     gap = np.full((1, 3), np.nan)
@@ -193,20 +193,20 @@ def symbol_lines(scene: Scene, rest: Array, rise: Array, angle: float, scale: fl
             place, near = scene.at(rest, symbol.segment, x, symbol.z(scene.boom, x))
             place[2] += (1.0 if symbol.edge == "top" else -1.0) * scale * symbol.clearance
             if not isinstance(symbol.edge, str):
-                # In front of the wall, which would otherwise hide the symbol.
+                # The symbol lies in front of the wall, which would hide it otherwise.
                 place[1] = 1.02 * rest[scene.owner == symbol.segment, 1].min()
             fixed = np.zeros(3) if symbol.grounded else rest[near]
-            path = symbol.turned(angle).transformed(Affine2D().scale(FINE))
+            path = symbol.rotated(angle).transformed(Affine2D().scale(FINE))
             for outline in path.to_polygons(closed_only=False):
                 corners = np.insert(size / FINE * np.asarray(outline), 1, 0.0, axis=1)
-                offset = np.concatenate([corners + (place - fixed) @ rise, gap])
+                offset = np.concatenate([corners + (place - fixed) @ rotation, gap])
                 anchor = np.full(len(offset), -1 if symbol.grounded else near)
                 found.setdefault((symbol.color, 3.0), []).append((anchor, offset))
     for cylinder in scene.boom.cylinders:
         edge = scene.edges(cylinder.segment, cylinder.x)[0 if cylinder.direction[1] > 0.0 else 1]
         place, near = scene.at(rest, cylinder.segment, cylinder.x, edge)
         down = np.subtract(cylinder.ground, (cylinder.x, -cylinder.depth))
-        ends = np.array([place - rest[near], place + np.insert(down, 1, 0.0)]) @ rise
+        ends = np.array([place - rest[near], place + np.insert(down, 1, 0.0)]) @ rotation
         anchor = np.array([near, -1, -1])
         found.setdefault((theme.INK, 8.0), []).append((anchor, np.concatenate([ends, gap])))
     return [
@@ -216,7 +216,7 @@ def symbol_lines(scene: Scene, rest: Array, rise: Array, angle: float, scale: fl
 
 
 def _figure(view: View, lines: Sequence[Lines], reach: Array) -> dict[str, Any]:
-    """Return plotly's traces and layout; ``reach`` (2, 3) has the limits of all points in m."""
+    """Return the figure of plotly; ``reach`` (2, 3) has the limits of all points in m."""
     from plotly.graph_objects import Figure
 
     colors = colormaps[theme.STRESS](np.linspace(0.0, 1.0, 9))
@@ -271,10 +271,10 @@ def _figure(view: View, lines: Sequence[Lines], reach: Array) -> dict[str, Any]:
 
 
 def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
-    """Return the points that each drive moves, and the distances, by the name of the inner segment.
+    """Return moved points and travel of each drive, by the name of the inner segment.
 
-    The points (num_points,) are 1 where they move and else 0; distances (num_frames,) are in m at
-    times (num_frames,) in s.
+    The first array (num_points,) is 1 for points that the drive moves and 0 for others. The second
+    is the travel (num_frames,) in m at given times (num_frames,) in s.
     """
     boom, found = scene.boom, {}
     for number, joint in enumerate(boom.joints):
@@ -290,9 +290,8 @@ def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
 def few_shapes(moved: Array) -> tuple[Array, Array]:
     """Return factors (num_frames, num_shapes) and shapes (num_shapes, num_values) of a motion.
 
-    They follow from the singular value decomposition (Eckart and Young 1936) by the eigenvectors of
-    the Gram matrix of the frames, truncated with an error of at most ``LEFT`` times the largest
-    value.
+    They are the singular value decomposition (Eckart and Young 1936), by eigenvectors of the Gram
+    matrix of the frames. The truncation error is at most 0.2 % of the largest value.
 
     Args:
         moved: displacements (num_frames, num_values).
@@ -303,13 +302,13 @@ def few_shapes(moved: Array) -> tuple[Array, Array]:
     left = moved.copy()
     for count in range(1, len(parts) + 1):
         left -= np.outer(parts[:, count - 1], shapes[count - 1])
-        if np.abs(left).max() <= LEFT * largest:
+        if np.abs(left).max() <= TRUNCATION * largest:
             break
     return parts[:, :count], shapes[:count]
 
 
 def _typed(values: Array) -> dict[str, str]:
-    """Return an array in the data format of the page's script."""
+    """Return an array in the format of the script of the page."""
     return {
         "kind": values.dtype.name,
         "bytes": base64.b64encode(values.tobytes()).decode("ascii"),

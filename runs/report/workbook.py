@@ -9,7 +9,7 @@ from pathlib import Path
 import pandas as pd
 
 from runs.case.messages import BadInput
-from runs.folder.files import whole
+from runs.folder.files import atomic_path
 from runs.pipeline.results import Results
 from runs.report.document import tables_by_part
 
@@ -40,7 +40,10 @@ def write_workbook(results: Results, folder: Path, name: str, option: str) -> No
         for table in several
     ]
     try:
-        with whole(folder / WORKBOOK) as path, pd.ExcelWriter(path, engine="openpyxl") as writer:
+        with (
+            atomic_path(folder / WORKBOOK) as path,
+            pd.ExcelWriter(path, engine="openpyxl") as writer,
+        ):
             for short, title, frame, notes in sheets:
                 frame.to_excel(writer, sheet_name=short, index=False, startrow=ABOVE)
                 sheet = writer.sheets[short]

@@ -35,16 +35,16 @@ if TYPE_CHECKING:
 # Relative change of the loads that measures the predictability of the reference.
 CHANGE = 1.0e-6
 # Averaging time in s of pad forces: single impacts last microseconds.
-HELD = 0.02
+AVERAGING_TIME = 0.02
 
-TIP_OFF = "tip_off"
+TIP_DEVIATION = "tip_off"
 # Names of distances, which are relative to the reference.
 DISTANCES = (
     Metric("first_peak_off", "1", "first peak deviation", TO_PERCENT, "%"),
     Metric("slow_period_off", "1", "slow period deviation", TO_PERCENT, "%"),
     Metric("pad_force_off", "1", "pad force deviation", TO_PERCENT, "%"),
     Metric("stress_off", "1", "stress deviation", TO_PERCENT, "%"),
-    Metric(TIP_OFF, "1", "tip deviation", TO_PERCENT, "%"),
+    Metric(TIP_DEVIATION, "1", "tip deviation", TO_PERCENT, "%"),
 )
 # Variables with the end of the comparison of tips in s: of a point, and of all its models.
 UNTIL = "compared_until"
@@ -59,7 +59,7 @@ class Features:
     tip: Array  #: deflection of the tip (num_times,) in m, while it is compared
     first_peak: float  #: first peak in m
     slow_period: float  #: mean time between the tip's main peaks in s
-    pad_force: float  #: largest mean force over ``HELD`` at any station in N
+    pad_force: float  #: largest mean force over ``AVERAGING_TIME`` at any station in N
     stress: float  #: largest stress of an outer fibre in Pa
 
     @classmethod
@@ -91,7 +91,7 @@ class Features:
 
 
 def sustained_force(time: Array, forces: Array) -> float:
-    """Return the largest mean force over ``HELD`` in N; NaN if the run is too short.
+    """Return the largest mean force over ``AVERAGING_TIME`` in N; NaN if the run is too short.
 
     Args:
         time: (num_times,) in s, evenly spaced.
@@ -99,7 +99,7 @@ def sustained_force(time: Array, forces: Array) -> float:
     """
     if time.size < 2 or not np.isfinite(forces).any():
         return float("nan")
-    count = max(1, round(HELD / (time[1] - time[0])))
+    count = max(1, round(AVERAGING_TIME / (time[1] - time[0])))
     sums = np.cumsum(np.pad(forces, ((1, 0), (0, 0))), axis=0)
     means = (sums[count:] - sums[:-count]) / count
     return float(np.nanmax(np.abs(means))) if means.size else float("nan")

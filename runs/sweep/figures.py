@@ -29,7 +29,7 @@ from runs.pipeline.quantities import QUANTITIES
 from runs.report import theme
 from runs.report.figure_context import new_sheet
 from runs.report.formatting import number
-from runs.sweep.distances import DISTANCES, LEVELS, TIP_OFF, UNTIL
+from runs.sweep.distances import DISTANCES, LEVELS, TIP_DEVIATION, UNTIL
 from runs.sweep.residual_vibration import draw_vibration
 
 CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
@@ -76,7 +76,7 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
         bonded: names of the models without play.
         folder: existing folder for the PNG files.
     """
-    data = in_shown_units(data)
+    data = in_display_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
     strokes = _strokes(data, bonded)
     with matplotlib.rc_context(theme.RC):
@@ -88,7 +88,7 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
             part = data.sel(there)
             # If all points failed, there is nothing to draw.
             if changing := _changing(part):
-                sheet, panels = _lines(data[keys[0]], _of_models(part, changing, strokes))
+                sheet, panels = _lines(data[keys[0]], _model_lines(part, changing, strokes))
                 for axes, quantity in zip(panels, changing, strict=True):
                     axes.set_yscale("log" if quantity.logarithmic else "linear")
                     if (permitted := _permitted(part, quantity)) is not None:
@@ -127,7 +127,7 @@ def _changing(data: xr.Dataset) -> list[Metric]:
     return [one for one in known if changes(one)] or known
 
 
-def in_shown_units(data: xr.Dataset) -> xr.Dataset:
+def in_display_units(data: xr.Dataset) -> xr.Dataset:
     """Return the data with keys in readable units, such as mm or kN."""
     coordinates = {}
     for name, along in data.coords.items():
@@ -149,7 +149,7 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
         data: dataset of :func:`runs.sweep.frequencies.gather`.
         path: path of the PNG file.
     """
-    data = in_shown_units(data)
+    data = in_display_units(data)
     (key,) = (str(dim) for dim in data.dims if dim not in ("model", "joints", "mode"))
     colors = {name: one.color for name, one in _strokes(data, ()).items()}
     shown = {
@@ -182,7 +182,7 @@ def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
         reference: name of the reference.
         folder: existing folder for the PNG files.
     """
-    data = in_shown_units(data)
+    data = in_display_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
     known = [one for one in DISTANCES if np.isfinite(data[one.name].values).any()]
     with matplotlib.rc_context(theme.RC):
@@ -191,7 +191,7 @@ def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
                 _distance_maps(data, quantity, keys, reference, folder)
         elif known:
             floor = {one.name: np.maximum(data[one.name], _LEAST / one.factor) for one in known}
-            shown = _of_models(data.assign(floor), known, _strokes(data, ()))
+            shown = _model_lines(data.assign(floor), known, _strokes(data, ()))
             sheet, panels = _lines(data[keys[0]], shown)
             for axes in panels:
                 for level in LEVELS:
@@ -206,7 +206,7 @@ def _strokes(data: xr.Dataset, bonded: Sequence[str]) -> dict[str, theme.Stroke]
     return theme.strokes([str(name) for name in data["model"].values], bonded)
 
 
-def _of_models(
+def _model_lines(
     data: xr.Dataset, quantities: Sequence[Metric], strokes: Mapping[str, theme.Stroke]
 ) -> dict[str, dict[str, tuple[Array, theme.Stroke]]]:
     """Return values and stroke of each line, by title of the quantity and label of the line."""
@@ -302,13 +302,13 @@ def _distance_maps(
             _scale_axis(axes, "y", data[y])
             off = quantity.factor * part[quantity.name].sel(model=name).transpose(y, x)
             shade = _shade(axes, off)
-            if quantity.name == TIP_OFF:
+            if quantity.name == TIP_DEVIATION:
                 _write_ends(axes, part[UNTIL].transpose(y, x), float(data[UNTIL].max()))
             axes.label_outer()
         where = ", ".join(f"{_quantity(key)} {part[key].item():g}" for key in before)
         column[0].set_title("\n".join(filter(None, [where, column[0].get_title(loc="left")])))
     sheet.colorbar(shade, ax=grid, label=f"{quantity.title} (%)", aspect=40)
-    if quantity.name == TIP_OFF and data[UNTIL].min() < data[UNTIL].max():
+    if quantity.name == TIP_DEVIATION and data[UNTIL].min() < data[UNTIL].max():
         until = (
             f"in the maps: time up to which tips are compared; elsewhere {data[UNTIL].max():g} s"
         )

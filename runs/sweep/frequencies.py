@@ -22,7 +22,7 @@ from geometry.arrays import Array
 from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext, ModelBoom
 from runs.case.schema import Case, Model
-from runs.folder.files import changed_folder, exclusive, whole
+from runs.folder.files import atomic_path, folder_lock, modified_folder
 from runs.pipeline.context import ignore_progress
 from runs.pipeline.results import CONVENTIONS
 from runs.process.progress import Progress
@@ -125,14 +125,14 @@ def table(data: xr.Dataset) -> Table:
 def write(data: xr.Dataset, folder: Path) -> None:
     """Write NAME.nc, NAME.csv and, over one key, NAME.png into a sweep's folder."""
     with (
-        exclusive(folder),
-        changed_folder(folder) as part,
-        whole(part / f"{NAME}.nc") as netcdf,
-        whole(part / f"{NAME}.csv") as lines,
+        folder_lock(folder),
+        modified_folder(folder) as part,
+        atomic_path(part / f"{NAME}.nc") as netcdf,
+        atomic_path(part / f"{NAME}.csv") as lines,
     ):
         data.to_netcdf(netcdf, engine="scipy")
         frame = data.to_dataframe().reset_index()
         frame.to_csv(lines, index=False, float_format="%.9g", lineterminator="\r\n")
         if data["frequency"].ndim == 4:
-            with whole(part / f"{NAME}.png") as picture:
+            with atomic_path(part / f"{NAME}.png") as picture:
                 draw_frequencies(data, picture)

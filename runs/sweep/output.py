@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 from rich.console import Console
 
-from runs.folder.files import changed_folder, exclusive, whole
+from runs.folder.files import atomic_path, folder_lock, modified_folder
 from runs.pipeline.limits import Limit
 from runs.pipeline.metrics import Metric, metrics
 from runs.pipeline.quantities import QUANTITIES
@@ -74,10 +74,10 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
     """Write ``sweep.nc``, ``sweep.csv`` and the figures, which replace earlier ones at once."""
     data = gather(plan, outcomes)
     with (
-        exclusive(folder),
-        changed_folder(folder) as part,
-        whole(part / NETCDF) as netcdf,
-        whole(part / CSV) as table,
+        folder_lock(folder),
+        modified_folder(folder) as part,
+        atomic_path(part / NETCDF) as netcdf,
+        atomic_path(part / CSV) as table,
     ):
         figures = part / "figures"
         shutil.rmtree(figures, ignore_errors=True)
@@ -90,7 +90,7 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
     return data
 
 
-def show(data: xr.Dataset, plan: Plan, console: Console) -> None:
+def print_ranges(data: xr.Dataset, plan: Plan, console: Console) -> None:
     """Print the range of each model's results, and distances from a reference.
 
     The energy residual is the largest of all points. Telescoping speeds follow.
@@ -123,7 +123,7 @@ def show(data: xr.Dataset, plan: Plan, console: Console) -> None:
     ):
         console.print(line, markup=False, highlight=False)
     if plan.reference is not None:
-        _show_distances(data, plan.reference, console)
+        _print_distances(data, plan.reference, console)
 
 
 def _within_limits(data: xr.Dataset, limits: Sequence[Limit]) -> Iterator[str]:
@@ -134,7 +134,7 @@ def _within_limits(data: xr.Dataset, limits: Sequence[Limit]) -> Iterator[str]:
         yield f"{name}: {limit} at {held} of {values.size} points"
 
 
-def _show_distances(data: xr.Dataset, reference: str, console: Console) -> None:
+def _print_distances(data: xr.Dataset, reference: str, console: Console) -> None:
     others = [str(name) for name in data["model"].values if name != reference]
     rows = [
         (name, *(_range(data[one.name].sel(model=name).round(DIGITS), one) for one in DISTANCES))

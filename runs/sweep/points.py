@@ -108,7 +108,7 @@ def plan_case(
     case_file.select(whole, file, models, mesh_size, 0)
     tables = tables_of(whole)
     variations = parse(texts, tables, file)
-    first = _written(file, tables, tuple((v, v.values[0]) for v in variations))
+    first = _set_numbers(file, tables, tuple((v, v.values[0]) for v in variations))
     system = whole.system
     units = [system.unit(unit_of(variation.places[0], first)) for variation in variations]
     variations = [
@@ -171,21 +171,21 @@ def make_points(
     tables = tables_of(whole)
 
     def chosen(settings: Sequence[Setting]) -> Case:
-        return case_file.select(_written(file, tables, settings), file, models)
+        return case_file.select(_set_numbers(file, tables, settings), file, models)
 
     plates: dict[Sequence[Setting], Plates] = {}
     for settings in combinations:
         shaping = tuple(setting for setting in settings if setting[0].shapes_sections)
         label = _label(settings)
         if shaping not in plates:
-            plates[shaping] = infer_plates(_checked(file, label, chosen(shaping)))
+            plates[shaping] = infer_plates(_check_point(file, label, chosen(shaping)))
         held = hold_plates(chosen(settings), plates[shaping])
-        checked = _checked(file, label, held, any(plates[shaping]))
+        checked = _check_point(file, label, held, any(plates[shaping]))
         values = tuple(value for _, value in settings)
         yield Point(values, label, case_file.select(checked, file, None, mesh_size))
 
 
-def _written(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:
+def _set_numbers(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:
     """Return the case with some of its numbers set, as in a case file."""
     changed = deepcopy(tables)
     try:
@@ -204,7 +204,7 @@ def _written(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:
     raise BadInput(file, f"--vary {_label(settings)}", f"{fault.key}: {fault.what}")
 
 
-def _checked(file: str, label: str, case: Case, held: bool = False) -> Case:
+def _check_point(file: str, label: str, case: Case, held: bool = False) -> Case:
     """Return the case after all checks of a case file."""
     try:
         case_file.check(case, file)

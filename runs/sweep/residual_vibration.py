@@ -33,7 +33,7 @@ class VibrationCurve(NamedTuple):
     vibration: Array
     levels: dict[str, Array]
 
-    def where_known(self, end: str) -> VibrationCurve:
+    def with_level(self, end: str) -> VibrationCurve:
         """Return the values at the speeds for which an end has a level."""
         known = np.isfinite(self.levels[end])
         levels = {end: self.levels[end][known]}
@@ -61,7 +61,7 @@ def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
     return found
 
 
-def fastest_within(curve: VibrationCurve, end: str) -> float | None:
+def admissible_speed(curve: VibrationCurve, end: str) -> float | None:
     """Return the speed in m/s up to which no vibration exceeds its level; None if all do.
 
     The vibration is interpolated linearly between speeds.
@@ -70,10 +70,10 @@ def fastest_within(curve: VibrationCurve, end: str) -> float | None:
     >>> speed, vibration = np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0])
     >>> levels = {"initial": 4.0 + 0.0 * speed, "final": np.array([1.0, 2.0, 3.0])}
     >>> one = VibrationCurve(speed, vibration, levels)
-    >>> fastest_within(one, "initial"), fastest_within(one, "final")
+    >>> admissible_speed(one, "initial"), admissible_speed(one, "final")
     (2.5, None)
     """
-    speed, vibration, levels = curve.where_known(end)
+    speed, vibration, levels = curve.with_level(end)
     beyond = vibration - levels[end]
     over = np.flatnonzero(beyond > _SAME * levels[end])
     if not over.size:
@@ -88,8 +88,8 @@ def fastest_within(curve: VibrationCurve, end: str) -> float | None:
 def describe(name: str, curve: VibrationCurve) -> Iterator[str]:
     """Yield a sentence on the admissible telescoping speed for each end of the extension."""
     for end in curve.levels:
-        speed, vibration, levels = curve.where_known(end)
-        level, fastest = levels[end], fastest_within(curve, end)
+        speed, vibration, levels = curve.with_level(end)
+        level, fastest = levels[end], admissible_speed(curve, end)
         ends = dict.fromkeys(number(TO_MILLI * of) for of in (level.min(), level.max()))
         without = f"that without telescoping, {_ENDS[end][0]} ({' to '.join(ends)} mm)"
         if fastest is None:

@@ -105,7 +105,7 @@ def run_points(
             for future in as_completed(futures):
                 i = futures[future]
                 outcomes[i] = outcome = future.result()
-                kept.keep(names[i], outcome)
+                kept.store(names[i], outcome)
                 done += 1
                 progress("sweep", stage, done / len(points))
     except BrokenProcessPool:

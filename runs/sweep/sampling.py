@@ -20,7 +20,7 @@ from rich.console import Console
 from geometry.arrays import Array
 from runs.case import reading as case_file
 from runs.case.messages import BadInput
-from runs.folder.files import changed_folder, exclusive, whole
+from runs.folder.files import folder_lock, modified_folder
 from runs.pipeline.metrics import Metric
 from runs.pipeline.quantities import QUANTITIES
 from runs.report import theme
@@ -123,11 +123,11 @@ def write(results: dict[str, pd.DataFrame], samples: pd.DataFrame, folder: Path)
         "result": {name: scatter(found) for name, found in results.items()},
     }
     with (
-        exclusive(folder),
-        changed_folder(folder) as part,
-        whole(part / SAMPLES) as points,
-        whole(part / CSV) as table,
-        whole(part / CHART) as chart,
+        folder_lock(folder),
+        modified_folder(folder) as part,
+        atomic_path(part / SAMPLES) as points,
+        atomic_path(part / CSV) as table,
+        atomic_path(part / CHART) as chart,
     ):
         for (rows, frames), path in zip(several.items(), (points, table), strict=True):
             whole_table = pd.concat(frames, names=["model", rows])

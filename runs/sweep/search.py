@@ -113,7 +113,7 @@ def _bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> tuple[int
     raise BadInput(plan.file, OPTION, what)
 
 
-def show(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console: Console) -> None:
+def print_bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console: Console) -> None:
     """Print the bracket, and a caution if the quantity is not monotonic."""
     found, key = np.array(numbers(plan, outcomes, bound)), plan.variations[0].key
     quantity, values = bound.quantity, plan.variations[0].values

@@ -14,7 +14,7 @@ from geometry.typography import TO_PERCENT, join_words
 from runs.case import reading as case_file
 from runs.case.messages import BadInput
 from runs.case.schema import Case
-from runs.folder.files import changed_folder, exclusive, whole
+from runs.folder.files import atomic_path, folder_lock, modified_folder
 from runs.pipeline.quantities import QUANTITIES
 from runs.report.tables import Column, Table
 from runs.sweep.points import Plan, Point, chosen_beam, make_points, tables_of
@@ -99,12 +99,14 @@ def changes(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
 
 def write(data: pd.DataFrame, folder: Path) -> None:
     """Write ``sensitivity.csv`` into the folder of a sweep: changes in % by 1 %."""
-    with exclusive(folder), changed_folder(folder) as part, whole(part / CSV) as path:
+    with folder_lock(folder), modified_folder(folder) as part, atomic_path(part / CSV) as path:
         percent = (TO_PERCENT * data).rename_axis("key").reset_index()
         percent.to_csv(path, index=False, float_format="%.6g", lineterminator="\r\n")
 
 
-def show(data: pd.DataFrame, case: Case, refused: Sequence[str], console: Console) -> None:
+def print_influences(
+    data: pd.DataFrame, case: Case, refused: Sequence[str], console: Console
+) -> None:
     """Print the numbers with the largest influence."""
     top = data.head(MOST_ROWS)
     columns = [Column("1 % more of", list(top.index))]

@@ -14,7 +14,7 @@ from runs.case.build import build_boom
 from runs.case.reading import load
 from runs.report import theme
 from runs.report.boom_drawing import boom_sheet
-from runs.report.symbols import PAYLOAD, abbreviated, boom_symbols
+from runs.report.symbols import PAYLOAD, abbreviate, boom_symbols
 
 
 def drawn(name: str) -> Figure:
@@ -102,9 +102,9 @@ def test_a_force_down_points_down() -> None:
 def test_amounts_are_read_at_a_glance() -> None:
     """Reference: by hand."""
     shown = [
-        abbreviated(30e6, "N/m"),
-        abbreviated(1595.0, "N"),
-        abbreviated(83.16, "N/m"),
-        abbreviated(-5e4, "N m"),
+        abbreviate(30e6, "N/m"),
+        abbreviate(1595.0, "N"),
+        abbreviate(83.16, "N/m"),
+        abbreviate(-5e4, "N m"),
     ]
     assert shown == ["30 MN/m", "1.595 kN", "83.16 N/m", "−50 kN m"]

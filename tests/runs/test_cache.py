@@ -28,7 +28,7 @@ def test_an_entry_is_found_again(tmp_path: Path) -> None:
     cache = Cache(tmp_path / "cache")
     assert cache.load("a", dict) is None
     thing = {"array": np.arange(3.0)}
-    cache.remember("a", thing)
+    cache.try_to_store("a", thing)
     thing["array"][0] = 1.0
     for _ in range(2):
         found = cache.load("a", dict)
@@ -40,21 +40,21 @@ def test_an_entry_is_found_again(tmp_path: Path) -> None:
 def test_an_interrupted_entry_leaves_nothing(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
     with pytest.raises(TypeError):
-        cache.keep("a", [np.zeros(3), print])
+        cache.store("a", [np.zeros(3), print])
     assert list(tmp_path.iterdir()) == []
 
 
 def test_what_cannot_be_kept_is_told_by_its_name(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(NotADirectoryError) as caught:
-        Cache(tmp_path / "file").keep("a", "text")
+        Cache(tmp_path / "file").store("a", "text")
     assert caught.value.filename == str(tmp_path / "file" / ENTRY)
 
 
 def test_an_entry_is_kept_again(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
     for text in ("first", "second"):
-        cache.keep("a", text)
+        cache.store("a", text)
         assert cache.load("a", str) == text
     assert [path.name for path in tmp_path.iterdir()] == [ENTRY]
 
@@ -64,10 +64,10 @@ def test_the_least_recently_used_goes(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
     (tmp_path / "mine").write_text(200 * "x", encoding="utf-8")
     for name, used in (("a", 10.0), ("b", 20.0)):
-        cache.keep(name, 100 * "x")
+        cache.store(name, 100 * "x")
         os.utime(tmp_path / f"{name}.record", (used, used))
     assert cache.load("a", str) is not None  # uses it
-    cache.keep("c", 100 * "x")
+    cache.store("c", 100 * "x")
     cache.make_room(350)
     assert sorted(path.name for path in tmp_path.iterdir()) == [ENTRY, "c.record", "mine"]
     cache.make_room(10)
@@ -77,21 +77,21 @@ def test_the_least_recently_used_goes(tmp_path: Path) -> None:
 def test_what_a_killed_process_has_left_goes(tmp_path: Path) -> None:
     program = (
         "import os; from pathlib import Path; from runs.folder.cache import Cache; "
-        f"os.replace = lambda *_: os._exit(9); Cache(Path({str(tmp_path)!r})).keep('a', 'first')"
+        f"os.replace = lambda *_: os._exit(9); Cache(Path({str(tmp_path)!r})).store('a', 'first')"
     )
     killed = subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=False)
     assert killed.returncode == 9
     (left,) = tmp_path.iterdir()
     cache = Cache(tmp_path)
     assert cache.load("a", str) is None
-    cache.keep("a", "second")
+    cache.store("a", "second")
     assert cache.load("a", str) == "second"
     assert not left.exists()
 
 
 def test_every_flipped_bit_is_found(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     cache, entry = Cache(tmp_path), tmp_path / ENTRY
-    cache.keep("a", np.array(1.5))
+    cache.store("a", np.array(1.5))
     whole = entry.read_bytes()
     bits = range(8 * len(whole))
     for bit in bits:
@@ -110,7 +110,7 @@ def longer(entry: Path) -> None:
 
 
 def of_another_entry(entry: Path) -> None:
-    Cache(entry.parent).keep("b", "another")
+    Cache(entry.parent).store("b", "another")
     (entry.parent / "b.record").replace(entry)
 
 
@@ -121,14 +121,14 @@ def of_another_entry(entry: Path) -> None:
         of_another_entry,
         lambda entry: entry.write_text(""),
         lambda entry: os.truncate(entry, entry.stat().st_size - 1),
-        lambda entry: Cache(entry.parent).keep("a", ["no text"]),
+        lambda entry: Cache(entry.parent).store("a", ["no text"]),
     ],
 )
 def test_what_was_not_kept_there_is_dropped(
     tmp_path: Path, caplog: pytest.LogCaptureFixture, become: Callable[[Path], object]
 ) -> None:
     cache = Cache(tmp_path)
-    cache.keep("a", "first")
+    cache.store("a", "first")
     become(tmp_path / ENTRY)
     assert cache.load("a", str) is None
     assert len(caplog.records) == 1
@@ -184,14 +184,14 @@ def test_threads_wait_for_the_entry_that_another_one_makes(tmp_path: Path) -> No
 
     def second() -> None:
         held.wait()
-        with cache.making(key("one")):
+        with cache.entry_lock(key("one")):
             order.append("second")
 
     with ThreadPoolExecutor(1) as pool:
         waiting = pool.submit(second)
-        with cache.making(key("one")):
+        with cache.entry_lock(key("one")):
             held.set()
-            with cache.making(key("other")):
+            with cache.entry_lock(key("other")):
                 pass
             assert wait([waiting], timeout=0.3).not_done
             order.append("first")

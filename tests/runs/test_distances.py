@@ -23,9 +23,9 @@ from runs.pipeline.low_pass import mean_period
 from runs.pipeline.models import MotionPlan, build
 from runs.sweep import output
 from runs.sweep.distances import (
+    AVERAGING_TIME,
     CHANGE,
     DISTANCES,
-    HELD,
     Features,
     Quantities,
     comparable_until,
@@ -70,7 +70,7 @@ def test_a_pad_force_is_held() -> None:
     forces = np.zeros((TIME.size, 2))
     forces[700, 0] = -4000.0
     forces[1000:, 1] = 150.0
-    assert sustained_force(TIME, forces) == pytest.approx(4000.0 * 1e-3 / HELD)
+    assert sustained_force(TIME, forces) == pytest.approx(4000.0 * 1e-3 / AVERAGING_TIME)
     assert np.isnan(sustained_force(TIME, np.full((TIME.size, 2), np.nan)))
 
 
@@ -89,7 +89,7 @@ def shown(data: xr.Dataset, planned: Plan) -> str:
     """Return the output about a sweep on a terminal of 80 columns."""
     console = Console(width=80, legacy_windows=False)
     with console.capture() as captured:
-        output.show(data, planned, console)
+        output.print_ranges(data, planned, console)
     return captured.get()
 
 

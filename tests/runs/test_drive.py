@@ -30,7 +30,7 @@ from runs.pipeline.models import build
 from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.boom_drawing import boom_sheet
-from runs.report.figure_context import Figure, of_rests
+from runs.report.figure_context import Figure, extension_note
 from runs.report.figures import draw
 from runs.report.result_tables import drive_table, record_tables, rest_tables
 from runs.report.summary_table import summary_table
@@ -226,7 +226,7 @@ def test_play_adds_at_rest_at_the_same_instants_of_a_boom_that_is_driven(tmp_pat
 
 def test_of_no_rest_nothing_is_said_where_it_is_drawn_to() -> None:
     """Reference: by hand; no model of a boom that is drawn may have a rest."""
-    assert of_rests(load(str(CASES / "drawn-out.toml")), []) == ""
+    assert extension_note(load(str(CASES / "drawn-out.toml")), []) == ""
 
 
 @pytest.mark.usefixtures("unprinted")

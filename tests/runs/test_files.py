@@ -12,7 +12,14 @@ from pathlib import Path
 
 import pytest
 
-from runs.folder.files import MANIFEST, changed_folder, damaged, exclusive, whole, whole_folder
+from runs.folder.files import (
+    MANIFEST,
+    atomic_folder,
+    atomic_path,
+    find_damaged_file,
+    folder_lock,
+    modified_folder,
+)
 
 ROOT = Path(__file__).parents[2]
 
@@ -54,7 +61,7 @@ with scratch_folder(Path({str(path)!r})) as part:
 
 def test_a_file_gets_its_name_when_it_is_complete(tmp_path: Path) -> None:
     path = tmp_path / "summary.json"
-    with whole(path) as part:
+    with atomic_path(path) as part:
         part.write_text("{}", encoding="utf-8")
         assert part.suffix == path.suffix
         assert not path.exists()
@@ -65,7 +72,7 @@ def test_a_folder_is_replaced_as_a_whole(tmp_path: Path) -> None:
     """By what was written; it has the rights of the old one."""
     folder = tmp_path / "figures"
     for names in (("a.png", "b.png"), ("b.png", "deep/c.png")):
-        with whole_folder(folder) as part:
+        with atomic_folder(folder) as part:
             write(part, *names)
         assert contents(folder) == dict.fromkeys(names, " ".join(names))
         write(folder, "mine")
@@ -83,7 +90,7 @@ def test_a_failing_write_leaves_what_was_there(tmp_path: Path, kind: str) -> Non
     path.write_text("earlier", encoding="utf-8")
 
     def fill_the_disk() -> None:
-        with (whole if kind == "file" else whole_folder)(place) as part:
+        with (atomic_path if kind == "file" else atomic_folder)(place) as part:
             half = part if kind == "file" else part / "a.png"
             half.write_text("half", encoding="utf-8")
             raise OSError(28, "No space left on device")
@@ -98,13 +105,17 @@ def test_a_failing_write_leaves_what_was_there(tmp_path: Path, kind: str) -> Non
 def test_a_changed_folder_keeps_what_is_not_changed(tmp_path: Path) -> None:
     """What the user has put there is not listed, so that it may change."""
     folder = tmp_path / "out"
-    with whole_folder(folder) as part:
+    with atomic_folder(folder) as part:
         write(part, "data", "report")
     write(folder, "mine", "deep/mine")
     (folder / "empty").mkdir()
     (folder / "link").symlink_to("nowhere")
     os.mkfifo(folder / "pipe")
-    with exclusive(folder), changed_folder(folder) as part, whole(part / "report") as report:
+    with (
+        folder_lock(folder),
+        modified_folder(folder) as part,
+        atomic_path(part / "report") as report,
+    ):
         report.write_text("again", encoding="utf-8")
     mine = dict.fromkeys(("mine", "deep/mine"), "mine deep/mine")
     assert contents(folder) == {"data": "data report", "report": "again", **mine}
@@ -113,11 +124,11 @@ def test_a_changed_folder_keeps_what_is_not_changed(tmp_path: Path) -> None:
     assert (folder / "pipe").is_fifo()
     listed = (folder / MANIFEST).read_text(encoding="utf-8").splitlines()
     assert [line.split()[1] for line in listed] == ["data", "report"]
-    assert damaged(folder) is None
+    assert find_damaged_file(folder) is None
     (folder / "mine").write_text("other", encoding="utf-8")
-    assert damaged(folder) is None
+    assert find_damaged_file(folder) is None
     (folder / "data").write_text("other", encoding="utf-8")
-    assert damaged(folder) == "data"
+    assert find_damaged_file(folder) == "data"
 
 
 @pytest.mark.parametrize("disk", ["Linux's own", "another"])
@@ -128,7 +139,7 @@ def test_folders_are_exchanged_on_every_disk(
         monkeypatch.setattr("ctypes.PyDLL", lambda *_, **__: object())
     folder = tmp_path / "out"
     for name in ("earlier", "later"):
-        with whole_folder(folder) as part:
+        with atomic_folder(folder) as part:
             write(part, name)
     assert contents(folder) == {"later": "later"}
     assert [p.name for p in tmp_path.iterdir()] == ["out"]
@@ -137,10 +148,10 @@ def test_folders_are_exchanged_on_every_disk(
 def test_a_folder_that_was_away_when_its_process_was_killed_comes_back(tmp_path: Path) -> None:
     """Between two renames, where the disk takes two of them."""
     folder = tmp_path / "out"
-    with whole_folder(folder) as part:
+    with atomic_folder(folder) as part:
         write(part, "earlier")
     folder.rename(tmp_path / ".out.away")
-    with exclusive(folder):
+    with folder_lock(folder):
         assert contents(folder) == {"earlier": "earlier"}
 
 
@@ -149,11 +160,11 @@ def test_who_changes_a_folder_keeps_others_waiting(tmp_path: Path) -> None:
     folder = tmp_path / "out"
 
     def replace() -> None:
-        with whole_folder(folder) as part:
+        with atomic_folder(folder) as part:
             write(part, "later")
 
     with ThreadPoolExecutor(1) as pool:
-        with exclusive(folder):
+        with folder_lock(folder):
             other = pool.submit(replace)
             time.sleep(0.1)
             assert not other.done()
@@ -174,7 +185,7 @@ def test_what_a_killed_process_leaves_goes_and_what_a_live_one_writes_stays(
     killed.kill()
     killed.wait()
     assert all((part / "half").exists() for part in parts)
-    with whole_folder(folder) as part:
+    with atomic_folder(folder) as part:
         write(part, "whole")
     assert sorted(tmp_path.iterdir()) == sorted([folder, mine, parts[1]])
     live.communicate("\n")

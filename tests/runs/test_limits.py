@@ -126,7 +126,7 @@ def test_a_sweep_draws_and_counts_limits(sheets: list[Sheet]) -> None:
     assert data["tip_at_rest"].attrs["permitted"] == limit
     console = Console(width=80, legacy_windows=False)
     with console.capture() as captured:
-        output.show(data, planned, console)
+        output.print_ranges(data, planned, console)
     shown = f"beam: tip at rest ≤ {1e3 * limit:.4g} mm at 2 of 4 points"
     assert shown in captured.get().splitlines()
     (axes,) = (axes for axes in sheets[0].axes if "dotted: limit" in axes.get_title(loc="left"))

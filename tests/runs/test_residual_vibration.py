@@ -26,9 +26,9 @@ from runs.pipeline.residual_vibration import ResidualVibration, farthest_from_re
 from runs.report import theme
 from runs.sweep.residual_vibration import (
     VibrationCurve,
+    admissible_speed,
     describe,
     draw_vibration,
-    fastest_within,
     vibration_curves,
 )
 from tests.runs.case_texts import read_case
@@ -152,7 +152,7 @@ def test_the_fastest_is_where_lines_cross(level: float, fastest: float | None) -
     one = VibrationCurve(
         np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0]), {"end": np.full(3, level)}
     )
-    assert fastest_within(one, "end") == pytest.approx(fastest)
+    assert admissible_speed(one, "end") == pytest.approx(fastest)
 
 
 def swept() -> xr.Dataset:

@@ -169,7 +169,7 @@ def test_what_is_no_shell_is_made_again(
     cache = Cache(tmp_path / "cache")
     reduce(case, cache)
     (entry,) = entries(cache)
-    cache.keep(entry.stem, build_boom(case))
+    cache.store(entry.stem, build_boom(case))
     assert "reduction" in reduce(case, cache).seconds
     assert len(caplog.records) == 1
 

@@ -20,7 +20,7 @@ from runs.case import reading as case_file
 from runs.pipeline.results import Results
 from runs.report import opengl
 from runs.report.opengl import RenderingUnavailable
-from runs.report.snapshots import describe_one, drawing
+from runs.report.snapshots import describe_one, start_rendering
 
 COARSE = CASES / "coarse.toml"
 TIME = np.arange(1001) / 1000
@@ -123,13 +123,13 @@ def test_a_drawing_process_that_fails_is_said_and_leaves_nothing(
     message: str,
 ) -> None:
     """Reference: processes that die, or do not end."""
-    monkeypatch.setattr(opengl, "first_picture", work)
+    monkeypatch.setattr(opengl, "render_test_picture", work)
     monkeypatch.setattr(opengl, "PROBE", probe)
     monkeypatch.setattr(opengl, "PROBE_SECONDS", seconds)
     fields, motion = tmp_path / "fields.nc", tmp_path / "trajectories.nc"
     with (
         pytest.raises(error, match=message),
-        drawing(results("a"), [fields], motion, tmp_path) as gather,
+        start_rendering(results("a"), [fields], motion, tmp_path) as gather,
     ):
         gather()
     assert not list(tmp_path.iterdir())

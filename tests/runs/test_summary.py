@@ -32,7 +32,7 @@ def test_keys_and_values_are_those_that_they_were() -> None:
 def test_a_summary_comes_back_from_a_cache(tmp_path: Path) -> None:
     """What was never set is not null afterwards."""
     summary = Summary.load(EARLIER)
-    Cache(tmp_path).keep("a", summary)
+    Cache(tmp_path).store("a", summary)
     assert str(Cache(tmp_path).load("a", Summary)) == str(summary)
 
 

@@ -17,7 +17,7 @@ from runs.pipeline.quantities import QUANTITIES
 from runs.report import theme
 from runs.report.formatting import number
 from runs.sweep import output
-from runs.sweep.figures import in_shown_units
+from runs.sweep.figures import in_display_units
 from runs.sweep.points import Plan
 from runs.sweep.run import Outcome
 from tests.runs.sweeping import FAST, Planned
@@ -127,7 +127,7 @@ def test_keys_are_shown_in_units_of_their_size() -> None:
             "model": ("model", ["one"]),
         }
     )
-    shown = in_shown_units(data)
+    shown = in_display_units(data)
     expected = {
         "play": ([0.0, 3.5], "mm"), "extension": ([0.5, 8.0], "m"), "load": ([-12.0, 0.5], "kN"),
         "small": ([-120.0, 5.0], "N"),

@@ -12,7 +12,7 @@ import pytest
 from dynamics.excitation import SCurve
 from geometry.joint import Drive
 from runs.report import theme
-from runs.report.viewer import LEFT, View, few_shapes, packed, symbol_lines
+from runs.report.viewer import TRUNCATION, View, few_shapes, pack_view, symbol_lines
 from tests.runs.moving_segments import BOOM, TIME, moving_scene
 
 FRAMES = TIME[::40]
@@ -31,10 +31,10 @@ def places(page: dict[str, Any]) -> np.ndarray:
 
 def test_a_page_shows_the_drawn_places_and_stresses(shown: View) -> None:
     """Reference: the scene's own places; 16 bits of each shape, 8 of the stress."""
-    page, scene = packed(shown, 0.0), shown.scene
+    page, scene = pack_view(shown, 0.0), shown.scene
     expected = [scene.magnify(moved, page["magnified"]) for moved in scene.displacements(FRAMES)]
     largest = float(np.abs(np.subtract(expected, expected[0])).max())
-    np.testing.assert_allclose(places(page), expected, atol=2.0 * LEFT * largest)
+    np.testing.assert_allclose(places(page), expected, atol=2.0 * TRUNCATION * largest)
     assert 0.005 < (shown.stress > shown.end).mean() <= 0.01
     colours = page["colors"] / 255.0 * page["end"]
     clipped = np.minimum(shown.stress, shown.end)
@@ -48,7 +48,7 @@ def test_segments_move_along_as_drives_extend_them(shown: View) -> None:
     boom = replace(BOOM, joints=(replace(BOOM.joints[0], drive=out),))
     motion = moving_scene(extension=-2.0 * TIME).motion
     driven = shown._replace(scene=replace(shown.scene, boom=boom, motion=motion))
-    page, before = packed(driven, 0.0), packed(shown, 0.0)
+    page, before = pack_view(driven, 0.0), pack_view(shown, 0.0)
     assert before["drawn"] == {}
     assert page["drawn"] == {"inner": pytest.approx(-2.0 * FRAMES)}
     if page["magnified"] != before["magnified"]:
@@ -64,7 +64,7 @@ def test_symbols_follow_the_boom_and_its_supports_stay(shown: View) -> None:
     """Reference (analytic): the heads of the arrows are at the lower edge of the segment that they
     load, in its plane of symmetry; hinges stand at 0 and 2 m."""
     scene = shown.scene
-    scale = packed(shown, 0.0)["magnified"]
+    scale = pack_view(shown, 0.0)["magnified"]
     rest = scene.magnify(np.zeros_like(scene.points), scale)
     by_color = {one.color: one for one in symbol_lines(scene, rest, np.eye(3), 0.0, scale)}
     hinges, arrows = by_color[theme.INK], by_color[theme.FORCE]
@@ -83,14 +83,14 @@ def test_few_shapes_leave_little() -> None:
     """Reference: the motion itself, of 3 shapes and a noise below what may be left."""
     rng = np.random.default_rng(1)
     moved = rng.standard_normal((40, 3)) @ rng.standard_normal((3, 300))
-    noise = 0.1 * LEFT * np.abs(moved).max() * rng.uniform(-1.0, 1.0, moved.shape)
+    noise = 0.1 * TRUNCATION * np.abs(moved).max() * rng.uniform(-1.0, 1.0, moved.shape)
     parts, shapes = few_shapes(moved + noise)
     assert parts.shape == (40, 3)
-    assert np.abs(parts @ shapes - moved).max() < 2.0 * LEFT * np.abs(moved).max()
+    assert np.abs(parts @ shapes - moved).max() < 2.0 * TRUNCATION * np.abs(moved).max()
 
 
 def test_a_slope_raises_points_and_shapes_alike(shown: View) -> None:
     """Reference (analytic): at 90 degrees x points up, and z backwards."""
-    flat, risen = (places(packed(shown, angle)) for angle in (0.0, 90.0))
+    flat, risen = (places(pack_view(shown, angle)) for angle in (0.0, 90.0))
     expected = np.stack([-flat[..., 2], flat[..., 1], flat[..., 0]], axis=-1)
     np.testing.assert_allclose(risen, expected, atol=1e-3)

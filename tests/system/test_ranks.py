@@ -43,12 +43,12 @@ cli.main()
 LONELY_FAILURE = """
 from mpi4py import MPI
 from dynamics.failure import NumericsError
-from runs.process.ranks import all_end_together
+from runs.process.ranks import end_all_ranks_on_error
 from runs.process import ending
 
 ending._GRACE_OF_RANKS = 0.5
 comm = MPI.COMM_WORLD
-with all_end_together(comm):
+with end_all_ranks_on_error(comm):
     if comm.rank == 1:
         raise NumericsError("case.toml: model[1]: no number is finite")
     comm.Barrier()
