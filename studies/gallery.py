@@ -112,7 +112,7 @@ def draw_mesh(scene: Scene, overlap: Overlap) -> Image.Image:
             plotter.add_mesh(half, color=color, **(MATTE | MESHED))
             label = f"{scene.boom.segments[number].name}: {mine.sum()} triangles"
             legend.append(Patch(color=color, label=label))
-        sheet.show(camera.see(plotter))
+        sheet.show(camera.render(plotter))
     sheet.figure.legend(
         handles=legend, loc="upper center", bbox_to_anchor=(0.5, 0.87), ncols=2, frameon=False
     )

@@ -20,7 +20,7 @@ from rich.console import Console
 from geometry.arrays import Array
 from runs.case import reading as case_file
 from runs.case.messages import BadInput
-from runs.folder.files import folder_lock, modified_folder
+from runs.folder.files import atomic_path, folder_lock, modified_folder
 from runs.pipeline.metrics import Metric
 from runs.pipeline.quantities import QUANTITIES
 from runs.report import theme

@@ -91,9 +91,9 @@ def test_a_force_down_points_down() -> None:
     case = load(str(CASES / "crane.toml"))
     acts = {symbol.meaning: symbol for symbol in boom_symbols(case, build_boom(case))}
     load_across = acts["24.52 kN down across the boom within 0.5 s"]
-    (_, tail), (_, head) = load_across.turned(0.0).vertices[:2]
+    (_, tail), (_, head) = load_across.rotated(0.0).vertices[:2]
     assert tail > head == 0.0
-    (x, z), _ = load_across.turned(90.0).vertices[:2]
+    (x, z), _ = load_across.rotated(90.0).vertices[:2]
     assert (x, z) == pytest.approx((-1.0, 0.0), abs=1e-12)
     payload = acts["payload, 350 kg"]
     assert payload.turned(60.0) is PAYLOAD
