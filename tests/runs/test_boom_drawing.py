@@ -96,7 +96,7 @@ def test_a_force_down_points_down() -> None:
     (x, z), _ = load_across.rotated(90.0).vertices[:2]
     assert (x, z) == pytest.approx((-1.0, 0.0), abs=1e-12)
     payload = acts["payload, 350 kg"]
-    assert payload.turned(60.0) is PAYLOAD
+    assert payload.rotated(60.0) is PAYLOAD
 
 
 def test_amounts_are_read_at_a_glance() -> None:

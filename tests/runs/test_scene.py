@@ -58,11 +58,11 @@ def test_displacement_is_the_sum_of_the_modes(shell: Scene) -> None:
 def test_segments_move_along_as_drives_extend_them(shell: Scene) -> None:
     """Reference (analytic): the inner segment is 1 m farther in at 0.5 s, the outer one stays."""
     assert not shell.along(0.5).any()
-    assert not shell.slides(shell.overlaps[0])
+    assert not shell.telescopes(shell.overlaps[0])
     out = Drive(SCurve(travel=-4.0, duration=2.0), carriers=("inner", "outer"))
     boom = replace(BOOM, joints=(replace(BOOM.joints[0], drive=out),))
     extended = replace(shell, boom=boom, motion=moving_scene(extension=-2.0 * TIME).motion)
-    assert extended.slides(extended.overlaps[0])
+    assert extended.telescopes(extended.overlaps[0])
     np.testing.assert_allclose(extended.along(0.5), np.where(shell.owner == 1, -1.0, 0.0))
     assert extended.reach([0.5]) == pytest.approx((0.0, BOOM.tip))
 
@@ -180,7 +180,7 @@ def test_scale_is_round_and_not_above_what_fits(largest: float, scale: float) ->
 def test_the_motion_of_an_overlap_as_a_whole_is_left_out(shell: Scene) -> None:
     """Reference: analytic. Of a parabola w = c x² over 1 m a chord's turn is taken, at the chord's
     middle w″/12 · (1/2)² of it is left at most; the inner segment keeps how it lies beside it."""
-    whole, left = shell.displacement(0.5), shell.beside(0.5, 0, (9.0, 10.0))
+    whole, left = shell.displacement(0.5), shell.relative_displacements(0.5, 0, (9.0, 10.0))
     x, _, z = shell.points.T
     flange = shell.flange_in_plane(0, 1)
     flange = flange[(x[flange] > 8.99) & (x[flange] < 10.01)]
