@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -27,7 +27,7 @@ from runs.case.messages import BadInput
 from runs.case.sanity import usual_ranges
 from runs.case.schema import Case
 from runs.sweep.points import hold_plates, infer_plates
-from runs.sweep.variation import Place, Tables, unit_of
+from runs.sweep.variation import Place, Tables, numbers, unit_of
 
 # Name of the page's beam, and number of elements of the longest segment.
 BEAM, ELEMENTS = "beam", 4
@@ -58,9 +58,6 @@ _WITHOUT = (
     "ensemble", "model", "title", "units", "shown_units", "load_case", "combination",
     "spectrum",
 )  # fmt: skip
-
-# Maximum length of a list of numbers; longer ones are histories and measured curves.
-_LONGEST = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,12 +114,13 @@ class Draft:
     @cached_property
     def _numbers(self) -> Mapping[str, tuple[Place, float]]:
         """The place and the value in SI units of each number, by key."""
+        tables = {name: value for name, value in self._tables.items() if name not in _WITHOUT}
         return {
             place.name: (
                 replace(place, size=self.case.system.size(self._unit(place) or "1")),
-                value,
+                float(value),
             )
-            for place, value in _walk(self._tables, ())
+            for place, value in numbers(tables)
         }
 
     def _unit(self, place: Place) -> str:
@@ -251,20 +249,6 @@ class Draft:
         )
         time = case.time.model_copy(update={"tolerance": max(case.time.tolerance, TOLERANCE)})
         return reading.check(case.model_copy(update={"models": (beam,), "time": time}), self.file)
-
-
-def _walk(here: Any, steps: tuple[str | int, ...]) -> Iterator[tuple[Place, float]]:
-    """Yield all numbers of tables and lists, with their places."""
-    if isinstance(here, Mapping):
-        for key, value in here.items():
-            if steps or key not in _WITHOUT:
-                yield from _walk(value, (*steps, key))
-    elif isinstance(here, list):
-        if len(here) <= _LONGEST or isinstance(here[0], Mapping):
-            for index, value in enumerate(here):
-                yield from _walk(value, (*steps, index))
-    elif is_number(here):
-        yield Place(steps), float(here)
 
 
 def _field(case: Case, place: Place) -> Any:

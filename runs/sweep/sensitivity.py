@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,7 @@ from runs.pipeline.quantities import QUANTITIES
 from runs.report.tables import Column, Table
 from runs.sweep.points import Plan, Point, chosen_beam, make_points, tables_of
 from runs.sweep.run import Outcome
-from runs.sweep.variation import Place, Variation
+from runs.sweep.variation import Variation, numbers
 
 OPTION = "--sensitivity"
 CSV = "sensitivity.csv"
@@ -31,9 +31,8 @@ MOST_ROWS = 20
 # Relative change below which it is round-off.
 NONE = 1.0e-7
 
-# Tables that do not describe the boom, and keys of curves.
+# Tables that do not describe the boom.
 _OTHER = {"time", "model", "observe", "life"}
-_CURVES = {"table", "force_table"}
 
 
 def plan_changes(
@@ -52,7 +51,9 @@ def plan_changes(
     points: list[Point] = [*make_points(case, file, models, mesh_size, [()])]
     refused = []
     tables = tables_of(case)
-    for place, value in _numbers({k: v for k, v in tables.items() if k not in _OTHER}, ()):
+    for place, value in numbers({k: v for k, v in tables.items() if k not in _OTHER}):
+        if not (isinstance(value, float) and value):
+            continue
         values = (1.0 - CHANGE) * value, (1.0 + CHANGE) * value
         variation = Variation(place.name, values, (place,))
         try:
@@ -61,19 +62,6 @@ def plan_changes(
         except BadInput:
             refused.append(place.name)
     return Plan(file, case.title, (), (), (), points), refused
-
-
-def _numbers(here: object, steps: tuple[str | int, ...]) -> Iterator[tuple[Place, float]]:
-    """Yield the numbers of a case, except integers, zeros and curves."""
-    if isinstance(here, float) and here:
-        yield Place(steps), here
-    elif isinstance(here, Mapping):
-        for key, value in here.items():
-            if key not in _CURVES:
-                yield from _numbers(value, (*steps, key))
-    elif isinstance(here, list):
-        for i, value in enumerate(here):
-            yield from _numbers(value, (*steps, i))
 
 
 def changes(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.fields import names_of
+from geometry.fields import is_number, names_of
 from runs.case.limits import is_table, units_of
 from runs.case.messages import BadInput
 from runs.case.schema import PLAIN_NUMBER_KEYS, Case
@@ -29,6 +29,9 @@ Tables = dict[str, Any]
 # Tables that have no effect on runs of a sweep, with the reason.
 _NO_RUN = dict.fromkeys(("limits", "load_case", "combination", "spectrum"), "no run depends on it")
 UNUSED = {"ensemble": "a sweep runs no ensembles", **_NO_RUN}
+
+# Keys of histories and measured curves.
+_CURVES = {"table", "force_table"}
 
 # Maximum number of points, which take weeks.
 MOST_POINTS = 10_000
@@ -121,6 +124,19 @@ def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
             file, "--vary", f"{num_points} points are too many; at most {MOST_POINTS} are run"
         )
     return variations
+
+
+def numbers(here: Any, steps: tuple[str | int, ...] = ()) -> Iterator[tuple[Place, float]]:
+    """Yield the numbers of tables and lists with their places, except those of curves."""
+    if isinstance(here, Mapping):
+        for key, value in here.items():
+            if key not in _CURVES:
+                yield from numbers(value, (*steps, key))
+    elif isinstance(here, list):
+        for index, value in enumerate(here):
+            yield from numbers(value, (*steps, index))
+    elif is_number(here):
+        yield Place(steps), here
 
 
 def unit_of(place: Place, case: Case) -> str:
