@@ -111,6 +111,7 @@ def test_the_last_of_many_changes_is_shown(page: Page) -> None:
     page.wait_for(ANSWERED)
     assert tip(page) == last < before
     page.evaluate(SET.format(150, "payload.mass"))
+    page.wait_for(ANSWERED)
 
 
 def test_any_other_number_is_found(page: Page) -> None:
