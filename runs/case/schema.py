@@ -409,6 +409,9 @@ class SpectrumTable(CaseTable):
     """the names of the load cases in their order, from which the sequence starts again"""
     repeats: Annotated[int, Field(strict=True, ge=1, le=10**9)]
     """the number of repetitions in the service life"""
+    motion: Flag = False
+    """whether the cycles of the motions under the loads of the load cases count, by the first model
+    of beam elements, in place of their states at rest"""
 
 
 if TYPE_CHECKING:

@@ -1,12 +1,18 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Motion of a combination by beam elements, reduced to the instants of its extremes."""
+"""Motion of a combination or a load case by beam elements."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
+from dynamics.gap_system import GapSystem
+from dynamics.line import Line
+from geometry.arrays import Array
+from geometry.boom import Boom
 from runs.case.build import build_boom
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.schema import Case
@@ -17,11 +23,26 @@ from runs.pipeline.static_results import static_result
 from runs.pipeline.strength import Fibres
 
 
-def beam_in_motion(case: Case) -> StaticBeam:
-    """Return a moving beam at the instants at which a result is extreme.
+class BeamMotion(NamedTuple):
+    """Motion of a boom of beam elements.
 
-    The results are tip, contacts, cylinders and fibre stresses, and the model is the first one of
-    beam elements with play; without one, Timoshenko elements.
+    Args:
+        boom: the boom with the contacts of its model, without drives.
+        system: system of the model.
+        lines: lines along the segments, with the forces of cylinders.
+        time: (num_times,) in s.
+        positions: modal coordinates (num_times, num_modes).
+    """
+
+    boom: Boom
+    system: GapSystem
+    lines: Sequence[Line]
+    time: Array
+    positions: Array
+
+
+def beam_motion(case: Case) -> BeamMotion:
+    """Return the motion of the first model of beam elements with play, or of Timoshenko elements.
 
     Args:
         case: case of a combination.
@@ -38,7 +59,21 @@ def beam_in_motion(case: Case) -> StaticBeam:
     system = built.system.gather_loads()
     lines = with_cylinder_forces(boom, system, model.lines(boom, built))
     trajectory = MotionPlan.of(built.system, case, model).trajectory()
-    states, time = trajectory.states, trajectory.time
+    return BeamMotion(boom, system, lines, trajectory.time, trajectory.states)
+
+
+def beam_in_motion(case: Case) -> StaticBeam:
+    """Return a moving beam at the instants at which a result is extreme.
+
+    The results are tip, contacts, cylinders and fibre stresses.
+
+    Args:
+        case: case of a combination.
+
+    Raises:
+        NumericsError: the motion cannot be computed.
+    """
+    boom, system, lines, time, states = beam_motion(case)
     rows = [system.rows, *(one.row[None] for one in system.observers.values())]
     curves = [states @ np.vstack(rows).T]
     for number, (segment, line) in enumerate(zip(boom.segments, lines, strict=True)):

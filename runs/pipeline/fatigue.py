@@ -9,7 +9,7 @@ sequence.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from runs.pipeline.largest_loads import StaticBeam
 from runs.pipeline.section_forces import section_forces
 from runs.pipeline.statics import boom_with_play
 from runs.pipeline.strength import HAS_RAINFLOW, MEGA, Fibres, count_stress_ranges, endurance
+
+if TYPE_CHECKING:
+    from runs.pipeline.combined_motion import BeamMotion
 
 # Number of cross-sections of a segment at which its worst weld may be.
 _SECTIONS = 41
@@ -80,30 +83,34 @@ def detail_damages(case: Case) -> list[tuple[Detail, Damage]]:
         return []
     found: dict[str, tuple[Detail, Damage]] = {}
     tables = {one.name: one for one in case.load_cases}
-    named = {name for spectrum in case.spectra for name in spectrum.load_cases}
-    beams: dict[str, StaticBeam] = {}
-    for name in named:
+    named = {(name, one.motion) for one in case.spectra for name in one.load_cases}
+    beams: dict[tuple[str, bool], StaticBeam | BeamMotion] = {}
+    for name, moving in named:
         plain = combine(case, tables[name])
-        beams[name] = StaticBeam.of(plain, boom_with_play(plain, build_boom(plain)))
+        if moving:
+            from runs.pipeline.combined_motion import beam_motion
+
+            beams[name, moving] = beam_motion(plain)
+        else:
+            beams[name, moving] = StaticBeam.of(plain, boom_with_play(plain, build_boom(plain)))
     boom = build_boom(case)
     for detail in details(case, boom):
         if boom.segments[detail.segment].section is None:
             continue
         inside = detail.x - boom.segments[detail.segment].start
-        stress = {name: _stress(beam, detail.segment, inside) for name, beam in beams.items()}
+        stress = {key: _stress(beam, detail.segment, inside) for key, beam in beams.items()}
         damage = _damage(case, detail.category, stress)
         if detail.name not in found or damage.sum > found[detail.name][1].sum:
             found[detail.name] = detail, damage
     return [*found.values()]
 
 
-def _stress(beam: StaticBeam, number: int, inside: float) -> Array:
-    """Return the stress (2 num_fibres, num_rests) in Pa on both sides of a place in a segment."""
+def _stress(beam: StaticBeam | BeamMotion, number: int, inside: float) -> Array:
+    """Return the stress (2 num_fibres, num_times) in Pa on both sides of a place in a segment."""
     segment, line = beam.boom.segments[number], beam.lines[number]
     fibres = Fibres.of(segment, line)
     assert fibres is not None
-    time = np.array([rest.time for rest in beam.rests])
-    curves = section_forces(beam.boom, number, line, beam.positions, time)
+    curves = section_forces(beam.boom, number, line, beam.positions, beam.time)
     x = np.clip(segment.start + inside + np.array([-_BESIDE, _BESIDE]), *segment.ends)
     return np.array(
         [
@@ -114,12 +121,13 @@ def _stress(beam: StaticBeam, number: int, inside: float) -> Array:
     )
 
 
-def _damage(case: Case, category: float, stress: Mapping[str, Array]) -> Damage:
+def _damage(case: Case, category: float, stress: Mapping[tuple[str, bool], Array]) -> Damage:
     """Return the damage of the worst fibre of a detail, by the stresses in all load cases."""
     shares = []
     for spectrum in case.spectra:
-        # The sequence of all rests of the load cases, closed.
-        sequence = np.concatenate([stress[name] for name in spectrum.load_cases], axis=1)
+        # The sequence of all states of the load cases, closed.
+        parts = [stress[name, spectrum.motion] for name in spectrum.load_cases]
+        sequence = np.concatenate(parts, axis=1)
         of_fibres = []
         for one in sequence:
             start = int(np.abs(one).argmax())

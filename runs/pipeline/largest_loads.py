@@ -71,6 +71,11 @@ class StaticBeam(NamedTuple):
     positions: Array
     rests: Sequence[StaticResult]
 
+    @property
+    def time(self) -> Array:
+        """The times (num_rests,) of the states in s."""
+        return np.array([rest.time for rest in self.rests])
+
     @classmethod
     def of(cls, case: Case, boom: Boom) -> StaticBeam:
         """Return the static states at t = 0 and under extreme loads.
@@ -124,7 +129,7 @@ class StaticBeam(NamedTuple):
             lateral = [rest.tip_lateral or 0.0 for rest in rests]
             name = "tip to the side"
             extremes.append(_static_extreme(name, name, "m", rests, lateral))
-        time = np.array([rest.time for rest in rests])
+        time = self.time
         for number_of, (segment, line) in enumerate(zip(boom.segments, self.lines, strict=True)):
             if (fibres := Fibres.of(segment, line)) is None:
                 continue

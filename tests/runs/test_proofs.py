@@ -199,6 +199,26 @@ def test_damage_of_details(tmp_path: Path, name: str, x: float, category: float)
     assert one.x == x
 
 
+def test_cycles_of_a_motion(tmp_path: Path) -> None:
+    """Reference: other code path, the fatigue life of a run under the same load.
+
+    The sequence is the motion twice, and closed: of some fifty cycles the run counts one half."""
+    text = ARM.replace("{ partial", "{ detail_category = 80.0, partial").replace(
+        "= 1.0 }", "= 4.0 }", 1
+    )
+    text = text.replace('["empty", "loaded"]', '["loaded", "loaded"]\nmotion = true')
+    text = (
+        text[: text.index('[[spectrum]]\nname = "storm"')] + text[text.index("[[combination]]") :]
+    )
+    found, _ = proofs_of(tmp_path, text)
+    whole = found["fatigue", "worst weld, arm"].demand
+    load = '[[load]]\nsegment = "arm"\nx = "head"\nmagnitude = -50e3\n'
+    alone = run_case(read_case(tmp_path, text[: text.index("[[load_case]]")] + load))
+    (one,) = alone.summary.design.models["beam"].life
+    assert one.damage is not None
+    assert whole == pytest.approx(2e5 * one.damage, rel=0.03)
+
+
 def test_worst_weld_is_at_the_base(tmp_path: Path) -> None:
     """Reference: by hand."""
     found, _ = proofs_of(tmp_path, ARM.replace("{ partial", "{ detail_category = 80.0, partial"))
