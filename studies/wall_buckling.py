@@ -112,9 +112,13 @@ class LoadedBox:
         """Return the stress along x (num_places,) in Pa at y and z (num_places,) in m."""
         return self.bending * z - self.compression
 
+    def supported(self, n: int) -> SegmentShell:
+        """Return the shell on its supports, with n edges across the widest wall."""
+        return _supported(self.section, self.length, n)
+
     def shell(self, n: int, count: int = 1) -> tuple[SegmentShell, BucklingModes]:
         """Return the shell and its modes, with n edges across the widest wall."""
-        shell = _supported(self.section, self.length, n)
+        shell = self.supported(n)
         return shell, buckling_modes(shell, self.membrane_forces(shell), count)
 
     def membrane_forces(self, shell: SegmentShell) -> Array:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -22,7 +23,11 @@ pytest.importorskip("dolfinx", reason="shells need FEniCSx")
 
 from mpi4py import MPI
 
-from runs.report.calculix import write
+from runs.report.calculix import deck, write
+from shell_model.buckling import buckling_modes
+from shell_model.stress.fields import gather_stress_modes
+from studies.reference_models.single_segment import at_rest
+from studies.wall_buckling import COLUMN
 
 INSTALLED = pytest.mark.skipif(
     shutil.which("ccx") is None, reason="CalculiX is missing: apt install calculix-ccx"
@@ -73,6 +78,31 @@ def test_a_boom_rests_in_calculix_as_here(
         (cylinder,) = cylinders
         expected = system.observers["cylinder_force"].row @ rest
         assert -cylinder.stiffness * found["cylinder_force"] == pytest.approx(expected, rel=1e-3)
+
+
+@INSTALLED
+@pytest.mark.slow
+def test_a_column_buckles_in_calculix_as_here(tmp_path: Path) -> None:
+    """Reference: other code, CalculiX, linear buckling under its own stresses on the same mesh.
+
+    The first factor is the column's, which bends both ways; the next one that of its walls.
+    """
+    shell = COLUMN.supported(8)
+    ends = [shell.row(shell.outline(x).mean_displacement(0)) for x in (0.0, COLUMN.length)]
+    load = COLUMN.compression * COLUMN.section.area * (ends[0] - ends[1])
+    stresses = gather_stress_modes(shell, at_rest(shell, load[:, None]))
+    assert stresses is not None
+    assert shell.mesh is not None
+    forces = shell.mesh.thickness[:, None] * stresses[0, :, :3].astype(float)
+    column, other, walls = buckling_modes(shell, forces, 3).factors
+    assert other == pytest.approx(column, rel=1e-6)
+    (tmp_path / "column.inp").write_text(deck("column", [shell], [], [load], "*BUCKLE\n3"), "utf-8")
+    subprocess.run(["ccx", "column"], cwd=tmp_path, check=True, capture_output=True)
+    found = re.findall(r"^ +\d+ +(\d\.\d+E[+-]\d+)$", (tmp_path / "column.dat").read_text(), re.M)
+    factors = sorted(map(float, found))
+    assert factors[0] == pytest.approx(column, rel=1e-4)
+    # Its search may leave out one of the two equal factors.
+    assert next(f for f in factors if f > 1.01 * column) == pytest.approx(walls, rel=0.01)
 
 
 def test_what_calculix_would_not_have_is_refused(tmp_path: Path) -> None:
