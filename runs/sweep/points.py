@@ -162,8 +162,14 @@ def make_points(
     models: Sequence[str] | None,
     mesh_size: float | None,
     combinations: Iterable[Sequence[Setting]],
+    plates: dict[Sequence[Setting], Plates] | None = None,
 ) -> Iterator[Point]:
     """Yield the checked point of each combination of settings of a case.
+
+    Args:
+        whole, file, models, mesh_size: case and options as for :func:`plan`.
+        combinations: settings of each point.
+        plates: inferred plates by the settings that shape sections; it is extended.
 
     Raises:
         BadInput: a combination is invalid.
@@ -173,16 +179,19 @@ def make_points(
     def chosen(settings: Sequence[Setting]) -> Case:
         return case_file.select(_set_numbers(file, tables, settings), file, models)
 
-    plates: dict[Sequence[Setting], Plates] = {}
+    plates = {} if plates is None else plates
     for settings in combinations:
         shaping = tuple(setting for setting in settings if setting[0].shapes_sections)
         label = _label(settings)
+        checked = None
         if shaping not in plates:
-            plates[shaping] = infer_plates(_check_point(file, label, chosen(shaping)))
+            checked = _check_point(file, label, chosen(shaping))
+            plates[shaping] = infer_plates(checked)
         held = hold_plates(chosen(settings), plates[shaping])
-        checked = _check_point(file, label, held, any(plates[shaping]))
+        if held != checked:
+            _check_point(file, label, held, any(plates[shaping]))
         values = tuple(value for _, value in settings)
-        yield Point(values, label, case_file.select(checked, file, None, mesh_size))
+        yield Point(values, label, case_file.select(held, file, None, mesh_size))
 
 
 def _set_numbers(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:

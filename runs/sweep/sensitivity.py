@@ -17,7 +17,15 @@ from runs.case.schema import Case
 from runs.folder.files import atomic_path, folder_lock, modified_folder
 from runs.pipeline.quantities import QUANTITIES
 from runs.report.tables import Column, Table
-from runs.sweep.points import Plan, Point, chosen_beam, make_points, tables_of
+from runs.sweep.points import (
+    Plan,
+    Plates,
+    Point,
+    Setting,
+    chosen_beam,
+    make_points,
+    tables_of,
+)
 from runs.sweep.run import Outcome
 from runs.sweep.variation import Variation, numbers
 
@@ -48,7 +56,8 @@ def plan_changes(
     if len(models) != 1:
         what = f"{len(models)} models are chosen; name one with --models, a beam say"
         raise BadInput(file, OPTION, what)
-    points: list[Point] = [*make_points(case, file, models, mesh_size, [()])]
+    plates: dict[Sequence[Setting], Plates] = {}
+    points: list[Point] = [*make_points(case, file, models, mesh_size, [()], plates)]
     refused = []
     tables = tables_of(case)
     for place, value in numbers({k: v for k, v in tables.items() if k not in _OTHER}):
@@ -58,7 +67,7 @@ def plan_changes(
         variation = Variation(place.name, values, (place,))
         try:
             settings = [[(variation, value)] for value in values]
-            points += make_points(case, file, models, mesh_size, settings)
+            points += make_points(case, file, models, mesh_size, settings, plates)
         except BadInput:
             refused.append(place.name)
     return Plan(file, case.title, (), (), (), points), refused
