@@ -48,7 +48,7 @@ def parse_bound(text: str, plan: Plan) -> Limit:
         (plan.variations, "keys vary", "give one --vary"),
         (plan.coordinates["model"], "models run", "name one with --models"),
     ):
-        if len(several) > 1:
+        if len(several) != 1:
             raise BadInput(plan.file, OPTION, f"{len(several)} {what}; {remedy}")
     quantity = known[found[1]]
     si = scale(value, plan.points[0].case.system.size(quantity.unit))

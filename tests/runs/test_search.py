@@ -62,6 +62,7 @@ def test_a_bound_is_bracketed(capsys: pytest.CaptureFixture[str]) -> None:
             ("--vary", LENGTHS, "--vary", "segment.load=1,2", "--until", "tip<0.9"),
             "--until: 2 keys vary; give one --vary",
         ),
+        (("--sensitivity", "--until", "tip<0.9"), "--until: 0 keys vary; give one --vary"),
     ],
 )
 def test_a_search_without_an_aim_is_refused(
