@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Interface to the client that evaluates runs, here :mod:`runs.paper`.
 
-The client adds its part to reports and prints verdicts. Only this module and
-:mod:`runs.case.schema`, which adds the client's keys to every case, import it.
+The client adds parts to reports and prints lines. Only this module imports it, and
+:mod:`runs.case.schema`, which adds the keys of the client to every case.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 
 def judge(results: Results) -> Addition:
-    """Return the client's additions to the report of a run."""
+    """Return the additions of the client to the report of a run."""
     from runs.paper import rules, verdicts
 
     return verdicts.addition(results.case, rules.judge(results))
 
 
 def show(judged: Mapping[str, Addition], console: Console) -> int:
-    """Print the client's verdicts on runs, each run by its file; return the exit status."""
+    """Print the output of the client on runs, by file, and return the exit status."""
     from runs.paper.verdicts import show
 
     return show(judged, console)

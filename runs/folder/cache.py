@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A cache of results under the hash of their inputs.
+"""Cache of results under the hash of their inputs.
 
-An entry is a file whose first line is the SHA-256 of its key and its content. This detects disk
-errors, and files that were copied from elsewhere. An entry is complete or absent, and never
-changes. No run requests an outdated entry again; the cache removes the least recently used entries
-first.
+An entry is a file whose first line is the SHA-256 of its key and its content, which detects disk
+errors and foreign files. Entries are written atomically and never change. The cache removes the
+least recently used entries.
 """
 
 from __future__ import annotations
@@ -34,25 +33,25 @@ if TYPE_CHECKING:
 
 Entry = TypeVar("Entry")
 
-# Maximum total size in bytes of the entries of a user.
+# Maximum total size of all entries in bytes.
 MAX_SIZE = 4 * 1024**3
 
 # Environment variable that replaces the user's cache folder.
 VARIABLE = "PROTRACTILE_CACHE"
 
-# Linux's struct flock: type, whence, start, length, process.
+# Fields of struct flock in Linux: type, whence, start, length, process.
 _LOCK = Struct("hhqqi4x")
 
 _SUFFIX = ".record"
-# Bytes of the line with an entry's checksum.
+# Number of bytes of the line with the checksum.
 _HEAD = 65
 
 
 def key(*content: Any) -> str:
-    """Return the SHA-256 of the content, numbers to the last bit, and of the program's sources.
+    """Return the SHA-256 of exact content and of the version of the program.
 
     Raises:
-        TypeError: the content is not valid in a record, see :func:`runs.folder.records.write`.
+        TypeError: a record cannot have this content, see :func:`runs.folder.records.write`.
     """
     digest = sha256()
     records.write((content, program()), SimpleNamespace(write=digest.update))
@@ -64,16 +63,16 @@ class Cache:
     """Cache of entries by their keys.
 
     Args:
-        folder: folder of the entries; the first entry creates it.
+        folder: folder of the entries, which is created with the first entry.
     """
 
     folder: Path
 
     @classmethod
     def of_user(cls) -> Cache | None:
-        """Return the cache in ``$PROTRACTILE_CACHE``, or in the user's cache folder.
+        """Return the cache in ``$PROTRACTILE_CACHE``, or in the cache folder of the user.
 
-        Return None, with a notice, for a user without a home folder.
+        Without a home folder it gives a notice and returns None.
         """
         if given := os.environ.get(VARIABLE):
             return cls(Path(given))
@@ -89,7 +88,7 @@ class Cache:
         return cls(Path(caches) / "protractile")
 
     def load(self, key: str, kind: type[Entry]) -> Entry | None:
-        """Return the entry, an object of a class; None if it is missing or damaged."""
+        """Return the entry as an object of a class; None if it is missing or damaged."""
         entry = self._entry(key)
         # The entry may belong to another user.
         with suppress(OSError):
@@ -115,16 +114,16 @@ class Cache:
 
     @contextmanager
     def entry_lock(self, key: str) -> Iterator[None]:
-        """Make other processes and threads that compute the same entry wait.
+        """Lock an entry, so that other processes and threads wait until it is computed.
 
-        They do not wait if the cache is not writable.
+        There is no lock if the cache is not writable.
         """
         with ExitStack() as stack:
             with suppress(OSError):
                 self.folder.mkdir(parents=True, exist_ok=True)
                 lock = stack.enter_context((self.folder / ".lock").open("a", encoding="utf-8"))
-                # Each entry locks a byte of its own, so that no lock files remain. The lock belongs
-                # to the open file: a lock of the process would not stop its other threads.
+                # Each entry locks its own byte of a file, so that no lock files remain. The lock
+                # belongs to the open file, so that it holds between threads, too.
                 byte = _LOCK.pack(fcntl.F_WRLCK, os.SEEK_SET, int(key[:15], 16), 1, 0)
                 fcntl.fcntl(lock, fcntl.F_OFD_SETLKW, byte)
             yield
@@ -134,7 +133,7 @@ class Cache:
 
         Raises:
             OSError: the entry cannot be written.
-            TypeError: the entry is not valid as a record.
+            TypeError: a record cannot have this content.
         """
         with atomic_path(self._entry(key)) as part, part.open("w+b") as file:
             file.write(bytes(_HEAD))
@@ -159,10 +158,10 @@ class Cache:
             )
 
     def make_room(self, room: int = MAX_SIZE) -> None:
-        """Remove the least recently used entries until the others have at most ``room`` bytes."""
+        """Remove the least recently used entries until the others fit into ``room`` bytes."""
         used: list[tuple[float, int, Path]] = []
         for entry in self.folder.glob(f"*{_SUFFIX}"):
-            # Another process may remove it at the same time.
+            # Another process may remove the same entry.
             with suppress(OSError):
                 status = entry.stat()
                 used.append((status.st_mtime, status.st_size, entry))
@@ -183,16 +182,16 @@ def load_or_compute(
     comm: MPI.Comm,
     compute: Callable[[], ReducedShell],
 ) -> ReducedShell:
-    """Return a reduced shell, from the cache if it is there. Collective.
+    """Return a reduced shell from the cache, or compute it. Collective.
 
-    A cache that cannot be read or written causes a notice and costs time. If several processes need
-    the same shell, one computes it and the others wait.
+    If several processes need the same shell, one computes it and the others wait. A cache that
+    cannot be read or written causes a notice.
 
     Args:
         cache: cache of the user.
         content: all inputs of the shell.
-        comm: the ranks that share the work; the first one reads and writes.
-        compute: computes the shell. Collective.
+        comm: ranks that share the work; the first one reads and writes.
+        compute: function that computes the shell. Collective.
     """
     from shell_model.reduced_shell import ReducedShell
 
@@ -200,7 +199,7 @@ def load_or_compute(
     name = key(list(content))
     with cache.entry_lock(name) if comm.rank == 0 else nullcontext():
         found = cache.load(name, ReducedShell) if comm.rank == 0 else None
-        # Fields and meshes are on the first rank only.
+        # Only the first rank has fields and meshes.
         shared = comm.bcast(None if found is None else replace(found, fields=None, meshes=[]))
         if shared is not None:
             return replace(found or shared, seconds={"cache": perf_counter() - start})
@@ -211,5 +210,5 @@ def load_or_compute(
 
 
 def _head(key: str, file: BufferedIOBase) -> bytes:
-    """Return the SHA-256 of a name and of the rest of a file, as a line."""
+    """Return the SHA-256 of a key and of the rest of a file, as a line."""
     return file_digest(file, lambda: sha256(key.encode())).hexdigest().encode() + b"\n"

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Files and folders that are complete or absent, even if writing is interrupted.
+"""Atomic writing of files and folders.
 
-Incomplete files are in a hidden folder beside their final place. A process locks its folder, so
-that the next process that writes there can remove the folder of a killed one. A finished folder has
-a manifest of its files with their checksums, as ``sha256sum -c`` reads them.
+Files are written to a hidden folder beside their final path. The process locks this folder, so that
+a later process can remove the folders of killed processes. A finished folder has a manifest of its
+files with checksums for ``sha256sum -c``.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from runs.process.ending import when_interrupted
 
 MANIFEST = ".manifest"
 
-# Flags of renameat2(2): paths are relative to the current folder; exchange two names.
+# Arguments of renameat2(2): paths relative to the current folder; exchange of two names.
 _AT_FDCWD, _RENAME_EXCHANGE = -100, 2
 
 
@@ -34,8 +34,8 @@ def resolve_path(path: Path) -> Path:
     """Return a path with its links resolved.
 
     Raises:
-        OSError: links form a loop; :meth:`pathlib.Path.resolve` raises RuntimeError, or nothing
-            from Python 3.13 on.
+        OSError: links form a loop. (:meth:`pathlib.Path.resolve` raises RuntimeError, or nothing
+            from Python 3.13 on.)
     """
     found = Path(os.path.realpath(path))
     if found.is_symlink():
@@ -45,21 +45,21 @@ def resolve_path(path: Path) -> Path:
 
 @contextmanager
 def atomic_path(path: Path) -> Iterator[Path]:
-    """Yield a temporary path to write to; the complete file gets the final name."""
+    """Yield a temporary path to write to, and rename the complete file to ``path``."""
     with scratch_folder(path) as folder:
         yield folder / path.name
         os.replace(folder / path.name, path)
 
 
 def write_atomically(path: Path, text: str) -> None:
-    """Write a text file, which appears when it is complete."""
+    """Write a text file atomically."""
     with atomic_path(path) as part:
         part.write_text(text, encoding="utf-8")
 
 
 @contextmanager
 def atomic_folder(folder: Path) -> Iterator[Path]:
-    """Yield an empty folder to write to, which replaces ``folder`` when it is complete.
+    """Yield an empty folder to write to, and replace ``folder`` by it at the end.
 
     Args:
         folder: final path; an existing folder is removed with its content.
@@ -72,11 +72,10 @@ def atomic_folder(folder: Path) -> Iterator[Path]:
 
 @contextmanager
 def modified_folder(folder: Path) -> Iterator[Path]:
-    """Yield a copy of ``folder`` to change, which replaces it when it is complete.
+    """Yield a copy of ``folder`` to modify, and replace the folder by it at the end.
 
-    The copies share their content with the files in ``folder``: replace them, do not write to them.
-    Files that the user has added stay, and are not in the manifest. Call it within
-    :func:`folder_lock`.
+    Files in the copy are links: replace them, do not write to them. Files that the user has added
+    are kept, and are not in the manifest. Call it within :func:`folder_lock`.
     """
     with scratch_folder(folder) as part:
         for source in folder.rglob("*"):
@@ -95,7 +94,7 @@ def modified_folder(folder: Path) -> Iterator[Path]:
 
 @contextmanager
 def folder_lock(folder: Path) -> Iterator[None]:
-    """Hold a lock under which only this process replaces folders beside this path."""
+    """Lock the folder, so that no other process replaces it."""
     path = resolve_path(folder)
     with ExitStack() as stack:
         with suppress(OSError):
@@ -111,7 +110,7 @@ def folder_lock(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def scratch_folder(path: Path) -> Iterator[Path]:
-    """Yield an empty folder beside a path; remove it at the end, with those of killed processes."""
+    """Yield an empty hidden folder beside a path, and remove it at the end."""
     path = resolve_path(path)
     part = path.with_name(f"{_hidden(path)}{token_hex(4)}")
     # Other processes cannot find the folder before it is locked.
@@ -132,7 +131,7 @@ def scratch_folder(path: Path) -> Iterator[Path]:
             unlocked.rename(part)
             yield part
     except OSError as error:
-        # The error of a full disk names no file; the user knows only the final name.
+        # The error names the final path: a full disk gives none, the user does not know others.
         place = os.path.abspath(error.filename or path)
         for scratch in (unlocked, part):
             place = place.replace(str(scratch), str(path))
@@ -143,7 +142,7 @@ def scratch_folder(path: Path) -> Iterator[Path]:
 def find_damaged_file(folder: Path) -> str | None:
     """Return the first file whose checksum differs from the manifest; None if all agree.
 
-    Missing files and files of the user do not count.
+    Missing files and added files do not count.
     """
     for name, digest in _manifest_checksums(folder).items():
         path = folder / name
@@ -153,31 +152,31 @@ def find_damaged_file(folder: Path) -> str | None:
 
 
 def _hidden(path: Path) -> str:
-    """Return the prefix of the names of folders beside a path."""
+    """Return the prefix of the names of hidden folders beside a path."""
     return f".{path.name[:50]}.protractile-"
 
 
 def _exchange_path(path: Path) -> Path:
-    """Return the temporary path of an old folder, for an exchange in two steps."""
+    """Return the temporary path of the old folder in an exchange in two steps."""
     return path.with_name(f".{path.name[:50]}.away")
 
 
 def _remove_left(path: Path) -> None:
-    """Remove the remains of killed processes beside a path."""
+    """Remove the hidden folders of killed processes beside a path."""
     for left in path.parent.glob(f"{escape(_hidden(path))}*"):
-        # A locked folder belongs to a live process.
+        # A locked folder belongs to a running process.
         with suppress(OSError), (left / MANIFEST).open("r+", encoding="utf-8") as manifest:
             fcntl.flock(manifest, fcntl.LOCK_EX | fcntl.LOCK_NB)
             shutil.rmtree(left, ignore_errors=True)
 
 
 def _take_the_place(part: Path, folder: Path, own: Iterable[str]) -> None:
-    """Write a manifest, and exchange two folders.
+    """Write the manifest of a new folder, and move it to its final path.
 
     Args:
         part: the new folder.
-        folder: the path for ``part``, where an old folder may exist.
-        own: files of the new folder that the manifest lists.
+        folder: the final path, at which an old folder may exist.
+        own: files for the manifest.
     """
     lines = [f"{_digest(part / name)}  {name}\n" for name in sorted(own)]
     (part / MANIFEST).write_text("".join(lines), "utf-8")
@@ -191,7 +190,7 @@ def _take_the_place(part: Path, folder: Path, own: Iterable[str]) -> None:
             raise
         libc = ctypes.PyDLL(None)
         names = _AT_FDCWD, os.fsencode(part), _AT_FDCWD, os.fsencode(folder)
-        # Some systems and some disks cannot exchange two names at once.
+        # Not every system and file system can exchange two names.
         if not hasattr(libc, "renameat2") or libc.renameat2(*names, _RENAME_EXCHANGE) != 0:
             folder.rename(_exchange_path(folder))
             part.rename(folder)
@@ -199,21 +198,21 @@ def _take_the_place(part: Path, folder: Path, own: Iterable[str]) -> None:
 
 
 def _files(folder: Path) -> list[str]:
-    """Return all files in a folder except manifest and links, by their relative paths."""
+    """Return the relative paths of all files in a folder except manifest and links."""
     paths = (path for path in folder.rglob("*") if path.is_file() and not path.is_symlink())
     return [name for path in paths if (name := str(path.relative_to(folder))) != MANIFEST]
 
 
 def _same_file(name: str, one: Path, other: Path) -> bool:
-    """Return whether two folders have the same file under a name."""
+    """Return True if two folders have the same file under a name."""
     return (other / name).is_file() and filecmp.cmp(one / name, other / name)
 
 
 def _manifest_checksums(folder: Path) -> dict[str, str]:
-    """Return the checksums in a folder's manifest, by relative path."""
+    """Return the checksums in the manifest of a folder by relative path."""
     manifest = folder / MANIFEST
     try:
-        # Reading a pipe in its place would block.
+        # Reading a pipe of this name would block.
         lines = manifest.read_text("utf-8").splitlines() if manifest.is_file() else []
     except (OSError, UnicodeDecodeError):
         lines = []

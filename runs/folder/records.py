@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Records: results as a line of JSON, followed by their arrays in numpy's format.
+"""Records: results as a line of JSON, followed by arrays in the format of numpy.
 
-Everything is restored to the last bit: tuples as tuples, and this program's dataclasses, named
-tuples and pydantic models as objects of their classes, validation included. Files contain data
-only: an untrusted file can choose among these classes and their data, but cannot run code.
+Reading restores objects exactly, with validation: tuples, dataclasses, named tuples and pydantic
+models of this program. Files contain only data: an untrusted file cannot run code.
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ def write(thing: Any, file: Writable) -> None:
         file: the destination.
 
     Raises:
-        TypeError: it contains another type.
+        TypeError: the object contains another type.
     """
     arrays: list[np.ndarray[Any, Any]] = []
     file.write(json.dumps(_encode(thing, arrays)).encode() + b"\n")
@@ -51,10 +50,10 @@ def write(thing: Any, file: Writable) -> None:
 
 
 def read(file: IO[bytes], kind: type[Kind]) -> Kind:
-    """Read a record, an object of a class.
+    """Return the object of a record.
 
     Raises:
-        Exception: the file is not a record of this class.
+        Exception: the file is not a record of the class.
     """
     thing = _decode(json.loads(file.readline()), file)
     if not isinstance(thing, kind):
@@ -82,7 +81,7 @@ def _encode(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
         entries = [[_encode(name, arrays), _encode(value, arrays)] for name, value in thing.items()]
         return {"mapping": entries}
     if (names := _names(type(thing))) is not None:
-        # Only the fields of a pydantic model that were set are written.
+        # Only fields that are set are written of a pydantic model.
         own = thing.model_fields_set if isinstance(thing, BaseModel) else names
         parts = {name: _encode(getattr(thing, name), arrays) for name in names if name in own}
         return {"record": [type(thing).__module__, type(thing).__name__], "parts": parts}
@@ -92,7 +91,7 @@ def _encode(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
 
 
 def _decode(written: Any, file: IO[bytes]) -> Any:
-    """Return the object of JSON types, with its arrays from the file in the same order."""
+    """Return the object for JSON types, with its arrays from the file."""
     match written:
         case None | bool() | int() | float() | str():
             return written
@@ -100,7 +99,7 @@ def _decode(written: Any, file: IO[bytes]) -> Any:
             return np.lib.format.read_array(file, allow_pickle=False)
         case {"dataset": content}:
             variables, coordinates, attributes = _decode(content, file)
-            # Variables keep the order in which they are written to a file.
+            # Coordinates are set afterwards, so that variables keep their order.
             return xr.Dataset(variables, attrs=attributes).set_coords(coordinates)
         case {"mapping": list(entries)}:
             return {_decode(name, file): _decode(value, file) for name, value in entries}
@@ -123,7 +122,7 @@ def _class(module: str, name: str) -> type:
 
 
 def _names(kind: type) -> list[str] | None:
-    """Return the fields of a class; None for a class whose objects may hold further data."""
+    """Return the fields of a class; None if its objects may have other data."""
     if issubclass(kind, BaseModel):
         return list(kind.model_fields)
     if is_dataclass(kind):

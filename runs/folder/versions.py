@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Versions of the code that computes results: this program's sources and its libraries."""
+"""Versions of this program and of its libraries."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LIBRARIES = "protractile", "numpy", "scipy", "numba", "gmsh", "fenics-dolfinx",
 
 
 def installed_version(name: str) -> str | None:
-    """Return the version of a distribution; None where it is not installed."""
+    """Return the version of a distribution; None if it is not installed."""
     try:
         return version(name)
     except PackageNotFoundError:
@@ -24,7 +24,7 @@ def installed_version(name: str) -> str | None:
 
 
 def versions() -> dict[str, str | None]:
-    """Return the versions of the loaded modules, by name; a run of beams does not load FEniCSx."""
+    """Return the versions of loaded libraries by name. A run of beams does not load FEniCSx."""
     modules: Sequence[str] = (
         "numpy", "scipy", "numba", "xarray", "gmsh", "dolfinx", "petsc4py", "mpi4py",
     )  # fmt: skip
@@ -37,7 +37,7 @@ def versions() -> dict[str, str | None]:
 
 @cache
 def packages() -> list[Path]:
-    """Return this program's packages: those of the source tree, or the installed ones."""
+    """Return the package folders of this program, in the source tree or installed."""
     top = Path(__file__).parents[2]
     if (top / "pyproject.toml").is_file():
         return [path.parent for path in sorted(top.glob("*/__init__.py"))]
@@ -59,7 +59,7 @@ def sources(folders: Iterable[Path]) -> str:
 
 @cache
 def program() -> dict[str, str | None]:
-    """Return the version of the program as an input of results: its sources and its libraries."""
-    # Installed versions count, since processes differ in the modules that they have loaded.
+    """Return the hash of the sources and the versions of libraries that affect results."""
+    # Installed versions, since the loaded modules differ between processes.
     libraries = {name: installed_version(name) for name in _LIBRARIES}
     return {"sources": sources(packages()), **libraries}

@@ -2,8 +2,8 @@
 """Rules that judge each statement of the paper on trajectories.
 
 The frictionless system is chaotic: a relative change of the load of 1e-9 grows to about 1 % of
-the tip's range within a second. So one trajectory decides only up to the first peak. Beyond it, a
-difference is a sample, and a rule counts the members of an ensemble that show it.
+the range of the tip within a second. So single trajectories are compared only up to the first peak.
+For later times a rule counts the members of an ensemble that show a difference.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ COINCIDENCE = 1.0e-6
 DIVERGENCE = 0.20
 # S3. The time in the statement, in s.
 CONFORMITY = 6.0
-# S3. The paper shows one run, which is typical if most members agree.
+# S3. The run in the paper is typical if most members agree with it.
 MOST = 0.5
 # S2. Confidence of the mean of an ensemble, whose members are samples of a chaotic motion.
 CONFIDENCE = 0.95
@@ -46,7 +46,7 @@ FUNDAMENTAL = 2.0
 # Chaos changes the largest differences up to the first peak by about a tenth.
 SAME_LEVEL = 5.0
 LEVEL_SCATTER = 0.1
-# S9. Less than the differences between the models of S4, which the paper calls minor.
+# S9. The paper calls the differences between the models of S4 minor; they are larger than this.
 CLEAR_INFLUENCE = 0.05
 # S10. The number in the statement.
 SERIES_STEPS = 2000
@@ -67,7 +67,7 @@ class Finding:
 
 
 def judge(results: Results) -> list[Verdict]:
-    """Return the verdicts that a run's case requests or demands."""
+    """Return the verdicts that the case of a run requests or demands."""
     case = results.case
     run = RunQuery(results)
     return [
@@ -394,38 +394,38 @@ def _find(rule: Callable[[RunQuery], Finding], run: RunQuery) -> Finding:
 
 
 def _above(value: float, threshold: float, margin: float) -> Judgement:
-    """Return whether a value is above a threshold, where both have the uncertainty ``margin``."""
+    """Return the verdict that a value is above a threshold, undecided within a margin."""
     if abs(value - threshold) <= margin:
         return "undecided"
     return "reproduced" if value > threshold else "contradicted"
 
 
 def _mean(values: Array) -> tuple[float, float]:
-    """Return the mean of the members, and half the width of its Student confidence interval."""
+    """Return the mean over the members, and half the width of its Student confidence interval."""
     quantile = stdtrit(values.size - 1, 0.5 + 0.5 * CONFIDENCE)
     return float(values.mean()), float(quantile * values.std(ddof=1) / np.sqrt(values.size))
 
 
 def _share(shows: Mask) -> tuple[float, float]:
-    """Return the share of members with a property, and twice its standard error at one half."""
+    """Return the share of members with a property, and twice the standard error of a share of ½."""
     return float(shows.mean()), 1.0 / float(np.sqrt(shows.size))
 
 
 def _apart(run: RunQuery, models: Sequence[Model], place: str) -> Array:
-    """Return the largest difference (num_times,) between models, as a fraction of the range."""
+    """Return the largest difference (num_times,) of any two models, as a fraction of the range."""
     curves = np.array([run.curve(model, place) for model in models])
     return np.asarray(np.ptp(curves, axis=0) / max(map(_range, curves)))
 
 
 def _half_part(middle: float) -> str:
-    """Return a sentence on the median time of divergence, infinite without divergence."""
+    """Return a sentence on the median time of divergence, which is infinite without any."""
     if not np.isfinite(middle):
         return "In most members no peaks are further apart."
     return f"In half of them the first such peak is at {middle:.1f} s or before."
 
 
 def _horizons(run: RunQuery, models: list[Model]) -> str:
-    """Return a sentence on the horizons, beyond which a single run of each model is a sample."""
+    """Return a sentence on the horizons of the models."""
     horizons = [run.horizon(model, DIVERGENCE) for model in models]
     times = [time for time in horizons if time is not None]
     if not times:
@@ -451,6 +451,6 @@ def _range(curve: Array) -> float:
 
 
 def _exponents(run: RunQuery, model: Model) -> list[set[float]]:
-    """Return the contact exponents n of a model's joints."""
+    """Return the contact exponents n of the joints of a model."""
     joints = model.model_boom(run.results.boom).boom.joints
     return [{term.exponent for term in joint.contact.terms} for joint in joints]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Queries of a run for the rules on the paper's statements, and divergence between models."""
+"""Queries of a run for the rules, and divergence between models."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from runs.pipeline.low_pass import slow_peaks
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary
 
-# After the last peak a motion may end before the next one, within this number of its periods.
+# A missing peak counts only if the motion lasts this number of periods after its last peak.
 NEXT_PEAK = 1.5
 
 _Found = TypeVar("_Found")
 
 
 class MissingData(Exception):
-    """Error for missing data that a rule needs; the message is a sentence."""
+    """Error if data that a rule needs are missing."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunQuery:
-    """Access of the rules to a run; its methods raise :class:`MissingData` if the data are missing.
+    """Queries of a run. Methods raise :class:`MissingData` if the data are missing.
 
     Args:
         results: results of the run.
@@ -39,7 +39,7 @@ class RunQuery:
 
     @property
     def case(self) -> Case:
-        """The case of the run, which identifies the models."""
+        """The case of the run."""
         return self.results.case
 
     @property
@@ -48,7 +48,7 @@ class RunQuery:
         return np.asarray(self.results.trajectories["time"].values, dtype=float)
 
     def check_ran(self, model: Model) -> None:
-        """Check that a model ran."""
+        """Check that a model did not fail."""
         why = self.results.summary.failures.get(model.name)
         if why is not None:
             raise MissingData(f"{model.name!r} failed: {why}.")
@@ -56,7 +56,7 @@ class RunQuery:
             raise MissingData(f"{model.name!r} did not run.")
 
     def curve(self, model: Model, place: str = "tip") -> Array:
-        """Return a deflection (num_times,) in m."""
+        """Return the deflection of an output (num_times,) in m."""
         self.check_ran(model)
         if place not in self.results.trajectories:
             raise MissingData(f"No {place} in this run.")
@@ -67,7 +67,7 @@ class RunQuery:
         return deflection
 
     def members(self, *models: Model) -> Array:
-        """Return the tip deflections (num_models, num_members, num_times) in m of the ensembles."""
+        """Return the tip deflections in m of ensembles (num_models, num_members, num_times)."""
         for model in models:
             self.curve(model)
         if self.results.ensembles is None:
@@ -81,7 +81,7 @@ class RunQuery:
         return self.results.summary.models[model.name]
 
     def horizon(self, model: Model, share: float) -> float | None:
-        """Return the time in s at which members differ by a share of the tip's range, or None."""
+        """Return the time in s after which members differ by a share of the range, or None."""
         return _require(model, "ensemble", self.found(model).ensemble).horizon(share)
 
     def first_contact(self, model: Model) -> float:
@@ -89,11 +89,11 @@ class RunQuery:
         return _require(model, "first contact", self.found(model).first_contact)
 
     def peak_time(self, model: Model) -> float:
-        """Return the time of the tip's first peak in s."""
+        """Return the time of the first peak of the tip in s."""
         return _require(model, "first peak", self.found(model).first_peak["tip"].time)
 
     def peak_height(self, model: Model) -> float:
-        """Return the height of the tip's first peak in m."""
+        """Return the height of the first peak of the tip in m."""
         return _require(model, "first peak", self.found(model).first_peak["tip"].height)
 
     def fewest_steps(self, model: Model) -> int:
@@ -109,7 +109,7 @@ class RunQuery:
         return requested.slow_below
 
     def one(self, what: str, fits: Callable[[Model], bool]) -> Model:
-        """Return the first model that fits, or the one whose name is ``what`` if it fits."""
+        """Return the first model that satisfies a condition, or the one with the name ``what``."""
         found = sorted(filter(fits, self.case.models), key=lambda model: model.name != what)
         if not found:
             raise MissingData(f"The case has no model like {what!r}.")
@@ -120,7 +120,7 @@ class RunQuery:
         return self.one("kantorovich-4", lambda model: terms(model) == (2, 2))
 
     def five_terms(self) -> Model:
-        """Return the series with one more bending function, in the inner segment."""
+        """Return the series with one more function, for bending of the inner segment."""
         four = self.four_terms()
         return self.one(
             "kantorovich-5",
@@ -131,14 +131,14 @@ class RunQuery:
         )
 
     def beam_elements(self) -> Model:
-        """Return the paper's beam model with play."""
+        """Return the beam element model with play of the paper."""
         return self.one(
             "beam-fe",
             lambda model: not model.bonded and getattr(model, "theory", None) == "euler-bernoulli",
         )
 
     def shell(self) -> Model:
-        """Return the shell."""
+        """Return the shell model of the case."""
         return self.one("shell", lambda model: model.meshed)
 
     def bonded(self) -> Model:
@@ -146,7 +146,7 @@ class RunQuery:
         return self.one("beam-fe-tied", lambda model: model.bonded)
 
     def with_play(self) -> list[Model]:
-        """Return all models with contact between segments; there must be at least two."""
+        """Return all models with play, which must be at least two."""
         models = [model for model in self.case.models if not model.bonded]
         if len(models) < 2:
             raise MissingData("It takes two models with play to compare.")
@@ -180,32 +180,32 @@ def terms(model: Model) -> tuple[int, ...]:
 
 
 def options(model: Model, *ignored: str) -> dict[str, Any]:
-    """Return the options of a model, without its name and the ignored keys."""
+    """Return the keys of a model without its name and the ignored ones."""
     return model.model_dump(exclude={"name", *ignored})
 
 
 def apart_at_the_end(one: Array, other: Array, last: Mask) -> Array:
-    """Return the largest difference (num_members,) at the last times, as a part of the range.
+    """Return the largest difference (num_members,) at the last times, as a fraction of the range.
 
     Args:
-        one, other: (num_members, num_times) of one quantity.
-        last: (num_times,) mask of the last times.
+        one: curves of one model (num_members, num_times).
+        other: curves of the other model (num_members, num_times).
+        last: mask (num_times,) of the last times.
     """
     scale = np.maximum(np.ptp(one, axis=1), np.ptp(other, axis=1))
     return np.asarray(np.abs(one - other)[:, last].max(axis=1) / scale)
 
 
 def peaks_apart(curves: Array, time: Array, cutoff: float) -> tuple[Array, Array]:
-    """Return distances between the peaks of several slow motions, peak by peak.
+    """Return distances between the peaks of the slow motions of several models.
 
-    The k-th peak of one model belongs to the k-th of every other. Their distance is the larger one
-    of the distance in time, as a fraction of the mean period, and the distance in height, as a
-    fraction of the highest peak. It is infinite if a model lacks the peak although its motion lasts
-    long enough.
+    The k-th peaks of all models are compared. Their distance is the larger of the distance in time
+    over the mean period and the distance in height over the highest peak. It is infinite if a
+    model lacks the peak although its motion lasts long enough.
 
     Args:
         curves: (num_models, num_times), one member of each model.
-        time: (num_times,) in s, equal steps.
+        time: evenly spaced times (num_times,) in s.
         cutoff: cut-off of the slow motion in Hz.
 
     Returns:

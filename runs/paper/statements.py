@@ -37,5 +37,5 @@ class CaseKeys(CaseTable):
     """the statements of the paper that the run must reproduce"""
 
     def without_judgements(self) -> Self:
-        """Return the case without these keys."""
+        """Return the case without the keys of statements."""
         return self.model_copy(update={"statements": (), "demand": ()})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Verdicts on the paper's statements, in the report, the terminal and ``verdicts.json``."""
+"""Verdicts on the statements of the paper in the report, the terminal and ``verdicts.json``."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ class Verdict:
     Args:
         id: identifier of the statement in the case.
         statement: text of the statement.
-        measured: number that the rule compares; None if there is none.
-        threshold: limit of this number.
-        unit: unit of both numbers; empty if they have none.
+        measured: number that the rule compares with the threshold; None if there is none.
+        threshold: limit of the number.
+        unit: unit of both numbers; empty if dimensionless.
         verdict: result of the rule.
         why: explanation of the comparison and of its limits.
-        demanded: whether the case demands the verdict ``reproduced``.
+        demanded: True if the case demands the verdict ``reproduced``.
     """
 
     id: str
@@ -51,13 +51,13 @@ class Verdict:
     demanded: bool = False
 
     def with_unit(self, value: float | None) -> str:
-        """Return a number of the verdict as text with its unit."""
+        """Return a number as text with the unit of the verdict."""
         text = number(value)
         return f"{text} {self.unit}" if self.unit and text != NONE else text
 
 
 def addition(case: Case, verdicts: Sequence[Verdict]) -> Addition:
-    """Return the additions of verdicts to the report of a run."""
+    """Return the verdicts as additions to the report of a run."""
     judged = [verdict.verdict for verdict in verdicts]
     known = evidence(case)
     figures = {"tip": 8, "head": 9} if case.regular else {"tip": 6, "head": 7}
@@ -86,7 +86,7 @@ def addition(case: Case, verdicts: Sequence[Verdict]) -> Addition:
 
 
 def evidence(case: Case) -> Mapping[str, Sequence[str]]:
-    """Return the evidence in the report for each statement: anchors of pictures, then of tables."""
+    """Return the anchors of the pictures and tables in the report that concern each statement."""
     regular = case.regular
     heads = [f"figure-head-{number}" for number in range(2, len(case.joints) + 1)]
     heads = ["figure-head", *heads]
@@ -110,7 +110,7 @@ def evidence(case: Case) -> Mapping[str, Sequence[str]]:
 
 
 def show(judged: Mapping[str, Addition], console: Console) -> int:
-    """Print the verdicts of all runs, then the demands that are not met; return the exit status."""
+    """Print the verdicts of all runs and the unmet demands; return the exit status."""
     runs: dict[str, Sequence[Verdict]] = {
         file: one.content["verdicts"] for file, one in judged.items()
     }
@@ -129,7 +129,7 @@ def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> N
     """Print a paragraph for each statement: the verdict of the first run that decides it.
 
     Args:
-        runs: verdicts by the name of their case; nothing is printed if there are none.
+        runs: verdicts by the name of their case.
         console: console of the output.
     """
     judging = [name for name, verdicts in runs.items() if verdicts]
@@ -151,9 +151,9 @@ def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> N
 
 
 def decisive(runs: Mapping[str, Sequence[Verdict]]) -> list[tuple[str, Verdict]]:
-    """Return each statement's verdict, and the run that gives it.
+    """Return the run and the verdict that count for each statement.
 
-    This is the first run that decides the statement, or the first run if none does.
+    They are those of the first run that decides the statement, or of the first run.
     """
     found: dict[str, tuple[str, Verdict]] = {}
     for name, verdicts in runs.items():

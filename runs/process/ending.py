@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Early end of a process: by Ctrl-C, by SIGTERM, or by an error on one rank.
 
-A signal ends a command at any time with one line. No clean-up is necessary, since incomplete files
-are never at their final place. Python runs a signal's handler between two of its own instructions.
-If a compiled loop or a message to another rank delays the handler, a separate thread does its work.
-MPI starts only for a shell: a run of beams does not import mpi4py, and the other processes of
+A signal ends a command at any time with one line. No clean-up is necessary, since files are written
+atomically. If a compiled loop or a message to another rank delays the signal handler of Python, a
+separate thread ends the process. A run of beams does not import mpi4py, and the other processes of
 ``mpirun -n N protractile`` then have no work.
 """
 
@@ -30,18 +29,18 @@ if TYPE_CHECKING:
 
 LINE = b"protractile: interrupted\n"
 
-# Time in s that the thread waits for the handler.
+# Time in s for which the thread waits for the handler.
 GRACE = 1.0
 
 # Escape sequence that clears the line of a progress bar and shows the cursor.
 _CLEAR = b"\r\x1b[K\x1b[?25h"
 
-# Environment variables with the rank, before MPI starts: Open MPI, PMIx, MPICH and its derivatives.
+# Environment variables with the rank, of Open MPI, PMIx, and MPICH and its derivatives.
 _LAUNCHERS = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK")
 
-# Time in s by which other ranks delay their message: if rank 0 has failed too, it alone reports.
+# Time in s by which other ranks delay their message, so that rank 0 reports alone if it fails, too.
 _GRACE_OF_RANKS = 5.0
-# Longest time in s that a message waits for its reader, and interval of the checks.
+# Longest time in s for which a message waits for its reader, and interval of the checks.
 _UNREAD, _LOOK = 5.0, 1.0e-3
 
 _cleanups: list[Callable[[], object]] = []
@@ -50,7 +49,7 @@ _signals: list[int] = []
 
 
 def listen() -> None:
-    """End this process on Ctrl-C and SIGTERM from now on, with exit status 130 or 143.
+    """Install handlers that end the process on Ctrl-C and SIGTERM, with status 130 or 143.
 
     A signal that the parent process ignores stays ignored, as with ``nohup``.
     """
@@ -74,7 +73,7 @@ def when_interrupted(work: Callable[[], object]) -> Iterator[None]:
 
 
 def launched_rank() -> int | None:
-    """Return the rank that a launcher has given this process, None without a launcher."""
+    """Return the rank that a launcher has given this process; None without a launcher."""
     given = (os.environ.get(name, "") for name in _LAUNCHERS)
     # Values that are not numbers are ignored.
     return next((int(number) for number in given if number.isdecimal()), None)
@@ -86,9 +85,9 @@ def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
     Args:
         line: the error.
         code: exit status.
-        comm: communicator; None before MPI starts. Until then all ranks fail alike and end by
-            themselves, and only rank 0 has a status other than 0: a launcher truncates its message
-            if another rank ends earlier with an error.
+        comm: communicator; None before MPI starts. Until then every rank fails by itself, and only
+            rank 0 ends with the status: a launcher would truncate its message if another rank
+            ended earlier with an error.
     """
     if comm is None or comm.size == 1:
         if launched_rank():
@@ -105,12 +104,10 @@ def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
 
 
 def _wait_until_read(stream: int) -> None:
-    """Wait until a pipe is empty, so that a message of its reader follows this one.
-
-    Otherwise Open MPI 5 appends our line to its own message on the abort.
+    """Wait until a pipe is empty; otherwise Open MPI 5 mixes the line with its own message.
 
     Args:
-        stream: a writable file descriptor; the function waits for pipes only.
+        stream: a writable file descriptor; only pipes are waited for.
     """
     if not stat.S_ISFIFO(os.fstat(stream).st_mode):
         return
@@ -131,13 +128,13 @@ def _watch(caught: int) -> None:
 
 def _end(number: int, frame: object = None) -> None:
     if not _ending.acquire(blocking=False):
-        # The other thread, or the handler, is already ending the process.
+        # Another thread is ending the process.
         Event().wait()
     _signals.append(number)
     if len(_signals) > 1:
         # A second signal may interrupt this function, which then continues.
         return
-    # The first rank reports for all ranks; an interrupt reaches all of them.
+    # An interrupt reaches all ranks, and the first one reports it.
     if not launched_rank():
         with suppress(OSError):
             os.write(2, _CLEAR + LINE if os.isatty(2) else LINE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Display of progress: bars on a terminal, otherwise occasional lines."""
+"""Display of progress: bars in a terminal, lines elsewhere."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from runs.process.terminal import printable, say
 # Callback that receives the name of the model, the stage, and the completed fraction of the stage.
 Progress = Callable[[str, str, float], None]
 
-# Shortest time in s between two lines; shorter stages print nothing.
+# Least time in s between two lines. Shorter stages print nothing.
 EVERY = 5.0
-# Completed part of a stage from which its remaining time is estimated.
+# Completed fraction of a stage above which its remaining time is estimated.
 LEAST_PART = 0.05
 
 
@@ -47,11 +47,11 @@ def display(models: Sequence[str] = ()) -> Iterator[Progress]:
 
 
 class Lines:
-    """Printer of each model's stage and of the elapsed time.
+    """Progress reporter that prints lines with model, stage and time.
 
     Args:
-        models: names, in order.
-        say: function that receives each line.
+        models: names of the models to run, in order.
+        say: function that prints a line.
         clock: function that returns the time in s.
     """
 
@@ -78,7 +78,7 @@ class Lines:
             state = f"{stage} took {passed:.0f} s" if passed >= 1.0 else f"{stage} is done"
         elif part > 0.0:
             state = f"{stage} {100.0 * part:.0f} %"
-            # An earlier estimate is worth nothing.
+            # Earlier estimates are unreliable.
             if part >= LEAST_PART:
                 state += f", {passed * (1.0 - part) / part:.0f} s left"
         place = ""

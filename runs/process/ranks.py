@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The ranks of a command: start of MPI for cases with shells, errors, and the common end.
+"""Start of MPI for cases with shells, error messages, and the common end of all ranks.
 
-Bad input is imported where it is used: a command without memory cannot import.
+Classes of errors are imported where they are used, since a process without memory cannot import.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from runs.case.schema import Case
 
-# Free bytes that Open MPI needs in the temporary folder: 8.2 MB and a margin.
+# Space in bytes that Open MPI needs in the temporary folder: 8.2 MB and a margin.
 _ROOM_OF_MPI = 16_000_000
 
 
@@ -54,7 +54,7 @@ def enter_mpi(
 
 
 def launched_ranks(file: str) -> MPI.Intracomm | None:
-    """Return all ranks if a launcher such as ``mpirun`` started several, else None.
+    """Return the communicator of all ranks if a launcher started several, else None.
 
     Raises:
         BadInput: a launcher started several ranks, and mpi4py is not installed.
@@ -73,8 +73,8 @@ def launched_ranks(file: str) -> MPI.Intracomm | None:
 
 
 def explain(error: Exception) -> tuple[str, int] | None:
-    """Return the line and the exit status for an error that the user can correct."""
-    # Imports fail without memory, and the loader of libraries has its own error for it.
+    """Return message and exit status for an error that the user can correct; None for others."""
+    # Without memory the loader of libraries raises an error of its own.
     if isinstance(error, MemoryError) or "failed to map segment" in str(error):
         return message(f"out of memory ({error}); make the models or the output smaller"), 3
     from dynamics.failure import NumericsError
@@ -84,7 +84,7 @@ def explain(error: Exception) -> tuple[str, int] | None:
         return message(str(error)), 2
     if isinstance(error, NumericsError):
         return message(str(error)), 3
-    # A usage error of typer; its class has no public name.
+    # A usage error of typer, whose class is not public.
     if hasattr(error, "format_message"):
         return message(f"{error.format_message()} (protractile --help tells more)"), 2
     if isinstance(error, OSError):
@@ -96,7 +96,7 @@ def explain(error: Exception) -> tuple[str, int] | None:
 
 @contextmanager
 def end_all_ranks_on_error(comm: MPI.Comm | None) -> Iterator[None]:
-    """End all ranks if one of them fails, since the others would wait for it for ever."""
+    """End all ranks if one of them fails, since the others would wait for it."""
     try:
         yield
     except Exception as error:
@@ -107,14 +107,14 @@ def end_all_ranks_on_error(comm: MPI.Comm | None) -> Iterator[None]:
 
 
 def _check_temporary_folder(file: str) -> None:
-    """Check the space in the temporary folder, without which MPI aborts with a long message.
+    """Check the space in the temporary folder. Without space MPI aborts with a long message.
 
     Raises:
         BadInput: the folder has too little space, or is not writable.
     """
     from runs.case.messages import BadInput
 
-    # Open MPI uses this variable as it is, while Python may choose another folder.
+    # Open MPI uses $TMPDIR without a check; Python may choose another folder.
     folder = os.environ.get("TMPDIR") or gettempdir()
     try:
         with TemporaryFile(dir=folder) as probe:

@@ -13,25 +13,25 @@ from contextlib import contextmanager, suppress
 
 from rich.console import Console
 
-# Logger of notices, which users of the package may configure.
+# Logger of notices. Users of the package may configure it.
 NOTICES = logging.getLogger("protractile")
 
-# Maximum number of characters of a message with its newline, and of a path or key in it.
+# Maximum numbers of characters of a message, and of a path or key in it.
 LONGEST, LONGEST_PART = 300, 120
 
 _GAP = " ... "
 
 
 class Terminal(Console):
-    """Console whose reader may close the pipe early, like ``head``."""
+    """Console that ignores a closed pipe, such as that of ``head``."""
 
     def on_broken_pipe(self) -> None:
-        """Ignore a closed pipe: the reader needs no more output."""
+        """Ignore a closed pipe, whose reader needs no more output."""
         _discard_output()
 
 
 def prepare() -> None:
-    """Make closed streams discard output, and others replace characters they cannot print."""
+    """Let closed streams discard output, and other streams replace unprintable characters."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:
@@ -44,10 +44,10 @@ def prepare() -> None:
 
 @contextmanager
 def flush_output() -> Iterator[None]:
-    """Flush all output of the context, so that errors can still be reported.
+    """Flush all output at the end of the context, where errors can still be reported.
 
     Raises:
-        OSError: the output cannot be written; it is not written again.
+        OSError: the output cannot be written.
     """
     try:
         yield
@@ -62,20 +62,20 @@ def flush_output() -> Iterator[None]:
 
 
 def say(line: str) -> None:
-    """Write a line with its newline to stderr in one call, so that other output cannot split it."""
+    """Write a line to stderr in one call, so that other output cannot split it."""
     with suppress(OSError):
         sys.stderr.write(f"{line}\n")
         sys.stderr.flush()
 
 
 def message(text: str) -> str:
-    """Return a text as one line for stderr."""
+    """Return a text as one printable line with the prefix of the program."""
     return shorten(f"protractile: {' '.join(text.split())}", LONGEST - 1)
 
 
 def shorten(text: str, longest: int = LONGEST_PART) -> str:
-    """Return a text in printable form; the middle of a long text is left out."""
-    # Escapes only lengthen a text, so that two ends of this length suffice.
+    """Return a text in printable form, without the middle of a long text."""
+    # Escaping never shortens a text, so that two ends of this length suffice.
     safe = printable(text if len(text) <= 2 * longest else text[:longest] + text[-longest:])
     if len(safe) <= longest:
         return safe
@@ -92,9 +92,9 @@ def printable(text: str) -> str:
 
 
 def show_notices() -> None:
-    """Print notices from now on, and suppress warnings of libraries, which users cannot fix.
+    """Print notices, and suppress warnings of libraries, which users cannot fix.
 
-    Explicit warning filters still hold: tests turn warnings into errors.
+    Explicit warning filters stay active: tests turn warnings into errors.
     """
     NOTICES.addHandler(_LINES)
     # Some libraries warn during import.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Worker processes on other cores: the only module that starts and ends processes."""
+"""Start and end of worker processes on other cores."""
 
 from __future__ import annotations
 
@@ -15,12 +15,11 @@ from typing import Any
 from runs.process.ending import when_interrupted
 from runs.process.terminal import show_notices
 
-# Environment of workers: one thread, since libraries would use all cores; no warnings during
-# import, nor from Python's resource tracker when the workers are killed.
+# Environment of workers: one thread each, and no warnings during import or when they are killed.
 _WORKER_VARIABLES = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 ) | {"PYTHONWARNINGS": "ignore"}
-# Time in s to wait for a killed process.
+# Time in s for which a killed process is awaited.
 _KILL_TIME = 1.0
 # Prefixes of environment variables that make a process a rank: Open MPI, PMIx, MPICH and its
 # derivatives.
@@ -31,7 +30,7 @@ class _SignalProofPool(ProcessPoolExecutor):
     """Pool of processes that ignore signals to the process group, such as Ctrl-C."""
 
     def submit(self, work: Callable[..., Any], /, *given: Any, **named: Any) -> Future[Any]:
-        """Submit work, as with any executor; the processes start at the first call."""
+        """Submit work. The processes start at the first call."""
         signals = {signal.SIGINT, signal.SIGTERM}
         signal.pthread_sigmask(signal.SIG_BLOCK, signals)
         try:
@@ -42,9 +41,7 @@ class _SignalProofPool(ProcessPoolExecutor):
 
 @contextmanager
 def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[Executor]:
-    """Yield an executor of several processes, which end with this one.
-
-    Arguments and results are pickled.
+    """Yield an executor of several processes, which end with this process.
 
     Args:
         count: number of processes; None for one per core.
@@ -71,7 +68,7 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
 def helper(prepare: Callable[[], object] = int) -> Iterator[Executor | None]:
     """Yield an executor of one process on another core; None if there is only one core.
 
-    The process starts with the first work, and ends with this one.
+    The process starts with the first work and ends with this process.
 
     Args:
         prepare: function that the process calls first.
@@ -93,7 +90,7 @@ def end() -> None:
 
 
 def _start(prepare: Callable[[], object]) -> None:
-    """Initialise a worker: it is no rank, ends with its parent, and leaves interrupts to it."""
+    """Initialise a worker that is no rank, ends with its parent and ignores interrupts."""
     show_notices()
     for name in [name for name in os.environ if name.startswith(_RANK_PREFIXES)]:
         del os.environ[name]

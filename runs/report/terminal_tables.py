@@ -38,7 +38,7 @@ SHOWN = {
 
 
 def print_runs(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
-    """Print models, numerics, verdicts of the client and results; return the exit status.
+    """Print models, numerics, output of the client and results; return the exit status.
 
     Args:
         runs: runs by their names in messages.

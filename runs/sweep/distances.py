@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Distances of the models of a sweep from a reference.
 
-Tips are compared pointwise while they are predictable: over the whole run if friction with
-prescribed normal forces makes motions regular, or else until the reference diverges under a small
-change of the loads. Other quantities cover the whole run.
+Tips are compared pointwise while they are predictable: over the whole run if friction makes the
+motion regular, otherwise until a small change of the loads diverges. Other quantities are compared
+over the whole run.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
 
     from runs.folder.cache import Cache
 
-# Relative change of the loads that measures the predictability of the reference.
+# Relative change of the loads whose growth ends the comparison of tips.
 CHANGE = 1.0e-6
-# Averaging time in s of pad forces: single impacts last microseconds.
+# Averaging time of pad forces in s. Single impacts last microseconds.
 AVERAGING_TIME = 0.02
 
 TIP_DEVIATION = "tip_off"
-# Names of distances, which are relative to the reference.
+# Distances, as fractions of the values of the reference.
 DISTANCES = (
     Metric("first_peak_off", "1", "first peak deviation", TO_PERCENT, "%"),
     Metric("slow_period_off", "1", "slow period deviation", TO_PERCENT, "%"),
@@ -46,7 +46,7 @@ DISTANCES = (
     Metric("stress_off", "1", "stress deviation", TO_PERCENT, "%"),
     Metric(TIP_DEVIATION, "1", "tip deviation", TO_PERCENT, "%"),
 )
-# Variables with the end of the comparison of tips in s: of a point, and of all its models.
+# Variable with the end of the comparison of tips in s.
 UNTIL = "compared_until"
 # Contours in percent.
 LEVELS = (1.0, 5.0, 20.0)
@@ -54,17 +54,17 @@ LEVELS = (1.0, 5.0, 20.0)
 
 @dataclass(frozen=True, slots=True)
 class Features:
-    """Features of a model that are compared."""
+    """Results of a model that are compared with the reference."""
 
-    tip: Array  #: deflection of the tip (num_times,) in m, while it is compared
-    first_peak: float  #: first peak in m
-    slow_period: float  #: mean time between the tip's main peaks in s
-    pad_force: float  #: largest mean force over ``AVERAGING_TIME`` at any station in N
+    tip: Array  #: tip deflection (num_times,) in m up to the end of the comparison
+    first_peak: float  #: height of the first peak in m
+    slow_period: float  #: mean time between the main peaks of the tip in s
+    pad_force: float  #: largest force at any station in N, averaged over 0.02 s
     stress: float  #: largest stress of an outer fibre in Pa
 
     @classmethod
     def of(cls, results: Results, model: str, stress: float | None, until: float) -> Features:
-        """Return the features of a model of a run, whose tip is compared up to a time in s."""
+        """Return the compared results of a model; ``until`` is the end of the comparison in s."""
         data = results.trajectories.sel(model=model)
         time = np.asarray(data["time"].values, dtype=float)
         tip = np.asarray(data["tip"].values, dtype=float)
@@ -78,7 +78,7 @@ class Features:
         )
 
     def distances_from(self, reference: Features) -> Quantities:
-        """Return the distances from the reference; None where either has no value."""
+        """Return the distances from the reference; None if either model has no value."""
         span = float(np.ptp(reference.tip)) if reference.tip.size else 0.0
         apart = float(np.abs(self.tip - reference.tip).max()) / span if span else np.nan
         parts = {
@@ -91,11 +91,11 @@ class Features:
 
 
 def sustained_force(time: Array, forces: Array) -> float:
-    """Return the largest mean force over ``AVERAGING_TIME`` in N; NaN if the run is too short.
+    """Return the largest contact force in N, averaged over 0.02 s; NaN if the run is too short.
 
     Args:
-        time: (num_times,) in s, evenly spaced.
-        forces: means (num_times, num_stations) over the output intervals in N.
+        time: evenly spaced times (num_times,) in s.
+        forces: means (num_times, num_stations) over output intervals in N.
     """
     if time.size < 2 or not np.isfinite(forces).any():
         return float("nan")
@@ -112,13 +112,14 @@ def comparable_until(
     comm: MPI.Intracomm | None,
     cache: Cache | None,
 ) -> float:
-    """Return the time in s up to which motions can be compared pointwise.
+    """Return the time in s up to which motions are compared pointwise.
 
     Args:
         case: a checked case.
         model: reference model of the case.
-        results: results of its run.
-        comm, cache: communicator and cache as in :class:`runs.pipeline.context.RunContext`.
+        results: results of the run.
+        comm: ranks that share shells; None without shells.
+        cache: cache of reduced shells.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     end = float(time[-1])
@@ -131,7 +132,7 @@ def comparable_until(
         same = plan.integrator.like(plan.trajectory())
         (run,) = run_members([EnsembleMember(plan.motion, vary, CHANGE, same, ("tip",))])
     except NumericsError:
-        # The comparison excludes differences of a single time step.
+        # The changed motion cannot be computed, and only the initial state is compared.
         return float(time[0])
     tip = results.trajectories["tip"].sel(model=model.name).values
     return float(

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Design charts of a sweep, as PNG.
 
-For one varied key, each quantity has a panel and each model a line. For two keys, each quantity has
-a map of each model. For more keys, there are lines over the first key for each combination of the
-ends of the others. Quantities that do not change are omitted. For the telescoping speed there is
-also a chart of the residual vibration.
+With one varied key, each quantity has a panel and each model a line. With two keys, each quantity
+has a map for each model. With more keys, there are lines over the first key for each combination of
+the first and last values of the others. Quantities that do not change are omitted.
 """
 
 from __future__ import annotations
@@ -37,11 +36,11 @@ CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
 PERMITTED = "permitted"
 # Maximum number of readable cells of a map along each axis.
 MOST_CELLS = 10
-# Limits of values beyond which a key has another unit.
+# Display units for large and small values: limit, conversion factor, unit.
 _LARGE = {"N": (1.0e3, TO_KILO, "kN"), "N m": (1.0e3, TO_KILO, "kN m"),
           "Pa": (1.0e5, TO_MEGA, "MPa"), "N/m": (1.0e6, 1.0e-6, "kN/mm")}  # fmt: skip
 _SMALL = {"m": (1.0, TO_MILLI, "mm")}
-# Relative change below which a quantity counts as constant.
+# A quantity that changes relatively less counts as constant.
 SAME = 1.0e-6
 # Ratio of the largest to the smallest value above which an axis is logarithmic.
 DECADES = 100.0
@@ -50,18 +49,17 @@ MOST_TICKS = 6
 # Minimum number of values along an axis for contours.
 LEAST_FOR_CONTOURS = 4
 
-# Shades below, between and beyond the levels of distances, darker for larger distances; their
-# lightness suffices to distinguish them.
+# Shades between the levels of distances, darker for larger distances. They differ in lightness.
 _SHADES = ("#fff3c4", "#f6b26b", "#b8577a", "#3b1f5c")
-# Limits of distances in percent, beyond which values have the same shade.
+# Largest and smallest distance in percent in a map; others are clipped.
 _MOST, _LEAST = 100.0, 0.01
-# Alignment of text at the first and the last place along an axis.
+# Alignment of text at the first and the last value of an axis.
 _SIDES: Final = ("left", "right")
 _ENDS: Final = ("bottom", "top")
 # Size in inches of a map beside another one.
 _COLUMN = 3.6
 
-# Terms for keys whose parts are no term in the field.
+# Terms of keys that are not formed from their names.
 _WORDS = {"gravity.acceleration": "gravity", "damping.modal": "modal damping"}
 
 _Word = TypeVar("_Word", bound=str)
@@ -86,7 +84,7 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
             return
         for count, there in enumerate(_at_ends(data, keys[1:]), start=1):
             part = data.sel(there)
-            # If all points failed, there is nothing to draw.
+            # Nothing to draw if all points failed.
             if changing := _changing(part):
                 sheet, panels = _lines(data[keys[0]], _model_lines(part, changing, strokes))
                 for axes, quantity in zip(panels, changing, strict=True):
@@ -108,7 +106,7 @@ def _permitted(data: xr.Dataset, quantity: Metric) -> float | None:
 
 
 def _at_ends(data: xr.Dataset, keys: Sequence[str]) -> Iterator[dict[str, float]]:
-    """Yield each combination of the end values of some keys; an empty one without keys."""
+    """Yield each combination of first and last values of keys; an empty one without keys."""
     ends = [(data[key].values[0], data[key].values[-1]) for key in keys]
     for values in product(*ends):
         yield dict(zip(keys, values, strict=True))
@@ -128,7 +126,7 @@ def _changing(data: xr.Dataset) -> list[Metric]:
 
 
 def in_display_units(data: xr.Dataset) -> xr.Dataset:
-    """Return the data with keys in readable units, such as mm or kN."""
+    """Return the data with the values of keys in display units, such as mm or kN."""
     coordinates = {}
     for name, along in data.coords.items():
         unit = along.attrs.get("units", "")
@@ -166,8 +164,8 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
     with matplotlib.rc_context(theme.RC):
         sheet, panels = _lines(data[key], shown)
         for axes in panels:
-            # Margins follow from the range that includes zero: those of an almost constant line
-            # would clip it.
+            # Margins follow from a range that includes zero, so that they do not clip an almost
+            # constant line.
             axes.update_datalim([(0.0, 0.0)], updatex=False)
             axes.autoscale_view(scalex=False)
             axes.set_ylim(bottom=0.0)
@@ -209,7 +207,7 @@ def _strokes(data: xr.Dataset, bonded: Sequence[str]) -> dict[str, theme.Stroke]
 def _model_lines(
     data: xr.Dataset, quantities: Sequence[Metric], strokes: Mapping[str, theme.Stroke]
 ) -> dict[str, dict[str, tuple[Array, theme.Stroke]]]:
-    """Return values and stroke of each line, by title of the quantity and label of the line."""
+    """Return values and stroke of each line, by quantity title and line label."""
     return {
         f"{one.title} ({one.shown_unit})": {
             name: (one.factor * data[one.name].sel(model=name).values, stroke)
@@ -222,7 +220,7 @@ def _model_lines(
 def _lines(
     along: xr.DataArray, shown: Mapping[str, Mapping[str, tuple[Array, theme.Stroke]]]
 ) -> tuple[Sheet, list[Axes]]:
-    """Return a sheet with panels of lines with markers, with axis and legend."""
+    """Return a sheet with a panel of lines for each quantity, and with a legend."""
     sheet, panels = new_sheet(len(shown), 1.2 + 1.8 * len(shown))
     for axes, (title, lines) in zip(panels, shown.items(), strict=True):
         for label, (values, stroke) in lines.items():
@@ -284,9 +282,9 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
 def _distance_maps(
     data: xr.Dataset, quantity: Metric, keys: Sequence[str], reference: str, folder: Path
 ) -> None:
-    """Draw a distance over the last two keys, for each model that has it.
+    """Draw maps of a distance over the last two keys, for each model that has it.
 
-    Maps side by side belong to the combinations of the end values of the other keys.
+    Each combination of first and last values of the other keys has a map.
     """
     *before, x, y = keys
     parts = [data.sel(there) for there in _at_ends(data, before)]
@@ -318,7 +316,7 @@ def _distance_maps(
 
 
 def _shade(axes: Axes, off: xr.DataArray) -> ContourSet:
-    """Draw a map in percent, with levels and limits."""
+    """Draw a map in percent, with contours at the levels."""
     y, x = (off[dim].values for dim in off.dims)
     least, most = float(off.min()), float(off.max())
     levels = [0.0, *LEVELS, _MOST]
@@ -333,7 +331,7 @@ def _shade(axes: Axes, off: xr.DataArray) -> ContourSet:
 
 
 def _write_ends(axes: Axes, until: xr.DataArray, longest: float) -> None:
-    """Write the time up to which tips are compared, if it is shorter than at other points."""
+    """Write the end of the comparison of tips at points where it is earlier than elsewhere."""
     y, x = (until[dim].values for dim in until.dims)
     for row, column in np.argwhere(until.values < longest):
         text = f"{until.values[row, column]:.1f} s"
@@ -343,7 +341,7 @@ def _write_ends(axes: Axes, until: xr.DataArray, longest: float) -> None:
 
 
 def _inwards(place: int, count: int, outer: tuple[_Word, _Word]) -> _Word | Literal["center"]:
-    """Return the alignment that keeps text within a panel."""
+    """Return the alignment that keeps the text of a value within its panel."""
     return outer[0] if place == 0 else outer[1] if place == count - 1 else "center"
 
 
@@ -352,7 +350,7 @@ def _spans_decades(values: Array) -> bool:
 
 
 def _edges(values: Array) -> Array:
-    """Return bounds (num_values + 1,) halfway between ascending values on their axis."""
+    """Return cell bounds (num_values + 1,) halfway between ascending values on their axis."""
     along: Array = np.log(values) if _spans_decades(values) else values
     between = 0.5 * (along[:-1] + along[1:])
     bounds: Array = np.concatenate(

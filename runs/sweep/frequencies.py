@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""First natural frequencies of a boom over numbers of its case.
+"""First natural frequencies of a boom over case parameters.
 
 A boom with play is nonlinear and has no natural frequencies. The table has those with the contacts
 that are closed at rest under the loads (:func:`dynamics.damping.closed_contact_modes`), and those
@@ -49,7 +49,7 @@ def first_frequencies(
 
     Args:
         case: a checked case.
-        model: model of the case; a bonded model has no joints that can close.
+        model: model of the case; a model without play has no frequencies with closed joints.
         comm: ranks that share a shell.
         cache: cache of reduced shells.
     """
@@ -80,8 +80,9 @@ def measure(
 
     Args:
         cases: checked cases with the same models.
-        comm, cache: as in :func:`first_frequencies`.
-        progress: callback that receives the progress.
+        comm: ranks that share a shell.
+        cache: cache of reduced shells.
+        progress: callback that receives model, stage and completed fraction.
     """
     found = []
     for case in cases:
@@ -91,10 +92,9 @@ def measure(
 
 
 def gather(plan: Plan, found: Array) -> xr.Dataset:
-    """Label the first frequencies of all points.
+    """Return the first frequencies of all points as a dataset.
 
-    Returns:
-        dims: the varied keys, in the unit of the case, ``model``, ``joints`` and ``mode``.
+    Its dimensions are the varied keys in the unit of the case, ``model``, ``joints``, ``mode``.
     """
     values = found.reshape(*plan.shape, *found.shape[1:])
     attributes = {"units": "Hz", "long_name": "natural frequency"}
@@ -123,7 +123,7 @@ def table(data: xr.Dataset) -> Table:
 
 
 def write(data: xr.Dataset, folder: Path) -> None:
-    """Write NAME.nc, NAME.csv and, over one key, NAME.png into a sweep's folder."""
+    """Write dataset, table and, for one key, a chart into the folder of a sweep."""
     with (
         folder_lock(folder),
         modified_folder(folder) as part,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Results of a sweep: labelled numbers, figures, a table."""
+"""Results of a sweep as dataset, table and charts."""
 
 from __future__ import annotations
 
@@ -30,21 +30,19 @@ from runs.sweep.run import Outcome
 NETCDF = "sweep.nc"
 CSV = "sweep.csv"
 
-# Rounding of distances, which are relative: a hundredth of a percent.
+# Decimals of relative distances: a hundredth of a percent.
 DIGITS = 4
 # Maximum number of quantities in a terminal of 80 columns.
 SHOWN = ("tip_at_rest", "tip_amplitude", "contact_force", "stress")
 
 
 def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
-    """Label the outcomes by the varied keys and the models.
+    """Return the outcomes as a dataset over the varied keys, in the unit of the case, and models.
 
-    Returns:
-        dims: the varied keys, in the unit of the case, and ``model``; the quantities of
-        :mod:`runs.pipeline.quantities`, NaN where a model has none, and with a reference distances
-        from it, and ``compared_until``, the time up to which tips are compared; a limit of the
-        case is the attribute ``permitted`` of its quantity;
-        ``failed``, 1 where the numerics did.
+    It has the quantities of :mod:`runs.pipeline.quantities`, NaN if a model has no value, and
+    ``failed``, 1 for failed models. With a reference it has the distances from it, and
+    ``compared_until``, the end of the comparison of tips in s. A limit of the case is the attribute
+    ``permitted`` of its quantity.
     """
     dims, models = list(plan.coordinates), plan.coordinates["model"]
     quantities = QUANTITIES if plan.reference is None else (*QUANTITIES, *DISTANCES)
@@ -71,7 +69,7 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
 
 
 def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
-    """Write ``sweep.nc``, ``sweep.csv`` and the figures, which replace earlier ones at once."""
+    """Write ``sweep.nc``, ``sweep.csv`` and charts; they replace earlier ones atomically."""
     data = gather(plan, outcomes)
     with (
         folder_lock(folder),
@@ -91,10 +89,7 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
 
 
 def print_ranges(data: xr.Dataset, plan: Plan, console: Console) -> None:
-    """Print the range of each model's results, and distances from a reference.
-
-    The energy residual is the largest of all points. Telescoping speeds follow.
-    """
+    """Print the ranges of the results of each model, distances, and admissible speeds."""
     keys = [variable.name for variable in data.coords.values() if variable.name != "model"]
     by_name = {quantity.name: quantity for quantity in QUANTITIES}
     shown, residual = [by_name[name] for name in SHOWN], by_name["energy_residual"]
@@ -104,7 +99,7 @@ def print_ranges(data: xr.Dataset, plan: Plan, console: Console) -> None:
         ranges = [_range(values[quantity.name], quantity) for quantity in shown]
         worst = number(float(values[residual.name].max()), 1)
         rows.append((str(name), *ranges, worst, _where_largest(values["tip_amplitude"], keys)))
-    # Narrow headings leave space for the models' names in 80 columns.
+    # Headings are narrow, so that 80 columns suffice.
     headings = [
         *(f"{quantity.title} {quantity.shown_unit}" for quantity in shown),
         residual.title,
@@ -127,7 +122,7 @@ def print_ranges(data: xr.Dataset, plan: Plan, console: Console) -> None:
 
 
 def _within_limits(data: xr.Dataset, limits: Sequence[Limit]) -> Iterator[str]:
-    """Yield the number of points at which the limits of the case hold, for each model."""
+    """Yield a sentence for each model on the number of points that satisfy the limits."""
     for limit, name in product(limits, data["model"].values):
         values = data[limit.quantity.name].sel(model=name).values.ravel()
         held = sum(limit.permits(value) for value in values)
@@ -172,7 +167,7 @@ def _write_csv(data: xr.Dataset, outcomes: Sequence[Outcome], path: Path) -> Non
     """Write a line for each point and model."""
     *keys, model = data["failed"].dims
     table = data.drop_vars("failed").to_dataframe([*keys, model]).reset_index()
-    # The file has the given values, not rounded ones.
+    # As text, values are not rounded.
     table[keys] = table[keys].astype(str)
     names = data[model].values
     table["failure"] = [one.failures.get(name, "") for one in outcomes for name in names]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Points of a sweep: a checked case for each combination of varied values.
 
-A variation of the play keeps the plates: sections are inferred with the case's own play and then
-fixed, and a play for which the boxes have no space is refused. Keys that define sections (section,
-height_to_width, mass_per_length, second_moment_of_area, density) are set before the inference. If
-no model needs plates, none are inferred, and beams accept any play.
+Sections are inferred once, with the play of the case, and do not change with a varied play; a play
+that the boxes do not admit is an error. Keys that define sections (section, height_to_width,
+mass_per_length, second_moment_of_area, density) are set before the inference. If no model needs
+plates, none are inferred, and any play is valid.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from runs.sweep.variation import UNUSED, Tables, Variation, parse, unit_of
 
 Setting = tuple[Variation, float]
 
-# Type of the inferred plates of each segment; None if the case gives them or has none.
+# Inferred plates of each segment; None if the case gives them or needs none.
 Plates = list[SectionTable | None]
 
 _WHOSE_BOXES = " (the boxes are those that the case infers with its own play)"
@@ -40,7 +40,7 @@ _WHOSE_BOXES = " (the boxes are those that the case infers with its own play)"
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One case of a sweep."""
+    """Point of a sweep."""
 
     values: tuple[float, ...]  #: values of the varied keys, in the order of the variations
     label: str  #: label in messages, ``joint.play=0.01 payload.mass=200``
@@ -52,17 +52,17 @@ class Plan:
     """A sweep before its runs."""
 
     file: str  #: file of the case, as the user gave it
-    title: str  #: of the case
+    title: str  #: title of the case
     variations: Sequence[Variation]  #: variations, at least one
-    units: Sequence[str]  #: unit of each variation, '' if dimensionless
+    units: Sequence[str]  #: unit of each variation; empty if dimensionless
     bonded: Sequence[str]  #: names of the models without play
     points: Sequence[Point]  #: points of all combinations; the last variation changes fastest
     reference: str | None = None  #: the model with which the others are compared, if any
-    limits: Sequence[Limit] = ()  #: those of the case, which no run depends on
+    limits: Sequence[Limit] = ()  #: limits of the case
 
     @property
     def coordinates(self) -> dict[str, Any]:
-        """The labels of data over all points: varied keys, and models."""
+        """The coordinates of data over all points: values of the varied keys, and model names."""
         return {
             variation.key: (variation.key, np.array(variation.values), {"units": unit or "1"})
             for variation, unit in zip(self.variations, self.units, strict=True)
@@ -81,13 +81,13 @@ def plan(
     mesh_size: float | None,
     reference: str | None = None,
 ) -> Plan:
-    """Check a case and every point of a sweep of it.
+    """Return the plan of a sweep, after checks of its case and all points.
 
     Args:
         file: a case file.
         texts: options KEY=VALUES, see :mod:`runs.sweep.variation`.
         models: names of models; all unless given.
-        mesh_size: mesh size of all shells in m; the case's unless given.
+        mesh_size: mesh size of all shells in m; that of the case unless given.
         reference: name of the model with which the others are compared.
 
     Raises:
@@ -151,7 +151,7 @@ def chosen_beam(case: Case, models: Sequence[str] | None) -> list[str]:
 
 
 def tables_of(case: Case) -> Tables:
-    """Return a case as plain tables, without those that have no effect on runs of a sweep."""
+    """Return a case as plain tables, without those that do not affect sweeps."""
     unused = {names_of(Case)[key] for key in UNUSED}
     return case.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=unused)
 
@@ -195,7 +195,7 @@ def make_points(
 
 
 def _set_numbers(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:
-    """Return the case with some of its numbers set, as in a case file."""
+    """Return the case with new values of some numbers."""
     changed = deepcopy(tables)
     try:
         for variation, value in settings:
@@ -224,7 +224,7 @@ def _check_point(file: str, label: str, case: Case, held: bool = False) -> Case:
 
 
 def infer_plates(case: Case) -> Plates:
-    """Return the inferred plates of a checked case; None for each segment without inference."""
+    """Return the inferred plates of each segment of a checked case, or None."""
     sections = [segment.section for segment in build_boom(case).segments]
     return [
         SectionTable(
@@ -237,7 +237,7 @@ def infer_plates(case: Case) -> Plates:
 
 
 def hold_plates(case: Case, plates: Plates) -> Case:
-    """Return the case with fixed inferred plates, or without inference if plates do not matter."""
+    """Return the case with given plates in place of inferred sections."""
     in_space = any(joint.lateral_play is not None for joint in case.joints)
     matter = in_space or any(model.needs_plates for model in case.models)
     segments = tuple(
@@ -252,7 +252,7 @@ def hold_plates(case: Case, plates: Plates) -> Case:
 
 
 def _check_influence(file: str, variations: Sequence[Variation], points: Sequence[Point]) -> None:
-    """Check that each key influences the runs."""
+    """Check that each varied key affects the runs."""
     digests = [toml.digest(point.case) for point in points]
     stride = len(points)
     for variation in variations:

@@ -16,7 +16,7 @@ from runs.report import theme
 from runs.report.figure_context import new_sheet
 from runs.report.formatting import number
 
-# Fraction by which a vibration may exceed the level: steps and impacts cause such differences.
+# Relative tolerance of a vibration above its level, since time steps and impacts cause scatter.
 _SAME = 1.0e-2
 
 # Names and line styles of initial and final extension.
@@ -27,21 +27,24 @@ _ENDS = {
 
 
 class VibrationCurve(NamedTuple):
-    """Vibrations of one model in m over ascending mean speeds in m/s, and levels at each end."""
+    """Residual vibration of a model in m over ascending mean speeds of the drive in m/s.
+
+    ``levels`` has the vibration in m at constant initial and at constant final extension.
+    """
 
     speed: Array
     vibration: Array
     levels: dict[str, Array]
 
     def with_level(self, end: str) -> VibrationCurve:
-        """Return the values at the speeds for which an end has a level."""
+        """Return the curve at the speeds at which the level of an end is known."""
         known = np.isfinite(self.levels[end])
         levels = {end: self.levels[end][known]}
         return VibrationCurve(self.speed[known], self.vibration[known], levels)
 
 
 def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
-    """Return the vibrations of each model whose speed a sweep over one key varies.
+    """Return the curve of each model, if the sweep varies the telescoping speed by one key.
 
     Args:
         data: dataset of :func:`runs.sweep.output.gather`.
@@ -62,9 +65,9 @@ def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
 
 
 def admissible_speed(curve: VibrationCurve, end: str) -> float | None:
-    """Return the speed in m/s up to which no vibration exceeds its level; None if all do.
+    """Return the speed in m/s up to which the vibration does not exceed the level of an end.
 
-    The vibration is interpolated linearly between speeds.
+    The vibration is interpolated linearly. None means that it exceeds the level at every speed.
 
 
     >>> speed, vibration = np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0])
@@ -102,7 +105,7 @@ def describe(name: str, curve: VibrationCurve) -> Iterator[str]:
 
 
 def draw_vibration(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Path) -> None:
-    """Draw the vibration over the mean speed of the drive, if a sweep varies it.
+    """Draw the vibration over the mean speed of the drive, if the sweep varies it.
 
     Args:
         data: dataset of a sweep over one key.

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Runs of a sweep's points on all cores or ranks, with a cache of finished points.
+"""Runs of the points of a sweep on all cores or ranks, with a cache of finished points.
 
-A point is an entry of a cache in the sweep's folder. Its key is the hash of the point's effective
-case, of the program's sources and of the libraries, so that no sweep of the folder repeats a
-finished point.
+The cache is in the folder of the sweep. The key of a point is the hash of its case, of the program
+and of the libraries, so that a later sweep in this folder does not repeat it.
 """
 
 from __future__ import annotations
@@ -39,17 +38,17 @@ POINTS = "points"
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Results of a point, by the model's name."""
+    """Results of a point, by model name."""
 
-    models: dict[str, Quantities]  #: quantities of the models that ran
-    failures: dict[str, str]  #: reasons why other models failed, a sentence each
-    #: Distances from the reference, if there is one.
+    models: dict[str, Quantities]  #: quantities of the completed models
+    failures: dict[str, str]  #: reasons why other models failed
+    #: Distances from the reference; empty without a reference.
     off: dict[str, Quantities] = field(default_factory=dict)
     until: float | None = None  #: end of the comparison of tips in s; None without a comparison
 
 
 def prepare(folder: Path, file: str) -> None:
-    """Create the folder of a sweep, or take an earlier sweep's.
+    """Create the folder of a sweep, or check that an existing folder is that of a sweep.
 
     Args:
         folder: folder as the user gave it.
@@ -57,7 +56,7 @@ def prepare(folder: Path, file: str) -> None:
 
     Raises:
         BadInput: the folder contains other files, or is the current directory.
-        OSError: it cannot be created.
+        OSError: the folder cannot be created.
     """
     key = f"--out {folder}"
     if folder.is_dir() and not (folder / POINTS).is_dir() and any(folder.iterdir()):
@@ -75,13 +74,13 @@ def run_points(
     progress: Progress,
     cache: Cache | None = None,
 ) -> list[Outcome]:
-    """Run the points that are not finished, write each on completion, and return all outcomes.
+    """Run the unfinished points, cache each when it is finished, and return all outcomes.
 
     Args:
         plan: plan of the sweep.
         folder: folder from :func:`prepare`.
         pool: executor of the points.
-        progress: callback for every finished point.
+        progress: callback that receives the completed fraction.
         cache: cache of reduced shells.
 
     Raises:
@@ -100,7 +99,7 @@ def run_points(
     done = len(points) - len(futures)
     progress("sweep", stage, done / len(points))
     try:
-        # Results of remaining points are not needed.
+        # An interrupt ends the processes, whose results are not needed.
         with when_interrupted(end):
             for future in as_completed(futures):
                 i = futures[future]
@@ -117,7 +116,7 @@ def run_points(
 
 
 def run_point(case: Case, cache: Cache | None = None, reference: str | None = None) -> Outcome:
-    """Run the models of a case one by one, since one may fail alone; shells on this process."""
+    """Run the models of a case one by one in this process, since one may fail alone."""
     models: dict[str, Quantities] = {}
     failures: dict[str, str] = {}
     runs: dict[str, Results] = {}
@@ -131,7 +130,7 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
         try:
             finished = run_case(alone, "", RunContext(comm, cache=cache))
         except NumericsError as error:
-            # The output adds the file, the point and the model's name before it.
+            # The printed line starts with file, point and model.
             failures[model.name] = str(error).removeprefix(": model[1]: ")
             continue
         assert finished is not None
@@ -155,7 +154,7 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
 
 
 def print_failures(plan: Plan, outcomes: Sequence[Outcome]) -> int:
-    """Print a line for each model that failed at a point; return 3 if no result remains."""
+    """Print a line for each failed model of a point; return 3 if all failed, else 0."""
     for point, outcome in zip(plan.points, outcomes, strict=True):
         for model, why in outcome.failures.items():
             say(message(f"{shorten(plan.file)}: --vary {point.label}: {model}: {why}"))

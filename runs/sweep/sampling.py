@@ -38,7 +38,7 @@ SEED = 0
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 # Results in a terminal and in the chart.
 SHOWN = ("tip_at_rest", "tip", "stress", "contact_force", "first_frequency")
-# Standard deviation as a fraction of the mean below which a result does not scatter.
+# A result whose standard deviation over its mean is smaller does not scatter.
 NONE = 1.0e-9
 
 
@@ -86,7 +86,7 @@ def plan_samples(
 
 
 def normal_points(dimensions: int, count: int) -> Array:
-    """Return standard normal points (count, dimensions) with exact moments of first two orders."""
+    """Return standard normal points (count, dimensions) with exact means and covariances."""
     from scipy.stats import norm, qmc
 
     uniform = qmc.Sobol(dimensions, seed=SEED).random(count)
@@ -149,7 +149,7 @@ def show(results: dict[str, pd.DataFrame], plan: Plan, console: Console) -> None
 
 
 def _shown(results: pd.DataFrame) -> Iterator[tuple[Metric, pd.Series[float]]]:
-    """Yield the statistics of the results of ``SHOWN`` that scatter."""
+    """Yield the statistics of the main results that scatter."""
     found = scatter(results)
     for one in QUANTITIES:
         if one.name in SHOWN and one.name in found.index:
@@ -157,7 +157,7 @@ def _shown(results: pd.DataFrame) -> Iterator[tuple[Metric, pd.Series[float]]]:
 
 
 def _draw(results: dict[str, pd.DataFrame], path: Path) -> None:
-    """Draw the share of samples below each value, a panel for each of the main results."""
+    """Draw the cumulative distribution of each main result."""
     shown = {one: None for found in results.values() for one, _ in _shown(found)}
     strokes = theme.strokes(list(results), [])
     with matplotlib.rc_context(theme.RC):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Value of one key at which a quantity reaches a bound: ``--until 'tip<0.9'``, by bisection."""
+"""Bisection for the value of a key at which a quantity reaches a bound: ``--until 'tip<0.9'``."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from runs.sweep.points import Plan
 from runs.sweep.run import Outcome
 
 OPTION = "--until"
-# Width of the final bracket relative to the larger of its ends.
+# Width of the final bracket over the larger of its ends.
 CLOSE = 1.0e-3
 
 _BOUND = re.compile(r"\s*([a-z_]+)\s*(<|>)=?\s*([-+.\deE]+)\s*")
@@ -61,13 +61,13 @@ def run_until(
     plan_of: Callable[[Sequence[str]], Plan],
     run: Callable[[Plan], list[Outcome]],
 ) -> tuple[Plan, list[Outcome]]:
-    """Run a plan, and bisect until it has a bracket of the bound; return plan and outcomes.
+    """Run a plan, bisect up to a narrow bracket of the bound, and return plan and outcomes.
 
     Args:
         plan: plan of the first values.
-        bound: bound of one quantity, which the first values enclose; without one, they are all.
+        bound: bound of a quantity, which the first values enclose; None for no bisection.
         plan_of: function that returns the plan of other variations KEY=VALUES.
-        run: function that returns the outcomes of a plan.
+        run: function that runs a plan and returns its outcomes.
 
     Raises:
         BadInput: the first values do not enclose the bound exactly once, or a point has no value.
@@ -86,7 +86,11 @@ def run_until(
 
 
 def numbers(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> list[float]:
-    """Return the quantity at each point in SI units; raise BadInput for a missing value."""
+    """Return the bounded quantity at each point in SI units.
+
+    Raises:
+        BadInput: a point has no value.
+    """
     found = []
     for point, outcome in zip(plan.points, outcomes, strict=True):
         (model,) = plan.coordinates["model"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Change of each result of a beam by 1 % of each number of a case, by central differences."""
+"""Sensitivity of the results of a beam to each number of a case, by central differences."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ CHANGE = 0.01
 # Results in a terminal of 80 columns, and maximum number of rows.
 SHOWN = ("tip_at_rest", "tip", "stress", "contact_force", "first_frequency")
 MOST_ROWS = 20
-# Relative change below which it is round-off.
+# Smaller relative changes are round-off.
 NONE = 1.0e-7
 
 # Tables that do not describe the boom.
@@ -46,10 +46,12 @@ _OTHER = {"time", "model", "observe", "life"}
 def plan_changes(
     file: str, models: Sequence[str] | None, mesh_size: float | None
 ) -> tuple[Plan, list[str]]:
-    """Return the case and two points for each of its numbers, and the keys that cannot change.
+    """Return the plan of the changes of all numbers, and the keys that cannot be changed.
+
+    The first point is the case; each number has two points.
 
     Raises:
-        BadInput: the case is invalid, or has more or fewer than one model to run.
+        BadInput: the case is invalid, or does not have exactly one model to run.
     """
     case = case_file.load(file)
     models = chosen_beam(case, models)
@@ -76,7 +78,7 @@ def plan_changes(
 def changes(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
     """Return the relative change of each result (columns) by 1 % of each key (index).
 
-    Keys are in descending order of the largest change of a result of ``SHOWN``; keys without effect
+    Keys are in descending order of their largest effect on the main results. Keys without effect
     are left out.
     """
     (model,) = plan.coordinates["model"]

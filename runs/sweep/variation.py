@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Parser of ``--vary KEY=VALUES``: numbers of a case and their values.
+"""Parser of ``--vary KEY=VALUES``.
 
-KEY is a path into the case file; numbers in brackets count from 1. Without brackets it means all
-tables of the name: ``joint.play``, ``joint[1].play``, ``segment[2].span[2]``, ``payload.mass``.
-VALUES are START:STOP:COUNT, evenly spaced, or a list 0.0,0.005,0.014.
+KEY is a path in the case file, such as ``joint[1].play``, ``segment[2].span[2]``,
+``payload.mass``; indices start at 1. Without an index it means all tables: ``joint.play``. VALUES
+are START:STOP:COUNT, evenly spaced, or a list 0.0,0.005,0.014.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from runs.case.messages import BadInput
 from runs.case.schema import PLAIN_NUMBER_KEYS, Case
 from runs.case.units import scale
 
-# Type of a case file as plain tables and lists.
+# A case file as plain tables and lists.
 Tables = dict[str, Any]
 
 # Tables that have no effect on runs of a sweep, with the reason.
@@ -33,10 +33,10 @@ UNUSED = {"ensemble": "a sweep runs no ensembles", **_NO_RUN}
 # Keys of histories and measured curves.
 _CURVES = {"table", "force_table"}
 
-# Maximum number of points, which take weeks.
+# Maximum number of points: more would take weeks.
 MOST_POINTS = 10_000
 
-# Digits of evenly spaced numbers, which are rounded so that a finer sweep contains them.
+# Digits of evenly spaced numbers. Rounding makes the points of a finer sweep contain them.
 _DIGITS = 12
 
 _STEP = re.compile(r"([^\[\]]+?)(?:\[([0-9]{1,9})\])?")
@@ -46,10 +46,10 @@ _REMEDY = "give KEY=START:STOP:COUNT or KEY=A,B,..."
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """One number of a case."""
+    """Location of a number in a case."""
 
-    steps: tuple[str | int, ...]  #: path through :data:`Tables`
-    size: Fraction = Fraction(1)  #: SI value of one unit of the case
+    steps: tuple[str | int, ...]  #: keys and indices of the path
+    size: Fraction = Fraction(1)  #: size in SI units of the unit of the case
 
     @property
     def name(self) -> str:
@@ -58,19 +58,19 @@ class Place:
         return "".join(parts).removeprefix(".")
 
     def put(self, tables: Tables, value: Any) -> None:
-        """Set the number; create missing tables on the path."""
+        """Set the number, and create missing tables on its path."""
         here: Any = tables
         for step in self.steps[:-1]:
             here = here.setdefault(step, {}) if isinstance(step, str) else here[step]
         if isinstance(value, float):
             value = scale(value, self.size)
-        # An integer is valid for keys of both kinds.
+        # An integer is valid for keys of integers and of other numbers.
         whole = isinstance(value, float) and value.is_integer()
         here[self.steps[-1]] = int(value) if whole else value
 
     @property
     def shapes_sections(self) -> bool:
-        """True if the number determines sections, as in :attr:`Variation.shapes_sections`."""
+        """True if the number determines a section; the play does not count."""
         if self.steps[0] == "segment":
             return self.steps[2:] == ("material", "density") or self.steps[2] in {
                 "mass_per_length", "second_moment_of_area", "height_to_width", "section",
@@ -85,11 +85,11 @@ class Variation:
 
     key: str  #: key as the user gave it
     values: tuple[float, ...]  #: values, ascending, in the unit of the case
-    places: tuple[Place, ...]  #: places that get the same value
+    places: tuple[Place, ...]  #: numbers that get the same value
 
     @property
     def shapes_sections(self) -> bool:
-        """True if sections are given by the key or inferred from it; the play does not count."""
+        """True if the key determines a section; the play does not count."""
         return any(place.shapes_sections for place in self.places)
 
 
@@ -102,7 +102,7 @@ def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
         file: file of the case, for messages.
 
     Raises:
-        BadInput: an option is invalid, or has no place in the case.
+        BadInput: an option is invalid, or its key is not in the case.
     """
     variations: list[Variation] = []
     for text in texts:
@@ -140,7 +140,7 @@ def numbers(here: Any, steps: tuple[str | int, ...] = ()) -> Iterator[tuple[Plac
 
 
 def unit_of(place: Place, case: Case) -> str:
-    """Return the SI unit of a number of a case; '' if dimensionless."""
+    """Return the SI unit of a number of a case; empty if dimensionless."""
     here: Any = case
     units: tuple[str, ...] = ()
     for step in place.steps:
@@ -155,14 +155,14 @@ def unit_of(place: Place, case: Case) -> str:
 
 
 class Unplaced(Exception):
-    """Error for a key without a place in the case, or an option without values."""
+    """Error for a key that is not in the case, or an option without values."""
 
 
 def find(key: str, tables: Tables) -> tuple[Place, ...]:
-    """Return the places of a case to which a key refers.
+    """Return the numbers of a case to which a key refers.
 
     Raises:
-        Unplaced: the case has no such place.
+        Unplaced: the case has no such number.
     """
     steps = [_STEP.fullmatch(step) for step in key.split(".")]
     path = [(step[1], step[2] and int(step[2])) for step in steps if step is not None]
