@@ -371,6 +371,66 @@ class HistorySum:
 
 
 @dataclass(frozen=True, slots=True)
+class Shaped:
+    """Motion law that leaves no vibration of a mode: the zero-vibration shaper.
+
+    A part of the law follows half a period of the mode after the other, so that the vibrations of
+    both cancel (Singer and Seering 1990).
+
+    >>> swing = pt.Shaped(pt.SCurve(travel=4.0, duration=5.0), frequency=0.25)
+    >>> swing(np.array([0.0, 2.0, 7.0])), swing.delay
+    (array([0.        , 0.48645862, 4.        ]), 2.0)
+
+    Args:
+        law: law without the shaper.
+        frequency: natural frequency of the mode in Hz.
+        damping: damping ratio of the mode.
+    """
+
+    law: MotionLaw
+    frequency: float
+    damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        _check_positive("frequency", self.frequency, "Hz")
+        if not 0.0 <= self.damping < 1.0:
+            raise ValueError(f"damping must be at least 0 and below 1, got {self.damping}")
+
+    @property
+    def delay(self) -> float:
+        """Half a period of the damped vibration in s."""
+        return 0.5 / (self.frequency * float(np.sqrt(1.0 - self.damping**2)))
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """The times in s of the kinks of both parts."""
+        return tuple(sorted({t + late for t in self.law.kinks for late in (0.0, self.delay)}))
+
+    @property
+    def peak(self) -> float:
+        """The largest |value| of the law."""
+        return self.law.peak
+
+    @property
+    def fastest(self) -> float:
+        """The highest frequency of the law in rad/s."""
+        return self.law.fastest
+
+    def __call__(self, time: Array) -> Array:
+        return self.rate(time, 0)
+
+    def rate(self, time: Array, order: int) -> Array:
+        """Return the value or its first or second derivative."""
+        # The later part meets a vibration that has decayed in half a period.
+        decay = np.exp(-2.0 * np.pi * self.frequency * self.damping * self.delay)
+        time = np.asarray(time)
+        early, late = (
+            self.law.rate(at, order) if order else self.law(at) for at in (time, time - self.delay)
+        )
+        return np.asarray((early + decay * late) / (1.0 + decay))
+
+
+@dataclass(frozen=True, slots=True)
 class ReleasedLoad:
     """Marker in place of a history: the load acts before t = 0 and is removed at t = 0."""
 

@@ -7,6 +7,7 @@ Beams stand for shells, which are not computed here.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from html import escape
@@ -62,7 +63,7 @@ from runs.pipeline.statics import (
     cylinder_force,
     statics,
 )
-from runs.pipeline.turning import turning_lines
+from runs.pipeline.turning import shaper_lines, turning_lines
 from runs.report.formatting import number
 from runs.report.tables import WIDE, Cell, Column, Table
 
@@ -151,7 +152,7 @@ def check_case(declared: CheckedCase) -> Check:
     ]
     drives = list(stick_slip_estimates(case, boom))
     lines = [*drive_lines(boom, case.system), *stick_slip_lines(drives, case.system)]
-    lines += turning_lines(case)
+    lines += [*turning_lines(case), *_shaper_lines(preview)]
     lines += [*_static_lines(case, boom, found)]
     if boom.compressed:
         for model in case.models:
@@ -418,6 +419,19 @@ def _ratios(preview: Preview, model: Model, beam: ModelTable) -> list[str]:
         (hertz, ratio if ratio > _ROUND_OFF else 0.0) for hertz, ratio in zip(*found, strict=True)
     )
     return [f"{100.0 * ratio:.3g} % at {hertz:.3g} Hz" for hertz, ratio in both]
+
+
+def _shaper_lines(preview: Preview) -> Iterator[str]:
+    """Yield the shapers that leave no vibration after slewing and luffing, by the first model."""
+    case, (model, *_) = preview.declared.case, preview.declared.case.models
+    if case.slew is None and case.luff is None:
+        return
+    boom = preview.declared.boom
+    beam = model.stand_in(boom).beam if model.needs_shell else model.coarsened(boom)
+    with suppress(*NUMERICAL_ERRORS), np.errstate(all="ignore"):
+        motion = preview.motion(model, beam)
+        rest = constant_load_equilibrium(motion.system, case.start.at_rest, motion.position)
+        yield from shaper_lines(case, motion.system, rest)
 
 
 def _reactions(state: StaticState, system: System) -> Table:

@@ -10,9 +10,9 @@ import numpy as np
 from pydantic import Field
 
 from dynamics.arrays import Array
-from dynamics.excitation import History, MotionLaw, PiecewiseLinear, SCurve, Spline, Stroke
+from dynamics.excitation import History, MotionLaw, PiecewiseLinear, SCurve, Shaped, Spline, Stroke
 from geometry.boom import BoomError
-from geometry.fields import Distance, In, NotNegative, Number, Positive, describe
+from geometry.fields import Distance, Few, In, NotNegative, Number, Positive, describe
 from geometry.joint import Carrier, Drive
 from runs.case.limits import MOST_TIMES, CaseTable, Text
 
@@ -26,6 +26,8 @@ _SAME_TIME = 1.0e-9
 
 # Keys of which one defines the history of the extension.
 _HISTORY_KEYS = ("time", "speed", "table")
+
+Ratio = Annotated[float, Field(strict=True, ge=0.0, lt=1.0)]
 
 TravelPairs = Annotated[
     tuple[tuple[Number, Number], ...], In("s", "m"), Field(min_length=2, max_length=MOST_TIMES)
@@ -55,12 +57,26 @@ class TravelTable(CaseTable):
     """the names of the columns of times and lengths in the heading of the file; not needed if the
     file has only two columns"""
 
+    shaper: Annotated[tuple[tuple[Positive, Ratio], ...], In("Hz", "1"), Few] = ()
+    """pairs of the frequency in Hz and the damping ratio of a mode of which no vibration shall
+    remain; check offers them for slewing and luffing"""
+
     # Unit of the travel, and history through the points of a table.
     unit: ClassVar[str] = "m"
     interpolation: ClassVar[type[PiecewiseLinear] | type[Spline]] = PiecewiseLinear
 
     def history(self, where: str) -> MotionLaw:
-        """Return the history of the extension in m.
+        """Return the history of the extension in m, with its shapers.
+
+        Arguments and errors are those of :meth:`unshaped`.
+        """
+        law = self.unshaped(where)
+        for frequency, damping in self.shaper:
+            law = Shaped(law, frequency, damping)
+        return law
+
+    def unshaped(self, where: str) -> MotionLaw:
+        """Return the history of the extension in m without shapers.
 
         Args:
             where: key of the drive.

@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dynamics.excitation import MotionLaw
+from dynamics.arrays import Array
+from dynamics.damping import closed_contact_damping, closed_contact_modes
+from dynamics.excitation import MotionLaw, Shaped
+from dynamics.gap_system import GapSystem
 from runs.case.drive import resolving_times
 from runs.case.schema import Case
 
@@ -20,6 +23,9 @@ _SLOW = 0.05
 
 # Swing over the length of a pendulum beyond which its angle is not small.
 _SMALL = 0.2
+
+# Number of modes that shapers suppress, and the least part of the deflection of one of them.
+_SHAPED, _SHARE = 2, 0.05
 
 
 def _laws(case: Case) -> Iterator[tuple[str, str, MotionLaw]]:
@@ -48,6 +54,33 @@ def turning_lines(case: Case) -> Iterator[str]:
             f"{verb} by {float(law(np.array(max(kinks)))):g} degrees from {max(0.0, min(kinks)):g} "
             f"to {max(kinks):g} s, at {fastest_turn(law):.4g} degrees/s at most."
         )
+
+
+def shaper_lines(case: Case, system: GapSystem, rest: Array | None) -> Iterator[str]:
+    """Yield the shapers that leave no vibration of the modes that slewing and luffing excite most.
+
+    Args:
+        case: a checked case.
+        system: gap system of a model, whose ``load`` includes all constant loads.
+        rest: equilibrium (num_modes,) under these loads; None for another start.
+    """
+    omega, shapes = closed_contact_modes(system, rest)
+    frequencies, ratios = closed_contact_damping(system, rest)
+    for key, _, law in _laws(case):
+        times = resolving_times([law], max(law.kinks))
+        time = float(times[np.abs(law.rate(times, 2)).argmax()])
+        row = system.observers["tip_lateral" if key == "slew" else "tip"].row
+        load = system.load_at(time) - system.load_at(0.0)
+        swings = np.abs(row @ shapes) * np.abs(load @ shapes) / omega**2
+        most = np.sort(np.argsort(swings)[-_SHAPED:])
+        chosen = [mode for mode in most if swings[mode] > _SHARE * swings.sum()]
+        pairs = ", ".join(f"[{frequencies[m]:.4g}, {max(ratios[m], 0.0):.3g}]" for m in chosen)
+        later = sum(Shaped(law, frequencies[mode], ratios[mode]).delay for mode in chosen)
+        if not getattr(case, key).shaper:
+            yield (
+                f"{key}: shaper = [{pairs}] would leave no vibration of these modes, without play, "
+                f"and takes {later:.3g} s longer."
+            )
 
 
 def swing_cautions(case: Case, data: xr.Dataset) -> Iterator[str]:

@@ -7,7 +7,15 @@ import numpy as np
 import pytest
 
 from dynamics.arrays import Array
-from dynamics.excitation import HistorySum, MotionLaw, PiecewiseLinear, SCurve, Spline, Stroke
+from dynamics.excitation import (
+    HistorySum,
+    MotionLaw,
+    PiecewiseLinear,
+    SCurve,
+    Shaped,
+    Spline,
+    Stroke,
+)
 from dynamics.frame_motion import FrameAcceleration, FrameMotion
 
 LAWS: list[MotionLaw] = [
@@ -15,6 +23,7 @@ LAWS: list[MotionLaw] = [
     Stroke(30.0, 12.0, 0.8, 0.2),
     HistorySum((SCurve(30.0, 2.0), Stroke(-10.0, 5.0, 1.0))),
     Spline((0.1, 0.9, 2.0, 2.6), (0.0, 3.0, -2.0, 7.0)),
+    Shaped(Stroke(30.0, 12.0, 0.8, 0.2), 1.7, 0.1),
 ]
 TIME = np.linspace(0.013, 3.013, 61)
 
@@ -34,6 +43,18 @@ def test_rates_of_a_table() -> None:
     law = PiecewiseLinear((0.0, 1.0, 3.0), (0.0, 2.0, 1.0))
     assert law.rate(np.array([0.5, 2.0, 4.0]), 1).tolist() == [2.0, -0.5, 0.0]
     assert not law.rate(np.array([0.5, 2.0, 4.0]), 2).any()
+
+
+@pytest.mark.parametrize(
+    ("numbers", "message"),
+    [
+        ((0.0,), "frequency must be finite and positive, got 0.0 Hz"),
+        ((1.0, 1.0), "damping must be at least 0 and below 1, got 1.0"),
+    ],
+)
+def test_numbers_of_no_shaper(numbers: tuple[float, ...], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        Shaped(SCurve(1.0, 1.0), *numbers)
 
 
 def position(frame: FrameMotion, time: Array, x: float, extension: MotionLaw) -> Array:
