@@ -5,7 +5,7 @@
 # environment.yml), that one is used and nothing but protractile itself is installed in it.
 
 SHELL_CASES := paper paper-friction three-segments spatial
-VERIFY_CASES := $(SHELL_CASES) drawn-out crane-telescopes
+VERIFY_CASES := $(SHELL_CASES) drawn-out crane-telescopes hoist slew
 
 ROOMS := $(patsubst %/__init__.py,%,$(wildcard */__init__.py))
 SOURCES := pyproject.toml $(wildcard runs/report/templates/*) \

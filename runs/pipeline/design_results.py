@@ -12,6 +12,7 @@ from runs.pipeline.modes import Mode, ModeComparison
 from runs.pipeline.motion_results import MotionResult
 from runs.pipeline.panels import PanelBuckling
 from runs.pipeline.proofs import Proofs
+from runs.pipeline.hoisting import Hoisting
 from runs.pipeline.residual_vibration import ResidualVibration
 from runs.pipeline.static_results import StaticResult
 from runs.pipeline.statics import Reaction
@@ -42,6 +43,7 @@ class ModelDesignResults:
         panels: estimates of the lowest buckling factors by panel formulas, in the same state.
         residual_vibration: residual vibration of telescoping; None without telescoping, without an
             equilibrium, or if the run ends before the drives stop.
+        hoisting: extreme values of a load on a rope; None without a hoist.
     """
 
     static: list[StaticResult] = field(default_factory=list)
@@ -56,6 +58,7 @@ class ModelDesignResults:
     buckling: list[WallBuckling] = field(default_factory=list)
     panels: list[PanelBuckling] = field(default_factory=list)
     residual_vibration: ResidualVibration | None = None
+    hoisting: Hoisting | None = None
 
     @property
     def farthest_static(self) -> StaticResult | None:

@@ -24,6 +24,7 @@ from runs.case.schema import Case, Model
 from runs.pipeline.bonded import bonded_system
 from runs.pipeline.combinations import combination_states
 from runs.pipeline.design_results import DesignResults, ModelDesignResults, play_effects
+from runs.pipeline.hoisting import hoisting
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.model_quality import quality_notes, reference_of
 from runs.pipeline.models import MotionPlan
@@ -138,7 +139,8 @@ class ModelEvaluation:
         if case.buckling is not None and (rest := own.farthest_static) is not None:
             own = replace(own, panels=weakest_panels(played.boom.segments, rest))
         vibration = residual_vibration(system, trajectory, case, self.model)
-        return replace(own, residual_vibration=vibration)
+        rope = hoisting(case, self.boom, trajectory)
+        return replace(own, residual_vibration=vibration, hoisting=rope)
 
     def add_bonded(self, own: ModelDesignResults) -> ModelDesignResults:
         """Return design results with those of the same model without play, if it has any."""

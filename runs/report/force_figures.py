@@ -165,14 +165,19 @@ def hoisting(run: FigureContext) -> list[Figure]:
         return []
     forces = _model_results(run, "rope_force", TO_KILO)
     shown = {"rope force (kN)": forces, "height (mm)": _model_results(run, "load_height", TO_MILLI)}
+    swings = {"swing_out": "swing in plane (m)", "swing_aside": "swing aside (m)"}
+    shown |= {
+        label: _model_results(run, key, 1.0) for key, label in swings.items() if key in run.data
+    }
     weight = TO_KILO * run.data["rope_force_peak"].attrs["weight"]
     caption = (
         "Above: force of all falls of the rope, means of the output intervals. Below: height of "
-        f"the load above its place at t = 0. The load weighs {fixed(weight, 1)} kN."
+        "the load above its place at t = 0, and its distances from the tip if it swings. "
+        f"The load weighs {fixed(weight, 1)} kN."
     )
     largest = farthest([farthest(force) for force in forces.values()])
     title = f"Hoisting: rope force up to {fixed(largest, 1)} kN"
-    return [_draw_panels(run, "hoist", shown, "force (kN), height (mm)", title, caption)]
+    return [_draw_panels(run, "hoist", shown, ", ".join(shown), title, caption)]
 
 
 def _stick_slip(run: FigureContext, suffix: str, inner: str) -> Figure:
@@ -229,7 +234,7 @@ def _draw_panels(
     caption: str,
 ) -> Figure:
     """Draw several results in all models, with a panel for each."""
-    sheet, panels = run.over_time(2, 5.2)
+    sheet, panels = run.over_time(len(shown), 1.2 + 2.0 * len(shown))
     curves = []
     for panel, (axes, (label, values)) in enumerate(zip(panels, shown.items(), strict=True)):
         axes.set_ylabel(label)

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from geometry.cylinder import force_name
-from runs.case.hoist import hanging_load
 from runs.case.turning import frame_motion
 from runs.pipeline.combinations import combination_tables
 from runs.pipeline.design_results import ModelDesignResults, PlayDifference
@@ -37,7 +36,6 @@ def result_tables(results: Results) -> list[Table]:
         mode_table(results),
         peak_table(results),
         drive_table(results),
-        hoist_table(results),
         luffing_table(results),
         stick_slip_table(results),
         *record_tables(results),
@@ -232,42 +230,6 @@ def drive_table(results: Results) -> Table | None:
         "contact forces on sloping segments and axial loads.",
     )
     return Table("Drives", columns, notes, "drives")
-
-
-def hoist_table(results: Results) -> Table | None:
-    """Return lift-off, rope force and dynamic factor of every model; None without a hoist."""
-    load, data = hanging_load(results.case, results.boom), results.trajectories
-    if load is None:
-        return None
-    rows = []
-    for model in data["model"].values:
-        mean, peak = (
-            np.asarray(data[name].sel(model=model).values, dtype=float)
-            for name in ("rope_force", "rope_force_peak")
-        )
-        raised = np.flatnonzero(mean >= load.weight)
-        lifted = None if load.slack is None or not raised.size else data["time"].values[raised[0]]
-        swings = [
-            np.abs(np.asarray(data[name].sel(model=model).values, dtype=float)).max()
-            if name in data
-            else None
-            for name in ("swing_out", "swing_aside")
-        ]
-        rows.append((str(model), lifted, peak.max(), peak.max() / load.weight, *swings))
-    models, lifted, most, factors, out, aside = zip(*rows, strict=True)
-    columns = (
-        Column("model", models),
-        Column("lift-off", lifted, ".3f", "s"),
-        Column("rope force,\nmaximum", most, ".3g", "kN"),
-        Column("factor φ₂", factors, ".3f"),
-        *([Column("swing in the plane\nof the boom", out, ".3g", "m")] if any(out) else []),
-        *([Column("swing\naside", aside, ".3g", "m")] if any(aside) else []),
-    )
-    notes = (
-        "At lift-off the force of all falls reaches the weight of the load. φ₂ is their largest "
-        "force over this weight.",
-    )
-    return Table("Hoisting", columns, notes, "hoist")
 
 
 def luffing_table(results: Results) -> Table | None:

@@ -17,7 +17,6 @@ from runs.case.messages import BadInput
 from runs.case.reading import load
 from runs.case.schema import Case, LoadTable, StartTable
 from runs.pipeline.models import build
-from runs.report.result_tables import hoist_table
 
 HOIST = (CASES / "hoist.toml").read_text(encoding="utf-8")
 
@@ -51,19 +50,17 @@ def test_results_of_a_hoist() -> None:
     results = run_case(change(case, **{"time.duration": 4.0}))
     (summary,) = results.summary.models.values()
     assert summary.energy_residual < 1e-11
-    table = hoist_table(results)
-    assert table is not None
-    model, *numbers = (column.cells[0] for column in table.columns)
-    assert model == "series"
-    lifted, force, factor = np.array(numbers, dtype=float)
+    found = results.summary.design.models["series"].hoisting
+    assert found is not None
     data = results.trajectories.sel(model="series")
     height = data["load_height"].values
     # The ground, a hundred times as stiff as four falls, is left at this height.
     left = 5000.0 * 9.80665 / (100.0 * 4.0 * 1.0e11 * 1.1e-4 / 35.0)
     first = data["time"].values[np.argmax(height > left)]
-    assert lifted == pytest.approx(first, abs=0.005)
-    assert force == pytest.approx(factor * 5000.0 * 9.80665)
-    assert 1.0 < factor < 1.5
+    assert found.lift_off == pytest.approx(first, abs=0.005)
+    assert found.force == pytest.approx(found.factor * 5000.0 * 9.80665)
+    assert 1.0 < found.factor < 1.5
+    assert (found.swing_out, found.swing_aside) == (None, None)
 
 
 def test_dropped_load() -> None:
@@ -93,9 +90,10 @@ def test_load_swings_under_wind() -> None:
     results = run_case(change(still, **{"time.duration": 1.5, "damping.modal": 0.0}))
     swung = results.trajectories["swing_out"]
     assert swung.attrs["length"] == 2.0
-    table = hoist_table(results)
-    assert table is not None
-    assert table.columns[-1].cells[0] == pytest.approx(np.abs(swung.values).max())
+    found = results.summary.design.models["series"].hoisting
+    assert found is not None
+    assert found.swing_out == pytest.approx(np.abs(swung.values).max())
+    assert (found.lift_off, found.swing_aside) == (None, None)
     # The load begins at rest, below the tip that sways as it falls onto its supports.
     assert np.abs(swung.values).max() > 2.0 * 500.0 * 2.0 / (5000.0 * 9.80665)
 
