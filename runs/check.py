@@ -423,11 +423,11 @@ def _ratios(preview: Preview, model: Model, beam: ModelTable) -> list[str]:
 
 def _shaper_lines(preview: Preview) -> Iterator[str]:
     """Yield the shapers that leave no vibration after slewing and luffing, by the first model."""
-    case, (model, *_) = preview.declared.case, preview.declared.case.models
+    case, (model, *_) = preview.checked.case, preview.checked.case.models
     if case.slew is None and case.luff is None:
         return
-    boom = preview.declared.boom
-    beam = model.stand_in(boom).beam if model.needs_shell else model.coarsened(boom)
+    boom = preview.checked.boom
+    beam = model.surrogate(boom).beam if model.needs_shell else model.coarsen(boom)
     with suppress(*NUMERICAL_ERRORS), np.errstate(all="ignore"):
         motion = preview.motion(model, beam)
         rest = constant_load_equilibrium(motion.system, case.start.at_rest, motion.position)

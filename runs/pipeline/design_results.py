@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 
 from runs.case.schema import Model
 from runs.pipeline.combinations import CombinationResult
+from runs.pipeline.hoisting import Hoisting
 from runs.pipeline.modes import Mode, ModeComparison
 from runs.pipeline.motion_results import MotionResult
 from runs.pipeline.panels import PanelBuckling
 from runs.pipeline.proofs import Proofs
-from runs.pipeline.hoisting import Hoisting
 from runs.pipeline.residual_vibration import ResidualVibration
 from runs.pipeline.static_results import StaticResult
 from runs.pipeline.statics import Reaction
