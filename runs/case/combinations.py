@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Load cases and combinations: cases at rest that follow from a case by replaced keys and factors.
+"""Load cases and combinations: static cases that follow from a case by other keys and by factors.
 
-The case of a combination has the masses of its load case. Where a group has another factor than the
-dead weight, a force at the tip, across and along, makes up for the difference.
+The case of a combination has the masses of its load case. If the factor of a payload differs from
+that of the dead weight, a force at the tip, across and along the boom, adds the difference.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from runs.case.schema import (
     PayloadTable,
 )
 
-# Factors of groups; those of all groups of a load case alone.
+# Factors by group of loads, and factors 1 for a load case without combination.
 Factors = Mapping[Group, float]
 UNIT: Factors = dict.fromkeys(get_args(Group), 1.0)
 
@@ -116,7 +116,7 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
         for one in plain.base
     ]
     gravity, payload = plain.gravity, plain.payload
-    # The factor with which a model weighs the mass at the tip without further forces.
+    # Factor that the weight of the mass at the tip has already in the model.
     own = 0.0
     acceleration = STANDARD_GRAVITY
     if gravity is not None:
@@ -178,7 +178,7 @@ def _joints(case: Case, table: LoadCaseTable) -> tuple[Any, ...]:
 
 
 def _turned(case: Case, table: LoadCaseTable) -> Iterator[Cylinder]:
-    """Yield the cylinders, whose ground stays where it is while the boom luffs about its foot."""
+    """Yield the cylinders in coordinates of the luffed boom, in which their ground rotates."""
     turn = 0.0
     if table.angle is not None and case.gravity is not None:
         turn = radians(table.angle - case.gravity.angle)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Histories of loads and accelerations, in a case file."""
+"""Histories of loads and accelerations in a case file."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ from runs.report.tables import Column, Table
 if TYPE_CHECKING:
     from runs.pipeline.wall_buckling import WallBuckling
 
-# Mark of the governing values of a table.
+# Mark of governing values in a table.
 _GOVERNS = " *"
 
 # Kinds of results with a column: the start of their names, and the heading.
@@ -62,7 +62,7 @@ class CombinationState(NamedTuple):
         combined: the case of the combination.
         beam: the static states; None without an equilibrium.
         walls: largest wall stresses of each segment of a shell.
-        buckling: buckling of the segments of a shell, where it is computed.
+        buckling: buckling of the segments of a shell; None if it is not computed.
     """
 
     combined: CombinedCase
@@ -72,7 +72,7 @@ class CombinationState(NamedTuple):
 
     @property
     def result(self) -> CombinationResult:
-        """The extremes, with places in the units of the case."""
+        """The extreme results, with positions in the units of the case."""
         system, beam = self.combined.case.system, self.beam
         extremes = [*beam.extremes(system), *beam.foot_extremes(system)] if beam else []
         return CombinationResult(self.combined.name, extremes)
@@ -83,8 +83,7 @@ def combination_states(case: Case, moving: bool = True) -> list[CombinationState
 
     Args:
         case: a checked case.
-        moving: whether combinations with ``motion`` have the extremes of their motion; otherwise
-            all are at rest.
+        moving: True to integrate combinations with ``motion``; False for statics alone.
     """
     found = []
     for combined in combined_cases(case):
@@ -117,7 +116,7 @@ def combination_tables(
     Args:
         results: results of the combinations.
         case: the case.
-        shell: name of the shell that has these results; beam elements unless given.
+        shell: name of the shell; None for results of beam elements.
     """
     system = case.system
     if not any(one.extremes for one in results):
@@ -149,7 +148,7 @@ def _marked(one: StaticExtreme, most: float, system: System) -> str:
 
 
 def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
-    """Return the least and the largest value of each result, and the combination that governs."""
+    """Return the table of the least and the largest value of each result, with its combination."""
     of_name: dict[str, list[tuple[StaticExtreme, str]]] = {}
     for result in results:
         for one in result.extremes:

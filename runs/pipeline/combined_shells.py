@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Statics of all combinations of a case by a shell.
 
-Combinations with the same geometry share one reduced shell: it is reduced under unit loads of all
-of them, and each combination has its own loads and plays. The axial forces that soften it are those
-of the combination with the largest ones, which is on the safe side.
+Combinations with the same geometry share one reduced shell, which is reduced under unit loads of
+all of them. Its geometric stiffness is that of the largest axial forces, which is on the safe side.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ from runs.pipeline.strength import wall_stresses
 from runs.pipeline.wall_buckling import buckled_shell
 
 
-def shell_states(case: Case, model: Shell, workshop: BuildContext) -> list[CombinationState]:
+def shell_states(case: Case, model: Shell, context: BuildContext) -> list[CombinationState]:
     """Return the static states of all combinations by a shell, on rank 0. Collective.
 
     With a table ``buckling`` the segments' buckling factors are those of the state with the
@@ -40,7 +39,7 @@ def shell_states(case: Case, model: Shell, workshop: BuildContext) -> list[Combi
     Args:
         case: a checked case.
         model: a shell of the case.
-        workshop: the context of the shell.
+        context: ranks, progress reporter and cache.
     """
     combined = list(combined_cases(case))
     booms = [_without_drives(model.model_boom(build_boom(one.case)).boom) for one in combined]
@@ -51,14 +50,14 @@ def shell_states(case: Case, model: Shell, workshop: BuildContext) -> list[Combi
     found: dict[int, CombinationState] = {}
     for numbers in groups.values():
         shared = _shared([booms[number] for number in numbers])
-        built = model.build(ModelBoom(shared[0]), workshop)
+        built = model.build(ModelBoom(shared[0]), context)
         states = [
             _state(combined[number], boom, model, built)
             for number, boom in zip(numbers, shared[1:], strict=True)
-            if workshop.comm.rank == 0
+            if context.comm.rank == 0
         ]
         if case.buckling is not None:
-            states = _buckled(case, shared, states, model, built, workshop)
+            states = _buckled(case, shared, states, model, built, context)
         found |= dict(zip(numbers, states, strict=False))
     return [found[number] for number in sorted(found)]
 
@@ -68,9 +67,9 @@ def _without_drives(boom: Boom) -> Boom:
 
 
 def _shared(booms: Sequence[Boom]) -> list[Boom]:
-    """Return a boom under unit loads of all booms, then each boom with these loads in this order.
+    """Return a boom with unit loads of all booms, and each boom with its loads in the same order.
 
-    The booms differ in loads, in axial forces and in nothing else.
+    The booms differ only in loads and axial forces.
     """
     from shell_model.standard import standard_boom
 
@@ -83,7 +82,7 @@ def _shared(booms: Sequence[Boom]) -> list[Boom]:
         return max(ends, default=0.0)
 
     most = max(booms, key=pressed)
-    # A segment without load in one boom may have one in another.
+    # A segment may have a load in only one of the booms.
     of_segments = (boom.segments for boom in booms)
     own = [max(parts, key=lambda one: abs(one.load)) for parts in zip(*of_segments, strict=True)]
     segments = [
@@ -148,16 +147,19 @@ def _buckled(
     states: Sequence[CombinationState],
     model: Shell,
     built: BuiltModel,
-    workshop: BuildContext,
+    context: BuildContext,
 ) -> list[CombinationState]:
-    """Return the states with the buckling of the one with the farthest tip. Collective."""
+    """Return the states, with buckling results for the one with the largest tip deflection.
+
+    Collective.
+    """
     from shell_model.buckling import StaticState
     from shell_model.standard import with_plays_and_loads
 
     assert case.buckling is not None
     assert built.shell is not None
     states, state, farthest = list(states), None, 0
-    if workshop.comm.rank == 0:
+    if context.comm.rank == 0:
         tips = [
             max((abs(rest.tip) for rest in one.beam.rests), default=0.0) if one.beam else -1.0
             for one in states
@@ -168,7 +170,7 @@ def _buckled(
             rest = int(np.argmax([abs(one.tip) for one in beam.rests]))
             extensions = dict.fromkeys(range(len(shared[0].joints)), 0.0)
             state = StaticState.of(built.shell.fields, own.system, beam.positions[rest], extensions)
-    buckled = buckled_shell(shared[0], model, built, state, case.buckling.modes, workshop.comm)
+    buckled = buckled_shell(shared[0], model, built, state, case.buckling.modes, context.comm)
     if buckled is not None:
         states[farthest] = states[farthest]._replace(buckling=buckled.segments)
     return states

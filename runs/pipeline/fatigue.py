@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Fatigue damage of weld details under sequences of load cases.
 
-A detail stays at its place of the segment, whatever the extension. Its nominal stress in each load
-case is that of the outer fibres at its cross-section. Ranges are counted around the closed
-sequence.
+A detail moves with its segment. Its nominal stress in each load case is that of the outer fibres at
+its cross-section. Stress ranges are counted around the closed sequence of load cases.
 """
 
 from __future__ import annotations
@@ -26,10 +25,10 @@ from runs.pipeline.strength import HAS_RAINFLOW, MEGA, Fibres, count_stress_rang
 if TYPE_CHECKING:
     from runs.pipeline.combined_motion import BeamMotion
 
-# Number of cross-sections of a segment at which its worst weld may be.
+# Number of cross-sections of a segment among which that of its worst weld is found.
 _SECTIONS = 41
 
-# Distance to both sides of a detail, at which section forces may jump, in m.
+# Stresses are taken at this distance in m on both sides of a detail, where forces may jump.
 _BESIDE = 1.0e-6
 
 
@@ -106,7 +105,7 @@ def detail_damages(case: Case) -> list[tuple[Detail, Damage]]:
 
 
 def _stress(beam: StaticBeam | BeamMotion, number: int, inside: float) -> Array:
-    """Return the stress (2 num_fibres, num_times) in Pa on both sides of a place in a segment."""
+    """Return the stress (2 num_fibres, num_times) in Pa on both sides of a cross-section."""
     segment, line = beam.boom.segments[number], beam.lines[number]
     fibres = Fibres.of(segment, line)
     assert fibres is not None
@@ -122,7 +121,7 @@ def _stress(beam: StaticBeam | BeamMotion, number: int, inside: float) -> Array:
 
 
 def _damage(case: Case, category: float, stress: Mapping[tuple[str, bool], Array]) -> Damage:
-    """Return the damage of the worst fibre of a detail, by the stresses in all load cases."""
+    """Return the damage of the worst fibre of a detail from its stresses in all load cases."""
     shares = []
     for spectrum in case.spectra:
         # The sequence of all states of the load cases, closed.

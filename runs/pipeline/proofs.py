@@ -51,7 +51,7 @@ FORMULAS: Mapping[str, str] = {
 }
 
 
-# What to change where a proof fails.
+# Remedy if a proof fails.
 _REMEDIES: Mapping[str, str] = {
     "yield": "thicker walls there, a larger section or stronger steel",
     "plate": "a thicker, narrower or stiffened wall there",
@@ -72,8 +72,8 @@ class Proof(NamedTuple):
     Args:
         kind: kind of the proof, a key of :data:`FORMULAS`.
         part: the part of the boom.
-        place: the part and the wall or detail that governs.
-        x: x of the place in m; None for parts without one.
+        place: the part with the governing wall or detail.
+        x: position of the governing cross-section in m; None for other parts.
         demand, resistance: both in the unit; the resistance is divided by its factor.
         unit: SI unit.
         combination: combination and load case, or spectrum, that governs.
@@ -95,7 +95,7 @@ class Proof(NamedTuple):
 
     @property
     def remedy(self) -> str:
-        """What to change if the proof fails."""
+        """The remedy if the proof fails."""
         return _REMEDIES[self.kind]
 
     @property
@@ -155,23 +155,23 @@ def prove(case: Case, states: Sequence[CombinationState]) -> Proofs:
     for one in _fatigue(case):
         found[one.kind, one.part] = one
     proofs = sorted(found.values(), key=lambda one: -one.utilisation)
-    return Proofs(proofs, [*_missing(case, states)])
+    return Proofs(proofs, [*_missing_data_notes(case, states)])
 
 
 def _proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
     name, beam, table = state.combined.name, state.beam, state.combined.combination
     if beam is None:
         raise NumericsError(f"{name}: the boom has no rest; nothing holds it, or it buckles")
-    for rule in (_of_walls, _of_boom, _of_stations, _of_feet):
+    for rule in (_wall_proofs, _boom_proofs, _station_proofs, _foot_proofs):
         for one in rule(beam, table, case):
             if one.kind in table.proofs:
                 yield one._replace(combination=name)
-    for one in _of_shell(state, case):
+    for one in _shell_proofs(state, case):
         if _OF_SHELLS[one.kind] in table.proofs:
             yield one._replace(combination=name)
 
 
-def _of_walls(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
+def _wall_proofs(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
     for rest in beam.rests:
         for wall in nominal_wall_stresses(beam.boom.segments, rest):
             strength = wall.segment.material.strength(wall.plate.thickness)
@@ -192,7 +192,7 @@ def _of_walls(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator
 def reduced_stress(
     wall: WallStresses, strength: float, curve: Sequence[tuple[float, float]] = ()
 ) -> Array:
-    """Return the stress (num_places,) in Pa of a wall, raised by its reductions for buckling.
+    """Return the equivalent stress (num_places,) of a wall in Pa with reductions for buckling.
 
     √((σ/ρ)² + 3 (τ/χ)²) with the largest compression σ of the mid-line (EN 1993-1-5, 10 (5) b).
 
@@ -233,7 +233,7 @@ def shear_reduction(slenderness: float | Array) -> Array:
     return np.asarray(0.83 / np.maximum(slenderness, 0.83))
 
 
-def _of_shell(state: CombinationState, case: Case) -> Iterator[Proof]:
+def _shell_proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
     """Yield the proofs by wall stresses and buckling factors of a shell."""
     beam, factors = state.beam, state.combined.combination.resistance
     assert beam is not None
@@ -272,7 +272,7 @@ def _of_shell(state: CombinationState, case: Case) -> Iterator[Proof]:
 _OF_SHELLS = {"patch": "yield", "buckling": "plate"}
 
 
-def _of_boom(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
+def _boom_proofs(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
     boom = beam.boom
     if boom.compressed and "column" in table.proofs:
         factor = _critical(boom)
@@ -295,7 +295,7 @@ def _critical(boom: Boom) -> float | None:
         return None
 
 
-def _of_stations(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
+def _station_proofs(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
     for one in beam.extremes(case.system):
         used = one.utilisation
         if used is not None and used.part == "pad" and used.value:
@@ -313,7 +313,7 @@ def _of_stations(beam: StaticBeam, table: CombinationTable, case: Case) -> Itera
             yield Proof("pin", name, f"lug of {name}", cylinder.x, force, resistance, "N")
 
 
-def _of_feet(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
+def _foot_proofs(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
     forces = {one.name: abs(one.largest) for one in beam.foot_extremes(case.system)}
     for segment in beam.boom.segments:
         name = f"foot, {segment.name}"
@@ -329,7 +329,7 @@ def _fatigue(case: Case) -> Iterator[Proof]:
         yield Proof("fatigue", name, name, detail.x, damage.sum, 1.0, "1", damage.spectrum)
 
 
-def _missing(case: Case, states: Sequence[CombinationState]) -> Iterator[str]:
+def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Iterator[str]:
     """Yield a note on each kind of proof for which the case has no numbers."""
     beam = states[0].beam
     assert beam is not None

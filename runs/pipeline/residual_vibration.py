@@ -111,7 +111,7 @@ def residual_vibration(
 
 
 def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float, float]:
-    """Return the largest distance from equilibrium in m, and its time in s.
+    """Return the largest distance of the tip from its static position in m, and its time in s.
 
     Args:
         system: gap system whose ``load`` includes all constant loads.

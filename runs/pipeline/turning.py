@@ -18,10 +18,10 @@ from runs.case.schema import Case
 if TYPE_CHECKING:
     import xarray as xr
 
-# Part of the first circular frequency beyond which Coriolis forces of the boom matter.
+# Coriolis forces matter above this ratio of the angular speed to the first circular frequency.
 _SLOW = 0.05
 
-# Swing over the length of a pendulum beyond which its angle is not small.
+# The angle of a pendulum is not small above this ratio of its swing to its length.
 _SMALL = 0.2
 
 # Number of modes that shapers suppress, and the least part of the deflection of one of them.
@@ -35,14 +35,14 @@ def _laws(case: Case) -> Iterator[tuple[str, str, MotionLaw]]:
 
 
 def pendulum_frequency(case: Case) -> float:
-    """Return √(g/l)/2π of the hanging load in Hz; 0 if it does not swing."""
+    """Return the pendulum frequency √(g/l)/2π of the hanging load in Hz; 0 if it cannot swing."""
     if case.gravity is None or case.hoist is None or case.hoist.pendulum is None:
         return 0.0
     return float(np.sqrt(case.gravity.acceleration / case.hoist.pendulum) / (2.0 * np.pi))
 
 
 def fastest_turn(law: MotionLaw) -> float:
-    """Return the largest speed of an angle in degrees per second."""
+    """Return the largest angular speed in degrees per second."""
     return float(np.abs(law.rate(resolving_times([law], max(law.kinks)), 1)).max())
 
 
@@ -99,7 +99,7 @@ def swing_cautions(case: Case, data: xr.Dataset) -> Iterator[str]:
 
 
 def turning_cautions(where: str, frequency: float, case: Case) -> Iterator[str]:
-    """Yield a caution where the frame turns so fast that Coriolis forces on the boom matter.
+    """Yield a caution if slewing or luffing is so fast that Coriolis forces on the boom matter.
 
     Args:
         where: source of the frequency, for example ``in MODEL``.

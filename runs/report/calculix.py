@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Export of the shells of a boom at rest as an input deck for CalculiX, in the form of Abaqus.
 
-Each triangle is an S6 element with the nodes of the shell's quadratic displacement. Elastic
-supports, cylinders and pads act on readings of sections: a reading is a node with an equation for
-its displacement, and a spring to the ground. A contact that presses at rest is a spring with the
-tangent stiffness of its law, and a force that makes it press as in this static state; open contacts
-are left out. So the deck is linear: the state of contact is given, and pad forces and displacements
-come from the elements of the other program. Friction and the softening by axial forces are left
-out.
+Each triangle is an S6 element. Elastic supports, cylinders and pads act on weighted means of
+displacements: each mean is a node with an equation for its displacement, and a spring to the
+ground. A contact that is closed in the static state is a spring with the tangent stiffness of its
+law, and a force that gives the static contact force. Open contacts, friction and the geometric
+stiffness of axial forces are left out. So the deck is linear.
 """
 
 from __future__ import annotations
@@ -37,7 +35,7 @@ if TYPE_CHECKING:
     from shell_model.segment.cross_section import Row
     from shell_model.segment.segment_shell import SegmentShell
 
-# Stiffness in N/m of a reading without a spring, which the program cannot leave free.
+# Stiffness in N/m of a mean displacement without a spring, which must not be free in CalculiX.
 _FREE = 1.0e-3
 
 # Number of terms in a line of an equation.
@@ -45,13 +43,13 @@ _TERMS = 4
 
 
 class SpringRow(NamedTuple):
-    """Spring to the ground on a reading of segments.
+    """Spring to the ground on a weighted mean of displacements.
 
     Args:
         name: comment in the deck.
-        parts: row (num_owned,) of each segment that is read, by its number.
+        parts: weights (num_owned,) of the displacements of each segment, by its number.
         stiffness: stiffness in N/m, or in N·m/rad.
-        force: force in N on the reading.
+        force: force in N on the mean displacement.
     """
 
     name: str
@@ -67,14 +65,14 @@ def deck(
     loads: Sequence[Array],
     step: str = "*STATIC",
 ) -> str:
-    """Return the deck of shells on one process.
+    """Return the input deck of shells, whose data must be on one process.
 
     Args:
         title: heading.
         shells: shells of the segments, with their own springs.
-        springs: further springs; the program prints the displacements of their readings.
+        springs: further springs, whose displacements CalculiX prints.
         loads: load (num_owned,) of each segment in N.
-        step: lines of the step's procedure.
+        step: lines of the analysis step.
     """
     *first, reading = np.cumsum([1, *(len(shell.nodes) for shell in shells)]).tolist()
     meshes = [shell.mesh for shell in shells if shell.mesh is not None]
@@ -119,7 +117,7 @@ def _segment(number: int, shell: SegmentShell, first: int, element: int) -> Iter
     for i, (x, y, z) in enumerate(shell.nodes, start=first):
         yield f"{i}, {x:.10e}, {y:.10e}, {z:.10e}"
     corners = mesh.points[mesh.triangles]
-    # Neighbours whose normals are opposite would meet at a fold.
+    # All normals of a wall point to the same side, since CalculiX makes a fold otherwise.
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     outwards = corners.mean(axis=1) * [0.0, 1.0, 1.0]
     outwards[~mesh.on_walls] = [1.0, 0.0, 0.0]
@@ -149,7 +147,7 @@ def _segment(number: int, shell: SegmentShell, first: int, element: int) -> Iter
 
 
 def _nodal(shell: SegmentShell, row: Array, first: int) -> list[tuple[int, int, float]]:
-    """Return node, component and value of a row (num_owned,), which reads displacements alone."""
+    """Return node, component and weight of each displacement in a row (num_owned,)."""
     values = row[shell.node_dofs - shell.owned[0]]
     return [
         (int(node) + first, int(axis) + 1, float(values[node, axis]))

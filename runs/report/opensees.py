@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Export of a boom of beam elements as an independent OpenSeesPy script.
 
-The script has beam elements with loads at their nodes. Gaps are zero-length elements, whose elastic
-material follows points of the contact law, in series with the spring of a calibrated station.
-Friction under prescribed forces is an elastic-plastic slip. The script omits the coupling between
-springs of different stations, and the higher functions of the section.
+The script has beam elements with nodal loads. Contacts are zero-length elements, whose elastic
+material follows points of the contact law in series with the spring of a calibrated station.
+Friction under given normal forces is elastic-plastic. Coupling between springs of different
+stations and section fields are left out.
 """
 
 from __future__ import annotations
@@ -45,22 +45,22 @@ OPEN = 1.0e-5
 
 
 class Part(NamedTuple):
-    """Elements of a segment, which take loads like a :class:`geometry.load.Member`.
+    """Beam elements of a segment.
 
     Args:
         component: planar component of the segment.
-        free: degrees of freedom without rigid support.
+        free: degrees of freedom that are not rigidly supported.
     """
 
     component: Component
     free: Array
 
     def node(self, x: float) -> int:
-        """Return the index of the node nearest to x."""
+        """Return the index of the node nearest to x in m."""
         return int(np.argmin(np.abs(self.component.breaks - x)))
 
     def nodal(self, row: Array) -> list[list[float]]:
-        """Return the loaded nodes: number, force in N and moment in N·m of each."""
+        """Return number, force in N and moment in N·m of each loaded node."""
         whole = np.zeros(2 * self.component.breaks.size)
         whole[self.free] = row
         pairs = whole.reshape(-1, 2)
@@ -70,13 +70,13 @@ class Part(NamedTuple):
 def script(
     case: Case, model_boom: ModelBoom, model: BeamElements, calibration: Calibration | None
 ) -> str:
-    """Return the script.
+    """Return the OpenSeesPy script of a model.
 
     Args:
         case: a checked case.
-        model_boom: planar boom of the case with its contacts.
+        model_boom: planar boom with the contact laws of the model.
         model: model of the case.
-        calibration: calibration of a model that a shell calibrates.
+        calibration: calibration of the model; None without one.
 
     Raises:
         BoomError: the boom has a feature that the script does not support.
@@ -134,7 +134,7 @@ def _check(case: Case, model_boom: ModelBoom) -> None:
 
 
 def _touching(boom: Boom, *, calibrated: bool) -> list[tuple[int, float]]:
-    """Return the segments and x in m of the contact points."""
+    """Return segment and x in m of each contact point."""
     found = [(stop.segment, stop.x) for _, stop in boom.numbered_stops]
     for pad in pads(boom):
         x = pad.middle if calibrated else pad.x
@@ -195,7 +195,7 @@ def _segment(boom: Boom, number: int, part: Part, model: BeamElements) -> dict[s
 def _contacts(
     model_boom: ModelBoom, parts: Sequence[Part], calibration: Calibration | None
 ) -> Iterator[dict[str, object]]:
-    """Yield two nodes and the points (m, N) of the contact law, for each contact row."""
+    """Yield two nodes and the points (m, N) of the contact law for each contact."""
     boom, row = model_boom.boom, 0
 
     def points(law: ContactLaw) -> list[list[float]]:
@@ -220,7 +220,7 @@ def _contacts(
 
 
 def _points(law: ContactLaw, compliance: float) -> list[list[float]]:
-    """Return ascending approaches in m, and forces in N, of a one-sided law and a spring in m/N."""
+    """Return approaches in m and forces in N of a one-sided law and a compliance in series."""
     side, onset = law.terms[0].side, min(term.onset for term in law.terms)
     straight = len(law.terms) == 1 and law.terms[0].exponent == 1.0
     deepest = 1.0
@@ -265,7 +265,7 @@ def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, 
 
 
 def _ends(pad: Pad, parts: Sequence[Part], *, calibrated: bool) -> list[list[int]]:
-    """Return segment and node on both sides of a pad, the outer segment first."""
+    """Return segment and node of both segments at a pad, the outer segment first."""
     x = pad.middle if calibrated else pad.x
     return [[number, parts[number].node(x)] for number in (pad.joint.outer, pad.joint.inner)]
 
@@ -305,7 +305,7 @@ def write(
     Raises:
         BadInput: the model does not exist, or has a feature that the script does not support.
     """
-    # Beam elements of other programs do not have the higher functions of the section.
+    # Beam elements of OpenSees have no section fields.
     model = exported(case, file).model_copy(update={"section_fields": False})
     boom = build_boom(case)
     calibration = None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Workbook of a run's design results, which Excel and LibreOffice read."""
+"""Workbook of the design results of a run, for Excel and LibreOffice."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from runs.report.document import tables_by_part
 
 WORKBOOK = "results.xlsx"
 
-# Widest column in characters, and rows of a sheet above the headings: the title and an empty one.
+# Largest width of a column in characters, and number of rows above the headings of a sheet.
 WIDEST, ABOVE = 60, 2
 
 
@@ -24,8 +24,9 @@ def write_workbook(results: Results, folder: Path, name: str, option: str) -> No
 
     Args:
         results: results of a run.
-        folder: folder of the file, which appears when it is complete.
-        name, option: folder and option as the user gave them, for messages.
+        folder: folder of the file, which is written atomically.
+        name: folder in messages, as the user gave it.
+        option: option in messages, as the user gave it.
 
     Raises:
         BadInput: openpyxl is not installed.

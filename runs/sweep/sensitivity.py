@@ -46,9 +46,9 @@ _OTHER = {"time", "model", "observe", "life"}
 def plan_changes(
     file: str, models: Sequence[str] | None, mesh_size: float | None
 ) -> tuple[Plan, list[str]]:
-    """Return the plan of the changes of all numbers, and the keys that cannot be changed.
+    """Return the points of a sensitivity analysis, and the keys that cannot be changed.
 
-    The first point is the case; each number has two points.
+    The first point is the case. Each number of the case has two points, below and above its value.
 
     Raises:
         BadInput: the case is invalid, or does not have exactly one model to run.
