@@ -11,7 +11,10 @@ ROOMS := $(patsubst %/__init__.py,%,$(wildcard */__init__.py))
 SOURCES := pyproject.toml $(wildcard runs/report/templates/*) \
     $(shell find $(ROOMS) -path runs/out -prune -o -name '*.py' -print)
 REPORTS := $(VERIFY_CASES:%=runs/out/%/report.html)
-SWINGS := runs/out/drawn-out-sweep/sweep.csv
+VARY_drawn-out := joint.drive.time=0.5,0.7,1,1.2,1.4,1.7,2,3,5
+VARY_hoist := hoist.speed=0.2,0.3,0.4,0.5,0.6
+VARY_slew := slew.speed=2,4,6,8,10
+SWEEPS := $(patsubst %,runs/out/%-sweep/sweep.csv,drawn-out hoist slew)
 
 # One thread each: parallelism is MPI ranks, `make -j` and test workers. Open MPI refuses root else.
 export OMP_NUM_THREADS ?= 1
@@ -47,7 +50,7 @@ verify: $(READY) ## run the cases where they are not up to date, print the verdi
 snapshots: $(REPORTS) ## pictures of the verify cases with a shell
 	@set -e; for case in $(SHELL_CASES); do $(BIN)/protractile snapshot runs/out/$$case; done
 
-gallery: $(REPORTS) $(SWINGS) ## the pictures of docs/gallery.md, from the verify cases
+gallery: $(REPORTS) $(SWEEPS) ## the pictures of docs/gallery.md, from the verify cases
 	$(BIN)/python -m studies.gallery
 
 bench: $(READY) ## what integrators, reductions and other programs cost, into runs/out/bench
@@ -108,10 +111,9 @@ runs/out/%/report.html: runs/cases/%.toml $(SOURCES) | $(READY)
 	@echo "running the models of $< ..."
 	@$(BIN)/protractile run $< --out $(@D) >/dev/null || { [ $$? -eq 1 ] && [ -f $@ ]; }
 
-# How fast the boom may be drawn out.
-$(SWINGS): runs/cases/drawn-out.toml $(SOURCES) | $(READY)
-	@$(BIN)/protractile sweep $< --out $(@D) --models timoshenko \
-	    --vary joint.drive.time=0.5,0.7,1,1.2,1.4,1.7,2,3,5
+# How fast the boom may be drawn out, hoist and slew.
+runs/out/%-sweep/sweep.csv: runs/cases/%.toml $(SOURCES) | $(READY)
+	@$(BIN)/protractile sweep $< --out $(@D) --models timoshenko --vary $(VARY_$*)
 
 .venv/ready-$(RELEASE): pyproject.toml .ci/constraints-$(RELEASE).txt | debian-packages
 	@echo "installing Python packages into .venv (a minute or two) ..."

@@ -3,17 +3,20 @@
 
 ``python -m studies.gallery`` writes docs/gallery from the folders ``paper``, ``spatial``,
 ``three-segments`` and ``convergence`` of runs/out, which ``make verify convergence`` writes, and
-``drawn-out-sweep``, which ``make gallery`` writes.
+``drawn-out-sweep``, ``hoist-sweep`` and ``slew-sweep``, which ``make gallery`` writes.
 """
 
 from __future__ import annotations
 
+import csv
 import sys
 from collections.abc import Iterator
+from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from matplotlib import pyplot as plt
 from matplotlib import rc_context
 from matplotlib.patches import Patch
 from PIL import Image
@@ -79,6 +82,7 @@ def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
         drawing = Path(folder) / "lift.png"
         draw_boom_of(case_file.load(str(CASES / "lift.toml")), drawing)
         yield "lift", Image.open(drawing).convert("RGB")
+    yield "crane-speeds", draw_speeds(runs)
     results = Results.load(runs / "paper")
     motion = results.trajectories.sel(model=MODEL)
     scene = Scene.views(read_fields(runs / "paper" / FIELDS), motion, results.case)[0]
@@ -89,6 +93,33 @@ def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
         time = characteristic_instants(motion)["largest-force"]
         instant = Instant(time, TITLES["largest-force"])
         yield "sections-largest-force", draw_sections(scene, instant, overlap)
+
+
+def draw_speeds(runs: Path) -> Image.Image:
+    """Draw the factor φ₂ over the speed of hoisting, and the load's swing over that of slewing.
+
+    Raises:
+        BadInput: a sweep is missing.
+    """
+    panels = (
+        ("hoist", "hoist.speed", "rope_factor", 1.3, "speed of hoisting (m/s)", "factor φ₂"),
+        ("slew", "slew.speed", "swing_aside", 1.0, "speed of slewing (deg/s)", "swing aside (m)"),
+    )
+    with rc_context(theme.RC):
+        sheet, axes = plt.subplots(1, len(panels), figsize=(8.1, 3.2), layout="constrained")
+        for panel, (case, key, quantity, limit, along, up) in zip(axes, panels, strict=True):
+            path = runs / f"{case}-sweep" / "sweep.csv"
+            if not path.is_file():
+                raise BadInput(str(path), "file", "missing; run make gallery")
+            with path.open(newline="", encoding="utf-8") as file:
+                rows = [(float(row[key]), float(row[quantity])) for row in csv.DictReader(file)]
+            panel.plot(*zip(*rows, strict=True), "o-", color=theme.INNER)
+            panel.axhline(limit, **theme.LIMIT)
+            panel.set(xlabel=along, ylabel=up)
+        drawn = BytesIO()
+        sheet.savefig(drawn, dpi=100)
+        plt.close(sheet)
+    return Image.open(drawn).convert("RGB")
 
 
 def draw_mesh(scene: Scene, overlap: Overlap) -> Image.Image:

@@ -54,7 +54,7 @@ class Hoisting(Record):
     factor: Annotated[
         float,
         Metric(
-            "rope_factor", "1", "factor φ₂ of the rope", 1.0, "1", heading="factor φ₂", form=".3f"
+            "rope_factor", "1", "factor φ₂ of the rope", 1.0, "–", heading="factor φ₂", form=".3f"
         ),
     ]
     swing_out: Annotated[

@@ -12,7 +12,7 @@ from PIL import Image
 from studies import gallery
 
 DOCS = Path(__file__).parents[2] / "docs"
-MADE = {*gallery.COPIED, "lift", "mesh", "sections-largest-force"}
+MADE = {*gallery.COPIED, "lift", "mesh", "sections-largest-force", "crane-speeds"}
 
 
 def test_the_page_shows_what_the_script_makes() -> None:
