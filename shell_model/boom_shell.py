@@ -27,7 +27,7 @@ from shell_model.contact.rows import ShellContacts, ties
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.symmetry import SymmetryReduction
-from shell_model.segment.cross_section import Outline, Reading, Row
+from shell_model.segment.cross_section import Reading, Row, SectionNodes
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from shell_model.stages import Stages
 
@@ -118,7 +118,7 @@ class BoomShell:
         return sum(shell.num_dofs for shell in self.shells)
 
     @property
-    def resisting(self) -> list[Reading]:
+    def joint_readings(self) -> list[Reading]:
         """The readings of contacts, then of friction."""
         contacts = [contact.reading for contact in self.rows.contacts]
         return contacts + [friction.reading for friction in self.rows.frictions]
@@ -128,18 +128,18 @@ class BoomShell:
         dashpots = self.columns(
             number, [r for dashpot in self.rows.dashpots.values() for _, r in dashpot.parts]
         )
-        return np.column_stack([self.joined(number), dashpots, self.pushed(number)])
+        return np.column_stack([self.joint_rows(number), dashpots, self.fixed_loads(number)])
 
-    def pushed(self, number: int) -> Array:
+    def fixed_loads(self, number: int) -> Array:
         """Return the load vectors (num_owned, num_loads) of loads and ground lines of a segment."""
         own = [push for load, push in self.loads if load.segment == number]
         own += [push for segment, push in self.pin_moments if segment == number]
         own += [line.push for line in self.lines if line.segment == number]
         return np.column_stack([self.own_loads[number], *own])
 
-    def joined(self, number: int) -> Array:
+    def joint_rows(self, number: int) -> Array:
         """Return the rows (num_owned, num_rows) of contacts, friction and bonded joints."""
-        return self.columns(number, [*self.resisting, *self.ties])
+        return self.columns(number, [*self.joint_readings, *self.ties])
 
     def columns(self, number: int, readings: Iterable[Reading]) -> Array:
         """Return the rows of readings of a segment as columns (num_owned, num_rows). Collective."""
@@ -168,7 +168,7 @@ def assemble_boom(
     watch = stages or Stages()
     shells = assemble_segments(boom, options, comm, watch)
     with watch.stage("rows"):
-        touching = ShellContacts.of(boom, shells, options.contact_line, options.surface)
+        touching = ShellContacts.from_shells(boom, shells, options.contact_line, options.surface)
         return BoomShell(
             comm=comm,
             shells=shells,
@@ -233,7 +233,7 @@ def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, ObservedR
     ends: tuple[Quantity, ...] = ("deflection", "rotation", "distortion")
     if boom.spatial:
         ends += ("lateral", "twist")
-    outlines: dict[tuple[int, float], Outline] = {}
+    outlines: dict[tuple[int, float], SectionNodes] = {}
     observed = {}
     for place in boom.all_observations(ends):
         at = place.segment, place.x
@@ -247,10 +247,10 @@ def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, ObservedR
     return observed
 
 
-_READ: Mapping[Read, Callable[[Outline], Row]] = {
-    "deflection": Outline.mean_deflection,
-    "rotation": Outline.rotation,
-    "distortion": Outline.distortion,
-    "lateral": partial(Outline.mean_deflection, direction="y"),
-    "twist": Outline.twist,
+_READ: Mapping[Read, Callable[[SectionNodes], Row]] = {
+    "deflection": SectionNodes.mean_deflection,
+    "rotation": SectionNodes.rotation,
+    "distortion": SectionNodes.distortion,
+    "lateral": partial(SectionNodes.mean_deflection, direction="y"),
+    "twist": SectionNodes.twist,
 }

@@ -41,7 +41,7 @@ from geometry.plating import PlatedMesh
 from shell_model import compat
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.rows import ShellContacts, ties
-from shell_model.segment.attachments import RIGID_TURN, Attached
+from shell_model.segment.attachments import RIGID_TURN, Attachments
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from shell_model.segment.shell import Shell
 from shell_model.stress.fields import vertex_displacements, wall_frame
@@ -130,7 +130,7 @@ def _compressed(forces: Array) -> bool:
     return bool(least.min() < -_ROUND_OFF * np.abs(forces).max())
 
 
-def with_springs(springs: Attached, rows: Array, stiffness: Array) -> Attached:
+def with_springs(springs: Attachments, rows: Array, stiffness: Array) -> Attachments:
     """Return springs extended by further springs.
 
     Args:
@@ -138,7 +138,7 @@ def with_springs(springs: Attached, rows: Array, stiffness: Array) -> Attached:
         rows: (num_owned, num_springs) this rank's rows of the further springs.
         stiffness: (num_springs,) stiffness of each row in N/m or N·m.
     """
-    return Attached(np.hstack([springs.rows, rows]), np.append(springs.factors, stiffness))
+    return Attachments(np.hstack([springs.rows, rows]), np.append(springs.factors, stiffness))
 
 
 def _geometric_stiffness(shell: Shell, forces: Array) -> PETSc.Mat:
@@ -178,7 +178,7 @@ class StaticState:
     extensions: Mapping[int, float]
 
     @classmethod
-    def of(
+    def from_fields(
         cls,
         fields: xr.Dataset,
         system: GapSystem,
@@ -194,7 +194,7 @@ class StaticState:
             extensions: extension of each joint in m.
         """
         still = fields.assign(state=(("time", "mode"), position[None]), time=("time", [0.0]))
-        stress = ShellStress.of(still)
+        stress = ShellStress.from_fields(still)
         forces = stress.thickness[:, None] * stress.at(0.0).membrane.astype(np.float64)
         near = (system.rows @ position)[:, None] + [-TOUCHING, TOUCHING]
         slopes = [law.slope(gaps).max() for law, gaps in zip(system.laws, near, strict=True)]
@@ -275,7 +275,7 @@ def _modes_on(
         assemble_segment(comm, segment, mesh)
         for segment, mesh in zip(boom.segments, meshes, strict=True)
     ]
-    touching = ShellContacts.of(boom, shells, options.contact_line, options.surface)
+    touching = ShellContacts.from_shells(boom, shells, options.contact_line, options.surface)
     contacts = [contact.reading for contact in touching.rows(state.extensions).contacts]
     joined = [
         *zip(contacts, state.contact_stiffness.tolist(), strict=True),

@@ -88,15 +88,19 @@ def create_triangle_mesh(comm: MPI.Comm, points: Array, triangles: Indices) -> A
     if _HAS_BASIX_UFL:
         element = basix.ufl.element("Lagrange", "triangle", 1, shape=(3,))
         return mesh.create_mesh(
-            comm, cells=triangles, x=points, e=ufl.Mesh(element), **_apart(comm, points, triangles)
+            comm,
+            cells=triangles,
+            x=points,
+            e=ufl.Mesh(element),
+            **_edge_arguments(comm, points, triangles),
         )
     cell = ufl.Cell("triangle", geometric_dimension=3)
     domain = ufl.Mesh(ufl.VectorElement("Lagrange", cell, 1))
     # Version 0.5 gives each rank all cells across its edges.
-    return mesh.create_mesh(comm, _listed(triangles), points, domain)
+    return mesh.create_mesh(comm, _adjacency_list(triangles), points, domain)
 
 
-def _apart(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[str, Any]:
+def _edge_arguments(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[str, Any]:
     """Return arguments of ``create_mesh`` that connect three cells on an edge across ranks."""
     if "max_facet_to_cell_links" in _CREATE_MESH:
         joined: dict[str, Any] = {"max_facet_to_cell_links": _CELLS_OF_AN_EDGE}
@@ -142,10 +146,10 @@ def create_hexahedron_mesh(comm: MPI.Comm, points: Array, hexahedra: Indices) ->
         return mesh.create_mesh(comm, cells=hexahedra, x=points, e=ufl.Mesh(element))
     cell = ufl.Cell("hexahedron", geometric_dimension=3)
     domain = ufl.Mesh(ufl.VectorElement("Q", cell, 1))
-    return mesh.create_mesh(comm, _listed(hexahedra), points, domain)
+    return mesh.create_mesh(comm, _adjacency_list(hexahedra), points, domain)
 
 
-def _listed(cells: Indices) -> Any:
+def _adjacency_list(cells: Indices) -> Any:
     """Return connectivity in the type that DOLFINx 0.5 expects; it does not accept arrays."""
     return cpp.graph.AdjacencyList_int64(cells.astype(np.int64))
 

@@ -31,7 +31,7 @@ from shell_model.contact.rows import ties
 from shell_model.contact.surface import without_stiff_modes
 from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.segment import ReducedSegment, reduce_segment
-from shell_model.reduction.symmetry import outcome
+from shell_model.reduction.symmetry import result_or_compute
 from shell_model.stages import Stages
 from shell_model.stress.fields import gather_fields
 from shell_model.telescoping import MOMENTS, TelescopingShell
@@ -98,12 +98,12 @@ def reduce_boom(
     telescoping = None
     if boom.driven:
         fewer = replace(options, krylov=replace(options.krylov, moments=MOMENTS))
-        reduce = partial(_reduced, full, fewer, stages)
+        reduce = partial(_reduce_segment, full, fewer, stages)
         test = options.krylov.tests[0]
         telescoping = TelescopingShell(boom, full, options.mesh_size, reduce, test)
         segments = telescoping.reduced
     else:
-        segments = [_reduced(full, options, stages, n) for n in range(len(full.shells))]
+        segments = [_reduce_segment(full, options, stages, n) for n in range(len(full.shells))]
     coordinates = BoomCoordinates(full.comm, full.shells, segments, full.ties, full.lines)
     with stages.stage("rows"):
         own_loads = np.array([coordinates.push(i, load) for i, load in enumerate(full.own_loads)])
@@ -113,7 +113,7 @@ def reduce_boom(
             own_loads = np.pad(own_loads, ((0, 0), (0, system.num_modes - own_loads.shape[1])))
     if telescoping:
         whole = compliance(system.omega2, system.rows)
-        lost = telescoping.lost(len(system.laws))
+        lost = telescoping.compliance_error(len(system.laws))
     else:
         whole, lost = _contact_compliance(full, segments)
     coarse = None
@@ -125,8 +125,10 @@ def reduce_boom(
     with stages.stage("unit responses"):
         responses = [probe_segment(boom, number, one) for number, one in enumerate(full.symmetries)]
     with stages.stage("mesh error"):
-        local = _of_contacts(whole, full)
-        coarse_local = outcome(coarse, partial(_mesh_compliance, boom, options.coarser, comm))
+        local = _contact_local_compliance(whole, full)
+        coarse_local = result_or_compute(
+            coarse, partial(_mesh_compliance, boom, options.coarser, comm)
+        )
         mesh_error = extrapolated_error(local, coarse_local, options.order)
     return ReducedShell(
         system=system,
@@ -150,10 +152,10 @@ def reduce_boom(
 def _mesh_compliance(boom: Boom, options: ShellOptions, comm: MPI.Comm = MPI.COMM_SELF) -> Array:
     """Return the local compliance (num_contacts,) in m/N of unreduced shells. Collective."""
     shell = assemble_boom(boom, options, comm)
-    return _of_contacts(full_compliance(shell.shells, shell.rows.contacts), shell)
+    return _contact_local_compliance(full_compliance(shell.shells, shell.rows.contacts), shell)
 
 
-def _of_contacts(whole: Array, shell: BoomShell) -> Array:
+def _contact_local_compliance(whole: Array, shell: BoomShell) -> Array:
     """Return the local compliance (num_contacts,) from the compliance of all contacts."""
     rows = shell.rows.contacts
     return local_compliance(whole, [row.law for row in rows], [row.station for row in rows])
@@ -174,17 +176,17 @@ def _contact_compliance(full: BoomShell, segments: Sequence[ReducedSegment]) -> 
     return compliance(apart.omega2, rows.reshape(-1, apart.omega2.size)), lost
 
 
-def _reduced(
-    full: BoomShell, options: ShellOptions, stages: Stages, number: int, *beside: Array
+def _reduce_segment(
+    full: BoomShell, options: ShellOptions, stages: Stages, number: int, *extra_forces: Array
 ) -> ReducedSegment:
     """Reduce a segment for its applied forces, further forces, and outputs. Collective."""
-    krylov, joined = options.krylov, full.joined(number)
+    krylov, joined = options.krylov, full.joint_rows(number)
     at_surface = options.contact_line == "surface"
     if at_surface:
         krylov = replace(krylov, shifts=options.surface.shifts, moments=options.surface.moments)
     observed = full.columns(number, [seen.reading for seen in full.observed.values()])
     with stages.stage("reduction", number, len(full.shells)) as progress:
-        forces = np.hstack([full.forces(number), *beside])
+        forces = np.hstack([full.forces(number), *extra_forces])
         own = reduce_segment(
             full.symmetries[number], forces, krylov, progress, observed, full.helper
         )

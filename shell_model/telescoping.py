@@ -161,7 +161,7 @@ class TelescopingShell:
         self._rows = [sampled.rows(self._apart) for sampled in self._sampled]
         self._springs = [springs(*self._residuals(k)) for k in range(len(self._sampled))]
 
-    def lost(self, contacts: int) -> Array:
+    def compliance_error(self, contacts: int) -> Array:
         """Return the largest error (num_contacts,) of the compliance at all extensions in m/N."""
         sigma, found = squared(self._test), np.zeros(contacts)
         for k, sampled in enumerate(self._sampled):
@@ -216,7 +216,7 @@ class TelescopingShell:
         ``columns`` (num_owned, num_columns) are the rows of pads at all extensions.
         """
 
-        def modal(columns: Array) -> Array:
+        def project(columns: Array) -> Array:
             """Project columns on the modes of the segment."""
             rows = [exact_product(self._full.comm, column, segment.shapes) for column in columns.T]
             return np.array(rows).reshape(-1, segment.omega2.size)
@@ -228,15 +228,15 @@ class TelescopingShell:
         ]
         moving, staying = (np.concatenate(which) for which in zip(*masks, strict=True))
         seen = [one.reading for one in self._full.observed.values()]
-        rows, observed = modal(columns), modal(self._full.columns(number, seen))
+        rows, observed = project(columns), project(self._full.columns(number, seen))
         parts = rows[moving] ** 2 / (segment.omega2 + squared(SLOW))
         below = segment.omega2 < squared(_CUTOFF)
         local = np.diag(self._responses[number].compliance)[moving]
         left = local - parts[:, below].sum(axis=1)
         slow = segment.omega2 < squared(_SLOWEST)
         slow |= below & (parts > _PART * left[:, None]).any(axis=0)
-        stays = self._full.pushed(number), self._full.columns(number, self._full.ties)
-        pushes = [*(modal(some) for some in stays), observed, rows[staying]]
+        stays = self._full.fixed_loads(number), self._full.columns(number, self._full.ties)
+        pushes = [*(project(some) for some in stays), observed, rows[staying]]
         modes = np.flatnonzero(slow), np.flatnonzero(~slow)
         omega2, shapes = reduce_modes(segment.omega2, np.vstack(pushes), *modes, MOMENTS)
         order = np.argsort(omega2, kind="stable")

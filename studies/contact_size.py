@@ -83,7 +83,7 @@ def station_compliances(contact: Contact, part: float) -> Array:
     options = model.options()
     shells = assemble_segments(boom, options, MPI.COMM_SELF)
     seen = model.model_boom(boom).boom
-    touching = ShellContacts.of(seen, shells, options.contact_line, options.surface)
+    touching = ShellContacts.from_shells(seen, shells, options.contact_line, options.surface)
     rows = touching.rows({}).contacts
     stations = [row.station for row in rows]
     local = local_compliance(full_compliance(shells, rows), [row.law for row in rows], stations)

@@ -25,7 +25,7 @@ from runs.report.tables import Table
 from shell_model.contact.wall_rows import gauss
 from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, SymmetryClass
 from shell_model.reduction.symmetry import SymmetryReduction
-from shell_model.segment.cross_section import Outline, Row
+from shell_model.segment.cross_section import Row, SectionNodes
 from shell_model.segment.shell import Shell
 from shell_model.segment.solver import ShiftedSolver, quadratic_form, times
 from studies.motions import SLOW
@@ -54,14 +54,14 @@ class Probe(NamedTuple):
     what: str  #: its name
     family: SymmetryClass  #: symmetry class of the motions
     places: Mapping[float, float]  #: weights of the readings by x in m
-    read: Callable[[Outline], Row]  #: of the section
+    read: Callable[[SectionNodes], Row]  #: of the section
 
-    def row(self, outline: Callable[[float], Outline]) -> Row:
+    def row(self, outline: Callable[[float], SectionNodes]) -> Row:
         """Return the row over all places; ``outline`` gives the section at x."""
         return sum((weight * self.read(outline(x)) for x, weight in self.places.items()), Row())
 
 
-def pad_squeeze(outline: Outline) -> Row:
+def pad_squeeze(outline: SectionNodes) -> Row:
     """Return the increase of the flanges' distance under pads in the corners, in m."""
     half = 0.5 * outline.section.size("y")
     rows = (
@@ -74,13 +74,13 @@ def pad_squeeze(outline: Outline) -> Row:
 
 PROBES: tuple[Sequence[Probe], Sequence[Probe]] = (
     (
-        Probe("head", ALONG_Z, {HEAD: 1.0}, partial(Outline.wall_deflection, direction="z")),
-        Probe("head twist", TWISTING, {HEAD: 1.0}, Outline.twist),
+        Probe("head", ALONG_Z, {HEAD: 1.0}, partial(SectionNodes.wall_deflection, direction="z")),
+        Probe("head twist", TWISTING, {HEAD: 1.0}, SectionNodes.twist),
     ),
     (
-        Probe("tip", ALONG_Z, {TIP: 1.0}, partial(Outline.wall_deflection, direction="z")),
-        Probe("tip twist", TWISTING, {TIP: 1.0}, Outline.twist),
-        Probe("tail squeeze", BREATHING, {TAIL: 1.0}, Outline.distortion),
+        Probe("tip", ALONG_Z, {TIP: 1.0}, partial(SectionNodes.wall_deflection, direction="z")),
+        Probe("tip twist", TWISTING, {TIP: 1.0}, SectionNodes.twist),
+        Probe("tail squeeze", BREATHING, {TAIL: 1.0}, SectionNodes.distortion),
         Probe("pad squeeze", BREATHING, PADDED, pad_squeeze),
     ),
 )

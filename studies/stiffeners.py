@@ -19,7 +19,7 @@ from geometry.boom import Boom, Collar, Diaphragm, Material, Segment, Support
 from geometry.section import BoxSection
 from runs.case.build import build_boom
 from runs.report.tables import Cell, Table
-from shell_model.segment.cross_section import Outline, Row
+from shell_model.segment.cross_section import Row, SectionNodes
 from shell_model.segment.solver import quadratic_form
 from studies.motions import friction_case
 from studies.reference_models.single_segment import compliances, natural_frequencies, shell_alone
@@ -120,7 +120,7 @@ def _timoshenko(segment: Segment, x: float) -> float:
     return bending + (a + a**2 / span) / (material.shear_modulus * section.shear_area)
 
 
-def racking(outline: Outline) -> Row:
+def racking(outline: SectionNodes) -> Row:
     """Return the racking of the section: rotation of the webs less that of the flanges.
 
     It is twice the twist, with the sign of the flanges reversed.

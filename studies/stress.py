@@ -76,7 +76,7 @@ class InnerSegmentState:
         modes = gather_stress_modes(shell, at_rest(shell, force[:, None]))
         assert modes is not None
         assert shell.mesh is not None
-        return cls(boom, ShellStress.still(shell.mesh, modes))
+        return cls(boom, ShellStress.at_rest(shell.mesh, modes))
 
     @classmethod
     def reduced(cls, boom: Boom, size: float) -> InnerSegmentState:
@@ -99,7 +99,7 @@ class InnerSegmentState:
         state = np.divide(force, system.omega2, out=np.zeros_like(force), where=elastic)
         own = fields[f"coordinates_{INNER + 1}"].values @ state
         modes = np.tensordot(own, fields[f"stress_{INNER + 1}"].values, axes=1)[None]
-        return cls(boom, ShellStress.still(shell.meshes[INNER], modes.astype(np.float32)))
+        return cls(boom, ShellStress.at_rest(shell.meshes[INNER], modes.astype(np.float32)))
 
     def top(self, x: float) -> tuple[float, float]:
         """Return mean σ_x over the width of the top in Pa, and the beam's value.

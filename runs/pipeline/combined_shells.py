@@ -137,7 +137,7 @@ def _state(combined: CombinedCase, boom: Boom, model: Shell, built: BuiltModel) 
         time=("time", [rest.time for rest in beam.rests]),
     )
     names = [segment.name for segment in boom.segments]
-    stresses = stress_near_places(ShellStress.of(fields), force_places(boom), names)
+    stresses = stress_near_places(ShellStress.from_fields(fields), force_places(boom), names)
     return CombinationState(combined, beam, wall_stresses(boom, stresses))
 
 
@@ -169,7 +169,9 @@ def _buckled(
             own = with_plays_and_loads(built.shell, shared[1 + farthest])
             rest = int(np.argmax([abs(one.tip) for one in beam.rests]))
             extensions = dict.fromkeys(range(len(shared[0].joints)), 0.0)
-            state = StaticState.of(built.shell.fields, own.system, beam.positions[rest], extensions)
+            state = StaticState.from_fields(
+                built.shell.fields, own.system, beam.positions[rest], extensions
+            )
     buckled = buckled_shell(shared[0], model, built, state, case.buckling.modes, context.comm)
     if buckled is not None:
         states[farthest] = states[farthest]._replace(buckling=buckled.segments)

@@ -95,7 +95,7 @@ class ShellOutput:
         ).assign_attrs(model=name)
         if buckling is not None and buckling.shapes is not None:
             fields = fields.assign(buckling.shapes)
-        shell = ShellStress.of(fields)
+        shell = ShellStress.from_fields(fields)
         stresses = stress_near_places(shell, force_places(boom), names).assign_attrs(model=name)
         meshes = dict(zip(names, reduced.meshes, strict=True))
         return cls(fields, stresses, summarise(shell, stresses), meshes, buckling)

@@ -134,7 +134,9 @@ def _static_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | No
     }
     assert built.shell is not None
     assert built.shell.fields is not None
-    return StaticState.of(built.shell.fields, system.at_time(time), found[time], extensions)
+    return StaticState.from_fields(
+        built.shell.fields, system.at_time(time), found[time], extensions
+    )
 
 
 def _with_locations(name: str, found: SegmentBuckling) -> WallBuckling:

@@ -135,7 +135,7 @@ class Scene:
             modes=fields["modes"].values,
             state=fields["state"].load(),
             motion=motion,
-            stress=ShellStress.of(fields),
+            stress=ShellStress.from_fields(fields),
             buckling=fields if "buckled" in fields else None,
         )
         if not boom.spatial:

@@ -27,7 +27,7 @@ PALETTE = ("#0072b2", "#d55e00", "#009e73", "#111111", "#b0568c", "#6a3fd0", "#8
 
 # Colours of two segments and their contact force, which the colour-blind can distinguish.
 OUTER, INNER, FORCE = "#56b4e9", "#e69f00", "#b03000"
-# Outline of letters on a picture.
+# SectionNodes of letters on a picture.
 OUTLINED: list[AbstractPathEffect] = [withStroke(linewidth=3, foreground="white")]
 # Colour maps of deflections and of stresses; zero is light.
 DEFLECTION, STRESS = "viridis_r", "cividis_r"

@@ -22,7 +22,7 @@ from geometry.section import Offset, Section, Side
 from geometry.telescoping import drives_below
 from shell_model.contact.surface import SurfaceOptions, SurfacePoint, surface_points
 from shell_model.contact.wall_rows import CornerLines, Wall, WallPoints, gauss
-from shell_model.segment.cross_section import Outline, Reading, Row
+from shell_model.segment.cross_section import Reading, Row, SectionNodes
 from shell_model.segment.segment_shell import SegmentShell
 
 _SIDES: tuple[Side, Side] = (1, -1)
@@ -143,7 +143,7 @@ class ShellContacts:
     points: Sequence[SurfacePoint]
 
     @classmethod
-    def of(
+    def from_shells(
         cls,
         boom: Boom,
         shells: Sequence[SegmentShell],
@@ -201,11 +201,11 @@ def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
 
     Their forces act in the planes of walls.
     """
-    reads: list[Callable[[Outline], Row]] = [
-        partial(Outline.wall_deflection, direction=direction) for direction in boom.directions
+    reads: list[Callable[[SectionNodes], Row]] = [
+        partial(SectionNodes.wall_deflection, direction=direction) for direction in boom.directions
     ]
     if boom.spatial:
-        reads.append(Outline.twist)
+        reads.append(SectionNodes.twist)
     found: list[Reading] = []
     for joint in boom.joints:
         for x in joint.stations if joint.tied else ():

@@ -44,7 +44,7 @@ class _CornerLine(NamedTuple):
         forces = (high - low) * [1 / 6, 4 / 6, 1 / 6] * stretch.line_load(places)
         weights = np.einsum("ep,epn->en", forces, quadratic((places - left) / (right - left)))
         nodes = 2 * edges[:, None] + np.arange(3)
-        return Row.of(self.dofs[nodes, COMPONENT[direction]].ravel(), weights.ravel())
+        return Row.from_weights(self.dofs[nodes, COMPONENT[direction]].ravel(), weights.ravel())
 
 
 class CornerLines:

@@ -134,7 +134,7 @@ def reduce_class(
             f"of its planes, and {options.tolerance:.1e} is asked for; give a larger tolerance, or "
             "a coarser mesh, whose round-off is less"
         )
-    lost = basis.lost(full, forces.T @ inputs)
+    lost = basis.compliance_error(full, forces.T @ inputs)
     omega2, shapes = basis.modes()
     solve.move(tests[-1])
     accurate = _find_accurate(shell, omega2, shapes, solve)
@@ -225,7 +225,7 @@ class _Basis:
             transfer = float(np.maximum(transfer, off.max(initial=0.0)))
         return compliance, transfer
 
-    def lost(self, full: Sequence[_FullResponse], parts: Array) -> Array:
+    def compliance_error(self, full: Sequence[_FullResponse], parts: Array) -> Array:
         """Return the largest error (num_inputs,) of the compliance of inputs in m/N.
 
         Args:

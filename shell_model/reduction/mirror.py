@@ -87,7 +87,7 @@ def image_of(places: Array, mirrors: Sequence[Direction]) -> Indices:
     return np.asarray(sum(beyond, np.zeros(len(places))), dtype=np.int64)
 
 
-def to_cell(places: Array, mirrors: Sequence[Direction]) -> Array:
+def mirror_to_cell(places: Array, mirrors: Sequence[Direction]) -> Array:
     """Return points (num_places, 3), mirrored to the positive side of all mirrors."""
     images = places.copy()
     for axis in mirrors:
@@ -100,7 +100,7 @@ def on_plane(places: Array, axis: int) -> Mask:
     return np.asarray(np.abs(places[:, axis]) <= _near(places))
 
 
-def matches(places: Array, among: Array) -> Indices | None:
+def match_points(places: Array, among: Array) -> Indices | None:
     """Return the indices (num_places,) of points in other points; None if a point is missing."""
     distance, number = cKDTree(among).query(places)
     if distance.max(initial=0.0) > _near(among):
@@ -118,7 +118,7 @@ def cell_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
     for axis in mirrors:
         mirror = np.ones(3)
         mirror[COMPONENT[axis]] = -1.0
-        partner = matches(mesh.points * mirror, mesh.points)
+        partner = match_points(mesh.points * mirror, mesh.points)
         if partner is None:
             raise NumericsError(f"a segment's mesh is not its own mirror image in {axis}")
         images = _sorted(partner[mesh.triangles], mesh.thickness)

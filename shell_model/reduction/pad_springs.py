@@ -23,7 +23,7 @@ from shell_model.segment.solver import ShiftedSolver, times
 SLOW, _FASTEST = 50.0, 10000.0
 
 # Fraction of the largest compliance below which the compliance of a force pattern is neglected.
-_NOTHING = 1.0e-4
+_NEGLIGIBLE = 1.0e-4
 
 
 class PadResponses(NamedTuple):
@@ -69,7 +69,7 @@ def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
     sizes = np.sqrt(np.einsum("wjj->j", residual) / len(residual))
     scale = np.outer(sizes, sizes)
     values, patterns = np.linalg.eigh(residual / scale)
-    values[values < _NOTHING * values.max()] = 0.0
+    values[values < _NEGLIGIBLE * values.max()] = 0.0
     inverse = np.divide(1.0, np.sqrt(values), out=np.zeros_like(values), where=values > 0.0)
     root, back = (
         np.einsum("wij,wj,wkj->wik", patterns, one, patterns) for one in (np.sqrt(values), inverse)
@@ -77,7 +77,7 @@ def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
     slowness, turn = np.linalg.eigh((back @ (inertia / scale) @ back).mean(axis=0))
     shifted = 1.0 / np.maximum(slowness, 1.0 / squared(_FASTEST))
     pulls = root @ turn
-    pulling = np.abs(pulls).max(axis=(0, 1)) > _NOTHING
+    pulling = np.abs(pulls).max(axis=(0, 1)) > _NEGLIGIBLE
     rows = sizes[:, None] * pulls * np.sqrt(shifted)
     return (shifted - squared(SLOW))[pulling], rows[..., pulling]
 

@@ -30,12 +30,12 @@ from shell_model.reduction.mirror import (
     SymmetryClass,
     cell_mesh,
     image_of,
-    matches,
+    match_points,
+    mirror_to_cell,
     on_plane,
     symmetry_classes,
-    to_cell,
 )
-from shell_model.segment.attachments import Attached
+from shell_model.segment.attachments import Attachments
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.shell import (
     Plates,
@@ -50,7 +50,7 @@ _Found = TypeVar("_Found")
 _COMPONENTS = np.arange(6).reshape(2, 3)
 
 # Fraction of the largest value of a force below which its part in a class is round-off.
-_NO_PART = 1.0e-9
+_ROUND_OFF = 1.0e-9
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class _ClassShell(Shell):
 
     cell: SymmetryCell
 
-    def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
+    def _assemble(self, form: Any, diagonal: float, attached: Attachments) -> PETSc.Mat:
         (row, column, value), free = self.cell.matrix(form), self.free
         fixed = np.where(row == column, self.plates.copies * diagonal, 0.0)
         value = np.where(free[row], value, fixed)
@@ -155,8 +155,8 @@ class Job:
     symmetry_class: SymmetryClass
     forces: Array
     readings: Array
-    springs: Attached
-    masses: Attached
+    springs: Attachments
+    masses: Attachments
 
     def shell(self, cell: SymmetryCell) -> Shell:
         """Return the shell of a cell in this class, with the energy of the whole segment."""
@@ -201,11 +201,11 @@ class SymmetryReduction:
             (3, shell.free.size), dtype=np.int64
         )
         for part, (nodes, dofs) in enumerate(shell.plates.nodes):
-            gathered = self._comm.gather(to_cell(nodes, self._mirrors))
+            gathered = self._comm.gather(mirror_to_cell(nodes, self._mirrors))
             rows_of_nodes: Sequence[Any] = []
             if gathered is not None:
                 places, rows = self.cell.plates.nodes[part]
-                rows_of_nodes = [rows[matches(some, places)] for some in gathered]
+                rows_of_nodes = [rows[match_points(some, places)] for some in gathered]
             self._row[dofs - first] = self._comm.scatter(rows_of_nodes)
             self._image_of_row[dofs - first] = image_of(nodes, self._mirrors)[:, None]
             self._component[dofs - first] = _COMPONENTS[part]
@@ -226,8 +226,8 @@ class SymmetryReduction:
             signs = symmetry_class.signs[:, self.cell.component]
             forces, read, springs, masses = (_sum_of_class(image, signs) for image in images)
             if forces.any():
-                pulled = Attached(springs, shell.springs.factors)
-                carried = Attached(masses, shell.masses.factors)
+                pulled = Attachments(springs, shell.springs.factors)
+                carried = Attachments(masses, shell.masses.factors)
                 jobs.append(Job(symmetry_class, forces, read, pulled, carried))
         return jobs
 
@@ -299,7 +299,9 @@ def share_jobs(
     The result is None on other ranks. ``submit`` passes every second job to another process.
     """
     roots = [number % comm.size for number in range(comm.bcast(len(jobs)))]
-    mine = {number: job for number, job in enumerate(_sent(comm, jobs, roots)) if job is not None}
+    mine = {
+        number: job for number, job in enumerate(_distribute(comm, jobs, roots)) if job is not None
+    }
     futures: dict[int, Future[Any]] = {}
     if submit is not None:
         # If the other process has ended, this process computes its jobs.
@@ -308,7 +310,9 @@ def share_jobs(
 
     def work() -> dict[int, _Found]:
         here = {n: compute(n, job) for n, job in mine.items() if n not in futures}
-        there = {n: outcome(one, partial(compute, n, mine[n])) for n, one in futures.items()}
+        there = {
+            n: result_or_compute(one, partial(compute, n, mine[n])) for n, one in futures.items()
+        }
         return here | there
 
     found = run_collectively(comm, work)
@@ -316,7 +320,7 @@ def share_jobs(
         yield root, found.pop(number, None)
 
 
-def outcome(future: Future[Any] | None, compute: Callable[[], _Found]) -> _Found:
+def result_or_compute(future: Future[Any] | None, compute: Callable[[], _Found]) -> _Found:
     """Return the result of another process, or compute it here if that process has ended."""
     with suppress(BrokenExecutor):
         if future is not None:
@@ -346,7 +350,7 @@ def run_collectively(comm: MPI.Comm, work: Callable[[], _Found]) -> _Found:
     return results[0]
 
 
-def _sent(comm: MPI.Comm, jobs: Sequence[Job], roots: Sequence[int]) -> Iterator[Job | None]:
+def _distribute(comm: MPI.Comm, jobs: Sequence[Job], roots: Sequence[int]) -> Iterator[Job | None]:
     """Send the jobs of rank 0 to their ranks; yield each job there and None elsewhere."""
     for number, root in enumerate(roots):
         if comm.rank == 0 and root != 0:
@@ -381,5 +385,5 @@ def _sum_of_class(images: Array, signs: Array) -> Array:
     for image, sign in zip(images, signs, strict=True):
         part += sign[:, None] * image
     largest = np.abs(images).max(axis=(0, 1), initial=0.0)
-    part[:, np.abs(part).max(axis=0, initial=0.0) <= _NO_PART * largest] = 0.0
+    part[:, np.abs(part).max(axis=0, initial=0.0) <= _ROUND_OFF * largest] = 0.0
     return part

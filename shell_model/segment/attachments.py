@@ -17,13 +17,13 @@ from petsc4py import PETSc
 
 from geometry.arrays import Array
 from geometry.boom import Direction, Segment
-from shell_model.segment.cross_section import Outline, Row
+from shell_model.segment.cross_section import Row, SectionNodes
 
 # Stiffness of a rigid rotational restraint, relative to G J_t / L or E J / L of its segment.
 RIGID_TURN = 1.0e5
 
 
-class Attached(NamedTuple):
+class Attachments(NamedTuple):
     """Springs or masses with the rows of their displacements.
 
     Args:
@@ -35,7 +35,9 @@ class Attached(NamedTuple):
     factors: Array
 
     @classmethod
-    def of(cls, rows: Sequence[Array], factors: Sequence[float], num_owned: int) -> Attached:
+    def from_rows(
+        cls, rows: Sequence[Array], factors: Sequence[float], num_owned: int
+    ) -> Attachments:
         """Return attachments of several rows (num_owned,)."""
         return cls(np.array(rows).reshape(-1, num_owned).T, np.array(factors, dtype=np.float64))
 
@@ -45,7 +47,7 @@ class Attached(NamedTuple):
             _add_outer_product(comm, matrix, row, float(factor))
 
 
-def springs(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
+def springs(segment: Segment) -> Iterator[tuple[float, Callable[[SectionNodes], Row], float]]:
     """Yield (x in m, function that returns the row, stiffness) of the springs of supports."""
     for support in segment.supports:
         section = segment.section_at(support.x)
@@ -55,23 +57,23 @@ def springs(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row],
             "y": segment.material.youngs_modulus * section.lateral_second_moment_of_area,
         }
         if support.stiffness is not None:
-            yield support.x, partial(Outline.wall_deflection, direction="z"), support.stiffness
-            yield support.x, partial(Outline.wall_deflection, direction="y"), support.stiffness
-            yield support.x, Outline.twist, RIGID_TURN * torsion / segment.length
+            yield support.x, partial(SectionNodes.wall_deflection, direction="z"), support.stiffness
+            yield support.x, partial(SectionNodes.wall_deflection, direction="y"), support.stiffness
+            yield support.x, SectionNodes.twist, RIGID_TURN * torsion / segment.length
         for direction, stiffness in bending.items():
-            turn = partial(Outline.rotation, direction=direction)
+            turn = partial(SectionNodes.rotation, direction=direction)
             if support.holds_slope(direction) and not support.clamped:
                 yield support.x, turn, RIGID_TURN * stiffness / segment.length
             elif support.rotation_stiffness is not None:
                 yield support.x, turn, support.rotation_stiffness
 
 
-def masses(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
+def masses(segment: Segment) -> Iterator[tuple[float, Callable[[SectionNodes], Row], float]]:
     """Yield (x in m, function that returns the row, mass in kg) of point masses."""
     for mass in segment.masses:
-        yield mass.x, partial(Outline.mean_displacement, component=0), mass.mass
-        yield mass.x, partial(Outline.wall_deflection, direction="y"), mass.mass
-        yield mass.x, partial(Outline.wall_deflection, direction="z"), mass.mass
+        yield mass.x, partial(SectionNodes.mean_displacement, component=0), mass.mass
+        yield mass.x, partial(SectionNodes.wall_deflection, direction="y"), mass.mass
+        yield mass.x, partial(SectionNodes.wall_deflection, direction="z"), mass.mass
 
 
 def _add_outer_product(comm: MPI.Comm, matrix: PETSc.Mat, local: Array, factor: float) -> None:

@@ -23,7 +23,7 @@ class Row(dict[int, float]):
     """Linear combination of degrees of freedom: weights by global number."""
 
     @classmethod
-    def of(cls, dofs: Indices, weights: Array) -> Row:
+    def from_weights(cls, dofs: Indices, weights: Array) -> Row:
         """Return the row with weights of degrees of freedom; weights of repeated ones are added."""
         row = cls()
         for dof, weight in zip(dofs.tolist(), weights.tolist(), strict=True):
@@ -67,7 +67,7 @@ def quadratic(s: Array) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class Outline:
+class SectionNodes:
     """Displacement nodes around the section at one x.
 
     Args:
@@ -83,9 +83,9 @@ class Outline:
     section: Section
 
     @classmethod
-    def around(
+    def gather(
         cls, comm: MPI.Comm, nodes: Array, node_dofs: Indices, section: Section, x: float
-    ) -> Outline:
+    ) -> SectionNodes:
         """Return the outline at x, the same on every rank. Collective.
 
         Args:
@@ -106,14 +106,14 @@ class Outline:
     def mean_displacement(self, component: int) -> Row:
         """Return the row of the mean of a displacement component over the area in m."""
         nodes, areas = self._area_weights()
-        return Row.of(self.dofs[nodes, component], areas / areas.sum())
+        return Row.from_weights(self.dofs[nodes, component], areas / areas.sum())
 
     def rotation(self, direction: Direction = "z") -> Row:
         """Return the row of the rotation in rad: w′ of the best fit u_x = −w′ z over the area."""
         nodes, areas = self._area_weights()
         z = self.places[nodes, COMPONENT[direction]]
         z = z - (areas @ z) / areas.sum()
-        return Row.of(self.dofs[nodes, _X], -areas * z / (areas @ z**2))
+        return Row.from_weights(self.dofs[nodes, _X], -areas * z / (areas @ z**2))
 
     def distortion(self) -> Row:
         """Return the row of the increase of the section's height in m.
@@ -163,7 +163,9 @@ class Outline:
             edge = int(np.clip(np.searchsorted(along[::2], place) - 1, 0, nodes.size // 2 - 1))
             left, _, right = along[2 * edge : 2 * edge + 3]
             shapes = quadratic(np.asarray((place - left) / (right - left)))
-            rows.append(Row.of(self.dofs[nodes[2 * edge : 2 * edge + 3], COMPONENT["z"]], shapes))
+            rows.append(
+                Row.from_weights(self.dofs[nodes[2 * edge : 2 * edge + 3], COMPONENT["z"]], shapes)
+            )
         return 0.5 * rows[0] + 0.5 * rows[1]
 
     def _slide(self, plate: Plate) -> Row:
@@ -175,7 +177,7 @@ class Outline:
     def _mean(self, plate: Plate, direction: Direction) -> Row:
         """Return the row of the mean displacement of a plate in a direction in m."""
         nodes, lengths = self._simpson(plate)
-        return Row.of(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
+        return Row.from_weights(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
 
     def _along(self, plate: Plate) -> tuple[Indices, Array]:
         """Return the nodes of a plate, alternately ends and middles, and their positions in m.

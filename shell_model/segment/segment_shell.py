@@ -15,8 +15,8 @@ from geometry.boom import Direction, Segment
 from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT, Section
 from shell_model import compat
-from shell_model.segment.attachments import Attached, masses, springs
-from shell_model.segment.cross_section import Outline, Row
+from shell_model.segment.attachments import Attachments, masses, springs
+from shell_model.segment.cross_section import Row, SectionNodes
 from shell_model.segment.shell import Shell, assemble_plates, free_rows
 from shell_model.segment.solver import times
 
@@ -56,10 +56,10 @@ class SegmentShell(Shell):
         loads = self._loads_on(lambda mesh: mesh.plain)
         return {direction: load / self.segment.area for direction, load in loads.items()}
 
-    def outline(self, x: float) -> Outline:
+    def outline(self, x: float) -> SectionNodes:
         """Return the outline at x, the same on every rank. Collective."""
         section = self.segment.section_at(x)
-        return Outline.around(self.comm, self.nodes, self.node_dofs, section, x)
+        return SectionNodes.gather(self.comm, self.nodes, self.node_dofs, section, x)
 
     def own_load(self, directions: Iterable[Direction]) -> Array:
         """Return the load vector (num_owned,) of the constant uniform loads in N."""
@@ -158,13 +158,13 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) 
     first = plates.space.dofmap.index_map.local_range[0]
     free = free_rows(plates.space, plates.supports)
 
-    def attached(what: Iterator[tuple[float, Callable[[Outline], Row], float]]) -> Attached:
+    def attached(what: Iterator[tuple[float, Callable[[SectionNodes], Row], float]]) -> Attachments:
         rows, factors = [], []
         for x, row, factor in what:
-            outline = Outline.around(comm, *plates.nodes[0], segment.section_at(x), x)
+            outline = SectionNodes.gather(comm, *plates.nodes[0], segment.section_at(x), x)
             rows.append(_local_row(first, free, row(outline)))
             factors.append(factor)
-        return Attached.of(rows, factors, free.size)
+        return Attachments.from_rows(rows, factors, free.size)
 
     return SegmentShell(
         comm,

@@ -19,7 +19,7 @@ from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT
 from geometry.segment import Segment
 from shell_model import compat
-from shell_model.segment.attachments import Attached
+from shell_model.segment.attachments import Attachments
 from shell_model.segment.cross_section import on_outline
 from shell_model.segment.forms import ShellForms
 
@@ -81,13 +81,13 @@ class Shell:
     comm: MPI.Comm
     plates: Plates
     conditions: list[Any]
-    springs: Attached
-    masses: Attached
+    springs: Attachments
+    masses: Attachments
 
     @cached_property
     def stiffness(self) -> PETSc.Mat:
         """The stiffness (num_dofs, num_dofs), positive diagonal in fixed rows. Collective."""
-        return self._assembled(self.plates.forms.stiffness, 1.0, self.springs)
+        return self._assemble(self.plates.forms.stiffness, 1.0, self.springs)
 
     @cached_property
     def mass(self) -> PETSc.Mat:
@@ -95,18 +95,18 @@ class Shell:
 
         So modes of fixed degrees of freedom have infinite frequency.
         """
-        return self._assembled(self.plates.forms.mass, 0.0, self.masses)
+        return self._assemble(self.plates.forms.mass, 0.0, self.masses)
 
     @cached_property
     def geometric(self) -> PETSc.Mat | None:
         """The matrix K_G (num_dofs, num_dofs); None without axial forces. Collective."""
         if not self.plates.compressed:
             return None
-        return self._assembled(
-            self.plates.forms.geometric, 0.0, Attached.of([], [], self.free.size)
+        return self._assemble(
+            self.plates.forms.geometric, 0.0, Attachments.from_rows([], [], self.free.size)
         )
 
-    def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
+    def _assemble(self, form: Any, diagonal: float, attached: Attachments) -> PETSc.Mat:
         matrix = compat.assemble_matrix(form, self.conditions, diagonal)
         matrix.scale(self.plates.copies)
         attached.add_to(self.comm, matrix)

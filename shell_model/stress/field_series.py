@@ -49,7 +49,7 @@ def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float])
         if not known[0] <= t <= known[-1]:
             raise ValueError(f"time must be between {known[0]:g} and {known[-1]:g} s, got {t:g}")
     steps = np.unique([np.abs(known - t).argmin() for t in times])
-    shell, model = ShellStress.of(fields), str(fields.attrs["model"])
+    shell, model = ShellStress.from_fields(fields), str(fields.attrs["model"])
     segment = (fields["segment"].values + 1).astype(np.int32)
     modes, states = fields["modes"].values, fields["state"].values[steps]
     digits = len(str(steps.size - 1))

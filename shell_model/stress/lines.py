@@ -28,7 +28,7 @@ def lines(fields: xr.Dataset, boom: Boom) -> list[Line]:
     still = fields.assign(
         state=(("time", "mode"), np.zeros((1, fields.sizes["mode"]))), time=("time", np.zeros(1))
     )
-    shell = ShellStress.of(still)
+    shell = ShellStress.from_fields(still)
     return [_line(shell, fields, boom, number) for number in range(len(shell.plates))]
 
 
@@ -36,7 +36,7 @@ def _line(shell: ShellStress, fields: xr.Dataset, boom: Boom, number: int) -> Li
     walls = shell.wall < len(shell.plates[number])
     triangles = np.flatnonzero((shell.segment == number) & walls)
     acting = {support.x for support in boom.segments[number].supports}
-    cuts = cuts_around(shell.spans[triangles], sorted(acting.union(boom.stations_of(number))))
+    cuts = band_boundaries(shell.spans[triangles], sorted(acting.union(boom.stations_of(number))))
     band = np.searchsorted(cuts, shell.centroids[triangles, 0]) - 1
     moved = _moved(shell, fields, triangles, band, cuts.size - 1)
     corners = fields["points"].values[fields["triangles"].values[triangles]]
@@ -62,7 +62,7 @@ def _line(shell: ShellStress, fields: xr.Dataset, boom: Boom, number: int) -> Li
     return Line(0.5 * (cuts[1:] + cuts[:-1]), rows, paired=False)
 
 
-def cuts_around(spans: Array, places: Sequence[float]) -> Array:
+def band_boundaries(spans: Array, places: Sequence[float]) -> Array:
     """Return ascending x in m of mesh lines around the whole section that bound bands.
 
     Args:

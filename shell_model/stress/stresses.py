@@ -38,7 +38,7 @@ FACES: dict[Face, float] = {"outer": 1.0, "middle": 0.0, "inner": -1.0}
 SAME_LINE = 1.0e-6
 
 # Tolerance in m² for areas.
-_NOTHING = 1.0e-300
+_NEGLIGIBLE = 1.0e-300
 
 # Number of values of a batch of times, which fits in the cache of the processor.
 _AT_ONCE = 1_000_000
@@ -125,7 +125,7 @@ class ShellStress:
     axial: npt.NDArray[np.float32]
 
     @classmethod
-    def of(cls, fields: xr.Dataset) -> ShellStress:
+    def from_fields(cls, fields: xr.Dataset) -> ShellStress:
         """Return the stresses of the fields of a run, see :mod:`shell_model.stress.fields`."""
         segment, state = fields["segment"].values, fields["state"].values
         numbers = range(1, int(segment.max()) + 2)
@@ -145,7 +145,7 @@ class ShellStress:
         )
 
     @classmethod
-    def still(cls, mesh: PlatedMesh, modes: Modes) -> ShellStress:
+    def at_rest(cls, mesh: PlatedMesh, modes: Modes) -> ShellStress:
         """Return the stresses of one segment at rest, from its stress components in Pa."""
         return cls(
             **_geometry(mesh.points, mesh.triangles),
@@ -302,7 +302,7 @@ def within(part: Indices, reach: Array, strength: Array, place: Array) -> Array:
         place: coordinates (num_triangles,) of the centroids in m.
     """
     whole = np.bincount(part, strength)
-    about = place - (np.bincount(part, strength * place) / np.maximum(whole, _NOTHING))[part]
+    about = place - (np.bincount(part, strength * place) / np.maximum(whole, _NEGLIGIBLE))[part]
     second = np.bincount(part, strength * about**2)[part]
     flat = reach[part] < SAME_LINE
     missing = whole[part] * reach[part] ** 2 / 12.0 - second

@@ -12,7 +12,7 @@ from geometry.arrays import Array, Indices
 from geometry.mesh import mesh_segment
 from geometry.plating import plain_thickness
 from geometry.section import Section
-from shell_model.segment.cross_section import Outline
+from shell_model.segment.cross_section import SectionNodes
 from shell_model.segment.forms import DRILLING
 from studies.reference_models.benchmarks import X, Y, Z, grid
 from studies.reference_models.plates import STEEL
@@ -170,7 +170,7 @@ class PlainBox:
         for support in supports:
             held |= shell.hold_at(X, support, [Y, Z])
         at = shell.at(X, x)
-        outline = Outline(x, shell.nodes[at], shell.node_dofs[at], self.section)
+        outline = SectionNodes(x, shell.nodes[at], shell.node_dofs[at], self.section)
         force = np.zeros(shell.num_dofs)
         for dof, weight in outline.flange_deflection(1.0, y).items():
             force[dof] = weight

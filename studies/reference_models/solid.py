@@ -25,8 +25,8 @@ from geometry.boom import Material, Segment
 from geometry.section import BoxSection
 from shell_model import compat
 from shell_model.reduction.mirror import SymmetryClass, on_plane
-from shell_model.segment.attachments import Attached
-from shell_model.segment.cross_section import Outline, Row
+from shell_model.segment.attachments import Attachments
+from shell_model.segment.cross_section import Row, SectionNodes
 from shell_model.segment.shell import ON_LINE, Plates, Shell
 
 # Ratio of an edge to the one before it; effects decay more slowly at places than at corners.
@@ -170,8 +170,8 @@ class SolidFamily(Shell):
         free[self.fixed] = False
         return free
 
-    def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
-        matrix = super()._assembled(form, diagonal, attached)
+    def _assemble(self, form: Any, diagonal: float, attached: Attachments) -> PETSc.Mat:
+        matrix = super()._assemble(form, diagonal, attached)
         matrix.zeroRowsColumns(self.fixed.astype(PETSc.IntType), diagonal)
         return matrix
 
@@ -185,10 +185,10 @@ class SolidFamily(Shell):
         """Range of all rows."""
         return 0, self.num_dofs
 
-    def outline(self, x: float) -> Outline:
+    def outline(self, x: float) -> SectionNodes:
         """Return the means at x, a plane of the mesh; only :meth:`row` accepts their readings."""
         at = np.flatnonzero(np.abs(self.middles[:, 0] - x) < ON_LINE)
-        return Outline(x, self.middles[at], 3 * at[:, None] + np.arange(3), self.section)
+        return SectionNodes(x, self.middles[at], 3 * at[:, None] + np.arange(3), self.section)
 
     def row(self, weights: Row) -> Array:
         """Return the row (num_dofs,) of a reading of means for the motions of the class."""
@@ -259,7 +259,7 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: SymmetryClass) -> 
         fixed = slice(0 if support.kind == "clamped" else 1, None)
         free[np.abs(nodes[:, 0] - support.x) < ON_LINE, fixed] = False
     middles, means = _means(mesh, nodes, family)
-    nothing = Attached.of([], [], free.size)
+    nothing = Attachments.from_rows([], [], free.size)
     held = np.flatnonzero(~free)
     return SolidFamily(comm, plates, [], nothing, nothing, held, section, middles, means)
 

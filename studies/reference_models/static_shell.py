@@ -20,7 +20,7 @@ from dynamics.failure import NumericsError
 from geometry.arrays import Array, Indices, Mask
 from geometry.boom import Material
 from shell_model import compat
-from shell_model.segment.attachments import Attached
+from shell_model.segment.attachments import Attachments
 from shell_model.segment.forms import DRILLING, SHEAR_CORRECTION, ShellForms
 from shell_model.segment.shell import ON_LINE, Plates, Shell
 from shell_model.segment.solver import times
@@ -185,7 +185,7 @@ class StaticShell:
         rows = np.fromiter(dofs, dtype=np.int32, count=len(dofs))
         zero = fem.Function(self._plates.space)
         conditions = [fem.dirichletbc(zero, np.sort(rows))]
-        nothing = Attached.of([], [], self.num_dofs)
+        nothing = Attachments.from_rows([], [], self.num_dofs)
         return Shell(MPI.COMM_SELF, self._plates, conditions, nothing, nothing)
 
 

@@ -258,7 +258,7 @@ def integrate_directly(
     substeps = max(1, int(np.ceil(output_step / step * (1.0 - 1e-12))))
     alpha = GeneralisedAlpha(output_step / substeps, radius)
     steppers = [
-        SegmentStepper(shell, load, _rows(full.resisting, number, shell), alpha)
+        SegmentStepper(shell, load, _rows(full.joint_readings, number, shell), alpha)
         for number, (shell, load) in enumerate(zip(full.shells, full.own_loads, strict=True))
     ]
     try:

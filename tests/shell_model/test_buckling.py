@@ -127,7 +127,7 @@ def at_rest(boom: Boom, options: ShellOptions) -> tuple[ReducedShell, StaticStat
     """Return the reduced shell of a boom and its state at rest."""
     shell = reduce_boom(boom, options, MPI.COMM_SELF)
     assert shell.fields is not None
-    return shell, StaticState.of(shell.fields, shell.system, equilibrium_at(shell.system))
+    return shell, StaticState.from_fields(shell.fields, shell.system, equilibrium_at(shell.system))
 
 
 def buckled(boom: Boom, options: ShellOptions, count: int = 1) -> list[SegmentBuckling]:

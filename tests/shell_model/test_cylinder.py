@@ -68,7 +68,7 @@ def test_walls_carry_what_the_cylinder_pushes_along() -> None:
     force = float(made.system.observers["cylinder_force"].row @ position)
     assert made.fields is not None
     state = ("time", "mode"), position[None].astype(np.float32)
-    stress = ShellStress.of(made.fields.assign(state=state, time=("time", [0.0])))
+    stress = ShellStress.from_fields(made.fields.assign(state=state, time=("time", [0.0])))
     along, _ = CYLINDER.direction
     for x, expected in ((1.0, along * force), (2.0, along * force), (4.0, 0.0)):
         axial = sum(wall.axial for wall in wall_forces(stress, 0.0, 0, x).values())

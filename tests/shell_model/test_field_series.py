@@ -75,7 +75,7 @@ def test_a_time_outside_the_run_is_refused(fields: xr.Dataset, tmp_path: Path) -
 
 def test_a_series_of_stresses_is_that_of_each_instant(fields: xr.Dataset) -> None:
     """Reference: the instants, one by one; means of triangles are those of their components."""
-    shell = ShellStress.of(fields)
+    shell = ShellStress.from_fields(fields)
     second = np.array([1])
     ((part, stress),) = shell.over_time(second, slice(1, None, 2))
     assert part == slice(0, 2)

@@ -24,7 +24,7 @@ from geometry.boom import Boom, Load, Support
 from geometry.section import BoxSection
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
-from shell_model.stress.lines import cuts_around, lines
+from shell_model.stress.lines import band_boundaries, lines
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, box_segment, flat_boom
 from tests.touching import touching
 
@@ -104,7 +104,7 @@ def test_a_shell_in_space_bends_and_twists_as_beams_do() -> None:
 def test_cuts_pass_no_triangle() -> None:
     """Reference: by hand. Triangles from 0 to 2 and from 1 to 3 leave 0, 3 and 4 m."""
     spans = np.array([[0.0, 2.0], [1.0, 3.0], [3.0, 4.0]])
-    assert cuts_around(spans, []).tolist() == [0.0, 3.0, 4.0]
+    assert band_boundaries(spans, []).tolist() == [0.0, 3.0, 4.0]
 
 
 def test_cuts_are_where_something_acts() -> None:
@@ -113,7 +113,7 @@ def test_cuts_are_where_something_acts() -> None:
     """
     edges = np.linspace(0.0, 10.0, 1001)
     spans = np.column_stack([edges[:-1], edges[1:]])
-    cuts = cuts_around(spans, [2.01])
+    cuts = band_boundaries(spans, [2.01])
     assert 2.01 in cuts.round(9)
     assert np.diff(cuts).min() > 10.0 / 60.0 - 1e-9
     assert cuts.size == 59

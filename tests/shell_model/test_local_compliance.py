@@ -141,7 +141,7 @@ def _squeezed(boom: Boom, tolerance: float | None) -> float:
     options = ShellOptions(0.1, contact_tolerance=tolerance)
     shells = assemble_segments(boom, options, MPI.COMM_WORLD)
     contacts = (
-        ShellContacts.of(touching(boom, LAW), shells, "near webs", SurfaceOptions())
+        ShellContacts.from_shells(touching(boom, LAW), shells, "near webs", SurfaceOptions())
         .rows({})
         .contacts
     )

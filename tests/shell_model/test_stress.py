@@ -148,7 +148,7 @@ def at_rest(
     fields = shell.fields.assign(
         state=(("time", "mode"), state[None].astype(np.float32)), time=("time", [0.0])
     )
-    return fields, ShellStress.of(fields)
+    return fields, ShellStress.from_fields(fields)
 
 
 def clamped(section: Section, size: float) -> ShellStress:
@@ -262,7 +262,7 @@ def stressed(boom: Boom) -> ShellStress:
     assert fields is not None
     still = np.zeros((1, fields.sizes["mode"]))
     moving = fields.assign(state=(("time", "mode"), still), time=("time", np.zeros(1)))
-    return ShellStress.of(moving)
+    return ShellStress.from_fields(moving)
 
 
 def axial_force(shell: ShellStress, x: float) -> float:
@@ -328,7 +328,7 @@ def shell() -> ShellStress:
     spot[mesh.walls != mesh.plates.index("top")] = np.inf
     modes[1, spot.argmin(), 3] = 8.0e6
     states = np.stack([np.sin(np.pi * TIME) ** 2, TIME[701] == TIME], axis=1).astype(np.float32)
-    still = ShellStress.still(mesh, modes[:1])
+    still = ShellStress.at_rest(mesh, modes[:1])
     return replace(still, modes=[modes], states=[states], time=TIME)
 
 

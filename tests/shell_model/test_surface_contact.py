@@ -268,7 +268,7 @@ def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
     boom = replace(boom, joints=(replace(boom.joints[0], pads=pads),))
     shells = assemble_segments(boom, ShellOptions(mesh_size=0.4), MPI.COMM_SELF)
     seen = touching(boom, LAW, LAW)
-    rows = ShellContacts.of(seen, shells, "near webs", SurfaceOptions()).rows({})
+    rows = ShellContacts.from_shells(seen, shells, "near webs", SurfaceOptions()).rows({})
     inner, places = shells[1], places_of_pads(boom)
     corners = 1 if len(sides) == 2 else 2
     assert len(rows.contacts) == 2 * len(pads) * corners

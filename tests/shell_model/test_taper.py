@@ -174,9 +174,9 @@ def test_pads_lie_on_tapered_walls(pad: PadSize | None, lateral: float | None) -
     """
     boom = tapered_boom(pad, lateral)
     shells = assemble_segments(boom, ShellOptions(mesh_size=0.3), MPI.COMM_SELF)
-    rows = ShellContacts.of(touching(boom, LAW, LAW), shells, "near webs", SurfaceOptions()).rows(
-        {}
-    )
+    rows = ShellContacts.from_shells(
+        touching(boom, LAW, LAW), shells, "near webs", SurfaceOptions()
+    ).rows({})
     inner = shells[1]
     directions = [boom.stations[contact.station][1] for contact in rows.contacts]
     assert len(directions) == (4 if lateral is None else 16)

@@ -22,7 +22,7 @@ from geometry.plating import add_thickness
 from geometry.section import BoxSection
 from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, SymmetryClass
 from shell_model.reduction.symmetry import SymmetryReduction
-from shell_model.segment.cross_section import Outline
+from shell_model.segment.cross_section import SectionNodes
 from shell_model.segment.segment_shell import assemble_segment
 from shell_model.segment.solver import ShiftedSolver, quadratic_form, times
 from studies.reference_models.single_segment import natural_frequencies
@@ -124,9 +124,9 @@ def test_rigid_motions_cost_nothing_and_carry_the_mass() -> None:
 def test_means_read_rigid_motions_and_thickening() -> None:
     """Reference: analytic. A lift, a turn about the axis, and a section that swells."""
     fields = {
-        ALONG_Z: (lambda x, y, z: (0.0 * x, 0.0 * x, 1.0 + x), Outline.mean_deflection, 3.0),
-        TWISTING: (lambda x, y, z: (0.0 * x, -z, y), Outline.twist, 1.0),
-        BREATHING: (lambda x, y, z: (0.0 * x, y, z), Outline.distortion, BOX.height),
+        ALONG_Z: (lambda x, y, z: (0.0 * x, 0.0 * x, 1.0 + x), SectionNodes.mean_deflection, 3.0),
+        TWISTING: (lambda x, y, z: (0.0 * x, -z, y), SectionNodes.twist, 1.0),
+        BREATHING: (lambda x, y, z: (0.0 * x, y, z), SectionNodes.distortion, BOX.height),
     }
     for family, (field, read, expected) in fields.items():
         solid = assemble_solid(segment(), coarse(), family)

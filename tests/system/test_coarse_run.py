@@ -97,7 +97,7 @@ def test_stresses_beside_a_support_are_those_of_a_beam(whole: Path) -> None:
     beside = patch.sel(segment="outer", place=2.0)
     worst = float(beside["time"][int(beside.argmax("time"))])
     with xr.open_dataset(whole / "fields.nc", engine="scipy") as fields:
-        shell = ShellStress.of(fields.load())
+        shell = ShellStress.from_fields(fields.load())
     moments = [
         sum(forces.moment for forces in wall_forces(shell, worst, 0, x).values())
         for x in (1.9, 2.1)
