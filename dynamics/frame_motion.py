@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Slewing and luffing: the inertia forces in the frame that turns with the boom.
+"""Slewing and luffing: inertia forces in the frame that rotates with the boom.
 
-The frame turns by ψ(t) about the vertical and by the luffing angle α(t) about the foot of the boom.
-With the distance σ = x − x_foot + s along the boom, s the extension, and the distance
-ρ = r + σ cos α from the axis of slewing, its points have the accelerations
+The frame rotates by ψ(t) about the vertical and by the luffing angle α(t) about the foot of the
+boom. With the extension s, the distance σ = x − x_foot + s along the boom, and the distance
+ρ = r + σ cos α from the slewing axis, its points have the accelerations
 
     a_x = s̈ − σ α̇² − ψ̇² ρ cos α,    a_y = ρ ψ̈ + 2 ψ̇ ρ̇,    a_z = σ α̈ + 2 ṡ α̇ + ψ̇² ρ sin α
 
-along the boom, sideways and across it (Goldstein 1980). Masses push the boom by −m a. Deflections
-are so small that they change no acceleration.
+along the boom, sideways and across it (Goldstein 1980). The inertia force of a mass is −m a. The
+effect of deflections on accelerations is neglected.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import numpy as np
 from dynamics.arrays import Array
 from dynamics.excitation import HistorySum, MotionLaw
 
-# Number of times at which the peak of an acceleration is sought, beside the kinks.
+# Number of times, in addition to kinks, at which the peak of an acceleration is searched.
 _SAMPLES = 2001
 
 _RESTING = HistorySum(())
@@ -36,8 +36,8 @@ class FrameMotion:
         luff: change of the luffing angle in degrees over time.
         angle: luffing angle at t = 0 in degrees.
         foot: x of the foot in m.
-        radius: horizontal distance r in m of the foot from the axis of slewing, positive outwards.
-        gravity: acceleration of gravity in m/s²; 0 if nothing weighs.
+        radius: horizontal distance r in m of the foot from the slewing axis, positive outwards.
+        gravity: acceleration of gravity in m/s²; 0 without weight.
     """
 
     slew: MotionLaw = _RESTING
@@ -47,18 +47,18 @@ class FrameMotion:
     radius: float = 0.0
     gravity: float = 0.0
 
-    def slewed(self, time: Array, order: int = 0) -> Array:
+    def slew_angle(self, time: Array, order: int = 0) -> Array:
         """Return ψ in rad, or its first or second derivative, at times in s."""
         return _angle(self.slew, time, order)
 
-    def luffed(self, time: Array, order: int = 0) -> Array:
+    def luff_angle(self, time: Array, order: int = 0) -> Array:
         """Return α in rad, or its first or second derivative, at times in s."""
         change = _angle(self.luff, time, order)
         return change if order else np.deg2rad(self.angle) + change
 
-    def place(self, time: Array, x: float, extension: MotionLaw) -> tuple[Array, Array]:
-        """Return distance from the axis and height above the foot in m of a point of the boom."""
-        along, luffed = x - self.foot + extension(time), self.luffed(time)
+    def position(self, time: Array, x: float, extension: MotionLaw) -> tuple[Array, Array]:
+        """Return the distance from the slewing axis and the height above the foot in m."""
+        along, luffed = x - self.foot + extension(time), self.luff_angle(time)
         return self.radius + along * np.cos(luffed), along * np.sin(luffed)
 
     def accelerations(self, time: Array, x: float, extension: MotionLaw) -> Array:
@@ -66,18 +66,18 @@ class FrameMotion:
 
         Args:
             time: times.
-            x: initial place of the point in m.
+            x: initial position of the point in m.
             extension: travel in m of its segment.
         """
         along, speed = x - self.foot + extension(time), extension.rate(time, 1)
-        luffed, turn, faster = (self.luffed(time, order) for order in range(3))
+        luffed, turn, faster = (self.luff_angle(time, order) for order in range(3))
         cosine, sine = np.cos(luffed), np.sin(luffed)
-        radius, slew = self.radius + along * cosine, self.slewed(time, 1)
+        radius, slew = self.radius + along * cosine, self.slew_angle(time, 1)
         out = speed * cosine - along * sine * turn
         return np.array(
             np.broadcast_arrays(
                 extension.rate(time, 2) - along * turn**2 - slew**2 * radius * cosine,
-                radius * self.slewed(time, 2) + 2.0 * slew * out,
+                radius * self.slew_angle(time, 2) + 2.0 * slew * out,
                 along * faster + 2.0 * speed * turn + slew**2 * radius * sine,
             )
         )
@@ -85,16 +85,16 @@ class FrameMotion:
 
 @dataclass(frozen=True, slots=True)
 class FrameAcceleration:
-    """Acceleration of a place of the boom by slewing and luffing, as a history of inertia loads.
+    """Acceleration of a point of the boom by slewing and luffing; a history of inertia loads.
 
-    Along z it includes the change of gravity across the boom, g (cos α − cos α₀), and along x that
-    of gravity along it.
+    It includes the change of gravity across the boom, g (cos α − cos α₀) along z, and along the
+    boom, g (sin α − sin α₀) along x.
 
     Args:
         frame: slewing and luffing of the boom.
         direction: component of the acceleration.
-        x: place in m; None for the growth of the acceleration per m of x.
-        extension: travel of its segment.
+        x: position in m; None for the increase of the acceleration per m of x.
+        extension: travel of the segment with the point.
     """
 
     frame: FrameMotion
@@ -110,7 +110,7 @@ class FrameAcceleration:
 
     @property
     def fastest(self) -> float:
-        """Twice the sum of those of angles and extension in rad/s, since these are multiplied."""
+        """An upper bound of the frequency in rad/s, for products of angles and extension."""
         laws = (self.frame.slew, self.frame.luff, self.extension)
         return 2.0 * sum(law.fastest for law in laws)
 
@@ -128,7 +128,7 @@ class FrameAcceleration:
                 frame.accelerations(time, x, self.extension)[component] for x in (1.0, 0.0)
             )
             return np.asarray(one - other)
-        luffed, start = frame.luffed(time), np.deg2rad(frame.angle)
+        luffed, start = frame.luff_angle(time), np.deg2rad(frame.angle)
         weight = {
             "x": np.sin(luffed) - np.sin(start),
             "y": 0.0,
@@ -139,14 +139,14 @@ class FrameAcceleration:
 
 
 class PathAcceleration(FrameAcceleration):
-    """Acceleration of a place of the straight boom along an axis that stands still.
+    """Acceleration of a point of the straight boom along a fixed axis.
 
-    z points up, and x outwards at ψ = 0; arguments as of :class:`FrameAcceleration`.
+    z points up, and x outwards at ψ = 0. Arguments are those of :class:`FrameAcceleration`.
     """
 
     def __call__(self, time: Array) -> Array:
         along, aside, across = self.frame.accelerations(time, self.x or 0.0, self.extension)
-        luffed, slewed = self.frame.luffed(time), self.frame.slewed(time)
+        luffed, slewed = self.frame.luff_angle(time), self.frame.slew_angle(time)
         if self.direction == "z":
             return np.asarray(along * np.sin(luffed) + across * np.cos(luffed))
         out = along * np.cos(luffed) - across * np.sin(luffed)

@@ -6,16 +6,15 @@ tension,
 
     T = k max(w cos α − z + h(t) − s, 0),
 
-with the deflection w of the tip across the boom, the luffing angle α, the length h that the winch
-has wound up since t = 0, and the slack s. The ground carries the load while it lies there. Rope and
-ground are contact rows. A travel moves the row of the rope, so that the energy balance includes the
-work of the winch.
+with the deflection w of the tip across the boom, the luffing angle α, the hoisted length h since
+t = 0, and the slack s. Until lift-off the ground carries the load. Rope and ground are contact
+rows. The winch is a travel of the rope's row, so that the energy balance includes its work.
 
-A load that swings as a pendulum of the length l has two horizontal coordinates X and Y besides, in
-axes that stand still, relative to the place of the tip of the straight boom. For small angles, the
-tip draws it by the springs m g/l in both. Its acceleration together with that of this place is the
-force of the springs over m. No term of a turning frame is left out, since the axes stand still;
-slewing and luffing turn the rows that read the tip.
+A load that swings as a pendulum of length l has two further coordinates X and Y, its horizontal
+displacements relative to the tip of the straight boom in fixed axes. For small angles, springs of
+stiffness m g/l connect it with the tip. The acceleration of the tip of the straight boom is an
+inertia load. Slewing and luffing rotate the rows of the tip. Since the axes are fixed, the
+equations have no further terms.
 """
 
 from __future__ import annotations
@@ -46,10 +45,10 @@ class Pendulum:
     Args:
         length: distance l from the tip to the load in m.
         frame: slewing and luffing of the boom.
-        x: initial place of the tip along the boom in m.
+        x: initial position of the tip along the boom in m.
         extension: travel of the tip along the boom.
-        winds: forces on the load in N along X, which points outwards at t = 0, or Y, and their
-            histories.
+        winds: (axis, force in N, history) of each wind force on the load; X points outwards at
+            t = 0.
     """
 
     length: float
@@ -63,9 +62,12 @@ class Pendulum:
 
         Args:
             time: time in s.
-            across, lateral: rows (num_modes,) of its deflections along z and y of the boom.
+            across, lateral: rows (num_modes,) of the deflections of the tip along z and y.
         """
-        luffed, slewed = self.frame.luffed(np.array(time)), self.frame.slewed(np.array(time))
+        luffed, slewed = (
+            self.frame.luff_angle(np.array(time)),
+            self.frame.slew_angle(np.array(time)),
+        )
         out = -np.sin(luffed) * across
         return np.array(
             [
@@ -86,9 +88,8 @@ class HangingLoad:
         gravity: acceleration in m/s².
         hoist: hoisted length in m over time; None for a rope of constant length.
         cosine: cos α of the luffing angle.
-        slack: s in m at w = 0 of a load that lies on the ground at t = 0; None for a load that
-            hangs.
-        pendulum: horizontal motion of a load that hangs; None if it only moves vertically.
+        slack: s in m at w = 0 of a load on the ground at t = 0; None for a load that hangs.
+        pendulum: horizontal motion of a load that hangs; None for vertical motion only.
 
     Raises:
         ValueError: mass, stiffness or gravity is not finite and positive.
@@ -115,9 +116,8 @@ class HangingLoad:
     def attach(self, system: GapSystem, tip: Array, x: float) -> GapSystem:
         """Return the system of a boom with the load at its tip.
 
-        The load has the last coordinates. The stations of rope, springs of a pendulum and ground
-        follow those of the boom, with one contact row each. Under a flat boom the load swings in
-        the plane of the boom alone.
+        The load adds the last coordinates, and stations with one contact row each for rope, springs
+        of a pendulum and ground. Under a flat boom the load swings only in the plane of the boom.
 
         Args:
             system: gap system of the boom without the load.
@@ -234,7 +234,7 @@ class HangingLoad:
             force.attrs["weight"] = self.weight
             data[name.replace("contact", "rope")] = force
         if self.pendulum is not None:
-            slewed = self.pendulum.frame.slewed(motion.time)
+            slewed = self.pendulum.frame.slew_angle(motion.time)
             # The gaps of the springs, the tip's place less the load's, in axes that stand still.
             gaps = -motion.data["gap"].values.T[own + 1 :]
             one, other = gaps if len(gaps) == 2 else (gaps[0], np.zeros(slewed.shape))

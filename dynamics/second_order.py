@@ -2,8 +2,8 @@
 """Second-order theory: modes under constant axial forces, and buckling loads.
 
 In the modes of the unloaded boom the stiffness is diag(ω²) − G, with G = Φᵀ K_G Φ of the geometric
-stiffness (Timoshenko and Gere 1961). A segment that only contacts support may be unstable: its
-rotation has a negative ω².
+stiffness (Timoshenko and Gere 1961). Without contact, a segment whose supports are contacts may be
+unstable: its rotation has a negative ω².
 """
 
 from __future__ import annotations

@@ -69,7 +69,7 @@ class Plate(NamedTuple):
         return np.asarray(np.subtract(self.end, self.start) / self.length)
 
     def distance(self, places: Array) -> Array:
-        """Return the distance (num_places,) of places (num_places, 2) from the mid-line, in m."""
+        """Return the distance (num_places,) in m of points (num_places, 2) from the mid-line."""
         tangent = self.tangent
         arms = places - np.array(self.start)
         along = arms @ tangent

@@ -62,7 +62,7 @@ class State(NamedTuple):
         y: (num_rows,) displacements of the rows in m.
         force: (num_rows,) forces of the last step in N.
         axial_push: (num_modes,) K_G a of the moving axial forces in the last step.
-        tally: sums over all steps, by the indices above.
+        tally: sums over all steps; ``TIME`` to ``CONTACT`` are its indices.
         driven: (num_travels,) cumulative work of each drive in J.
         crest: (num_contacts,) largest force of all steps in N.
         resolving: (num_contacts,) step in s that resolves the contact at its largest force;

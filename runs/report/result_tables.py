@@ -239,7 +239,7 @@ def luffing_table(results: Results) -> Table | None:
         return None
     frame = frame_motion(results.case, boom.segments)
     time, rows = data["time"].values, []
-    turns = frame.luffed(time) - frame.luffed(time[0])
+    turns = frame.luff_angle(time) - frame.luff_angle(time[0])
     for position, cylinder in enumerate(boom.cylinders, start=1):
         foot = boom.segments[cylinder.segment].foot
         assert foot is not None

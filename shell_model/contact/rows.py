@@ -150,7 +150,7 @@ class ShellContacts:
         line: ContactLine,
         surface: SurfaceOptions,
     ) -> ShellContacts:
-        """Create the contacts of shells. Collective.
+        """Return the contacts between shells. Collective.
 
         Args:
             boom, line: as in the class.

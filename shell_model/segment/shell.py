@@ -139,7 +139,7 @@ class Shell:
 
     @property
     def owned(self) -> tuple[int, int]:
-        """The first global row of this rank, and the first row after its last one."""
+        """The range of global rows of this rank: its first row, and its last row plus one."""
         first, last = self.space.dofmap.index_map.local_range
         return int(first), int(last)
 

@@ -59,8 +59,8 @@ def test_numbers_of_no_shaper(numbers: tuple[float, ...], message: str) -> None:
 
 def position(frame: FrameMotion, time: Array, x: float, extension: MotionLaw) -> Array:
     """Return the place (3, ...) of a point of the boom in axes that stand still."""
-    out, up = frame.place(time, x, extension)
-    slew = frame.slewed(time)
+    out, up = frame.position(time, x, extension)
+    slew = frame.slew_angle(time)
     return np.array([out * np.cos(slew), out * np.sin(slew), up])
 
 
@@ -74,7 +74,7 @@ def test_accelerations() -> None:
     time = TIME[np.abs(np.subtract.outer(TIME, np.array(LAWS[1].kinks))).min(axis=1) > h]
     places = [position(frame, time + shift, x, extension) for shift in (-h, 0.0, h)]
     one, two, three = (places[2] - 2.0 * places[1] + places[0]) / h**2
-    slew, luff = frame.slewed(time), frame.luffed(time)
+    slew, luff = frame.slew_angle(time), frame.luff_angle(time)
     out = one * np.cos(slew) + two * np.sin(slew)
     sideways = two * np.cos(slew) - one * np.sin(slew)
     expected = [

@@ -158,8 +158,8 @@ def test_load_that_swings_while_the_boom_slews_and_luffs() -> None:
     def rates(time: float, state: np.ndarray) -> np.ndarray:
         (w, v, z, r, t), speeds = state[:5], state[5:]
         now = np.array(time)
-        luffed = frame.luffed(now)
-        slewed, turn, faster = (frame.slewed(now, order) for order in range(3))
+        luffed = frame.luff_angle(now)
+        slewed, turn, faster = (frame.slew_angle(now, order) for order in range(3))
         along, aside, across = frame.accelerations(now, place, out)
         radial = along * np.cos(luffed) - across * np.sin(luffed)
         up = along * np.sin(luffed) + across * np.cos(luffed)
@@ -186,7 +186,7 @@ def test_load_that_swings_while_the_boom_slews_and_luffs() -> None:
     exact = solve_ivp(
         rates, (0.0, 2.5), start, "DOP853", times, rtol=1e-9, atol=1e-11, max_step=0.02
     ).y
-    swung = exact[3] + exact[0] * np.sin(frame.luffed(times)), exact[4] - exact[1]
+    swung = exact[3] + exact[0] * np.sin(frame.luff_angle(times)), exact[4] - exact[1]
     errors = []
     for step in (1.0e-3, 5.0e-4):
         motion = hoisted(load, mass_on_springs(), 2.5, step)
