@@ -87,12 +87,12 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
 
 
 def _minimum(stiffness: Array, load: Array, rows: Array, laws: Terms, unit: float) -> Array | None:
-    """Return the minimum of the potential energy by Newton's method; None if there is none.
+    """Return the minimum of the potential energy by Newton's method; None if it is not found.
 
     Args:
-        stiffness, load, rows: those of the system in its scaled unknowns.
-        laws: terms of the contacts.
-        unit: scale of the unknowns, from which contacts take gaps in m.
+        stiffness, load, rows: stiffness, load and contact rows in scaled unknowns.
+        laws: terms of the contact laws.
+        unit: factor from scaled unknowns to displacements in m.
     """
     from scipy.optimize import brentq
 
@@ -114,7 +114,7 @@ def _minimum(stiffness: Array, load: Array, rows: Array, laws: Terms, unit: floa
         return np.asarray(stiffness @ x - load + rows.T @ sum_terms(force_of, x) / unit)
 
     def slope(length: float, x: Array, step: Array) -> float:
-        """Return the slope of the energy along a step."""
+        """Return the derivative of the energy along a step."""
         return float(unbalanced(x + length * step) @ step)
 
     x = np.zeros(load.size)

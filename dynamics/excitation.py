@@ -158,7 +158,7 @@ class PiecewiseLinear:
         return np.asarray(np.interp(time, self.times, self.values))
 
     def rate(self, time: Array, order: int) -> Array:
-        """Return the first or second derivative; jumps of the slope have none."""
+        """Return the first or second derivative; the second one is 0, also at kinks."""
         slopes = np.concatenate([[0.0], np.diff(self.values) / np.diff(self.times), [0.0]])
         return np.asarray((2 - order) * slopes[np.searchsorted(self.times, time)])
 
@@ -197,7 +197,7 @@ class Spline:
 
     @property
     def fastest(self) -> float:
-        """The reciprocal of the shortest interval, in rad/s."""
+        """The reciprocal of the shortest interval between points, in rad/s."""
         return 1.0 / float(np.diff(self.times).min())
 
     def __call__(self, time: Array) -> Array:

@@ -136,7 +136,7 @@ class HangingLoad:
             return RowTable(table.knots, widen(table.coefficients))
 
         def stretches(time: float) -> Array:
-            """Return the rows (own, num_modes + own) of the tip's motion less that of the load."""
+            """Return the rows (own, num_modes + own) of the tip displacement less the load's."""
             if self.pendulum is None:
                 return np.asarray(self.cosine * widen(tip[None]) - coordinates)
             return np.asarray(widen(self.pendulum.read(time, tip, lateral)[:own]) - coordinates)

@@ -77,7 +77,7 @@ class Cylinder:
         return (self.x - foot.x) * up + (self.depth - foot.depth) * along
 
     def luffed(self, turn: float, foot: Support) -> Cylinder:
-        """Return the cylinder, as seen from the boom, after it luffs by a turn in rad."""
+        """Return the cylinder in the axes of the boom after luffing by an angle in rad."""
         along, up = self.ground[0] - foot.x, self.ground[1] + foot.depth
         cosine, sine = cos(turn), sin(turn)
         ground = (foot.x + along * cosine + up * sine, -foot.depth - along * sine + up * cosine)

@@ -67,7 +67,7 @@ class Material:
         return self
 
     def strength(self, thickness: float) -> float | None:
-        """Return the yield strength in Pa of a plate of a thickness in m; None without one."""
+        """Return the yield strength in Pa of a plate of a thickness in m; None if unknown."""
         for limit, strength in self.yield_by_thickness:
             if thickness <= limit:
                 return strength

@@ -303,15 +303,15 @@ def _modes_on(
 
 
 def rigid(shell: SegmentShell) -> float:
-    """Return the stiffness in N/m of a spring that is practically rigid for a segment."""
+    """Return the stiffness in N/m of a spring that is rigid compared with a segment."""
     segment = shell.segment
     return RIGID_TURN * segment.material.youngs_modulus * segment.area / segment.length
 
 
 def sideways(boom: Boom, number: int, shell: SegmentShell) -> Iterator[tuple[Array, float]]:
-    """Yield the springs that fix a segment sideways, in twist and along the boom. Collective.
+    """Yield (row, stiffness) of rigid springs against lateral motion, twist and axial motion.
 
-    Each is a row (num_owned,) and its stiffness: :func:`rigid` in N/m, or in N·m/rad.
+    Rows are (num_owned,); stiffness is in N/m or N·m/rad. Collective.
     """
     segment = boom.segments[number]
     places = {x for one in boom.joints if number in (one.outer, one.inner) for x in one.stations}

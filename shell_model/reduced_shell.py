@@ -44,7 +44,8 @@ class ReducedShell:
     Args:
         system: gap system of all segments.
         num_dofs: number of degrees of freedom before the reduction.
-        fields: displacements of all mesh vertices for each mode, on rank 0 (see ``fields``).
+        fields: displacements and stresses of all modes on rank 0, see
+            :func:`shell_model.stress.fields.gather_fields`.
         errors: reduction errors, the maximum over the segments: ``contact_compliance`` as a
             fraction of the local compliance, NaN without contacts; ``readings``, relative;
             ``frequency_limit_in_hz``, up to which natural frequencies are accurate.
@@ -81,7 +82,7 @@ def reduce_boom(
     progress: Callable[[str, float], None] | None = None,
     helper: Executor | None = None,
 ) -> ReducedShell:
-    """Mesh, assemble and reduce every segment. Collective.
+    """Return the reduced shells of a boom. Collective.
 
     Args:
         boom: boom whose segments all have sections.

@@ -245,9 +245,9 @@ def _peaks(
 ) -> tuple[Modes, Indices]:
     """Return the largest stress (num_steps,) of triangles of a segment in Pa, and its triangle.
 
-    Only triangles are evaluated whose upper bound in some interval of time exceeds a stress there.
-    The von Mises stress is a norm. So it is at most the sum of the norms of its parts: of the axial
-    forces, of the principal motions, and of the rest of the motion.
+    Stresses are evaluated only for triangles whose upper bound exceeds the largest known stress of
+    an interval. The von Mises stress is a norm, so that the sum of the norms of its parts bounds
+    it: of axial forces, of principal motions, and of the rest of the motion.
     """
     number = int(shell.segment[triangles[0]])
     modes = shell.modes[number].take(triangles - np.searchsorted(shell.segment, number), axis=1)
