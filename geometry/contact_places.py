@@ -131,7 +131,7 @@ class Pad:
 
     @property
     def half(self) -> int:
-        """The half of the wall in space: 1 if its coordinate across the wall is positive, or −1."""
+        """The half of the wall in space: the sign of the point's coordinate across the wall."""
         return int(np.sign(self._corner))
 
     @property

@@ -41,7 +41,7 @@ def quadratic_form(matrix: PETSc.Mat, vector: Array) -> float:
 
 
 def gram(comm: MPI.Comm, left: Array, right: Array) -> Array:
-    """Return products (num_left, num_right) of all columns, the same on every rank. Collective."""
+    """Return leftᵀ right (num_left, num_right), the same on every rank. Collective."""
     product = np.ascontiguousarray(left.T @ right)
     comm.Allreduce(MPI.IN_PLACE, product)
     return product
@@ -93,7 +93,7 @@ class ShiftedSolver:
         self._factors.setUp()
 
     def __call__(self, block: Array) -> Array:
-        """Return the solutions (num_owned, num_columns) for a block."""
+        """Return the solutions (num_owned, num_columns) for a block of right-hand sides."""
         if block.shape[1] == 0:
             return block
         right, left = dense(self._matrix, block), dense(self._matrix, np.empty_like(block))
