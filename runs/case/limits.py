@@ -83,7 +83,7 @@ MOST_TIMES = 100_000
 
 
 def _check_modes(given: Any) -> Any:
-    """Check a number of modes or ``auto``, with one message in place of two by a union type."""
+    """Check a number of modes or ``auto``. A union type would give two messages."""
     if given == "auto" or (isinstance(given, int) and not isinstance(given, bool) and given > 0):
         return given
     raise PydanticCustomError("modes", "a whole number above 0, or 'auto'")
@@ -102,7 +102,7 @@ LEAST_CONTACT_TOLERANCE = 1.0e-3
 
 
 def _check_contact_tolerance(given: Any) -> Any:
-    """Check a fraction or ``any``, with one message in place of two by a union type."""
+    """Check a fraction or ``any``. A union type would give two messages instead of one."""
     number = isinstance(given, float) and LEAST_CONTACT_TOLERANCE <= given < 1.0
     if given == "any" or number:
         return given

@@ -71,7 +71,7 @@ class Run:
         check_finite(summary)
 
     def evaluate_with_play(self) -> None:
-        """Add the results of models with their own play alone, and pad forces, to the summary."""
+        """Add pad forces and the design results with play alone to the summary."""
         results, summary = self.results, self.results.summary
         summary.design = DesignResults(models=self._evaluate_models(lambda _, own: own))
         summary.pads = list(pad_loads(results.case, results.boom, results.trajectories))

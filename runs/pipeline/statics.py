@@ -92,7 +92,7 @@ def _joint_contacts(boom: Boom) -> set[tuple[int, float]]:
 
 
 def contact_and_support_reactions(state: StaticState) -> dict[tuple[int, float], Reaction]:
-    """Return support reactions and contact forces by segment and x in m, without round-off."""
+    """Return support reactions and contact forces by segment and x in m; round-off is set to 0."""
     boom, depths, along = state.boom, _depths(state), _axial_forces(state)
     places = _joint_contacts(boom)
     places |= {(number, one.x) for number, s in enumerate(boom.segments) for one in s.supports}

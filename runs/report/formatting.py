@@ -13,7 +13,7 @@ _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def scientific(number: float, digits: int = 1) -> str:
-    """Return a number in scientific notation, such as 8 × 10⁻⁵, with ``digits`` at most."""
+    """Return a number as text in scientific notation, such as 8 × 10⁻⁵."""
     mantissa, exponent = f"{number:.{digits - 1}e}".split("e")
     power = str(int(exponent)).translate(_SUPERSCRIPT)
     return f"{with_minus_signs(f'{float(mantissa):g}')} × 10{power}"

@@ -224,7 +224,7 @@ def _check_point(file: str, label: str, case: Case, held: bool = False) -> Case:
 
 
 def infer_plates(case: Case) -> Plates:
-    """Return the inferred plates of each segment of a checked case, or None."""
+    """Return the inferred plates of each segment of a checked case; None if none are inferred."""
     sections = [segment.section for segment in build_boom(case).segments]
     return [
         SectionTable(

@@ -38,7 +38,7 @@ def shell() -> Scene:
 def _coarse() -> Iterator[None]:
     """Render each pixel once: edges are less smooth, at a quarter of the cost."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sheet, "FINER", 1)
+        patch.setattr(sheet, "OVERSAMPLING", 1)
         yield
 
 

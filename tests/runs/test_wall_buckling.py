@@ -102,7 +102,7 @@ def test_each_mode_has_its_picture(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         opengl.require_opengl()
     except RenderingUnavailable as reason:
         pytest.skip(str(reason))
-    monkeypatch.setattr(sheet, "FINER", 1)
+    monkeypatch.setattr(sheet, "OVERSAMPLING", 1)
     scene = moving_scene()
     points = scene.points[scene.owner == 0]
     triangles = scene.triangles[scene.segment == 0]
