@@ -128,7 +128,7 @@ def test_letters_stand_where_the_camera_sees_their_place(place: tuple[float, ...
     two = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
     with stage(camera.pixels) as plotter:
         plotter.add_mesh(surface(np.array(place) + corners, two), color="black", lighting=False)
-        seen = camera.see(plotter)
+        seen = camera.render(plotter)
     row, column = (axis.mean() + 0.5 for axis in np.nonzero(seen[..., 0] < 128))
     np.testing.assert_allclose(camera.project(place), [column, 160 - row], atol=0.6)
 
