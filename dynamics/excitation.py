@@ -379,7 +379,7 @@ class Shaped:
 
     >>> swing = pt.Shaped(pt.SCurve(travel=4.0, duration=5.0), frequency=0.25)
     >>> swing(np.array([0.0, 2.0, 7.0])), swing.delay
-    (array([0.        , 0.48645862, 4.        ]), 2.0)
+    (array([0.        , 0.61290214, 4.        ]), 2.0)
 
     Args:
         law: law without the shaper.

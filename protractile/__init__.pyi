@@ -35,6 +35,7 @@ from dynamics.contact_table import TableContact as TableContact
 
 # Loads, and how they change over time
 from dynamics.excitation import SCurve as SCurve
+from dynamics.excitation import Shaped as Shaped
 from dynamics.excitation import Stroke as Stroke
 from dynamics.excitation import Ramp as Ramp
 from dynamics.excitation import Sine as Sine

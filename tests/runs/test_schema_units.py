@@ -265,7 +265,7 @@ def test_check_shows_the_units_of_the_case() -> None:
     print_check(CheckedCase(in_mm()), Console(file=shown, width=200))
     text = shown.getvalue()
     lines = [" ".join(line.split()) for line in text.splitlines()]
-    assert "segment mm t/mm mm⁴ t mm mm" in lines
+    assert "segment mm t/mm mm⁴ t mm plates t, mm" in lines
     assert "joint mm mm mm mm friction" in lines
     assert "segment t t mm" in lines
     for part in ("8500–18200", "5.507 × 10⁻⁵", "2.183 × 10⁸", "8500, 9700"):
