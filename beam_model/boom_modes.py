@@ -115,12 +115,23 @@ class BoomModes:
         return BeamMember(read)
 
 
-def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
+def critical_factor(
+    boom: Boom,
+    models: Sequence[SegmentModel],
+    walls: Mapping[tuple[int, Direction, int], float] | None = None,
+) -> float | None:
     """Return the buckling factor of the axial forces for bonded joints.
 
     It is infinite without axial forces, and None for a mechanism. For a telescoping boom it is the
     minimum over several extensions, including the extreme ones.
+
+    Args:
+        boom: boom with its axial forces.
+        models: models of its segments.
+        walls: compliance of walls in m/N at stations, by joint, direction and index of the station;
+            0 where it is missing.
     """
+    walls = walls or {}
     drives = [number for number, joint in enumerate(boom.joints) if joint.drive is not None]
     smallest = np.inf
     for group in _coupled_groups(boom.bonded, models):
@@ -141,7 +152,14 @@ def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
                 n: station_positions(boom.joints[n], extension)
                 for n, extension in extensions.items()
             }
-            stiffness, free = group.stiffness(), _kernel(group.ties(moved), len(geometric))
+            stiffness, rigid = group.stiffness(), []
+            for (number, motion, k), tie in group.ties(moved).items():
+                compliance = 0.0 if motion == "twist" else walls.get((number, motion, k), 0.0)
+                if compliance:
+                    stiffness = stiffness + np.outer(tie, tie) / compliance
+                else:
+                    rigid.append(tie)
+            free = _kernel(rigid, len(geometric))
             factor = buckling_factor(free.T @ stiffness @ free, free.T @ geometric @ free)
             smallest = min(smallest, factor)
     return smallest
@@ -203,21 +221,27 @@ class _CoupledGroup:
 
         return BeamMember(read)
 
-    def ties(self, moved: Mapping[int, Sequence[tuple[float, float]]]) -> list[Array]:
+    def ties(
+        self, moved: Mapping[int, Sequence[tuple[float, float]]]
+    ) -> dict[tuple[int, Motion, int], Array]:
         """Return the constraints of bonded joints, rows (num_dofs,) of zero displacements.
+
+        The keys are joint, motion and index of the station.
 
         ``moved`` gives (x on the outer segment, x on the inner segment) in m of the stations of
         telescoping joints.
         """
-        return [
-            self.members[joint.inner].at(motion, on_inner)
+        return {
+            (number, motion, k): self.members[joint.inner].at(motion, on_inner)
             - self.members[joint.outer].at(motion, on_outer)
             for number, joint in enumerate(self._boom.joints)
             if joint.tied
             for motion in dict.fromkeys(motion for _, motion in self.parts)
             if (joint.outer, motion) in self.parts
-            for on_outer, on_inner in moved.get(number, [(x, x) for x in joint.stations])
-        ]
+            for k, (on_outer, on_inner) in enumerate(
+                moved.get(number, [(x, x) for x in joint.stations])
+            )
+        }
 
     def stiffness(self) -> Array:
         """Return the stiffness (num_dofs, num_dofs) with the springs of cylinders."""
@@ -229,7 +253,7 @@ class _CoupledGroup:
     def modes(self) -> Modes:
         """Return the modes with the constraints of bonded joints and the springs of cylinders."""
         apart = [natural_modes(c.stiffness, c.mass, c.rigid_modes) for c in self.components]
-        ties = self.ties({})
+        ties = [*self.ties({}).values()]
         if not ties and not self.springs and len(apart) == 1:
             return apart[0]
         rigid = block_diag(

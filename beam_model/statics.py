@@ -15,13 +15,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beam_model.boom_modes import BoomModes
+from beam_model.boom_modes import BoomModes, critical_factor
 from beam_model.component import Component, SegmentModel
 from beam_model.elements import Theory
 from beam_model.finite_element import finite_element_segment, finite_element_segments
 from beam_model.segment_model import EACH_SIDE, gap_system, system_without_drives
-from beam_model.wall_compliance import with_wall_springs
+from beam_model.wall_compliance import station_compliance, with_wall_springs
 from dynamics.equilibrium import equilibrium_at
+from dynamics.failure import NUMERICAL_ERRORS
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom
@@ -135,6 +136,20 @@ def static_state(
         for reaction in _reactions(boom, number, component, modes, position[: modes.omega2.size])
     ]
     return StaticState(boom, system, position, reactions)
+
+
+def estimate_critical_factor(boom: Boom) -> float | None:
+    """Return the buckling factor of beam elements on walls that bend under pads.
+
+    It is infinite without axial forces, and None for a mechanism or extreme numbers.
+    """
+    if not boom.compressed:
+        return float("inf")
+    try:
+        with np.errstate(all="ignore"):
+            return critical_factor(boom, Elements(boom).segments, station_compliance(boom))
+    except NUMERICAL_ERRORS:
+        return None
 
 
 def telescoping_system(boom: Boom) -> GapSystem:

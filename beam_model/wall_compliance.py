@@ -106,12 +106,7 @@ def contact_compliance(boom: Boom) -> Array:
         boom: boom of beams with a contact row for each side,
             ``beam_model.segment_model.EACH_SIDE``.
     """
-    rows = [
-        (pad, side)
-        for pad in pads(boom)
-        for side in ((pad.side,) if pad.side else EACH_SIDE)
-        if pad.joint.law(pad.direction).one_sided(side) is not None
-    ]
+    rows = _contact_rows(boom)
     stops = sum(len(stop.sides) for _, stop in boom.numbered_stops)
     found = np.zeros((len(rows) + stops,) * 2)
     for station in {pad.station for pad, _ in rows if pad.patch is not None}:
@@ -124,6 +119,37 @@ def contact_compliance(boom: Boom) -> Array:
             outward = wall_compliance(segment, areas)
             found[np.ix_(at, at)] += np.outer(sides, sides) * outward
     return found
+
+
+def station_compliance(boom: Boom) -> dict[tuple[int, Direction, int], float]:
+    """Return the compliance of walls in m/N by joint, direction and index of the station.
+
+    All pads of a side are in contact; the compliance is that of the softer side. It is 0 where a
+    side has a contact at a corner.
+    """
+    walls = contact_compliance(boom)
+    sides: dict[tuple[int, Direction, int, Side], list[int]] = {}
+    for row, (pad, side) in enumerate(_contact_rows(boom)):
+        place = pad.number, pad.direction, pad.joint.stations.index(pad.x), side
+        sides.setdefault(place, []).append(row)
+    found: dict[tuple[int, Direction, int], float] = {}
+    for (number, direction, k, _), rows in sides.items():
+        own = walls[np.ix_(rows, rows)]
+        compliance = 0.0
+        if np.diag(own).all():
+            compliance = 1.0 / float(np.linalg.solve(own, np.ones(len(rows))).sum())
+        found[number, direction, k] = max(compliance, found.get((number, direction, k), 0.0))
+    return found
+
+
+def _contact_rows(boom: Boom) -> list[tuple[Pad, Side]]:
+    """Return pad and side of the contact rows of joints."""
+    return [
+        (pad, side)
+        for pad in pads(boom)
+        for side in ((pad.side,) if pad.side else EACH_SIDE)
+        if pad.joint.law(pad.direction).one_sided(side) is not None
+    ]
 
 
 def _pad_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:

@@ -486,9 +486,11 @@ def _static_lines(case: Case, boom: Boom, found: Statics | None) -> Iterator[str
         f"First natural frequency, joints in contact, {_BEAMS}: {number(hertz, 4)} Hz; without "
         f"play {number(bonded_hertz, 4)} Hz."
     )
+    padded = any(joint.padded for joint in state.boom.joints)
+    causes = "Play and the walls under pads rotate" if padded else "Play rotates"
     for tilt in tilts(state.boom, state.system, state.position):
         yield (
-            f"Play rotates {tilt.inner!r} by {number(TO_MILLI * tilt.rotation, 4)} mrad in "
+            f"{causes} {tilt.inner!r} by {number(TO_MILLI * tilt.rotation, 4)} mrad in "
             f"{tilt.outer!r}, which moves the tip by {number(TO_MILLI * tilt.tip, 4)} mm."
         )
     yield from pad_wall_lines(state.boom, state.tip)

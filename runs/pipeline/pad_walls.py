@@ -16,6 +16,8 @@ from runs.report.formatting import number
 # Remedies are given above this share of the tip deflection, if they reduce the tip deflection to
 # this fraction.
 LARGE_SHARE, HELPFUL = 0.1, 0.98
+# Share of the tip deflection above which walls under pads govern it.
+GOVERNING_SHARE = 0.5
 
 
 def pad_wall_lines(boom: Boom, tip: float) -> Iterator[str]:
@@ -34,8 +36,9 @@ def pad_wall_lines(boom: Boom, tip: float) -> Iterator[str]:
     elements = Elements(boom)
     share = tip - static_state(boom, elements, walls=0.0).tip
     part = share / tip if tip else 0.0
+    caution = "caution: walls" if part > GOVERNING_SHARE else "Walls"
     yield (
-        f"Walls bend under pads, which moves the tip by {number(TO_MILLI * share, 4)} mm, "
+        f"{caution} bend under pads, which moves the tip by {number(TO_MILLI * share, 4)} mm, "
         f"{100.0 * part:.2g} % of its deflection (estimate from plates)."
     )
     if part < LARGE_SHARE:

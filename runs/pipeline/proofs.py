@@ -12,11 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beam_model.boom_modes import critical_factor
-from beam_model.statics import Elements
-from dynamics.failure import NUMERICAL_ERRORS, NumericsError
+from beam_model.statics import estimate_critical_factor
+from dynamics.failure import NumericsError
 from geometry.arrays import Array
-from geometry.boom import Boom
 from runs.case.schema import Case, CombinationTable
 from runs.case.units import System
 from runs.pipeline.combinations import CombinationState
@@ -275,7 +273,7 @@ _OF_SHELLS = {"patch": "yield", "buckling": "plate"}
 def _boom_proofs(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
     boom = beam.boom
     if boom.compressed and "column" in table.proofs:
-        factor = _critical(boom)
+        factor = estimate_critical_factor(boom)
         normal = min(min(one.normal) for rest in beam.rests for one in rest.diagrams)
         if factor is not None and np.isfinite(factor) and normal < 0.0:
             resistance = -normal * factor / table.resistance.stability
@@ -284,15 +282,6 @@ def _boom_proofs(beam: StaticBeam, table: CombinationTable, case: Case) -> Itera
     if permitted is not None:
         tip = max(abs(rest.tip) for rest in beam.rests)
         yield Proof("deflection", "tip", "tip", None, tip, permitted, "m")
-
-
-def _critical(boom: Boom) -> float | None:
-    """Return the factor of the axial forces at which the boom buckles; None if unknown."""
-    try:
-        with np.errstate(all="ignore"):
-            return critical_factor(boom, Elements(boom).segments)
-    except NUMERICAL_ERRORS:
-        return None
 
 
 def _station_proofs(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:

@@ -70,6 +70,19 @@ def test_a_segment_that_only_contacts_hold_tips_over(build: Build) -> None:
     assert np.count_nonzero(system.omega2 == 0.0) == 1
 
 
+def test_soft_walls_at_pads_lower_the_buckling_load(build: Build) -> None:
+    """Reference: analytic, P = a²/(2 c L) of a rigid fly of length L on two springs of compliance c
+    at a distance a; bending takes 0.3 % off. Without compliance joints are bonded.
+    """
+    thrust, compliance = 5.0e3, 1.0e-4
+    boom = telescope(thrust)
+    models = build(boom)
+    soft = critical_factor(boom, models, {(0, "z", 0): compliance, (0, "z", 1): compliance})
+    assert soft == pytest.approx(2.0**2 / (2.0 * compliance * 8.0) / thrust, rel=5e-3)
+    hard = critical_factor(boom, models, {(0, "z", 0): 1.0e-14, (0, "z", 1): 1.0e-14})
+    assert hard == pytest.approx(critical_factor(boom, models), rel=1e-5)
+
+
 def test_a_rigid_segment_tips_over_too() -> None:
     """Reference: analytic, 12 P/(m̄ L²), the rotary inertia in the mass."""
     boom = telescope(5.0e3)

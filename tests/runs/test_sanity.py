@@ -239,10 +239,10 @@ cylinder = [{{ segment = "a", x = 4.0, depth = 0.6, ground = [2.0, -3.5], stiffn
 life = {{ detail_category = 71.0 }}
 {STEEL}
 yield_strength = 9.6e8
-{box("a", (0.0, 13.0), (1.2, 0.9, 0.010, 0.008), HINGED)}
+{box("a", (0.0, 13.0), (1.2, 0.9, 0.016, 0.014), HINGED)}
 """
     + "".join(
-        box(inner, (11.8 * i, 11.8 * i + 13.0), (1.2 - 0.1 * i, 0.9 - 0.08 * i, 0.010, 0.008))
+        box(inner, (11.8 * i, 11.8 * i + 13.0), (1.2 - 0.1 * i, 0.9 - 0.08 * i, 0.016, 0.014))
         + joint(inner, outer, 0.006, (11.8 * i, 11.8 * i + 1.2), RUBBING)
         for i, (outer, inner) in enumerate(["ab", "bc", "cd", "de"], start=1)
     )

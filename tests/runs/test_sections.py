@@ -143,7 +143,8 @@ def test_check_prints_it(capsys: pytest.CaptureFixture[str]) -> None:
         cli.main(("check", written([table, BOXES[1]])))
     assert ended.value.code == 0
     printed = capsys.readouterr().out
-    assert "500 x 320 x 8 / 6" in printed
+    assert "500 x 320" in printed
+    assert "t 8 / 6" in printed
     assert "26.0 high" in printed
     assert "29.0 wide" in printed
 

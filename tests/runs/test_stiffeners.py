@@ -25,7 +25,7 @@ STIFFENED = COARSE.replace(
 
 
 @pytest.fixture
-def with_stiffnesses(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+def stiffened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     """Return a case file of the coarse case with stiffeners."""
     monkeypatch.chdir(tmp_path)
     Path("case.toml").write_text(STIFFENED, encoding="utf-8")

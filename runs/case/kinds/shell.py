@@ -171,7 +171,9 @@ class Shell(ModelTable):
         return self.mesh_size
 
     def critical_factor(self, model_boom: ModelBoom) -> float | None:
-        return self.surrogate(model_boom.boom).beam.critical_factor(model_boom)
+        from beam_model.statics import estimate_critical_factor
+
+        return estimate_critical_factor(model_boom.boom)
 
     def surrogate(self, boom: Boom) -> Surrogate:
         dofs = self.estimate_dofs(boom)
