@@ -31,9 +31,9 @@ SHOWN = {
     "degrees of freedom": "dofs",
     "first contact\ns": "first contact\ns",
     "first tip peak\ns": "first tip peak\ns",
-    "first tip peak\nmm": "first tip peak\nmm",
+    "first tip peak\nmm": "peak\nmm",
     "energy residual\nof the work": "energy\nresidual",
-    "wall time\ns": "wall time\ns",
+    "wall time\ns": "time\ns",
 }
 
 
