@@ -177,7 +177,7 @@ def _coupled_groups(boom: Boom, models: Sequence[SegmentModel]) -> list[_Coupled
         ((joint.outer, motion), (joint.inner, motion))
         for motion in motions
         for joint in boom.joints
-        if joint.tied
+        if joint.bonded
     ]
     connected += [((c.segment, "y"), (c.segment, "twist")) for c in boom.cylinders if c.spread]
     group_of = {part: number for number, part in enumerate(parts)}
@@ -235,7 +235,7 @@ class _CoupledGroup:
             (number, motion, k): self.members[joint.inner].at(motion, on_inner)
             - self.members[joint.outer].at(motion, on_outer)
             for number, joint in enumerate(self._boom.joints)
-            if joint.tied
+            if joint.bonded
             for motion in dict.fromkeys(motion for _, motion in self.parts)
             if (joint.outer, motion) in self.parts
             for k, (on_outer, on_inner) in enumerate(

@@ -24,6 +24,11 @@ from geometry.segment import APART
 # Gauss points and weights, exact for products of two cubics.
 _GAUSS = np.polynomial.legendre.leggauss(4)
 
+# Distance from another node, as a fraction of the length, within which a mass or a jump of the
+# axial force has no node: eigenvalues lose digits in proportion to the inverse fourth power of the
+# length of the shortest element. A mass without a node acts through shape functions.
+_MASS_APART = 5.0e-3
+
 _MASS, _ROTARY = map(attrgetter, ("mass_per_length", "rotary_inertia"))
 _TORSION, _POLAR = map(attrgetter, ("lateral.torsion_constant", "lateral.polar_inertia"))
 
@@ -56,7 +61,8 @@ def finite_element_segment(
     """Return the model of one segment.
 
     Args:
-        segment: segment; supports, masses and jumps of the axial force get nodes. With lateral
+        segment: segment; supports get nodes, as do masses and jumps of the axial force that are not
+            close to another node. With lateral
             properties the model includes deflection along y and twist.
         element_length: maximum element length in m.
         breaks: further x in m of nodes.
@@ -117,13 +123,15 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
             held.append(dof + 1)
         else:
             stiffness[dof + 1, dof + 1] += support.rotation_stiffness or 0.0
-    for point in (*segment.masses, *segment.stiffener_masses):
-        dof = 2 * _nearest(nodes, point.x)
-        mass[dof, dof] += point.mass
-    for point in segment.stiffener_masses:
-        dof = 2 * _nearest(nodes, point.x)
-        rotation_load[dof] += point.mass * point.x
-        inertia_load[dof] += point.mass / segment.mass_per_length
+    stiffeners = len(segment.stiffener_masses)
+    for number, point in enumerate((*segment.stiffener_masses, *segment.masses)):
+        k, h = _element(nodes, point.x)
+        dofs = slice(2 * k, 2 * k + 4)
+        w = elements[k].deflection(np.array([(point.x - nodes[k]) / h]))
+        mass[dofs, dofs] += products(w, np.array([point.mass]))
+        if number < stiffeners:
+            rotation_load[dofs] += point.mass * point.x * w[:, 0]
+            inertia_load[dofs] += point.mass / segment.mass_per_length * w[:, 0]
     free = np.setdiff1d(np.arange(num_dofs), held)
 
     def read(shapes: str, x: float) -> Array:
@@ -190,11 +198,16 @@ def _twist(segment: Segment, nodes: Array) -> Component:
 
 def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> Array:
     """Return the nodes of equal elements between required x; close x share a node."""
-    own = [support.x for support in segment.supports] + [mass.x for mass in segment.all_masses]
+    supports = [support.x for support in segment.supports]
+    masses = [*(mass.x for mass in segment.all_masses), *segment.compression.places]
     places: list[float] = []
-    for x in (segment.start, segment.end, *own, *segment.compression.places, *breaks):
-        if segment.holds(x) and all(abs(x - place) > APART * segment.length for place in places):
-            places.append(x)
+    for required, apart in (
+        ((segment.start, segment.end, *supports, *breaks), APART),
+        (masses, _MASS_APART),
+    ):
+        for x in required:
+            if segment.holds(x) and all(abs(x - one) > apart * segment.length for one in places):
+                places.append(x)
     spans = [
         np.linspace(a, b, max(1, int(np.ceil((b - a) / element_length - SAME_PLACE))) + 1)[:-1]
         for a, b in pairwise(sorted(places))

@@ -125,8 +125,8 @@ class Boom:
     @cached_property
     def bonded(self) -> Boom:
         """The boom with all joints bonded."""
-        tied = tuple(joint.without_play for joint in self.joints)
-        return replace(self, joints=tied)
+        bonded = tuple(joint.without_play for joint in self.joints)
+        return replace(self, joints=bonded)
 
     @property
     def driven(self) -> bool:
@@ -162,7 +162,7 @@ class Boom:
             (x, direction)
             for direction in self.directions
             for joint in self.joints
-            if not joint.tied
+            if not joint.bonded
             for x in joint.stations
         ]
 

@@ -102,7 +102,7 @@ def _check_contact_faces(boom: Boom) -> None:
     for stop in boom.stops:
         check_contact_faces(f"segments[{stop.segment}]", boom.segments[stop.segment], ("z",), ())
     for joint in boom.joints:
-        if joint.tied:
+        if joint.bonded:
             continue
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         where, places = f"segments[{joint.inner}]", joint.stations
@@ -135,9 +135,9 @@ def _check_contact_length(boom: Boom, where: str, place: Joint | Stop) -> None:
         return
     if isinstance(place, Stop):
         what, room = "segment", boom.segments[place.segment].length
-    elif place.tied:
+    elif place.bonded:
         raise BoomError(
-            f"{where}.contact_length", "the joint is tied, and nothing touches; leave it out"
+            f"{where}.contact_length", "the joint is bonded, and nothing touches; leave it out"
         )
     else:
         start, end = boom.overlap(place)
@@ -221,8 +221,8 @@ def _check_joint(boom: Boom, where: str, joint: Joint) -> None:
                 f"{x:g} m lies outside the overlap of {outer.name!r} and {inner.name!r}; it must "
                 f"be between {start:g} and {end:g} m",
             )
-    if joint.tied and joint.dashpot > 0.0:
-        raise BoomError(f"{where}.dashpot", "the joint is tied, and nothing moves; leave it out")
+    if joint.bonded and joint.dashpot > 0.0:
+        raise BoomError(f"{where}.dashpot", "the joint is bonded, and nothing moves; leave it out")
     near = SAME_PLACE * outer.length
     if any(right - left <= near for left, right in pairwise(joint.stations)):
         raise BoomError(f"{where}.stations", "must rise from the base to the tip, each given once")

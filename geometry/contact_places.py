@@ -199,7 +199,7 @@ def pads(boom: Boom) -> list[Pad]:
     station = 0
     for direction in boom.directions:
         for number, joint in enumerate(boom.joints):
-            if joint.tied:
+            if joint.bonded:
                 continue
             overlap = boom.overlap(joint)
             extended = 0.0 if joint.drive is None else joint.drive.reach[1]

@@ -202,8 +202,8 @@ def _check_apart(where: str, one: SlidePad, other: SlidePad) -> None:
 
 
 def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
-    if joint.tied:
-        raise BoomError(where, "the joint is tied, and nothing touches; leave it out")
+    if joint.bonded:
+        raise BoomError(where, "the joint is bonded, and nothing touches; leave it out")
     start, end = boom.overlap(joint)
     if not 0.0 < pad.length <= end - start:
         raise BoomError(

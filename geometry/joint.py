@@ -186,7 +186,7 @@ class BareJoint:
     """the clearance in m on the right, towards larger y; half of the lateral play unless given"""
     lateral_interference: Annotated[NotNegative, In("m")] = 0.0
     """the total interference in m of lateral shims, for a joint without lateral play"""
-    tied: Flag = False
+    bonded: Flag = False
     """whether the segments are bonded at the stations, without play"""
     pad: PadSize | None = None
     """the table of the slide pads' size, which only shells use; unless given, contact is at the
@@ -276,7 +276,7 @@ class Joint(BareJoint):
     def without_play(self) -> Joint:
         """The joint with the segments bonded at its stations."""
         return replace(
-            self, tied=True, pad=None, pads=(), contact_length=None, dashpot=0.0, drive=None
+            self, bonded=True, pad=None, pads=(), contact_length=None, dashpot=0.0, drive=None
         )
 
 

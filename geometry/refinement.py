@@ -142,7 +142,7 @@ def _walls(boom: Boom, number: int) -> Iterator[float]:
     yield from (lug.x for lug in boom.cylinders if lug.segment == number)
     yield from (load.x for load in boom.loads if load.segment == number and load.x is not None)
     for joint in boom.joints:
-        if joint.tied and number in (joint.outer, joint.inner):
+        if joint.bonded and number in (joint.outer, joint.inner):
             yield from joint.stations
     for collar in segment.collars:
         yield from collar.span

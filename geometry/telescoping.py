@@ -74,7 +74,7 @@ def _driven_stations(boom: Boom) -> Iterator[tuple[int, tuple[int, ...]]]:
     station = 0
     for _ in boom.directions:
         for number, joint in enumerate(boom.joints):
-            for _ in () if joint.tied else joint.stations:
+            for _ in () if joint.bonded else joint.stations:
                 yield station, () if joint.drive is None else (number,)
                 station += 1
     for station, stop in boom.numbered_stops:
@@ -161,8 +161,8 @@ def check_drives(boom: Boom) -> None:
 def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
     drive = joint.drive
     assert drive is not None
-    if joint.tied:
-        raise BoomError(where, "the joint is tied, and nothing slides; leave it out")
+    if joint.bonded:
+        raise BoomError(where, "the joint is bonded, and nothing slides; leave it out")
     low, high = drive.reach
     if low == high:
         raise BoomError(where, f"does not move {inner.name!r}; leave it out")

@@ -249,7 +249,7 @@ def _joints(case: Case, boom: Boom) -> Table:
             f"{inner.name} in {outer.name}",
             f"{system.of(min(outer.end, inner.end) - max(outer.start, inner.start), 'm'):g}",
             ", ".join(f"{system.of(x, 'm'):g}" for x in joint.stations),
-            "bonded" if joint.tied else ", ".join(_clearances(joint)),
+            "bonded" if joint.bonded else ", ".join(_clearances(joint)),
             free,
             _friction(joint),
         )

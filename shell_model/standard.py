@@ -45,7 +45,7 @@ def with_plays_and_loads(shell: ReducedShell, boom: Boom) -> ReducedShell:
     more = [
         joint.clearances("z")
         for joint in boom.joints
-        if not (joint.tied or boom.spatial or _shimmed(joint))
+        if not (joint.bonded or boom.spatial or _shimmed(joint))
         for _ in joint.stations
     ]
     # Rows of stops, and all rows in space, already have their clearances.

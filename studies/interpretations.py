@@ -40,7 +40,7 @@ from studies.study import Progress, define_study
 PAPER = CASES / "paper.toml"
 SERIES = ("kantorovich-4", "kantorovich-5")
 WITH_PLAY = (*SERIES, "beam-fe")
-MODELS = (*WITH_PLAY, "beam-fe-tied")
+MODELS = (*WITH_PLAY, "beam-fe-bonded")
 
 # A single run suffices to judge the first three statements; the others need several runs.
 COMMON = ("S1", "S5", "S6")

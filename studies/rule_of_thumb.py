@@ -164,11 +164,11 @@ class Rule:
     def of(cls, given: Proportions, case: Case) -> Rule:
         """Create the rule from the boom's beams without play, and statics."""
         boom = build_boom(case)
-        tied = [
+        bonded = [
             model_of(case, name).system_without_play(boom)
             for name in ("beam-fe-rotary", "timoshenko")
         ]
-        tips = [static_tip(system) for system, _ in filter(None, tied)]
+        tips = [static_tip(system) for system, _ in filter(None, bonded)]
         inner = boom.segments[1]
         # Where tail and head press, from the start of the inner segment.
         tail = 0.0 if given.pad is None else 0.5 * given.pad[0]
@@ -180,12 +180,12 @@ class Rule:
             return np.array([x - head, x - tail]) / arm
 
         pressed = weight * normal_rows(0.5 * inner.length) * normal_rows(inner.length)
-        assert tied[1] is not None
+        assert bonded[1] is not None
         return cls(
             bending=tips[0],
             shear=tips[1] - tips[0],
             pressed=float(station_compliances(given, case) @ pressed),
-            frequency=float(tied[1][0].frequencies[0]),
+            frequency=float(bonded[1][0].frequencies[0]),
             lever=2.0 * (inner.length - tail) / arm - 1.0,
         )
 

@@ -135,7 +135,7 @@ def lift_frequency(retracted: float, mass: float) -> float:
             )
         )  # fmt: skip
     joints = [
-        Joint(number, number + 1, (inner.start, outer.end), 0.0, tied=True)
+        Joint(number, number + 1, (inner.start, outer.end), 0.0, bonded=True)
         for number, (outer, inner) in enumerate(pairwise(segments))
     ]
     boom = Boom(tuple(segments), tuple(joints))

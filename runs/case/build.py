@@ -179,9 +179,9 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
     names = [segment.name for segment in case.segments]
     outer, inner = names.index(table.outer), names.index(table.inner)
     (_, head), (tail, _) = ends[outer], ends[inner]
-    if table.tied and table.friction > 0.0:
+    if table.bonded and table.friction > 0.0:
         raise BoomError(
-            f"joint[{index + 1}].friction", "the joint is tied, and nothing slides; leave it out"
+            f"joint[{index + 1}].friction", "the joint is bonded, and nothing slides; leave it out"
         )
     _check_plays(f"joint[{index + 1}]", table)
     drive = None

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -35,6 +36,8 @@ from runs.case.user_files import read_text
 
 # Maximum number of output times: the run would take too long for more.
 MOST_OUTPUTS = 10_000_000
+
+_NOTICES = logging.getLogger("protractile")
 
 History = TypeVar("History", bound=HistoryTable)
 Travel = TypeVar("Travel", bound=TravelTable)
@@ -187,6 +190,7 @@ def _read(path: str) -> dict[str, object]:
         text = read_text(Path(path))
         tables = tomllib.loads(text)
         _check_whole_numbers(tables, path)
+        _rename_keys(tables)
         return tables
     except FileNotFoundError:
         raise BadInput(path, "file", "does not exist; give the path of a case file") from None
@@ -194,6 +198,16 @@ def _read(path: str) -> dict[str, object]:
         raise BadInput(path, "file", "is a directory; give the path of a case file") from None
     except (OSError, ValueError, RecursionError) as error:
         raise BadInput(path, *_unreadable(error, text)) from None
+
+
+def _rename_keys(tables: Mapping[str, object]) -> None:
+    """Replace the former key ``tied`` of joints and models by ``bonded``, with a notice."""
+    for key in ("joint", "model"):
+        given = tables.get(key)
+        for table in given if isinstance(given, list) else ():
+            if isinstance(table, dict) and "tied" in table:
+                table.setdefault("bonded", table.pop("tied"))
+                _NOTICES.warning("the key tied of [[%s]] is read as bonded, its new name", key)
 
 
 def _check_whole_numbers(thing: object, path: str, key: str = "") -> None:

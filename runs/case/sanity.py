@@ -155,7 +155,7 @@ def _joint_ranges(case: Case, boom: Boom, number: int) -> Iterator[UsualRange]:
     table, joint, where = case.joints[number], boom.joints[number], f"joint[{number + 1}]"
     inner = boom.segments[joint.inner]
     yield from _contact_ranges(where, table)
-    if not joint.tied:
+    if not joint.bonded:
         key = "" if table.extension is None else ".extension"
         what, least = f"the overlap of {inner.name!r}", 0.03 * inner.length
         if joint.drive is not None:

@@ -529,7 +529,7 @@ class Case(CaseKeys, CaseHeading):
         under the contact forces alone does not suffice.
         """
         return not self.stops and all(
-            joint.tied or (joint.friction > 0.0 and min(joint.normal_forces, default=0.0) > 0.0)
+            joint.bonded or (joint.friction > 0.0 and min(joint.normal_forces, default=0.0) > 0.0)
             for joint in self.joints
         )
 

@@ -310,10 +310,10 @@ def _s9(run: RunQuery) -> Finding:
     their contact law alone, with another exponent n. Threshold: 5 %, less than the differences
     between the models of S4. The stiffness may differ, too, since its unit depends on n.
     """
-    untied = [model for model in run.case.models if not model.bonded]
+    with_play = [model for model in run.case.models if not model.bonded]
     differences = [
         (abs(run.peak_height(a) / run.peak_height(b) - 1.0), a.name, b.name)
-        for a, b in combinations(untied, 2)
+        for a, b in combinations(with_play, 2)
         if options(a, "contact", "step") == options(b, "contact", "step")
         and _exponents(run, a) != _exponents(run, b)
     ]

@@ -143,7 +143,7 @@ class RunQuery:
 
     def bonded(self) -> Model:
         """Return the beam model without play."""
-        return self.one("beam-fe-tied", lambda model: model.bonded)
+        return self.one("beam-fe-bonded", lambda model: model.bonded)
 
     def with_play(self) -> list[Model]:
         """Return all models with play, which must be at least two."""

@@ -166,8 +166,8 @@ def play_effects(models: list[Model], design: Mapping[str, ModelDesignResults]) 
 
 
 def _static_differences(own: ModelDesignResults) -> Iterator[PlayDifference]:
-    tied = {rest.time: rest for rest in own.static_bonded}
-    both = [(rest, tied[rest.time]) for rest in own.static if rest.time in tied]
+    bonded = {rest.time: rest for rest in own.static_bonded}
+    both = [(rest, bonded[rest.time]) for rest in own.static if rest.time in bonded]
     if both:
         rest, other = max(both, key=lambda pair: abs(pair[0].tip))
         yield PlayDifference("deflection at rest", "tip", "m", abs(rest.tip), abs(other.tip))

@@ -174,7 +174,7 @@ class StaticBeam(NamedTuple):
         stations = [
             (joint.inner, number)
             for joint in boom.joints
-            if not joint.tied
+            if not joint.bonded
             for number, _ in enumerate(joint.stations, start=1)
         ]
         for number_of, station in enumerate(rests[0].stations):

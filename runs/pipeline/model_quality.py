@@ -73,8 +73,8 @@ def main_models(case: Case, models: Sequence[str]) -> set[str]:
     loose = [model for model in ran if not model.bonded]
     shells = [model.name for model in loose if model.meshed]
     beams = [model.name for model in loose if not model.meshed]
-    tied = [model.name for model in ran if model.bonded]
-    return {*shells[-1:], *beams[-1:], *tied[:1]}
+    bonded = [model.name for model in ran if model.bonded]
+    return {*shells[-1:], *beams[-1:], *bonded[:1]}
 
 
 def compare_models(

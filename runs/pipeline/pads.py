@@ -64,7 +64,7 @@ def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
         for direction in boom.directions:
             for table, joint in zip(case.joints, seen.joints, strict=True):
                 law = joint.law(direction)
-                for x in () if joint.tied else joint.stations:
+                for x in () if joint.bonded else joint.stations:
                     pushed = ends[next(station)]
                     if table.pad is not None:
                         largest = max(pushed, key=abs)

@@ -255,7 +255,7 @@ def static_result(
 def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[StationLoad]:
     """Yield the loads of stations with play and of stops, at an equilibrium (num_modes,)."""
     gaps = system.rows @ position
-    loose = [joint for joint in boom.joints if not joint.tied]
+    loose = [joint for joint in boom.joints if not joint.bonded]
     joints = [joint for _ in boom.directions for joint in loose for _ in joint.stations]
     for k, ((x, direction), name, joint) in enumerate(
         zip_longest(boom.stations, place_names(boom.stations), joints)
@@ -302,7 +302,7 @@ def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> 
         time: time in s of the extension.
     """
     gaps, numbers = system.rows @ position, count()
-    for joint in (joint for joint in boom.joints if not joint.tied):
+    for joint in (joint for joint in boom.joints if not joint.bonded):
         own = [float(gaps[system.station_of_row == next(numbers)].mean()) for _ in joint.stations]
         if len(own) > 1:
             before = travel(boom, joint.outer, time)

@@ -134,7 +134,7 @@ def _axial_forces(state: StaticState) -> dict[tuple[int, float], float]:
 def _depths(state: StaticState) -> dict[tuple[int, float], float]:
     """Return the compression in m of stations and stops along z, by segment and x in m."""
     boom = state.boom
-    joints = [joint for joint in boom.joints if not joint.tied]
+    joints = [joint for joint in boom.joints if not joint.bonded]
     inner = [
         (joint.inner, middles)
         for _ in boom.directions

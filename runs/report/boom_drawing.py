@@ -271,14 +271,14 @@ def _draw_segment(panel: Panel, number: int) -> None:
 def _draw_stations(panel: Panel, joint: Joint) -> None:
     """Draw each station as bars across the clearance, above and below."""
     outer, inner = (panel.boom.segments[number] for number in (joint.outer, joint.inner))
-    color = theme.PLAY_FREE if joint.tied else theme.INK
+    color = theme.PLAY_FREE if joint.bonded else theme.INK
     bar: dict[str, Any] = {"color": color, "linewidth": 4.0, "solid_capstyle": "butt"}
     for x in joint.stations:
         both = edges(panel.boom, inner, x), edges(panel.boom, outer, x)
         for ends in zip(*both, strict=True):
             panel.line([(x, z) for z in ends], **bar)
     touching = "slide pads" if joint.padded else "contact stations"
-    panel.meanings["bonded joint" if joint.tied else touching] = Line2D([], [], **bar)
+    panel.meanings["bonded joint" if joint.bonded else touching] = Line2D([], [], **bar)
 
 
 def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
@@ -320,7 +320,7 @@ def _height_factor(boom: Boom) -> float:
 
 def _remarks(case: Case, boom: Boom) -> Iterator[str]:
     """Yield remarks on loads and supports without a symbol."""
-    loose = [joint for joint in boom.joints if not joint.tied]
+    loose = [joint for joint in boom.joints if not joint.bonded]
     if loose:
         yield f"play {_join_values(1e3 * joint.play for joint in loose)} mm"
     if boom.spatial:

@@ -154,7 +154,7 @@ def law_table(results: Results) -> Table | None:
             model.model_boom(results.boom).boom.joints,
             strict=True,
         )
-        if not joint.tied
+        if not joint.bonded
     ]
     if not found:
         return None

@@ -114,8 +114,8 @@ def _head(run: FigureContext, place: str) -> Figure:
     sheet.supylabel("deflection (mm)", fontsize=theme.RC["font.size"])
     number = int(place.partition("-")[2] or 1)
     which = run.case.joints[number - 1].outer if run.case.joints else run.case.segments[0].name
-    tied = [run.labels[name] for name in run.bonded if name in run.models]
-    dashed = f" Dashed: {', '.join(tied)}, without play." if tied else ""
+    bonded = [run.labels[name] for name in run.bonded if name in run.models]
+    dashed = f" Dashed: {', '.join(bonded)}, without play." if bonded else ""
     caption = (
         f"Deflection of the head of the segment {which!r}, model by model.{dashed}"
         f"{_accuracy_note(run, place)}"

@@ -108,7 +108,7 @@ def _check(case: Case, model_boom: ModelBoom) -> None:
         ("cylinder", bool(boom.cylinders)),
         ("axial", boom.compressed),
         ("segment.head_section", any(segment.head_section is not None for segment in segments)),
-        ("joint.tied", any(joint.tied for joint in boom.joints)),
+        ("joint.bonded", any(joint.bonded for joint in boom.joints)),
         ("joint.drive", any(joint.drive is not None for joint in boom.joints)),
         ("joint.dashpot", any(joint.dashpot > 0.0 for joint in boom.joints)),
         ("segment.supports", any(s.dashpot > 0.0 for one in segments for s in one.supports)),
@@ -281,7 +281,7 @@ def exported(case: Case, file: str, name: str | None = None) -> BeamElements:
     Raises:
         BadInput: the model does not exist.
     """
-    of = {m.name: m for m in select_kind(BeamElements, case.models) if not m.tied}
+    of = {m.name: m for m in select_kind(BeamElements, case.models) if not m.bonded}
     if not of:
         raise BadInput(file, "--model", "must be beam elements with play, and there are none")
     if name is not None and name not in of:

@@ -60,15 +60,15 @@ def at_rest(run: FigureContext) -> list[Figure]:
         return []
     lines = {name: rest_lines(rest, name, run.strokes[name].color) for name, rest in rests.items()}
     # The boom without play has no static state at the end of telescoping.
-    tied = [
+    bonded = [
         rest
         for name in rests
         if name in run.with_play
         for rest in found[name].static_bonded
         if rest.time == rests[name].time
     ]
-    if tied and not rests.keys() & set(run.bonded):
-        lines["without play"] = rest_lines(tied[0], "without play", theme.PLAY_FREE)
+    if bonded and not rests.keys() & set(run.bonded):
+        lines["without play"] = rest_lines(bonded[0], "without play", theme.PLAY_FREE)
     caption = (
         "Static under the maximum load: deflection and section forces. Positive normal forces are "
         "tension, positive moments give tension at the top. In an overlap each segment has its own "

@@ -114,8 +114,8 @@ def _reaction_table(results: Results) -> Table | None:
     found = design.reactions
     if not found:
         return None
-    tied = {(one.segment, one.x): one.force for one in design.reactions_bonded}
-    beside = [tied.get((one.segment, one.x)) for one in found]
+    bonded = {(one.segment, one.x): one.force for one in design.reactions_bonded}
+    beside = [bonded.get((one.segment, one.x)) for one in found]
     columns = (
         Column("support", [f"{one.segment} at {one.x:g} m" for one in found]),
         Column("transverse force", [one.force for one in found], ".4g", "kN"),

@@ -209,7 +209,7 @@ class Scene:
         found, begin = [], 0
         for direction in self.boom.directions:
             for joint in self.boom.joints:
-                if joint.tied:
+                if joint.bonded:
                     continue
                 stations = list(range(begin, begin + len(joint.stations)))
                 begin += len(stations)

@@ -208,7 +208,7 @@ def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
         reads.append(SectionNodes.twist)
     found: list[Reading] = []
     for joint in boom.joints:
-        for x in joint.stations if joint.tied else ():
+        for x in joint.stations if joint.bonded else ():
             outlines = [shells[number].outline(x) for number in (joint.inner, joint.outer)]
             for read in reads:
                 inner, outer = (read(outline) for outline in outlines)

@@ -90,7 +90,7 @@ def surface_points(
     first = 0
     for direction in boom.directions:
         for joint in boom.joints:
-            if joint.tied:
+            if joint.bonded:
                 continue
             law = joint.law(direction)
             for side in (1, -1):

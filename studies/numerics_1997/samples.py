@@ -30,7 +30,7 @@ from studies.motions import gap_system, model_of, run_parallel
 from studies.numerics_1997.schemes import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
 
 SERIES = ("kantorovich-4", "kantorovich-5")
-ELEMENTS, TIED = "beam-fe", "beam-fe-tied"
+ELEMENTS, BONDED = "beam-fe", "beam-fe-bonded"
 
 # The paper's step of 7 s / 4375 and two others in s.
 STEPS = (3.2e-3, 1.6e-3, 0.8e-3)
@@ -109,7 +109,7 @@ class Sample:
     """Models with play by the same numerics, and the model without play."""
 
     models: Sequence[ModelRun]  #: of ``SERIES`` and ``ELEMENTS``
-    tied: ModelRun  #: the elements without play, accurate with any numerics
+    bonded: ModelRun  #: the elements without play, accurate with any numerics
 
     @property
     def elements(self) -> ModelRun:
@@ -144,7 +144,7 @@ class Sample:
         early, late = self.tip_distances()
         head = float(_largest_difference([one.head for one in self.models]).max())
         without = min(
-            float(_largest_difference([one.tip, self.tied.tip]).max()) for one in self.models
+            float(_largest_difference([one.tip, self.bonded.tip]).max()) for one in self.models
         )
         return early < DIVERGENCE < without and early < late < head
 
@@ -164,7 +164,7 @@ class Example:
     def of(cls, case: Case, members: int) -> Example:
         """Create an example with a number of accurately solved members."""
         boom = build_boom(case)
-        names = (*SERIES, ELEMENTS, TIED)
+        names = (*SERIES, ELEMENTS, BONDED)
         systems = {name: gap_system(case, boom, model_of(case, name)) for name in names}
         cutoff = slow_cutoff(boom, case.time)
         assert cutoff is not None
@@ -190,9 +190,9 @@ class Example:
         tasks = [(*model, factor) for model in models for factor in factors(MEMBERS)]
         runs = run_parallel(lambda one: _move(how, self.case.time.duration, *one), tasks)
         four, five, *others = (runs[i : i + MEMBERS] for i in range(0, len(runs), MEMBERS))
-        tied = self.accurate[0].tied.at(four[0].time)
+        bonded = self.accurate[0].bonded.at(four[0].time)
         return [
-            Sample(played, tied)
+            Sample(played, bonded)
             for other in others
             for played in zip(four, five, other, strict=True)
         ]

@@ -273,7 +273,7 @@ def _check(full: BoomShell) -> None:
     if in_space or full.loads or full.ties:
         raise BoomError(
             "joint",
-            "the unreduced shell moves in the plane, under constant loads, without tied joints",
+            "the unreduced shell moves in the plane, under constant loads, without bonded joints",
         )
     if any(contact.law.damping > 0.0 for contact in full.rows.contacts):
         raise BoomError("joint", "the unreduced shell takes contacts without damping")

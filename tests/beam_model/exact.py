@@ -70,7 +70,7 @@ class OverhangingBeam:
         return cubes / self.bending_stiffness - ramps / self.shear_stiffness - constant - slope * x
 
 
-def tied_deflections(boom: Boom, shear_stiffness: Sequence[float]) -> dict[str, float]:
+def bonded_deflections(boom: Boom, shear_stiffness: Sequence[float]) -> dict[str, float]:
     """Rest of a two-segment boom whose segments are hinged to each other at both stations.
 
     The inner segment alone gives the forces between them: the joint is statically determinate.
@@ -112,7 +112,7 @@ class Span:
         return np.array([cosine, sine, fading, growing])
 
 
-def tied_determinant(boom: Boom, omega: float) -> float:
+def bonded_determinant(boom: Boom, omega: float) -> float:
     """Return a determinant, up to a positive factor, of the bonded boom's exact equations at ω.
 
     Outer spans between supports, stations and end, inner ones between stations and tip;
@@ -165,10 +165,10 @@ def tied_determinant(boom: Boom, omega: float) -> float:
     return float(sign * np.exp(logarithm))
 
 
-def tied_frequencies(boom: Boom, highest: float) -> Array:
+def bonded_frequencies(boom: Boom, highest: float) -> Array:
     """Exact natural frequencies of the play-free boom in Hz up to ``highest``."""
     lowest, largest = 2.0 * np.pi * 0.5, 2.0 * np.pi * highest
-    found = roots(partial(tied_determinant, boom), lowest, largest)
+    found = roots(partial(bonded_determinant, boom), lowest, largest)
     return np.array(found) / (2.0 * np.pi)
 
 

@@ -130,17 +130,17 @@ def test_a_lowered_pin_needs_no_cylinder() -> None:
     assert pin.moment == pytest.approx(50.0e3 * 0.35, rel=1e-6)
 
 
-@pytest.mark.parametrize("tied", [False, True], ids=["one", "of two tied"])
-def test_frequency_of_a_stiff_boom_on_its_cylinder(beam: Beam, tied: bool) -> None:
+@pytest.mark.parametrize("bonded", [False, True], ids=["one", "of two bonded"])
+def test_frequency_of_a_stiff_boom_on_its_cylinder(beam: Beam, bonded: bool) -> None:
     """Reference: analytic, r √(k / I) about the hinge; beams of 1e4 times the stiffness of steel
     follow within 2e-4, rigid ones to round-off.
     """
     stiff = Material(youngs_modulus=2.1e15, poissons_ratio=0.3, density=7850.0)
     whole = beam(supports=(HINGE,), material=stiff)
     parts = (replace(whole, end=6.0), replace(whole, start=6.0, supports=(), name="fly"))
-    joint = Joint(0, 1, stations=(6.0,), play=0.0, tied=True)
+    joint = Joint(0, 1, stations=(6.0,), play=0.0, bonded=True)
     boom = Boom((whole,), (), cylinders=(CYLINDER,))
-    if tied:
+    if bonded:
         over = replace(parts[1], start=5.5, mass_per_length=0.8 * whole.mass_per_length)
         over = replace(over, section=None)
         boom = Boom((parts[0], over), (replace(joint, stations=(5.6, 5.9)),), cylinders=(CYLINDER,))
@@ -167,7 +167,7 @@ def test_two_inclined_cylinders_hold_the_twist_by_the_slope(beam: Beam) -> None:
     """
     base = in_space(beam(supports=(Support(3.0, "hinged"),)))
     inner = in_space(beam(name="fly", start=7.0, end=9.0, section=SMALL))
-    joint = Joint(0, 1, (7.2, 7.8), play=0.0, lateral_play=0.0, tied=True)
+    joint = Joint(0, 1, (7.2, 7.8), play=0.0, lateral_play=0.0, bonded=True)
     pair = replace(CYLINDER, spread=1.2)
     boom = Boom((base, inner), (joint,), cylinders=(pair,))
     models = finite_element_segments(boom, 0.5, "euler-bernoulli", rotary_inertia=True)

@@ -80,10 +80,10 @@ def test_a_segment_that_flies_slows_down_at_the_ratio_of_the_first_mode(heavy: G
     """Reference: analytic, exp(−ζω₁t)."""
     wide = replace(heavy, load=0.0 * heavy.load, laws=[LINEAR.law.behind(10.0)] * len(heavy.laws))
     damped = with_modal_damping(wide, 0.05)
-    tied = closed_contact_modes(wide)[0][0]
+    bonded = closed_contact_modes(wide)[0][0]
     thrown = np.where(np.arange(wide.num_modes) == np.flatnonzero(wide.omega2 == 0.0)[0], 1.0, 0.0)
     run = AdaptiveStep()(Motion(damped, 1.0, 0.1, velocity=thrown))
-    way = (1.0 - np.exp(-0.05 * tied * run.time)) / (0.05 * tied)
+    way = (1.0 - np.exp(-0.05 * bonded * run.time)) / (0.05 * bonded)
     np.testing.assert_allclose(run.states @ thrown, way, rtol=1e-9, atol=1e-12)
     assert run.energy_residual < 1e-12
 
@@ -111,11 +111,11 @@ def test_the_error_is_of_second_order_in_the_step(heavy: GapSystem) -> None:
     assert np.log2(errors[0] / errors[2]) / 2.0 == pytest.approx(2.0, abs=0.1)
 
 
-def test_a_tied_boom_keeps_its_exact_flow(
+def test_a_bonded_boom_keeps_its_exact_flow(
     paper_boom: Boom, series: Callable[..., list[SegmentModel]]
 ) -> None:
     """Reference: analytic. Its modes are the pressed ones already: 2ζω each, and no dashpots."""
-    tied = gap_system(paper_boom.bonded, series((6, 6), "complete"))
-    damped = with_modal_damping(tied, 0.02)
-    np.testing.assert_allclose(damped.damping, 0.04 * np.sqrt(tied.omega2))
+    bonded = gap_system(paper_boom.bonded, series((6, 6), "complete"))
+    damped = with_modal_damping(bonded, 0.02)
+    np.testing.assert_allclose(damped.damping, 0.04 * np.sqrt(bonded.omega2))
     assert not damped.dashpots.size

@@ -148,17 +148,17 @@ def test_dashpots_keep_the_ledger(paper_boom: Boom, elements: Models) -> None:
     assert run.energy_residual < 1e-4
 
 
-def test_a_dashpot_takes_no_part_in_a_tied_boom(paper_boom: Boom, elements: Models) -> None:
-    """Reference: the same boom without, equal bits; a joint that is tied by itself has none."""
+def test_a_dashpot_takes_no_part_in_a_bonded_boom(paper_boom: Boom, elements: Models) -> None:
+    """Reference: the same boom without, equal bits; a joint that is bonded by itself has none."""
     (joint,) = paper_boom.joints
     dragged = replace(paper_boom, joints=(replace(joint, dashpot=DASHPOT),))
     models = elements(1.0)
-    bare, tied = (gap_system(boom.bonded, models) for boom in (paper_boom, dragged))
-    np.testing.assert_array_equal(tied.frequencies, bare.frequencies)
-    assert not tied.damping.any()
-    assert not tied.dashpots.any()
-    what = "the joint is tied, and nothing moves; leave it out"
+    bare, bonded = (gap_system(boom.bonded, models) for boom in (paper_boom, dragged))
+    np.testing.assert_array_equal(bonded.frequencies, bare.frequencies)
+    assert not bonded.damping.any()
+    assert not bonded.dashpots.any()
+    what = "the joint is bonded, and nothing moves; leave it out"
     with pytest.raises(BoomError, match=rf"^joints\[0\]\.dashpot: {re.escape(what)}$"):
-        replace(paper_boom, joints=(replace(joint, tied=True, dashpot=1.0),))
+        replace(paper_boom, joints=(replace(joint, bonded=True, dashpot=1.0),))
     with pytest.raises(ValidationError, match="should be greater than or equal to 0"):
         replace(joint, dashpot=-1.0)

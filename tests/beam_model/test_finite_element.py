@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 
 from beam_model.component import Component
 from beam_model.finite_element import Theory, finite_element_segment
@@ -39,6 +40,15 @@ def shear_stiffness(segment: Segment, theory: Theory) -> float:
     if theory == "euler-bernoulli":
         return np.inf
     return 2.0 * segment.section.height * segment.section.web * 2.1e11 / 2.6
+
+
+def test_mass_beside_a_node_costs_no_digits(beam: Beam) -> None:
+    """Reference: other mesh, without the node 1 mm from the mass; rigid modes are zero."""
+    segment = beam(masses=(PointMass(5.001, 20.0),))
+    alone, beside = (bending(segment, 0.3, x, "euler-bernoulli", False) for x in ((), (5.0,)))
+    np.testing.assert_allclose(frequencies(beside)[:4], frequencies(alone)[:4], rtol=1e-5)
+    squares = eigh(beside.stiffness, beside.mass, eigvals_only=True)
+    np.testing.assert_allclose(squares[:2], 0.0, atol=1e-9 * squares[2])
 
 
 @pytest.mark.parametrize(

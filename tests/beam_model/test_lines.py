@@ -86,7 +86,7 @@ def test_a_joint_with_play_passes_what_the_lever_rule_says(paper_boom: Boom) -> 
 
 def test_a_boom_in_space_bends_sideways_and_twists(spatial_boom: Boom) -> None:
     """Reference: by hand. 300 N to the side at 19 m: with s = 19 − x, lateral moment −300 s of a
-    tied boom in its inner segment, whose stations are the only other places that act on it.
+    bonded boom in its inner segment, whose stations are the only other places that act on it.
     """
     load = Load(1, "y", 300.0, 19.0, Step())
     boom = replace(spatial_boom.bonded, loads=(load,))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Beams under axial forces: segments that tip over, both planes, tied and resting booms."""
+"""Beams under axial forces: segments that tip over, both planes, bonded and resting booms."""
 
 from __future__ import annotations
 
@@ -49,11 +49,11 @@ def alone(segment: Segment, thrust: float, gravity: float = 0.0) -> Boom:
     return Boom(with_compression([segment], [], [Thrust(0, segment.end, thrust)], gravity), ())
 
 
-def telescope(thrust: float, tied: bool = False, **changes: object) -> Boom:
+def telescope(thrust: float, bonded: bool = False, **changes: object) -> Boom:
     """Return a clamped arm and a fly with an overlap of 2 m, with a force at its tip."""
     arm = Segment.of_section("arm", 0.0, 8.0, STEEL, OUTER, supports=CLAMP)
     fly = Segment.of_section("fly", 6.0, 14.0, STEEL, INNER, load=-500.0)
-    joint = Joint(outer=0, inner=1, stations=(6.0, 8.0), play=0.01, tied=tied, **changes)
+    joint = Joint(outer=0, inner=1, stations=(6.0, 8.0), play=0.01, bonded=bonded, **changes)
     return Boom(with_compression((arm, fly), (joint,), [Thrust(1, 14.0, thrust)]), (joint,))
 
 
@@ -141,13 +141,14 @@ def test_the_static_tip_grows_as_the_buckling_factor_says(build: Build) -> None:
 
 def test_in_play_the_boom_rests_as_its_contacts_let_it(build: Build) -> None:
     """Reference: analytic. A rigid fly whose contacts are stiff leans on both stations as far as
-    its play lets it; the pressed boom's tip is the tied one's and that of the tilt by 2Δ over 2 m.
+    its play lets it; the pressed boom's tip is the bonded one's and that of the tilt by 2Δ over
+    2 m.
     """
     boom = telescope(2.0e4)
     system = gap_system(touching(boom, PowerContact(1e12, 1.0).behind(5e-3)), build(boom))
-    tied = gap_system(boom.bonded, build(boom))
+    bonded = gap_system(boom.bonded, build(boom))
     tip = float(system.observers["tip"].row @ equilibrium(system, system.load))
-    held = float(tied.observers["tip"].row @ equilibrium(tied, tied.load))
+    held = float(bonded.observers["tip"].row @ equilibrium(bonded, bonded.load))
     tilt = 5e-3 + 5e-3 * 2.0 / 2.0 * 6.0
     assert tip == pytest.approx(held - tilt, rel=0.03)
     assert tip < held - tilt

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Segments side by side and tied: rows, observers, and the play-free boom's exact numbers."""
+"""Segments side by side and bonded: rows, observers, and the play-free boom's exact numbers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, Joint, Material, PadSize, Segment, Support
-from tests.beam_model.exact import OverhangingBeam, tied_deflections, tied_frequencies
+from tests.beam_model.exact import OverhangingBeam, bonded_deflections, bonded_frequencies
 from tests.touching import touching
 
 Models = Callable[..., list[SegmentModel]]
@@ -30,7 +30,7 @@ def rest(system: GapSystem) -> dict[str, float]:
     return {name: float(seen.row @ position) for name, seen in system.observers.items()}
 
 
-def test_tied_boom_has_the_published_frequencies(paper_boom: Boom, elements: Models) -> None:
+def test_bonded_boom_has_the_published_frequencies(paper_boom: Boom, elements: Models) -> None:
     """Reference: other code, Euler-Bernoulli elements, to its digits."""
     system = gap_system(paper_boom.bonded, elements(0.5))
     assert system.frequencies[:4] == pytest.approx([2.0852, 10.463, 30.337, 57.49], rel=5e-5)
@@ -38,12 +38,12 @@ def test_tied_boom_has_the_published_frequencies(paper_boom: Boom, elements: Mod
     assert system.omega2.min() > 1.0
 
 
-def test_tied_boom_has_the_exact_frequencies(paper_boom: Boom, elements: Models) -> None:
+def test_bonded_boom_has_the_exact_frequencies(paper_boom: Boom, elements: Models) -> None:
     """Reference: analytic, the transcendental determinant of the joined spans.
 
     At order four: half the element, a sixteenth of the error.
     """
-    exact = tied_frequencies(paper_boom, 110.0)
+    exact = bonded_frequencies(paper_boom, 110.0)
     assert exact.size == 5
     errors = [
         gap_system(paper_boom.bonded, elements(length)).frequencies[:5] / exact - 1.0
@@ -54,7 +54,7 @@ def test_tied_boom_has_the_exact_frequencies(paper_boom: Boom, elements: Models)
     np.testing.assert_allclose(np.log2(errors[1][2:] / errors[2][2:]), 4.0, atol=0.1)
 
 
-def test_pads_do_not_matter_to_a_tied_boom(paper_boom: Boom, elements: Models) -> None:
+def test_pads_do_not_matter_to_a_bonded_boom(paper_boom: Boom, elements: Models) -> None:
     """Reference: the same boom without pads, equal bits."""
     (joint,) = paper_boom.joints
     padded = replace(paper_boom, joints=(replace(joint, pad=PadSize(0.2, 0.06)),))
@@ -66,7 +66,7 @@ def test_pads_do_not_matter_to_a_tied_boom(paper_boom: Boom, elements: Models) -
 
 
 @pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
-def test_tied_boom_rests_where_statics_put_it(
+def test_bonded_boom_rests_where_statics_put_it(
     paper_boom: Boom, elements: Models, theory: Theory
 ) -> None:
     """Reference: analytic. The joint is statically determinate."""
@@ -76,13 +76,13 @@ def test_tied_boom_rests_where_statics_put_it(
         else np.inf
         for segment in paper_boom.segments
     ]
-    expected = tied_deflections(paper_boom, shear)
+    expected = bonded_deflections(paper_boom, shear)
     for length in (20.0, 0.7):
         found = rest(gap_system(paper_boom.bonded, elements(length, theory)))
         assert found == pytest.approx(expected, rel=1e-7, abs=0.0)
 
 
-def test_tied_series_converges_to_the_tied_elements(
+def test_bonded_series_converges_to_the_bonded_elements(
     paper_boom: Boom, series: Models, elements: Models
 ) -> None:
     """Reference: other code, Hermite elements. Twelve terms a segment, free to turn at the base.
@@ -152,14 +152,14 @@ def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
     assert [law.terms[0].exponent for law in system.laws] == [2.0, 2.0, 1.0, 1.0]
     assert list(system.stations) == [9.0, 10.0, 17.5, 19.0]
     assert (system.omega2 == 0.0).sum() == 4
-    tied = gap_system(boom.bonded, models)
-    assert tied.omega2.min() > 1.0
-    assert tied.num_modes == system.num_modes - 4
-    # Tied, both segments of a joint deflect alike at its stations.
-    position = tied.static_response(tied.load)
+    bonded = gap_system(boom.bonded, models)
+    assert bonded.omega2.min() > 1.0
+    assert bonded.num_modes == system.num_modes - 4
+    # Bonded, both segments of a joint deflect alike at its stations.
+    position = bonded.static_response(bonded.load)
     for name in ("head", "head-2", "tail", "tail-2"):
-        assert tied.observers[name].row @ position > 0.0
-    assert tied.observers["tail-2"].row @ position > tied.observers["head"].row @ position
+        assert bonded.observers[name].row @ position > 0.0
+    assert bonded.observers["tail-2"].row @ position > bonded.observers["head"].row @ position
 
 
 def in_leaves(boom: Boom) -> Boom:
@@ -178,7 +178,7 @@ def in_leaves(boom: Boom) -> Boom:
     )
     return Boom(
         (outer, half, replace(half, name="leaf")),
-        (joint, replace(joint, outer=1, inner=2, tied=True)),
+        (joint, replace(joint, outer=1, inner=2, bonded=True)),
     )
 
 
@@ -189,7 +189,7 @@ def leaves(paper_boom: Boom) -> tuple[Boom, list[SegmentModel]]:
     return boom, models
 
 
-def test_tied_halves_have_the_frequencies_of_the_whole(
+def test_bonded_halves_have_the_frequencies_of_the_whole(
     paper_boom: Boom, elements: Models, leaves: tuple[Boom, list[SegmentModel]]
 ) -> None:
     """Reference: analytic. What both do alike is the whole segment; what they do against each
@@ -204,13 +204,13 @@ def test_tied_halves_have_the_frequencies_of_the_whole(
     others = np.sqrt(halves.omega2)
     for omega in np.sqrt(whole.omega2):
         assert np.abs(others - omega).min() <= 1e-8 * omega
-    # A tied model of three ties the play away as well.
+    # A bonded model of three ties the play away as well.
     found = gap_system(leaves[0].bonded, leaves[1]).frequencies
     for frequency in gap_system(paper_boom.bonded, elements(1.0)).frequencies:
         assert np.abs(found - frequency).min() <= 1e-8 * frequency
 
 
-def test_tied_halves_move_as_the_whole(
+def test_bonded_halves_move_as_the_whole(
     paper_boom: Boom, elements: Models, leaves: tuple[Boom, list[SegmentModel]]
 ) -> None:
     """Reference: analytic, until the rounding of the first presses has grown."""
@@ -230,14 +230,14 @@ def test_tied_halves_move_as_the_whole(
 
 
 def test_ties_between_free_segments_leave_them_rigid(steel: Material) -> None:
-    """Reference: analytic. Two segments tied at three places still move as one body; the third
+    """Reference: analytic. Two segments bonded at three places still move as one body; the third
     joint of a chain does not bind what it does not touch."""
     one = Segment("one", 0.0, 6.0, steel, 50.0, 2.0e-4, 1.0)
     two = replace(one, name="two", start=4.0, end=10.0)
     three = replace(one, name="three", start=8.0, end=14.0, supports=(Support(12.0), Support(14.0)))
-    tied = Joint(0, 1, (4.0, 5.0, 6.0), play=0.0, tied=True)
+    bonded = Joint(0, 1, (4.0, 5.0, 6.0), play=0.0, bonded=True)
     loose = Joint(1, 2, (8.0, 10.0), play=0.002)
-    boom = Boom((one, two, three), (tied, loose))
+    boom = Boom((one, two, three), (bonded, loose))
     models = finite_element_segments(boom, 0.5, "euler-bernoulli", False)
     system = gap_system(touching(boom, PowerContact(1e9, 1.0).behind(1e-3)), models)
     assert (system.omega2 == 0.0).sum() == 2

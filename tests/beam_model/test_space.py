@@ -325,8 +325,8 @@ def test_friction_takes_energy_and_gives_none(spatial_boom: Boom) -> None:
     assert np.abs(run.data["friction_force"].values).max() > 100.0
 
 
-def test_tied_in_space_nothing_moves_between_the_segments(spatial_boom: Boom) -> None:
-    """Reference: analytic. The flat tied boom's frequencies, those of the boom on its side, and
+def test_bonded_in_space_nothing_moves_between_the_segments(spatial_boom: Boom) -> None:
+    """Reference: analytic. The flat bonded boom's frequencies, those of the boom on its side, and
     twisting ones beside them; no more rigid motions."""
     boom = pushed(spatial_boom, 5.0, 6.0)
     system = gap_system(boom.bonded, beams(boom))

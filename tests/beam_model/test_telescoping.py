@@ -207,8 +207,8 @@ def driven(history: History, least: float = 0.0) -> Drive:
          "in 'outer'"),
         (lambda boom: telescope(boom, 0.0, driven(PiecewiseLinear([0.0, 1.0], [0.0, 0.0]))),
          "joints[0].drive: does not move 'inner'; leave it out"),
-        (lambda boom: telescope(boom, 0.0, DRIVE, tied=True),
-         "joints[0].drive: the joint is tied, and nothing slides; leave it out"),
+        (lambda boom: telescope(boom, 0.0, DRIVE, bonded=True),
+         "joints[0].drive: the joint is bonded, and nothing slides; leave it out"),
         (lambda boom: replace(boom, joints=(Joint(0, 1, (9.3, 9.5), play=0.014,
             drive=Drive(SCurve(0.3, 1.0), ("inner", "outer"))),)),
          "joints[0].drive: stations pass one another as 'inner' telescopes by 0.3 m; make the "

@@ -79,7 +79,7 @@ def test_what_tips_over_rests_on_its_stop(tipping: GapSystem) -> None:
 
 
 def test_the_pressed_boom_is_damped_as_asked_for() -> None:
-    """Reference: the ratio that is asked for, of a mass tied to an elastic one beside it."""
+    """Reference: the ratio that is asked for, of a mass bonded to an elastic one beside it."""
     two = GapSystem(
         omega2=np.array([NEGATIVE / MASS, 400.0]),
         load=np.array([-9.0, 0.0]),

@@ -102,9 +102,9 @@ def test_places_where_something_acts(paper_boom: Boom, spatial_boom: Boom) -> No
     assert spatial_boom.spatial
     both = replace(spatial_boom, stops=(stop,))
     assert both.stations == [(9.0, "z"), (10.0, "z"), (9.0, "y"), (10.0, "y"), (14.0, "z")]
-    tied = Boom(paper_boom.segments, (replace(paper_boom.joints[0], tied=True),), stops=(stop,))
-    assert tied.stations == [(14.0, "z")]
-    assert tied.stations_of(0) == (9.0, 10.0)
+    bonded = Boom(paper_boom.segments, (replace(paper_boom.joints[0], bonded=True),), stops=(stop,))
+    assert bonded.stations == [(14.0, "z")]
+    assert bonded.stations_of(0) == (9.0, 10.0)
 
 
 # Changes that the boom refuses, by the line that each of them earns.

@@ -38,9 +38,9 @@ def test_a_pad_keeps_its_distance_from_the_corner(paper_boom: Boom) -> None:
     assert tail.patch == Patch(9.0, 9.1, 0.03, 0.06)
 
 
-def test_a_tied_joint_has_none(paper_boom: Boom) -> None:
+def test_a_bonded_joint_has_none(paper_boom: Boom) -> None:
     (joint,) = paper_boom.joints
-    assert not pads(replace(paper_boom, joints=(replace(joint, tied=True),)))
+    assert not pads(replace(paper_boom, joints=(replace(joint, bonded=True),)))
 
 
 def test_pads_in_space_are_in_the_corners(spatial_boom: Boom) -> None:
@@ -83,23 +83,23 @@ def test_pads_in_space_are_in_the_corners(spatial_boom: Boom) -> None:
 
 
 def test_stations_are_those_of_the_boom(spatial_boom: Boom) -> None:
-    """Three segments and a stop, one joint tied or none."""
+    """Three segments and a stop, one joint bonded or none."""
     (joint,) = spatial_boom.joints
     inner = spatial_boom.segments[1]
     assert inner.section is not None
     box = replace(inner.section, height=0.4, width=0.2)
     last = replace(inner, name="last", start=17.0, end=26.0, section=box)
-    for tied in (False, True):
+    for bonded in (False, True):
         boom = Boom(
             (*spatial_boom.segments, last),
             (
-                replace(joint, tied=tied),
+                replace(joint, bonded=bonded),
                 replace(joint, outer=1, inner=2, stations=(17.0, 18.0, 19.0)),
             ),
             stops=(Stop(2, 26.0, 0.02, PowerContact(1.0e8, 1.0, stiffness_below=1.0e8)),),
         )
         found = pads(boom)
-        assert len(boom.stations) == (7 if tied else 11)
+        assert len(boom.stations) == (7 if bonded else 11)
         assert len(found) == 4 * (len(boom.stations) - 1)
         for pad in found:
             assert (pad.x, pad.direction) == boom.stations[pad.station]

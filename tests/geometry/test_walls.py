@@ -101,10 +101,10 @@ def test_sections_that_touch_have_flats(paper_boom: Boom, spatial_boom: Boom) ->
     )
     with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
         _in(paper_boom, outer, folded)
-    joint = replace(paper_boom.joints[0], tied=True)
-    tied = _in(replace(paper_boom, joints=(joint,)), outer, folded)
+    joint = replace(paper_boom.joints[0], bonded=True)
+    bonded = _in(replace(paper_boom, joints=(joint,)), outer, folded)
     with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
-        replace(tied, stops=(Stop(1, 15.0, 0.2, PowerContact(1e7, 1.0, stiffness_below=1e7)),))
+        replace(bonded, stops=(Stop(1, 15.0, 0.2, PowerContact(1e7, 1.0, stiffness_below=1e7)),))
 
 
 def test_a_flat_lies_on_one_as_wide(paper_boom: Boom) -> None:

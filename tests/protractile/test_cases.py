@@ -16,7 +16,7 @@ import protractile as pt
 from runs.report import workbook
 from tests.system.run_folder import COARSE, files, protractile
 
-BEAM = ["beam-fe-tied"]
+BEAM = ["beam-fe-bonded"]
 TABLES = tomllib.loads(Path(COARSE).read_text("utf-8"))
 SHORT = TABLES | {"time": TABLES["time"] | {"duration": 0.02}}
 

@@ -61,7 +61,7 @@ def boom() -> pt.Boom:
 
 def declared(model: ModelTable, **tables: Any) -> pt.Case:
     """Return the case from an equivalent case file."""
-    table = model.model_dump(mode="json", exclude_none=True)
+    table = model.model_dump(mode="json", by_alias=True, exclude_none=True)
     return pt.Case.model_validate(DECLARED | tables | {"model": [table]})
 
 
@@ -71,7 +71,7 @@ def declared(model: ModelTable, **tables: Any) -> pt.Case:
         ("Kantorovich", {"terms": (4, 6), "base": "complete"}),
         ("BeamElements", {"step": 1.0e-4}),
         ("BeamElements", {"theory": "timoshenko", "element_length": 1.0}),
-        ("BeamElements", {"tied": True}),
+        ("BeamElements", {"bonded": True}),
         ("Rigid", {}),
         pytest.param("Shell", {"mesh_size": 0.4}, marks=pytest.mark.slow),
         pytest.param("BeamElements", {"calibrated_by": 0.4}, marks=pytest.mark.slow),
@@ -109,7 +109,7 @@ def test_a_model_has_its_own_contact(boom: pt.Boom) -> None:
 
 def test_what_presses_or_is_modelled_must_be_given(boom: pt.Boom) -> None:
     loose = replace(boom, joints=[replace(boom.joints[0], contact=None)])
-    assert pt.BeamElements(loose, tied=True).system().laws == []
+    assert pt.BeamElements(loose, bonded=True).system().laws == []
     with pytest.raises(pt.BoomError, match=r"^joint\[1\].contact: missing; give a contact law, or"):
         pt.BeamElements(loose).system()
     with pytest.raises(pt.BoomError, match=r"^rigid: missing; give the boom that it is a model of"):

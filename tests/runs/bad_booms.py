@@ -145,7 +145,7 @@ NUMBERS = [
      "height_to_width = 1.5\nsection = { height = 0.49, width = 0.33, flange = 0.0065, web = "
      "0.0065 }",
      "segment[1].height_to_width: the section is given; leave one of them out"),
-    ("tied = true",
-     f"tied = true\n{CONTACT}",
-     "model[5].contact: a tied model has no contact; leave it out"),
+    ("bonded = true",
+     f"bonded = true\n{CONTACT}",
+     "model[5].contact: a bonded model has no contact; leave it out"),
 ]  # fmt: skip

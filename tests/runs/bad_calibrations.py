@@ -32,7 +32,7 @@ CALIBRATIONS = [
             "model[4].section_fields: only a calibrated beam has them; give calibrated_by, or "
             "leave it out",
     }),
-    ("tied = true", 'tied = true\ncalibrated_by = "shell"',
-     "model[5].calibrated_by: a tied model has no stations whose springs could be read; leave "
+    ("bonded = true", 'bonded = true\ncalibrated_by = "shell"',
+     "model[5].calibrated_by: a bonded model has no stations whose springs could be read; leave "
      "it out"),
 ]  # fmt: skip

@@ -22,8 +22,8 @@ CONTACTS = [
             "joint[1].lateral_play: 'inner' does not fit in 'outer': 0.044042 m of width are "
             "free, and a lateral play of 0.1 m is asked for; make the inner section or the "
             "lateral play smaller",
-        "tied = true\nfriction = 0.2\nnormal_forces = [1.0, 1.0]":
-            "joint[1].friction: the joint is tied, and nothing slides; leave it out",
+        "bonded = true\nfriction = 0.2\nnormal_forces = [1.0, 1.0]":
+            "joint[1].friction: the joint is bonded, and nothing slides; leave it out",
         "pad = { length = 1.5, width = 0.06 }":
             "joint[1].pad.length: must be above 0 and not above the overlap of 1 m, got 1.5 m",
         "pad = { length = 0.1, width = 0.06, offset = 0.01, bears = 'corner' }":
@@ -43,15 +43,15 @@ CONTACTS = [
             "joint[1].lateral_play_right: must be a part of lateral_play, got 0.002 m",
         "pad = { length = 0.1 }":
             "joint[1].pad.width: missing; it is the width from the corner inwards in m",
-        "tied = true\npad = { length = 0.1, width = 0.06 }":
-            "joint[1].pad: the joint is tied, and nothing touches; leave it out",
+        "bonded = true\npad = { length = 0.1, width = 0.06 }":
+            "joint[1].pad: the joint is bonded, and nothing touches; leave it out",
         "contact_length = 1.5":
             "joint[1].contact_length: must be above 0 and not above the overlap's 1 m, got 1.5 m",
         "contact_length = 0.0": "joint[1].contact_length: must be a number greater than 0, got 0.0",
-        "tied = true\ncontact_length = 0.1":
-            "joint[1].contact_length: the joint is tied, and nothing touches; leave it out",
-        "tied = true\ndashpot = 1e3":
-            "joint[1].dashpot: the joint is tied, and nothing moves; leave it out",
+        "bonded = true\ncontact_length = 0.1":
+            "joint[1].contact_length: the joint is bonded, and nothing touches; leave it out",
+        "bonded = true\ndashpot = 1e3":
+            "joint[1].dashpot: the joint is bonded, and nothing moves; leave it out",
         "dashpot = -1e3": "joint[1].dashpot: must be a number not less than 0, got -1000.0",
     }),
     *replacing("stiffness = 1e13\nexponent = 2.0", {

@@ -79,8 +79,8 @@ FORMS = [
     ("height_to_width = 1.5\n", "",
      "segment[1].section: missing, and 'timoshenko' needs it; give section or height_to_width, "
      "or theory = 'euler-bernoulli' in the model"),
-    ("tied = true", "tied = 1",
-     "model[5].tied: must be true or false, got 1"),
+    ("bonded = true", "bonded = 1",
+     "model[5].bonded: must be true or false, got 1"),
     *replacing("title = \"The paper's boom, coarse and short\"", {
         "title = 3": "title: must be a text, got 3",
         'title = "red \\u001b[31m"':

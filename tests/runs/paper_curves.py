@@ -25,7 +25,7 @@ PEAKS = {
     "kantorovich-4": 0.169,
     "kantorovich-5": 0.171,
     "beam-fe": 0.184,
-    "beam-fe-tied": 0.019,
+    "beam-fe-bonded": 0.019,
     "shell": 0.186,
 }
 
@@ -54,7 +54,7 @@ def curves(duration: float = 10.0, **heights: float) -> dict[str, dict[str, np.n
     drawn = {}
     for name, peak in peaks.items():
         own = swing(peak, duration)
-        tip = own if name == "beam-fe-tied" else common + touching * (own - common)
+        tip = own if name == "beam-fe-bonded" else common + touching * (own - common)
         head = 0.1 * common + 0.3 * (tip - common)
         drawn[name] = {"tip": tip, "head": head}
     return drawn
@@ -121,7 +121,7 @@ def stratifying(drift: float, early: float = 0.0, count: int = 32) -> dict[str, 
     """
     time = np.arange(10_001) / 1000
     delays = early + drift * np.clip(time - 6.0, 0.0, 1.0)
-    names = [name for name in PEAKS if name != "beam-fe-tied"]
+    names = [name for name in PEAKS if name != "beam-fe-bonded"]
     return {
         name: np.tile(
             PEAKS[name] * 0.5 * (1.0 - np.cos(2.0 * np.pi * (time - i * delays) / PERIOD)),

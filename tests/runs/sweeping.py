@@ -13,7 +13,7 @@ from runs.sweep.points import Plan
 from runs.sweep.run import Outcome
 
 COARSE = CASES / "coarse.toml"
-FAST = ["kantorovich-4", "beam-fe-tied"]
+FAST = ["kantorovich-4", "beam-fe-bonded"]
 
 Planned = Callable[..., Plan]
 

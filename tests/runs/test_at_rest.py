@@ -57,10 +57,10 @@ def test_play_adds_its_lever_and_no_moment(answers: DesignResults) -> None:
     and moments stay what they are without it.
     """
     found = answers.models["timoshenko"]
-    (rest,), (tied,) = found.static, found.static_bonded
-    # The tied boom's stations bend nothing: what is added is the tilt alone.
-    assert rest.tip - tied.tip == pytest.approx(rest.tilts[0].tip, rel=1e-6)
-    for one, other in zip(rest.diagrams, tied.diagrams, strict=True):
+    (rest,), (bonded,) = found.static, found.static_bonded
+    # The bonded boom's stations bend nothing: what is added is the tilt alone.
+    assert rest.tip - bonded.tip == pytest.approx(rest.tilts[0].tip, rel=1e-6)
+    for one, other in zip(rest.diagrams, bonded.diagrams, strict=True):
         np.testing.assert_allclose(one.curves["moment"], other.curves["moment"], atol=0.1)
 
 

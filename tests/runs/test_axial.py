@@ -37,12 +37,12 @@ name = "beam"
 kind = "finite-element"
 theory = "euler-bernoulli"
 """
-TIED = """
+BONDED = """
 [[model]]
-name = "tied"
+name = "bonded"
 kind = "finite-element"
 theory = "euler-bernoulli"
-tied = true
+bonded = true
 """
 MAST = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
 FLY = BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005)
@@ -99,13 +99,13 @@ def test_a_force_may_act_anywhere_and_pass_at_a_pin(tmp_path: Path) -> None:
 
 
 def test_a_pressed_boom_rests_lower(tmp_path: Path) -> None:
-    """Reference: analytic. The tied tip's δ₀/(1 − 1/λ) to 2 %, with the λ that the run tells."""
-    rest = '[start]\nstate = "equilibrium"\n' + TIED
+    """Reference: analytic. The bonded tip's δ₀/(1 − 1/λ) to 2 %, with the λ that the run tells."""
+    rest = '[start]\nstate = "equilibrium"\n' + BONDED
     tips = {}
     for name, text in (("straight", ""), ("pressed", "[[axial]]\nforce = 1.5e5\n")):
-        results = run_case(read_case(tmp_path, LIFT + text + rest), models=["tied"])
+        results = run_case(read_case(tmp_path, LIFT + text + rest), models=["bonded"])
         tips[name] = float(results.trajectories["tip"].values[0, -1])
-        summary = results.summary.models["tied"]
+        summary = results.summary.models["bonded"]
         assert summary.static_tip == pytest.approx(tips[name], rel=1e-6)
     factor = summary.critical_factor
     assert factor is not None
@@ -116,11 +116,11 @@ def test_a_pressed_boom_rests_lower(tmp_path: Path) -> None:
 
 def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
     """Reference: what the summary of the run has."""
-    case = read_case(tmp_path, LIFT + "[[axial]]\nforce = 4e4\n" + TIED)
+    case = read_case(tmp_path, LIFT + "[[axial]]\nforce = 4e4\n" + BONDED)
     results = run_case(case)
     table = buckling_table(results)
     assert table is not None
-    factor = results.summary.models["tied"].critical_factor
+    factor = results.summary.models["bonded"].critical_factor
     assert factor is not None
     shown = printed(print_check, CheckedCase(case), width=120)
     words = [line.replace("│", " ").split() for line in shown.splitlines()]
@@ -128,7 +128,7 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
     assert number(factor, 4) in shown
     assert f"{100.0 / factor:.3g}" in shown
     assert table.rows[1][1:3] == (f"{factor:.4g}", f"{100.0 / factor:.3g}")
-    assert buckling_table(run_case(read_case(tmp_path, LIFT + TIED))) is None
+    assert buckling_table(run_case(read_case(tmp_path, LIFT + BONDED))) is None
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,7 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
         ("", None),
         ("[[axial]]\nforce = 1e4\n", None),
         ("[[axial]]\nforce = 3e5\n",
-         "caution: in tied the axial forces are 48.2 % of those under which the boom buckles, "
+         "caution: in bonded the axial forces are 48.2 % of those under which the boom buckles, "
          "more than a third: deflections grow out of proportion"),
         ('[[load]]\nsegment = "fly"\nx = 14.0\nmagnitude = -1e5\n',
          "caution: {} the tip rests at -1.79 m, 13 % of the boom's length and more than 5 %: "
@@ -146,9 +146,9 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
 )  # fmt: skip
 def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | None) -> None:
     """Each on its slip, none on what is in proportion."""
-    case = read_case(tmp_path, (LIFT + text + TIED).replace("= 0.05", "= 0.5"))
+    case = read_case(tmp_path, (LIFT + text + BONDED).replace("= 0.05", "= 0.5"))
     checked = printed(print_check, CheckedCase(case), width=200).splitlines()
-    told = run_case(case, models=["tied"]).summary.cautions
+    told = run_case(case, models=["bonded"]).summary.cautions
     if caution is None:
         assert told == []
         assert not any(line.startswith("caution") for line in checked)
@@ -156,7 +156,7 @@ def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | 
         # With play the tip rests lower by what the fly tilts.
         start, _, _ = caution.format("in the beam estimate").partition("1.79")
         assert any(line.startswith(start) for line in checked)
-        assert caution.format("in tied") in told
+        assert caution.format("in bonded") in told
 
 
 @pytest.mark.parametrize(

@@ -36,36 +36,36 @@ def pair() -> GapSystem:
     )
 
 
-def test_the_tied_boom_lacks_the_play_alone(pair: GapSystem) -> None:
+def test_the_bonded_boom_lacks_the_play_alone(pair: GapSystem) -> None:
     """Reference: by hand. Both hang at −5/100 m; with play the inner one is 10 mm and 5 µm lower.
     Together they swing at √(100/2) rad/s.
     """
     rest = equilibrium(pair, pair.load)
-    tied, basis = bonded_system(pair, [rest])
-    hung = equilibrium(tied, tied.load)
+    bonded, basis = bonded_system(pair, [rest])
+    hung = equilibrium(bonded, bonded.load)
     np.testing.assert_allclose(basis @ hung, [-0.05, -0.05], rtol=1e-9)
-    tip = tied.observers["tip"].row @ hung
+    tip = bonded.observers["tip"].row @ hung
     assert pair.observers["tip"].row @ rest - tip == pytest.approx(-0.01 - 5e-6, rel=1e-6)
-    np.testing.assert_allclose(tied.omega2, [50.0], rtol=1e-12)
-    np.testing.assert_allclose(basis @ tied.excitations[0].load, [0.5, 0.5], rtol=1e-12)
+    np.testing.assert_allclose(bonded.omega2, [50.0], rtol=1e-12)
+    np.testing.assert_allclose(basis @ bonded.excitations[0].load, [0.5, 0.5], rtol=1e-12)
 
 
 def test_what_axial_forces_soften_stays_softer(pair: GapSystem) -> None:
     """Reference: analytic. Of 100 N/m they take 30 N/m, and both swing at √(70/2) rad/s."""
     pressed = replace(pair, geometric_stiffness=np.diag([30.0, 0.0]))
-    tied, _ = bonded_system(pressed, [equilibrium(pressed, pressed.load)])
-    np.testing.assert_allclose(tied.omega2, [35.0], rtol=1e-12)
-    assert tied.in_own_modes() is tied
+    bonded, _ = bonded_system(pressed, [equilibrium(pressed, pressed.load)])
+    np.testing.assert_allclose(bonded.omega2, [35.0], rtol=1e-12)
+    assert bonded.in_own_modes() is bonded
 
 
 def test_the_ground_is_still_met(pair: GapSystem) -> None:
     """Reference: by hand. −100 N press it 0.5 m and (100 − 50)/(1e5 + 100) m down."""
-    tied, basis = bonded_system(pair, [equilibrium(pair, pair.load)])
-    assert (list(tied.stations), list(tied.grounded)) == ([2.0], [0])
-    deep = basis @ equilibrium(tied, np.array([0.0, -100.0]) @ basis)
+    bonded, basis = bonded_system(pair, [equilibrium(pair, pair.load)])
+    assert (list(bonded.stations), list(bonded.grounded)) == ([2.0], [0])
+    deep = basis @ equilibrium(bonded, np.array([0.0, -100.0]) @ basis)
     assert deep[1] == pytest.approx(-0.5 - 50.0 / (1e5 + 100.0), rel=1e-6)
 
 
-def test_where_nothing_presses_all_is_tied(pair: GapSystem) -> None:
-    tied, _ = bonded_system(pair, [])
-    np.testing.assert_allclose(tied.omega2, [50.0], rtol=1e-12)
+def test_where_nothing_presses_all_is_bonded(pair: GapSystem) -> None:
+    bonded, _ = bonded_system(pair, [])
+    np.testing.assert_allclose(bonded.omega2, [50.0], rtol=1e-12)

@@ -254,7 +254,7 @@ def test_a_byte_order_mark_is_no_fault(folder: Path) -> None:
             ["shell", "plate"],
             None,
             "--models: 'plate' is not a model of the case; give 'kantorovich-4', 'kantorovich-5', "
-            "'beam-fe', 'timoshenko', 'beam-fe-tied' or 'shell'",
+            "'beam-fe', 'timoshenko', 'beam-fe-bonded' or 'shell'",
         ),
         (None, -1.0, "--mesh-size: must be a finite number of m above 0, got -1"),
         (None, float("nan"), "--mesh-size: must be a finite number of m above 0, got nan"),

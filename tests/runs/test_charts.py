@@ -78,12 +78,12 @@ def test_the_library_comes_whole() -> None:
 @pytest.mark.parametrize(
     ("name", "first"),
     [
-        ("paper", {"beam-fe", "beam-fe-tied", "shell"}),
-        ("lift", {"timoshenko", "shell", "tied"}),
-        ("three-segments", {"timoshenko", "shell", "beam-fe-tied"}),
+        ("paper", {"beam-fe", "beam-fe-bonded", "shell"}),
+        ("lift", {"timoshenko", "shell", "bonded"}),
+        ("three-segments", {"timoshenko", "shell", "beam-fe-bonded"}),
     ],
 )
-def test_shell_beam_and_tied_are_read_first(name: str, first: set[str]) -> None:
+def test_shell_beam_and_bonded_are_read_first(name: str, first: set[str]) -> None:
     """Reference: the case files."""
     case = load(str(CASES / f"{name}.toml"))
     assert main_models(case, [model.name for model in case.models]) == first

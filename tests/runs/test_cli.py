@@ -139,7 +139,7 @@ MISTAKES = {
     "run nowhere.toml": "nowhere.toml: file: does not exist; give the path of a case file",
     "run case.toml --models shell,plate": (
         "case.toml: --models: 'plate' is not a model of the case; give 'kantorovich-4', "
-        "'kantorovich-5', 'beam-fe', 'timoshenko', 'beam-fe-tied' or 'shell'"
+        "'kantorovich-5', 'beam-fe', 'timoshenko', 'beam-fe-bonded' or 'shell'"
     ),
     "run case.toml --mesh-size 0": (
         "case.toml: --mesh-size: must be a finite number of m above 0, got 0"
@@ -198,7 +198,7 @@ def test_results_beyond_all_numbers_are_one_line(protractile: Protractile) -> No
     edit("load = 83.16", "load = 1e150")
     edited = Path("case.toml").read_text(encoding="utf-8").replace("duration = 0.6", SHORT)
     Path("case.toml").write_text(edited, encoding="utf-8")
-    status, _, err = protractile("run case.toml --models beam-fe-tied --out out")
+    status, _, err = protractile("run case.toml --models beam-fe-bonded --out out")
     assert (status, err) == (
         3,
         "protractile: case.toml: model[1]: a result is not finite; look for an extreme number of "

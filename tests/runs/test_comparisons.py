@@ -51,9 +51,9 @@ def ensembles(members: dict[str, list[np.ndarray]]) -> xr.Dataset:
 @pytest.mark.parametrize(
     ("models", "expected"),
     [
-        ([*SERIES, "shell", "beam-fe-tied"], "shell"),
-        ([*SERIES, "beam-fe-tied"], "kantorovich-5"),
-        (["beam-fe-tied"], None),
+        ([*SERIES, "shell", "beam-fe-bonded"], "shell"),
+        ([*SERIES, "beam-fe-bonded"], "kantorovich-5"),
+        (["beam-fe-bonded"], None),
     ],
 )
 def test_the_reference_is_the_most_complicated_model(
@@ -105,16 +105,16 @@ def test_without_a_slow_motion_ensembles_are_not_compared() -> None:
 def test_with_friction_every_model_is_compared_to_the_end() -> None:
     """Reference: analytic. A tip that is 0.1 too high until 5 s and 0.3 later, of a range of 1."""
     above = swing() + np.where(TIME <= 5.0, 0.1, 0.3)
-    data = trajectories(kantorovich_4=above, kantorovich_5=swing(), beam_fe_tied=0.1 * swing())
-    case = case_of(*SERIES, "beam-fe-tied", friction=0.2)
+    data = trajectories(kantorovich_4=above, kantorovich_5=swing(), beam_fe_bonded=0.1 * swing())
+    case = case_of(*SERIES, "beam-fe-bonded", friction=0.2)
     found = compare_models(case, data, None, None)
     assert found is not None
-    assert list(found.whole) == ["kantorovich-4", "beam-fe-tied"]
+    assert list(found.whole) == ["kantorovich-4", "beam-fe-bonded"]
     whole = found.whole["kantorovich-4"]
     assert whole.until == [5.0, 10.0]
     assert whole.largest == pytest.approx([0.1, 0.3 / 1.2], rel=1e-2)
     assert whole.rms == pytest.approx([0.1, np.sqrt(0.5 * (0.1**2 + 0.3**2)) / 1.2], rel=1e-2)
-    assert found.whole["beam-fe-tied"].largest == pytest.approx([0.9, 0.9], rel=1e-6)
+    assert found.whole["beam-fe-bonded"].largest == pytest.approx([0.9, 0.9], rel=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -54,9 +54,9 @@ base = "complete"
 name = "rigid"
 kind = "rigid"
 [[model]]
-name = "tied"
+name = "bonded"
 kind = "finite-element"
-tied = true
+bonded = true
 """
 
 
@@ -94,7 +94,7 @@ def test_every_model_stands_on_its_cylinder(case: Case) -> None:
         "units": "N",
         "long_name": "spring force of the cylinder at x = 3 m of 'base', positive where pressed",
     }
-    for model in ("elements", "series", "rigid", "tied"):
+    for model in ("elements", "series", "rigid", "bonded"):
         pressed = force.sel(model=model).values
         assert pressed == pytest.approx(np.full(pressed.size, turning(boom) / ARM), rel=1e-5)
         assert results.summary.models[model].energy_residual < 1e-4

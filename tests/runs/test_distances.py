@@ -36,7 +36,7 @@ from runs.sweep.run import Outcome, run_point
 from tests.runs.sweeping import COARSE, run
 
 TIME = np.arange(2001) / 1000
-MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-tied"]
+MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-bonded"]
 RUBBING = "friction = 0.2\nnormal_forces = [4500.0, 5000.0]\n"
 
 
@@ -104,10 +104,10 @@ def test_a_sweep_tells_the_distances_of_its_models(against: Plan) -> None:
     heights = [results.summary.models[name].first_peak["tip"].height for name in MODELS[:2]]
     assert None not in heights
     assert float(there["first_peak_off"]) == pytest.approx(abs(heights[0] / heights[1] - 1.0))
-    tied = data.sel(model="beam-fe-tied")
-    # Nothing touches where segments are tied, and both are far off.
-    assert np.isnan(tied["pad_force_off"]).all()
-    assert float(tied["first_peak_off"].min()) > 0.5
+    bonded = data.sel(model="beam-fe-bonded")
+    # Nothing touches where segments are bonded, and both are far off.
+    assert np.isnan(bonded["pad_force_off"]).all()
+    assert float(bonded["first_peak_off"].min()) > 0.5
     assert np.isnan(data["tip_off"].sel(model="kantorovich-5")).all()
     with open("out/sweep.csv", newline="", encoding="utf-8") as file:
         rows = {(row["joint.play"], row["model"]): row for row in csv.DictReader(file)}
@@ -118,10 +118,10 @@ def test_a_sweep_tells_the_distances_of_its_models(against: Plan) -> None:
         "sweep-distances.png",
         "sweep-lines.png",
     ]
-    assert run(against)[0].off.keys() == {"kantorovich-4", "beam-fe-tied"}
+    assert run(against)[0].off.keys() == {"kantorovich-4", "beam-fe-bonded"}
     table = shown(data, against).partition("Distances from kantorovich-5")[2]
     first = [line.split()[0] for line in table.splitlines() if line.strip()]
-    assert [word for word in first if word in MODELS] == ["kantorovich-4", "beam-fe-tied"]
+    assert [word for word in first if word in MODELS] == ["kantorovich-4", "beam-fe-bonded"]
     assert "the time step changes the tip of kantorovich-5 by" in " ".join(table.split())
 
 
@@ -158,7 +158,7 @@ def test_only_tips_are_compared_no_longer_than_that(against: Plan) -> None:
 def invented(factor: float, until: float = 0.9) -> Outcome:
     """Return two models with tips off by a distance and by a tenth of it, and equal first peaks."""
     parts: Quantities = {one.name: None for one in DISTANCES} | {"first_peak_off": 0.002}
-    tips = {"kantorovich-4": factor, "beam-fe-tied": 0.1 * factor}
+    tips = {"kantorovich-4": factor, "beam-fe-bonded": 0.1 * factor}
     return Outcome({}, {}, {name: {**parts, "tip_off": tip} for name, tip in tips.items()}, until)
 
 
@@ -173,7 +173,7 @@ def test_maps_have_levels(against: Plan, sheets: list[Sheet]) -> None:
         "sweep-tip-off.png",
     ]
     titles = [axes.get_title(loc="left") for axes in sheets[-1].axes[:2]]
-    assert titles == ["kantorovich-4: 0.5 to 50 %", "beam-fe-tied: 0.05 to 5 %"]
+    assert titles == ["kantorovich-4: 0.5 to 50 %", "beam-fe-bonded: 0.05 to 5 %"]
     labels = {text.get_text() for text in sheets[-1].axes[0].texts}
     assert labels <= {"1 %", "5 %", "20 %"}
     assert labels
@@ -191,8 +191,8 @@ def test_maps_over_a_third_key_stand_side_by_side(against: Plan, sheets: list[Sh
     assert [axes.get_title(loc="left") for axes in sheet.axes[:4]] == [
         "friction 0.1\nkantorovich-4: 0.5 to 50 %",
         "friction 0.2\nkantorovich-4: 2 to 3 %",
-        "beam-fe-tied: 0.05 to 5 %",
-        "beam-fe-tied: 0.2 to 0.3 %",
+        "beam-fe-bonded: 0.05 to 5 %",
+        "beam-fe-bonded: 0.2 to 0.3 %",
     ]
     seconds = {
         (number, text.get_text(), text.get_position())
@@ -215,7 +215,7 @@ def test_a_reference_must_be_one_of_several_models(
 ) -> None:
     with pytest.raises(BadInput) as refused:
         plan("case.toml", ["joint.play=0.008,0.014"], models, None, reference)
-    known = "'kantorovich-4', 'kantorovich-5' or 'beam-fe-tied'"
+    known = "'kantorovich-4', 'kantorovich-5' or 'beam-fe-bonded'"
     assert str(refused.value) == f"case.toml: --against: {line.format(known)}"
 
 

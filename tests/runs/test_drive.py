@@ -172,8 +172,8 @@ theory = "euler-bernoulli"
          'theory = "timoshenko"\ncalibrated_by = { name = "fine", kind = "shell" }',
          "model[3]: the springs of 'timoshenko' are those of the place where it rests, and cannot "
          "telescope; leave calibrated_by out, or joint[1].drive"),
-        ('theory = "euler-bernoulli"', 'theory = "euler-bernoulli"\ntied = true',
-         "model[2]: 'beam-fe' is tied, and cannot telescope; leave the model out, or "
+        ('theory = "euler-bernoulli"', 'theory = "euler-bernoulli"\nbonded = true',
+         "model[2]: 'beam-fe' is bonded, and cannot telescope; leave the model out, or "
          "joint[1].drive"),
         ("[[joint]]", "[[axial]]\nforce = 7e5\n\n[[joint]]",
          "model[2]: the boom of 'beam-fe' buckles under 0.789 times its axial forces, and has no "
@@ -219,9 +219,9 @@ def test_play_adds_at_rest_at_the_same_instants_of_a_boom_that_is_driven(tmp_pat
     text = path.read_text(encoding="utf-8").replace("duration = 7.0", "duration = 0.3")
     path.write_text(text.replace("[[joint]]", f"{load_}\n[[joint]]"), encoding="utf-8")
     own = run_case(load(str(path)), models=["kantorovich-5"]).summary.design.models
-    (begun, largest), tied = own["kantorovich-5"].static, own["kantorovich-5"].static_bonded
+    (begun, largest), bonded = own["kantorovich-5"].static, own["kantorovich-5"].static_bonded
     assert largest.time == pytest.approx(0.25 / 1.2, abs=1e-9)
-    assert [rest.time for rest in tied] == [begun.time, largest.time]
+    assert [rest.time for rest in bonded] == [begun.time, largest.time]
 
 
 def test_of_no_rest_nothing_is_said_where_it_is_drawn_to() -> None:

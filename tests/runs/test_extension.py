@@ -16,7 +16,7 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.cli import main
 from runs.sweep.points import plan
-from tests.beam_model.exact import tied_frequencies
+from tests.beam_model.exact import bonded_frequencies
 from tests.runs.coarse_case import COARSE
 
 CRANE = """
@@ -226,7 +226,7 @@ def test_frequencies_over_the_extension_are_one_command() -> None:
     case_of(PAPER)
     command = ["frequencies", "crane.toml", "--vary", "joint.extension=5:9:3", "--out", "out"]
     with pytest.raises(SystemExit) as ended:
-        main([*command, "--models", "beam-fe,beam-fe-tied"])
+        main([*command, "--models", "beam-fe,beam-fe-bonded"])
     assert ended.value.code == 0
     assert {path.name for path in Path("out").glob("freq*")} == {
         "frequencies.csv", "frequencies.nc", "frequencies.png"
@@ -235,10 +235,10 @@ def test_frequencies_over_the_extension_are_one_command() -> None:
         found = data["frequency"].load()
     for point in plan("crane.toml", ["joint.extension=5:9:3"], None, None).points:
         there = found.sel({"joint.extension": point.values[0]})
-        exact = tied_frequencies(build_boom(point.case), 50.0)[:3]
-        for model in ("beam-fe", "beam-fe-tied"):
+        exact = bonded_frequencies(build_boom(point.case), 50.0)[:3]
+        for model in ("beam-fe", "beam-fe-bonded"):
             assert there.sel(joints="bonded", model=model).values == pytest.approx(exact, rel=1e-4)
         pressed = there.sel(joints="in contact")
         assert (pressed.sel(model="beam-fe") < there.sel(joints="bonded", model="beam-fe")).all()
-        assert pressed.sel(model="beam-fe-tied").isnull().all()
+        assert pressed.sel(model="beam-fe-bonded").isnull().all()
     assert (np.diff(found.sel(mode=1, joints="bonded").values, axis=0) < 0.0).all()

@@ -36,7 +36,7 @@ WITH_PLAY = ["kantorovich-4", "kantorovich-5", "beam-fe"]
 
 @pytest.fixture(scope="module")
 def results() -> Results:
-    return run_case(case_file.load(str(COARSE)), [*WITH_PLAY, "beam-fe-tied"])
+    return run_case(case_file.load(str(COARSE)), [*WITH_PLAY, "beam-fe-bonded"])
 
 
 # Pixels per inch of the figures.
@@ -178,7 +178,7 @@ def test_one_colour_per_model_in_all_figures(everything: Everything) -> None:
     _, sheets = everything
     of_models = ("tip", "tip-close-up", "head", "contact-first", "contact-peaks")
     lines = [line for stem in of_models for axes in sheets[stem].axes for line in axes.get_lines()]
-    names = {*WITH_PLAY, "beam-fe-tied"}
+    names = {*WITH_PLAY, "beam-fe-bonded"}
     shades = {(model_of(line), str(line.get_color())) for line in lines if model_of(line) in names}
     assert {name for name, _ in shades} == names
     assert len(shades) == len({shade for _, shade in shades}) == len(names)
@@ -205,15 +205,15 @@ def test_close_up_marks_first_contacts_and_peaks(results: Results, drawn: Drawn)
 
 @pytest.mark.usefixtures("drawn")
 def test_draws_a_play_free_boom_alone(results: Results, tmp_path: Path) -> None:
-    tied = ["beam-fe-tied"]
+    bonded = ["beam-fe-bonded"]
     summary = results.summary.model_copy(
-        update={"models": {tied[0]: results.summary.models[tied[0]]}}
+        update={"models": {bonded[0]: results.summary.models[bonded[0]]}}
     )
     figures = draw(
         replace(
             results,
-            case=case_file.select(results.case, "", tied, None),
-            trajectories=results.trajectories.sel(model=tied),
+            case=case_file.select(results.case, "", bonded, None),
+            trajectories=results.trajectories.sel(model=bonded),
             summary=summary,
         ),
         tmp_path,
@@ -349,8 +349,8 @@ def test_every_head_has_a_figure(results: Results, drawn: Drawn) -> None:
     case = results.case.model_copy(update={"joints": joints})
     found = drawn(heads, replace(results, trajectories=data, case=case))
     assert [figure.path.stem for figure in found] == ["head", "head-2"]
-    assert "Dashed: beam-fe-tied (beam), without play." in found[0].caption
-    assert "beam-fe-tied (beam)" in labels(drawn.sheets["head"].axes[0])
+    assert "Dashed: beam-fe-bonded (beam), without play." in found[0].caption
+    assert "beam-fe-bonded (beam)" in labels(drawn.sheets["head"].axes[0])
 
 
 def test_a_boom_in_space_moves_to_the_sides(results: Results, drawn: Drawn) -> None:

@@ -21,7 +21,7 @@ from runs.report.predictability import comparison_tables, predictability_tables
 from tests.runs.summaries import model_summary, steps_for_peaks, summary_of
 
 COARSE = CASES / "coarse.toml"
-MODELS = ("kantorovich-4", "kantorovich-5", "beam-fe-tied")
+MODELS = ("kantorovich-4", "kantorovich-5", "beam-fe-bonded")
 
 
 def results(comparisons: Any = None, friction: float = 0.0, **changes: Any) -> Results:
@@ -176,6 +176,6 @@ def test_contact_laws_are_those_of_the_models() -> None:
         (name, "inner in outer", "14.0", "k 1e+13, n 2", "168.9") for name in MODELS[:2]
     ]
     free = results()
-    joints = [replace(joint, tied=True) for joint in free.case.joints]
-    tied = free.case.model_copy(update={"joints": tuple(joints)})
-    assert law_table(Results(tied, free.trajectories, free.summary)) is None
+    joints = [replace(joint, bonded=True) for joint in free.case.joints]
+    bonded = free.case.model_copy(update={"joints": tuple(joints)})
+    assert law_table(Results(bonded, free.trajectories, free.summary)) is None

@@ -34,7 +34,7 @@ from tests.runs.case_texts import refusal
 from tests.runs.coarse_case import COARSE
 
 SERIES = ["kantorovich-4", "kantorovich-5"]
-MODELS = [*SERIES, "beam-fe-tied"]
+MODELS = [*SERIES, "beam-fe-bonded"]
 STEP = 1.0e-3
 
 
@@ -76,7 +76,7 @@ def test_member_0_is_the_trajectory(run: Run) -> None:
 def test_summary_has_horizons_and_slow_peaks(run: Run) -> None:
     """Reference: non-regression; the first press parts members within a second."""
     models = run.results.summary.models
-    assert models["beam-fe-tied"].ensemble is None
+    assert models["beam-fe-bonded"].ensemble is None
     for name in SERIES:
         ensemble = models[name].ensemble
         assert ensemble is not None

@@ -32,7 +32,7 @@ def arm(spatial_boom: Boom, steel: Material) -> Boom:
     sleeve = BoxSection(height=0.25, width=0.15, flange=0.001, web=0.001)
     light = Material(youngs_modulus=2.1e3, poissons_ratio=0.3, density=1e-6)
     dummy = Segment.of_section("dummy", 9.0, 10.0, light, sleeve)
-    joint = replace(spatial_boom.joints[0], stations=(9.0, 10.0), tied=True)
+    joint = replace(spatial_boom.joints[0], stations=(9.0, 10.0), bonded=True)
     return Boom((root, dummy), (joint,))
 
 

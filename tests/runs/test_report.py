@@ -34,7 +34,7 @@ from runs.report.terminal_tables import print_models
 from tests.runs.summaries import changed, model_summary, printed, summary_of
 
 COARSE = CASES / "coarse.toml"
-MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-tied"]
+MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-bonded"]
 GIF = base64.b64decode("R0lGODlhAQABAIAAAP///wAAACwAAAAAAQABAAACAkQBADs=")
 
 
@@ -181,7 +181,7 @@ def test_a_verdict_leads_to_its_evidence(results: Results, figures: list[Figure]
 def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Figure]) -> None:
     """Reference: the summary; the run ends before the first peak of the series."""
     peaks = {name: model.first_peak["tip"].height for name, model in results.summary.models.items()}
-    assert (peaks["kantorovich-4"], peaks["beam-fe-tied"]) == (
+    assert (peaks["kantorovich-4"], peaks["beam-fe-bonded"]) == (
         None,
         pytest.approx(0.0193, rel=0.01),
     )
@@ -193,7 +193,7 @@ def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Fi
     assert re.search(r"<td[^>]*>no peak</td>\n<td[^>]*>within 0.6 s</td>", row)
     lines = {line.split()[0]: line for line in tables(results).splitlines() if line.split()}
     assert re.search("no peak +within 0.6 s", lines["kantorovich-4"])
-    assert "no peak" not in lines["beam-fe-tied"]
+    assert "no peak" not in lines["beam-fe-bonded"]
 
 
 def test_cautions_stand_above_everything(results: Results, figures: list[Figure]) -> None:

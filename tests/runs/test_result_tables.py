@@ -35,13 +35,13 @@ from runs.report.tables import Table
 from runs.report.terminal_tables import print_results
 from tests.runs.summaries import printed
 
-PLAYED, TIED = "kantorovich-5", "beam-fe-tied"
+PLAYED, BONDED = "kantorovich-5", "beam-fe-bonded"
 
 
 @pytest.fixture(scope="module")
 def results() -> Results:
     case = change(case_file.load(str(CASES / "coarse.toml")), **{"damping.modal": 0.02})
-    return run_case(case, [PLAYED, TIED])
+    return run_case(case, [PLAYED, BONDED])
 
 
 def answering(results: Results, **changes: Any) -> Results:
@@ -78,7 +78,7 @@ def test_the_first_look_says_what_the_answers_do(results: Results) -> None:
     assert float(said["Decay time to 10 %, s"]) == pytest.approx(dying, rel=0.06)
     hardest = max(p.largest for p in own.motion.peaks if p.what == "contact force")
     assert float(said["Contact force, maximum, kN"]) == pytest.approx(hardest / 1e3, rel=6e-3)
-    assert found["Contact force, maximum, kN"][TIED] == "–"
+    assert found["Contact force, maximum, kN"][BONDED] == "–"
     assert "Fatigue damage (Miner)" not in found
 
 
@@ -147,7 +147,7 @@ def test_what_nears_the_yield_strength_stands_out(results: Results) -> None:
     found = cells(near)
     assert found[fibre][PLAYED] == "300, 84.5 %\nouter, x = 2.0 m"
     assert found[wall][PLAYED] == "330, 93 %\nouter, x = 10.0 m"
-    assert found[wall][TIED] == "–"
+    assert found[wall][BONDED] == "–"
     assert near is not None
     assert list(near.strong) == [found[wall][PLAYED]]
     beyond = summary_table(with_stress(results, 340e6))
@@ -229,8 +229,8 @@ def test_one_line_says_how_near_models_are(results: Results) -> None:
             "models": {"kantorovich-4": results.summary.models[PLAYED], **results.summary.models},
         }
     )
-    tips = results.trajectories.sel(model=[PLAYED, PLAYED, TIED])
-    tips = tips.assign_coords(model=["kantorovich-4", PLAYED, TIED])
+    tips = results.trajectories.sel(model=[PLAYED, PLAYED, BONDED])
+    tips = tips.assign_coords(model=["kantorovich-4", PLAYED, BONDED])
     four = results.case.models[0].model_copy(update={"name": "kantorovich-4"})
     case = results.case.model_copy(update={"models": (four, *results.case.models)})
     both = replace(results, case=case, summary=summary, trajectories=tips)
@@ -238,7 +238,7 @@ def test_one_line_says_how_near_models_are(results: Results) -> None:
     assert deviation_note(both) == f"{line}kantorovich-4 −10 %."
     table = summary_table(both)
     assert table is not None
-    assert list(table.headings) == ["", PLAYED, "kantorovich-4", TIED]
+    assert list(table.headings) == ["", PLAYED, "kantorovich-4", BONDED]
 
 
 def test_every_answer_has_its_table(results: Results) -> None:
@@ -250,8 +250,8 @@ def test_every_answer_has_its_table(results: Results) -> None:
     own = results.summary.design
     assert own is not None
     assert own.quality_notes
-    first = own.models[TIED].modes[0]
-    assert float(modes[f"{first.motion} 1"][f"{TIED}\nHz"]) == pytest.approx(
+    first = own.models[BONDED].modes[0]
+    assert float(modes[f"{first.motion} 1"][f"{BONDED}\nHz"]) == pytest.approx(
         first.frequency, rel=1e-3
     )
     table = stress_table(results)

@@ -67,9 +67,9 @@ def test_unequal_plays_are_not_pressed_in() -> None:
 def test_a_boom_without_play_has_no_tilt_and_its_stops_are_its_own() -> None:
     """Reference: by hand. The tip of 9.916 mm presses a stop of 10 N/m, 5 mm above, by 4.916 mm."""
     case = case_file.load(str(CASES / "coarse.toml"))
-    tied = tuple(model for model in case.models if model.bonded)
+    bonded = tuple(model for model in case.models if model.bonded)
     stop = StopTable("inner", Distance(head=0.0), play=0.01, stiffness=10.0)
-    lines = told(case.model_copy(update={"models": tied, "stops": (stop,)}))
+    lines = told(case.model_copy(update={"models": bonded, "stops": (stop,)}))
     assert not any("nan" in line or line.startswith("Play rotates") for line in lines)
     rows = {tuple(line.split()[:2]): line.split()[2:] for line in lines}
     force, *power, depth = rows["inner", "19"]
@@ -148,6 +148,6 @@ def test_walls_under_pads_lower_the_tip_as_in_the_shell() -> None:
     (remedy,) = (line for line in lines if line.startswith("Remedies"))
     assert remedy == (
         "Remedies, with the deflection of the tip: pads that bear on the corners (195.6 mm); walls "
-        "twice as thick by collars at the pads (206.9 mm); pads half as wide, at twice the "
+        "twice as thick by collars at the pads (206.8 mm); pads half as wide, at twice the "
         "pressure (211.8 mm)."
     )

@@ -52,7 +52,7 @@ def test_what_is_no_number_is_null() -> None:
         ("shell", "steps", None),
         ("shell", "kind", 3),
         ("kantorovich-4", "ensemble", {}),
-        ("beam-fe-tied", "first_peak", {"tip": [1.0]}),
+        ("beam-fe-bonded", "first_peak", {"tip": [1.0]}),
         ("shell", "stress", {"von_mises": 1.0}),
         ("shell", "colour", "red"),
     ],

@@ -21,5 +21,5 @@ def test_colours_can_be_told_apart() -> None:
 
 def test_more_models_than_colours_still_differ() -> None:
     names = [f"model {i}" for i in range(3 * len(theme.PALETTE))]
-    drawn = theme.strokes([*names, "tied"], ["tied"])
+    drawn = theme.strokes([*names, "bonded"], ["bonded"])
     assert len(set(drawn.values())) == len(names) + 1

@@ -128,15 +128,15 @@ def test_results_of_slewing_and_luffing(tmp_path: Path) -> None:
     assert slew.startswith("caution: slew: the boom turns with 8.33 % of its first circular freq")
 
 
-@pytest.mark.parametrize(("tied", "least", "most"), [(True, 0.0, 0.01), (False, 0.1, 0.5)])
-def test_shaper_that_check_offers(tmp_path: Path, tied: bool, least: float, most: float) -> None:
+@pytest.mark.parametrize(("bonded", "least", "most"), [(True, 0.0, 0.01), (False, 0.1, 0.5)])
+def test_shaper_that_check_offers(tmp_path: Path, bonded: bool, least: float, most: float) -> None:
     """Reference: the vibration after the same slewing without the shaper.
 
     Without play a thousandth of it remains, with play of 4 mm about a quarter.
     """
     slew = "[damping]\nmodal = 0.02\n[slew]\ntravel = 12.0\ntime = 1.5\n"
     plain = slewing_arm(tmp_path, slew)
-    model = plain.models[0].model_copy(update={"tied": tied})
+    model = plain.models[0].model_copy(update={"bonded_joints": bonded})
     plain = plain.model_copy(update={"models": (model,)})
     preview = Preview(CheckedCase(plain))
     motion = preview.motion(model, model)

@@ -31,9 +31,9 @@ kind = "finite-element"
 name = "rigid"
 kind = "rigid"
 [[model]]
-name = "tied"
+name = "bonded"
 kind = "finite-element"
-tied = true
+bonded = true
 """
 
 # What is added, and whether the boom moves.

@@ -191,7 +191,7 @@ def test_s4_knows_how_far_a_first_peak_can_be_trusted(case: Case) -> None:
 )
 def test_s5_asks_for_twice_the_play_free_peak(without: float, expected: str) -> None:
     ratio = pytest.approx(0.169 / without, rel=1e-3)
-    assert verdict("S5", curves(beam_fe_tied=without))[:2] == (expected, ratio)
+    assert verdict("S5", curves(beam_fe_bonded=without))[:2] == (expected, ratio)
 
 
 @pytest.mark.parametrize(
@@ -227,7 +227,7 @@ def conforming(late: float) -> dict[str, dict[str, np.ndarray]]:
     """Models that differ as their heights do, and after six seconds by ``late`` of it more."""
     motion = curves()
     for name, both in motion.items():
-        if name != "beam-fe-tied":
+        if name != "beam-fe-bonded":
             ratio = PEAKS[name] / 0.171 - 1.0
             apart = ratio * (1.0 + late * (TIME > 6.0)) * swing(0.171)
             both["tip"] = swing(0.171) + apart
@@ -246,7 +246,7 @@ def test_s7_is_turned_by_each_of_its_parts(fault: str) -> None:
     if fault == "apart at once":
         motion["shell"]["tip"] = 1.5 * motion["shell"]["tip"]
     if fault == "play-free too":
-        motion["beam-fe-tied"]["tip"] = motion["beam-fe"]["tip"].copy()
+        motion["beam-fe-bonded"]["tip"] = motion["beam-fe"]["tip"].copy()
     if fault == "head":
         for both in motion.values():
             both["head"] = 0.1 * swing(0.171)
@@ -361,7 +361,7 @@ def test_compares_series_of_one_base(case: Case) -> None:
         ("kantorovich-4", ["S1", "S2", "S4", "S10"]),
         ("shell", ["S4"]),
         ("beam-fe", ["S4"]),
-        ("beam-fe-tied", ["S5"]),
+        ("beam-fe-bonded", ["S5"]),
     ],
 )
 def test_says_which_model_is_missing(case: Case, model: str, statements: list[str]) -> None:

@@ -92,7 +92,7 @@ def boom_in_space(friction: float = 0.0, sideways: float = 0.0) -> Boom:
     return Boom(segments, (joint,))
 
 
-def three_segments(tied: bool = False) -> Boom:
+def three_segments(bonded: bool = False) -> Boom:
     """Return the boom with a third box in the second, with the overlap of the first joint."""
     two = flat_boom()
     inner = two.segments[1].section
@@ -100,6 +100,6 @@ def three_segments(tied: bool = False) -> Boom:
     inmost = BoxSection(inner.height - 0.025, inner.width - 0.025, inner.flange, inner.web)
     middle = replace(two.segments[1], end=16.0)
     third = box_segment("third", 15.0, 21.0, inmost, 40.0)
-    first = replace(two.joints[0], tied=tied)
+    first = replace(two.joints[0], bonded=bonded)
     second = replace(first, outer=1, inner=2, stations=(15.0, 16.0))
     return Boom((two.segments[0], middle, third), (first, second))

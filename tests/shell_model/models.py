@@ -55,8 +55,8 @@ def pressed_rest(system: GapSystem, at: Sequence[bool] | slice = slice(None)) ->
 
 
 def assert_rests_as_beams(system: GapSystem, boom: Boom, rel: float) -> None:
-    """Against tied Timoshenko elements, in all that these observe."""
-    rest, beams = pressed_rest(system), tied_beams(boom)
+    """Against bonded Timoshenko elements, in all that these observe."""
+    rest, beams = pressed_rest(system), bonded_beams(boom)
     expected = beams.static_response(beams.load)
     assert set(beams.observers) <= set(system.observers)
     for name, observer in beams.observers.items():
@@ -64,7 +64,7 @@ def assert_rests_as_beams(system: GapSystem, boom: Boom, rel: float) -> None:
         assert found == pytest.approx(observer.row @ expected, rel=rel), name
 
 
-def tied_beams(boom: Boom, length: float = 0.25) -> GapSystem:
+def bonded_beams(boom: Boom, length: float = 0.25) -> GapSystem:
     """Timoshenko elements of a length in m, without play."""
     return gap_system(boom.bonded, finite_element_segments(boom, length, "timoshenko", True))
 

@@ -19,7 +19,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Load
 from studies import sections
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
-from tests.shell_model.models import reduced, tied_beams
+from tests.shell_model.models import bonded_beams, reduced
 from tests.touching import touching
 
 # σ in rad²/s² of the compliances that are compared: below and above the lowest ω².
@@ -192,13 +192,13 @@ def test_lateral_motion_is_that_of_beams() -> None:
 
 
 @pytest.mark.slow
-def test_the_tied_boom_vibrates_as_beams_in_both_planes() -> None:
-    """Reference: other code, this project's tied Timoshenko frame elements: three bending
+def test_the_bonded_boom_vibrates_as_beams_in_both_planes() -> None:
+    """Reference: other code, this project's bonded Timoshenko frame elements: three bending
     frequencies in each plane. Up to 0.7 % apart; shear is 3 % of the lowest.
     """
     boom = boom_in_space()
-    boom = replace(boom, joints=(replace(boom.joints[0], tied=True),))
-    expected = tied_beams(boom, 0.5).frequencies[:6]
+    boom = replace(boom, joints=(replace(boom.joints[0], bonded=True),))
+    expected = bonded_beams(boom, 0.5).frequencies[:6]
     assert reduced(boom, 0.5).system.frequencies[:6] == pytest.approx(expected, rel=0.01)
 
 

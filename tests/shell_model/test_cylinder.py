@@ -131,7 +131,7 @@ def test_two_cylinders_hold_a_shell_in_space_as_a_beam() -> None:
     """
     free = boom_in_space()
     outer, inner = free.segments
-    joint = replace(free.joints[0], tied=True)
+    joint = replace(free.joints[0], bonded=True)
     pair = Cylinder(0, x=4.0, depth=0.3, ground=(1.5, -1.5), stiffness=5.0e7, spread=1.5)
     pushed = (Load(1, "y", 1.0e3, 19.0, Step()),)
     hinge = Support(0.0, "hinged")

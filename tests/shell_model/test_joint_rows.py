@@ -18,7 +18,7 @@ from geometry.boom import Boom, Load, Stop
 from geometry.contact_places import ContactLine
 from shell_model.segment.cross_section import Reading, Row
 from tests.shell_model.booms import LAW, flat_boom, three_segments
-from tests.shell_model.models import assert_rests_as_beams, pressed_rest, reduced, tied_beams
+from tests.shell_model.models import assert_rests_as_beams, bonded_beams, pressed_rest, reduced
 from tests.touching import touching
 
 DASHPOT = 2.0e3
@@ -135,7 +135,7 @@ def test_a_stop_reads_the_flange_that_it_meets() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("boom", [flat_boom(), three_segments()], ids=["two", "three"])
 def test_rest_of_the_pressed_boom_is_that_of_beams(boom: Boom) -> None:
-    """Reference: other code, this project's Timoshenko elements with the segments tied.
+    """Reference: other code, this project's Timoshenko elements with the segments bonded.
 
     They are up to 0.25 % apart, for the corners that take the forces in the overlaps; shear is
     3 %. The middle one of three segments has two joints.
@@ -144,13 +144,13 @@ def test_rest_of_the_pressed_boom_is_that_of_beams(boom: Boom) -> None:
 
 
 @pytest.mark.slow
-def test_a_tied_joint_has_no_play() -> None:
-    """Reference: other code, the tied Timoshenko elements: no contact is left, the tip and the
+def test_a_bonded_joint_has_no_play() -> None:
+    """Reference: other code, the bonded Timoshenko elements: no contact is left, the tip and the
     lowest frequency agree within 0.2 %, and no motion is free.
     """
-    boom = three_segments(tied=True)
+    boom = three_segments(bonded=True)
     shell = reduced(boom, 0.25)
-    system, beams = shell.system, tied_beams(boom)
+    system, beams = shell.system, bonded_beams(boom)
     assert system.rows.shape == (0, system.num_modes)
     assert not (system.omega2 == 0.0).any()
     assert system.frequencies[0] == pytest.approx(beams.frequencies[0], rel=2.0e-3)

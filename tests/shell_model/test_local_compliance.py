@@ -65,10 +65,10 @@ def test_a_poor_reduction_is_told_on_the_same_scale() -> None:
 
 
 @pytest.mark.slow
-def test_a_tied_joint_leaves_the_others_their_measure() -> None:
+def test_a_bonded_joint_leaves_the_others_their_measure() -> None:
     boom = three_segments()
-    tied = replace(boom, joints=(replace(boom.joints[0], tied=True), *boom.joints[1:]))
-    free, held = reduced(boom, 0.8), reduced(tied, 0.8)
+    bonded = replace(boom, joints=(replace(boom.joints[0], bonded=True), *boom.joints[1:]))
+    free, held = reduced(boom, 0.8), reduced(bonded, 0.8)
     assert held.local_compliance == pytest.approx(free.local_compliance[4:], rel=1.0e-3)
     assert held.mesh_error <= free.mesh_error * (1.0 + 1.0e-6)
 
@@ -80,8 +80,8 @@ def test_what_has_no_other_side_has_none() -> None:
     shell = reduced(boom, 0.8)
     assert np.isnan(shell.local_compliance).tolist() == [False] * 4 + [True]
     assert np.isfinite(shell.mesh_error)
-    tied = replace(boom, stops=(), joints=(replace(boom.joints[0], tied=True),))
-    assert np.isnan(reduced(tied, 0.8).mesh_error)
+    bonded = replace(boom, stops=(), joints=(replace(boom.joints[0], bonded=True),))
+    assert np.isnan(reduced(bonded, 0.8).mesh_error)
 
 
 def stiffness(boom: Boom, contact_tolerance: float | None = None) -> list[Stiffness]:

@@ -212,7 +212,7 @@ def _upside_down(section: PolygonSection) -> PolygonSection:
     ids=["hexagon", "u", "unequal box"],
 )
 def test_a_pressed_boom_rests_as_its_beams_do(pair: tuple[Section, Section], rel: float) -> None:
-    """Reference: other code, tied Timoshenko elements; boxes are 0.25 % apart without collars."""
+    """Reference: other code, bonded Timoshenko elements; boxes are 0.25 % apart without collars."""
     plain = sections.boom_of(*pair)
     assert_rests_as_beams(reduced(plain, 0.25, law=LINEAR).system, plain, rel)
 

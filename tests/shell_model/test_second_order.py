@@ -122,7 +122,7 @@ def test_a_shell_that_contacts_hold_tips_over_as_a_beam() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("lateral", [None, 6e-3])
-def test_a_tied_shell_buckles_where_its_beam_does(lateral: float | None) -> None:
+def test_a_bonded_shell_buckles_where_its_beam_does(lateral: float | None) -> None:
     """Reference: other code, shear-flexible elements; walls that give way at the two stations
     soften the boom by up to 2 %.
     """

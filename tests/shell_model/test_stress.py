@@ -241,11 +241,11 @@ def test_sloping_walls_carry_what_equilibrium_asks() -> None:
 
 
 @pytest.mark.slow
-def test_a_tied_boom_keeps_each_segments_stresses() -> None:
-    """Reference: analytic. Tied segments are one cantilever beyond the support at 2 m: what is
+def test_a_bonded_boom_keeps_each_segments_stresses() -> None:
+    """Reference: analytic. Bonded segments are one cantilever beyond the support at 2 m: what is
     beyond 5 m weighs on it with its moment, whatever the combination of coordinates.
     """
-    boom = three_segments(tied=True)
+    boom = three_segments(bonded=True)
     fields, shell = at_rest(boom, 0.25)
     assert fields.sizes["mode"] < sum(fields.sizes[f"own_{k}"] for k in (1, 2, 3))
     forces = wall_forces(shell, 0.0, 0, 5.01)

@@ -202,12 +202,12 @@ def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
         (
             boom_in_space(),
             LAW,
-            "the unreduced shell moves in the plane, under constant loads, without tied joints",
+            "the unreduced shell moves in the plane, under constant loads, without bonded joints",
         ),
         (
-            three_segments(tied=True),
+            three_segments(bonded=True),
             LAW,
-            "the unreduced shell moves in the plane, under constant loads, without tied joints",
+            "the unreduced shell moves in the plane, under constant loads, without bonded joints",
         ),
         (
             flat_boom(),

@@ -49,7 +49,7 @@ def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
     assert list(models) == [model.name for model in case.models]
     assert max(model.energy_residual for model in models.values()) < 1e-3
     with_play = [
-        str(model) for model in results.trajectories["model"].values if model[-4:] != "tied"
+        str(model) for model in results.trajectories["model"].values if model[-4:] != "bonded"
     ]
     tips = results.trajectories["tip"].sel(model=with_play).values
     before = results.trajectories["time"].values < 0.11

@@ -34,7 +34,7 @@ from tests.system.run_folder import (
 pytestmark = pytest.mark.slow
 
 
-BEAMS = [*SERIES, "beam-fe", "timoshenko", "beam-fe-tied"]
+BEAMS = [*SERIES, "beam-fe", "timoshenko", "beam-fe-bonded"]
 
 
 @pytest.fixture

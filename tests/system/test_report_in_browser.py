@@ -24,7 +24,7 @@ from tests.system.run_folder import COARSE
 pytestmark = pytest.mark.slow
 
 
-MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-tied"]
+MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-bonded"]
 WIDTH = 400
 
 BROKEN = "[...document.images].filter(i => !i.complete || i.naturalWidth == 0).map(i => i.alt)"
@@ -97,7 +97,7 @@ MIDDLE = (
     " return [b.x + b.width / 2, b.y + b.height / 2]; }})(document.querySelector({!r}))"
 )
 # What stands behind the name of a model without play.
-TIED = " (beam)"
+BONDED = " (beam)"
 PLOT = "document.querySelector('#figure-tip .plot')"
 SHOWN = f"{PLOT}.data.filter(t => t.visible === true && t.name).map(t => t.name)"
 
@@ -115,7 +115,7 @@ def test_a_curve_says_the_number_of_the_file(page: Page, folder: Path) -> None:
     assert float(np.abs(trajectories["time"] - time).min()) < 1e-12
     tips = 1e3 * trajectories["tip"].sel(time=time, method="nearest")
     for name in MODELS:
-        shown = text.partition(name)[2].removeprefix(TIED).lstrip(" :")
+        shown = text.partition(name)[2].removeprefix(BONDED).lstrip(" :")
         number = re.match(r"[−-]?[0-9.]+", shown)
         assert number is not None, text
         value = float(number[0].replace("−", "-"))
@@ -128,7 +128,7 @@ def test_a_curve_is_hidden_by_its_name(page: Page, folder: Path) -> None:
     page.open(folder / "report.html", 1000)
     page.evaluate(MIDDLE.format("#figure-tip"))
     page.wait_for(f"{PLOT}.querySelector('.legendtoggle')")
-    assert [name.removesuffix(TIED) for name in page.evaluate(SHOWN)] == MODELS
+    assert [name.removesuffix(BONDED) for name in page.evaluate(SHOWN)] == MODELS
     page.point_at(*page.evaluate(MIDDLE.format("#figure-tip .legendtoggle")), press=True)
     page.wait_for(f"{SHOWN}.length == 2")
     picture = "getComputedStyle(document.querySelector('#figure-tip img')).display"

@@ -181,7 +181,7 @@ def test_results_of_python_read_back(tmp_path: Path) -> None:
     """Reference: by construction."""
     case = load(COARSE)
     case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.02})})
-    results = run_case(case, ["beam-fe-tied"])
+    results = run_case(case, ["beam-fe-bonded"])
     results.save(str(tmp_path / "kept"))
     again = Results.load(str(tmp_path / "kept"))
     assert (again.case, again.summary) == (results.case, results.summary)
@@ -226,8 +226,8 @@ def test_a_run_without_a_shell_has_no_snapshots(series: Path, refusal: Refusal) 
 def test_a_case_without_play_runs(tmp_path: Path) -> None:
     """No station at all: the files still open."""
     folder = tmp_path / "out"
-    assert protractile("run", COARSE, "--models", "beam-fe-tied", "--out", folder) == 0
-    check_common_files(folder, ["beam-fe-tied"])
+    assert protractile("run", COARSE, "--models", "beam-fe-bonded", "--out", folder) == 0
+    check_common_files(folder, ["beam-fe-bonded"])
     assert np.isnan(trajectories(folder)["contact_force"].values).all()
 
 

@@ -24,7 +24,7 @@ from tests.system.run_folder import COARSE, ROOT, files, protractile
 pytestmark = pytest.mark.slow
 
 
-MODELS = "--models", "kantorovich-4,beam-fe-tied"
+MODELS = "--models", "kantorovich-4,beam-fe-bonded"
 COMMAND = "from runs import cli; cli.main()"
 PLAYS = "--vary", "joint.play=0.006:0.014:3"
 

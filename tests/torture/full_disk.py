@@ -119,7 +119,7 @@ def rows(folder: Path, tries: int = 10**6) -> Iterator[Row]:
         tries: tries of each, spread over all calls; no more than there are.
     """
     with patch.dict(os.environ, {VARIABLE: str(folder / "cache")}):
-        models = "--models", "beam-fe-tied"
+        models = "--models", "beam-fe-bonded"
         run = "run", _case(folder, 0.02), *models, "--out", str(folder / "run" / "out")
         other = "run", _case(folder, 0.01), *models, "--out", str(folder / "run" / "out")
         yield from _torture("a run", folder / "run", other, run, tries)

@@ -37,7 +37,7 @@ _COLD_SHELL = (
     *(sys.executable, "-c", f"{ONE_BLANK_FIGURE}\nfrom protractile.__main__ import main\nmain()\n"),
     *("run", "case.toml", "--models", "shell"),
 )
-_BEAMS = "kantorovich-4,beam-fe-tied"
+_BEAMS = "kantorovich-4,beam-fe-bonded"
 COMMANDS: Sequence[tuple[str, Sequence[str]]] = (
     ("run", (*_COMMAND, "run", "case.toml", "--models", _BEAMS)),
     (

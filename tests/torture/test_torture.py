@@ -15,7 +15,7 @@ from tests.torture.shared_cache import Row
 
 pytestmark = pytest.mark.slow
 
-BEAM = "--models", "beam-fe-tied"
+BEAM = "--models", "beam-fe-bonded"
 COARSE = "--mesh-size", "0.25", "--no-pictures"
 
 

@@ -93,7 +93,7 @@ class CalibratedTable(BeamTable):
             )
         if self.bonded:
             raise BoomError(
-                key, "a tied model has no stations whose springs could be read; leave it out"
+                key, "a bonded model has no stations whose springs could be read; leave it out"
             )
         if self.calibrated_by.contact_line != "near webs":
             raise BoomError(

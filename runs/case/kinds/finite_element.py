@@ -49,8 +49,11 @@ class BeamElements(CalibratedTable):
     with the rotary inertia of its plates"""
     rotary_inertia: Flag = True
     """whether the rotary inertia is kept"""
-    tied: Flag = False
-    """whether the segments are bonded at the stations, without play"""
+    bonded_joints: Flag = Field(
+        False,
+        alias="bonded",
+        description="whether the segments are bonded at the stations, without play",
+    )
 
     section_fields: Flag = Field(
         False,
@@ -68,7 +71,7 @@ class BeamElements(CalibratedTable):
 
     @property
     def bonded(self) -> bool:
-        return self.tied
+        return self.bonded_joints
 
     def check(self, where: str, model_boom: ModelBoom) -> None:
         if self.section_fields and self.calibrated_by is None:
@@ -76,8 +79,8 @@ class BeamElements(CalibratedTable):
                 f"{where}.section_fields",
                 "only a calibrated beam has them; give calibrated_by, or leave it out",
             )
-        if self.tied and self.contact:
-            raise BoomError(f"{where}.contact", "a tied model has no contact; leave it out")
+        if self.bonded and self.contact:
+            raise BoomError(f"{where}.contact", "a bonded model has no contact; leave it out")
         length = max(segment.length for segment in model_boom.boom.segments)
         if length / self.element_length > MOST_ELEMENTS:
             raise BoomError(

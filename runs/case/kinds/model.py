@@ -221,7 +221,7 @@ class ModelTable(CaseTable):
     def cannot_telescope(self) -> str | None:
         """The reason why the model cannot telescope, with the remedy; None if it can."""
         if self.bonded:
-            return f"{self.name!r} is tied, and cannot telescope; leave the model out"
+            return f"{self.name!r} is bonded, and cannot telescope; leave the model out"
         return None
 
     def check(self, where: str, model_boom: ModelBoom) -> None:
@@ -280,7 +280,7 @@ class ModelTable(CaseTable):
             joints = (replace(j, contact=along_z, lateral_contact=along_y) for j in boom.joints)
             boom = replace(boom, joints=tuple(joints))
         for number, joint in enumerate(boom.joints, start=1):
-            if joint.contact is None and (joint.tied or self.bonded):
+            if joint.contact is None and (joint.bonded or self.bonded):
                 continue
             try:
                 for law in (joint.law(direction) for direction in boom.directions):
