@@ -206,7 +206,7 @@ def sweep(
     from runs.sweep.run import run_points
 
     def plan_of(texts: Sequence[str]) -> Plan:
-        return points.plan_case(case, _CASE, texts, models, None, against)
+        return points.plan(_CASE, texts, models, None, against, case)
 
     plan = plan_of(_options(vary))
     bound = None if until is None else search.parse_bound(until, plan)
@@ -246,7 +246,7 @@ def frequencies(
     """
     from runs.sweep import frequencies
 
-    plan = points.plan_case(case, _CASE, _options(vary or {}), models, None)
+    plan = points.plan(_CASE, _options(vary or {}), models, None, whole=case)
     cases = [point.case for point in plan.points]
     found = frequencies.measure(cases, _alone(cases[0]), Cache.of_user())
     return frequencies.gather(plan, found)

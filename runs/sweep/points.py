@@ -80,31 +80,22 @@ def plan(
     models: Sequence[str] | None,
     mesh_size: float | None,
     reference: str | None = None,
+    whole: Case | None = None,
 ) -> Plan:
     """Return the plan of a sweep, after checks of its case and all points.
 
     Args:
-        file: a case file.
+        file: a case file, or the name of the case in messages.
         texts: options KEY=VALUES, see :mod:`runs.sweep.variation`.
         models: names of models; all unless given.
         mesh_size: mesh size of all shells in m; that of the case unless given.
         reference: name of the model with which the others are compared.
+        whole: the checked case; read from the file unless given.
 
     Raises:
         BadInput: the case, a key, a value, a point or the reference is invalid.
     """
-    return plan_case(case_file.load(file), file, texts, models, mesh_size, reference)
-
-
-def plan_case(
-    whole: Case,
-    file: str,
-    texts: Sequence[str],
-    models: Sequence[str] | None,
-    mesh_size: float | None,
-    reference: str | None = None,
-) -> Plan:
-    """Return :func:`plan` of a checked case, whose name in messages is ``file``."""
+    whole = whole or case_file.load(file)
     case_file.select(whole, file, models, mesh_size, 0)
     tables = tables_of(whole)
     variations = parse(texts, tables, file)
