@@ -18,17 +18,11 @@ from geometry.cylinder import Cylinder
 from geometry.fields import resolve_distances
 from geometry.joint import Joint, PadSize, SlidePad, Stop
 from geometry.load import Load
+from geometry.material import Material
 from geometry.observation import Observation, Quantity
 from geometry.section import Direction
-from geometry.segment import (
-    SAME_PLACE,
-    Collar,
-    Diaphragm,
-    Lateral,
-    Material,
-    PointMass,
-    Segment,
-)
+from geometry.segment import SAME_PLACE, Lateral, PointMass, Segment
+from geometry.stiffeners import Collar, Diaphragm
 from geometry.support import Support
 from geometry.telescoping import drives_of, reach, station_positions
 from geometry.typography import choices

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Segments: beam properties, supports, masses and stiffeners.
+"""Segments: beam properties, supports and masses.
 
 x runs along the boom, z is in the plane of bending, y is lateral. All units are SI units.
 """
@@ -12,15 +12,15 @@ from itertools import pairwise
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, model_validator
 from pydantic.dataclasses import dataclass as part
-from pydantic_core import PydanticCustomError
 
 from geometry.arrays import Array
 from geometry.boom_error import BoomError
 from geometry.compression import NO_COMPRESSION, Compression
-from geometry.fields import PART, Category, In, Length, Place, Positive, resolve_distances
+from geometry.fields import PART, In, Place, Positive, resolve_distances
+from geometry.material import Material
 from geometry.section import COMPONENT, Section, SectionError
+from geometry.stiffeners import Collar, Diaphragm
 from geometry.support import Support, check_support
 from geometry.taper import areas, check_alike, interpolate_section, mean_area, middle_section
 
@@ -30,53 +30,6 @@ SAME_PLACE = 1.0e-10
 # Minimum distance of supports as a fraction of a segment's length. The stiffness of an element
 # between them is proportional to the inverse cube of its length and would cause loss of digits.
 APART = 1.0e-4
-
-
-@part(frozen=True, slots=True, config=PART)
-class Material:
-    """Isotropic linear-elastic material.
-
-    >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
-    >>> print(f"{1e-9 * steel.shear_modulus:.1f} GPa")
-    80.8 GPa
-    """
-
-    youngs_modulus: Annotated[Positive, In("Pa")]
-    """Young's modulus E in Pa"""
-    poissons_ratio: Annotated[float, Field(strict=True, gt=-1.0, lt=0.5), In("1")]
-    """Poisson's ratio"""
-    density: Annotated[Positive, In("kg/m^3")]
-    """the density in kg/m^3"""
-    yield_strength: Annotated[Positive, In("Pa")] | None = None
-    """the yield strength in Pa, for utilisations"""
-    yield_by_thickness: Annotated[
-        tuple[tuple[Positive, Positive], ...], In("m", "Pa"), Field(max_length=20)
-    ] = ()
-    """pairs of a plate thickness in m and the yield strength in Pa up to it, ascending, instead of
-    yield_strength; thicker plates have the last one"""
-
-    @model_validator(mode="after")
-    def _check_strengths(self) -> Material:
-        pairs = self.yield_by_thickness
-        if pairs and self.yield_strength is not None:
-            what = {"what": "has yield_strength and yield_by_thickness; give one of them"}
-            raise PydanticCustomError("unsuitable", "{what}", what)
-        if any(before[0] >= after[0] for before, after in pairwise(pairs)):
-            what = {"what": "the thicknesses of yield_by_thickness must ascend"}
-            raise PydanticCustomError("unsuitable", "{what}", what)
-        return self
-
-    def strength(self, thickness: float) -> float | None:
-        """Return the yield strength in Pa of a plate of a thickness in m; None if unknown."""
-        for limit, strength in self.yield_by_thickness:
-            if thickness <= limit:
-                return strength
-        return self.yield_by_thickness[-1][1] if self.yield_by_thickness else self.yield_strength
-
-    @property
-    def shear_modulus(self) -> float:
-        """The shear modulus G = E / 2(1 + ν) in Pa."""
-        return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
 
 
 @part(frozen=True, slots=True, config=PART)
@@ -94,50 +47,6 @@ class PointMass:
     """the x in m"""
     mass: Annotated[Positive, In("kg")]
     """the mass in kg"""
-
-
-@part(frozen=True, slots=True, config=PART)
-class Collar:
-    """Doubler around a segment; it does not shift the walls' mid-surfaces.
-
-    >>> head = pt.Collar(span=(7.5, 8.0), thickness=0.01)
-    >>> replace(boom.segments[0], collars=(head,)).collars[0].length
-    0.5
-    """
-
-    span: tuple[Place, Place]
-    """the x of its two ends in m, in ascending order"""
-    thickness: Length
-    """the additional thickness in m of all walls"""
-    detail_category: Category | None = None
-    """the number of the detail category of the welds at its ends, for [[spectrum]]"""
-
-    @property
-    def length(self) -> float:
-        """The length along the boom in m."""
-        return self.span[1] - self.span[0]
-
-    @property
-    def middle(self) -> float:
-        """The x of the middle in m."""
-        return 0.5 * sum(self.span)
-
-
-@part(frozen=True, slots=True, config=PART)
-class Diaphragm:
-    """Plate across a segment's box, welded to its walls.
-
-    >>> plate = pt.Diaphragm(x=0.5, thickness=0.01)
-    >>> len(replace(boom.segments[0], diaphragms=(plate,)).diaphragms)
-    1
-    """
-
-    x: Place
-    """the x in m"""
-    thickness: Length
-    """the thickness in m"""
-    detail_category: Category | None = None
-    """the number of the detail category of its welds to the walls, for [[spectrum]]"""
 
 
 @dataclass(frozen=True, slots=True)

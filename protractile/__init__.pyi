@@ -11,9 +11,9 @@ from geometry.joint import PadSize as PadSize
 from geometry.joint import SlidePad as SlidePad
 from geometry.joint import Stop as Stop
 from geometry.observation import Observation as Observation
-from geometry.segment import Collar as Collar
-from geometry.segment import Diaphragm as Diaphragm
-from geometry.segment import Material as Material
+from geometry.stiffeners import Collar as Collar
+from geometry.stiffeners import Diaphragm as Diaphragm
+from geometry.material import Material as Material
 from geometry.segment import PointMass as PointMass
 from geometry.segment import Segment as Segment
 from geometry.support import Pin as Pin

@@ -31,8 +31,8 @@ from geometry.fields import (
     is_number,
 )
 from geometry.joint import BareStop
+from geometry.material import Material
 from geometry.observation import Observation, Recorded
-from geometry.segment import Material
 from geometry.support import Support
 from runs.case.contact import JointTable
 from runs.case.history import HistoryTable

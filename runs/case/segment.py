@@ -8,7 +8,9 @@ from typing import Annotated, Any, Self
 from pydantic import BeforeValidator, model_validator
 
 from geometry.fields import End, Few, In, Length, Name, NotNegative, Number, Positive, is_number
-from geometry.segment import Collar, Diaphragm, Material, PointMass
+from geometry.material import Material
+from geometry.segment import PointMass
+from geometry.stiffeners import Collar, Diaphragm
 from geometry.support import Support
 from runs.case.limits import CaseTable, error_at, superfluous_error
 from runs.case.sections import AnySection

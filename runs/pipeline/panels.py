@@ -14,8 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.arrays import Array
+from geometry.material import Material
 from geometry.section import Plate, Section
-from geometry.segment import Material, Segment
+from geometry.segment import Segment
 from runs.pipeline.static_results import Diagram, StaticResult
 from runs.pipeline.strength import outer_corners
 

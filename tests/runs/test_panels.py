@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from geometry.material import Material
 from geometry.section import BoxSection
-from geometry.segment import Material, Segment
+from geometry.segment import Segment
 from runs.case.checked_case import CheckedCase
 from runs.check import check_case
 from runs.pipeline.panels import normal_coefficient, panel_factor, weakest_panels

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from geometry.material import Material
 from geometry.section import BoxSection
-from geometry.segment import Material, Segment
+from geometry.segment import Segment
 from protractile.cases import run_case
 from runs import CASES as CASE_FILES
 from runs import cli
