@@ -93,12 +93,14 @@ class Sine:
     Args:
         frequency: f in Hz, positive.
         phase: φ in rad.
+        end: time in s from which the value is 0, a zero of the sine; a half-sine pulse ends at
+            1 / (2 f).
     """
 
     frequency: float
     phase: float = 0.0
+    end: float = np.inf
 
-    kinks = ()
     peak = 1.0
 
     def __post_init__(self) -> None:
@@ -107,12 +109,18 @@ class Sine:
             raise ValueError(f"phase must be finite, got {self.phase} rad")
 
     @property
+    def kinks(self) -> tuple[float, ...]:
+        """The end in s, if there is one."""
+        return (self.end,) if np.isfinite(self.end) else ()
+
+    @property
     def fastest(self) -> float:
         """The circular frequency 2π f in rad/s."""
         return 2.0 * np.pi * self.frequency
 
     def __call__(self, time: Array) -> Array:
-        return np.asarray(np.sin(self.fastest * np.asarray(time) + self.phase))
+        wave = np.sin(self.fastest * np.asarray(time) + self.phase)
+        return np.where(np.asarray(time) < self.end, wave, 0.0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -280,7 +280,6 @@ def _load_history(where: str, table: LoadTable) -> History | ReleasedLoad:
     if table.released and not isinstance(history, Step):
         raise BoomError(
             f"{where}.released",
-            "a load that is let go has acted for ever, without ramp, frequency or table; leave "
-            "one of them out",
+            "a load that is let go has acted for ever, without a history; leave one of them out",
         )
     return ReleasedLoad() if table.released else history

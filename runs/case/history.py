@@ -22,6 +22,8 @@ class HistoryTable(CaseTable):
     """the time in s of the rise to the full value"""
     frequency: Annotated[Positive, In("Hz")] | None = None
     """the frequency of a sine in Hz"""
+    half_sine: Annotated[Positive, In("s")] | None = None
+    """the duration in s of a pulse of half a sine from t = 0 on; 0 afterwards"""
     table: Annotated[Times, Field(min_length=2, max_length=MOST_TIMES)] | None = None
     """pairs of a time in s and a factor, linear between them and constant beyond"""
     file: Text | None = None
@@ -47,13 +49,16 @@ def build_history(where: str, table: HistoryTable) -> History:
     Raises:
         BoomError: keys contradict one another, or the table is invalid.
     """
-    given = [key for key in ("ramp", "frequency", "table") if getattr(table, key) is not None]
+    keys = ("ramp", "frequency", "half_sine", "table")
+    given = [key for key in keys if getattr(table, key) is not None]
     if len(given) > 1:
         raise BoomError(f"{where}.{given[1]}", f"{given[0]} is given; leave one of them out")
     if table.ramp is not None:
         return Ramp(table.ramp)
     if table.frequency is not None:
         return Sine(table.frequency)
+    if table.half_sine is not None:
+        return Sine(0.5 / table.half_sine, end=table.half_sine)
     if table.table is not None:
         times, factors = zip(*table.table, strict=True)
         try:

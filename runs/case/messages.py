@@ -28,6 +28,18 @@ _ARRAYS = (
 # Key of each attribute of a boom.
 _PARTS = {f"{key}s": key for key in ("segment", "joint", "load", "stop", "cylinder")}
 _PARTS["observations"] = "observe"
+# The key for names that engineers use elsewhere, in tables that have it, or everywhere with a dot.
+_SYNONYMS = {
+    "overlap": "extension", "clearance": "play", "gap": "play", "angle": "gravity.angle",
+    "luffing_angle": "gravity.angle", "e": "youngs_modulus", "e_modulus": "youngs_modulus",
+    "modulus": "youngs_modulus", "nu": "poissons_ratio", "rho": "density", "fy": "yield_strength",
+    "force": "magnitude", "value": "magnitude", "inertia": "second_moment_of_area",
+    "friction_coefficient": "friction", "mu": "friction", "position": "x", "at": "x",
+    "location": "x", "t": "thickness", "thickness": "flange", "h": "height", "b": "width",
+    "depth": "height", "k": "stiffness", "pulse": "half_sine", "rise_time": "ramp",
+    "damping": "damping_ratio", "tip_mass": "payload.mass",
+    "g": "gravity.acceleration",
+}  # fmt: skip
 
 # Descriptions of valid input by error type, for messages that quote the given value. Limits of the
 # schema replace the braces.
@@ -187,8 +199,14 @@ def _field(location: Sequence[int | str]) -> FieldInfo:
 
 
 def _unknown_key(location: Sequence[int | str]) -> str:
-    known = list(names_of(_table(location)))
-    near = get_close_matches(shorten(str(location[-1])), known, n=1)
+    table, key = _table(location), str(location[-1])
+    known = list(names_of(table))
+    use = _SYNONYMS.get(key.lower(), "")
+    if "." in use:
+        return f"unknown key; use {use}"
+    if use in known:
+        return f"unknown key; use {use}, {describe(fields_of(table)[names_of(table)[use]])}"
+    near = get_close_matches(shorten(key), known, n=1)
     if near:
         return f"unknown key; the nearest known one is {near[0]}"
     return f"unknown key; known ones are {', '.join(known)}"

@@ -113,6 +113,8 @@ def _history_row(
         said = f"ramp of {table.ramp:g} s"
     elif table.frequency is not None:
         said = f"sine of {table.frequency:g} Hz"
+    elif table.half_sine is not None:
+        said = f"half sine of {table.half_sine:g} s"
     elif table.table is not None:
         said = f"{len(table.table)} values"
     return _Row(key, place, direction, said, full * float(values[step]), unit, time)

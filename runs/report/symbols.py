@@ -248,4 +248,6 @@ def _history(table: HistoryTable) -> str:
         return f" within {table.ramp:g} s"
     if table.frequency is not None:
         return f", {table.frequency:g} Hz"
+    if table.half_sine is not None:
+        return f", half sine of {table.half_sine:g} s"
     return " at most" if table.table is not None else ""

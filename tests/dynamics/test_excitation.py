@@ -35,6 +35,9 @@ def test_histories_by_hand() -> None:
     assert Ramp(2.0)(time).tolist() == [0.0, 0.0, 0.25, 0.5, 1.0]
     assert Sine(0.5)(time) == pytest.approx([-1.0, 0.0, 1.0, 0.0, 0.0], abs=1e-15)
     assert Sine(0.5, np.pi / 2.0)(time) == pytest.approx([0.0, 1.0, 0.0, -1.0, -1.0], abs=1e-15)
+    pulse = Sine(0.5, end=1.0)
+    assert pulse(time)[1:] == pytest.approx([0.0, 1.0, 0.0, 0.0], abs=1e-15)
+    assert (pulse.kinks, Sine(0.5).kinks) == ((1.0,), ())
     table = PiecewiseLinear((0.0, 1.0, 2.0), (1.0, -3.0, 0.5))
     assert table(time) == pytest.approx([1.0, 1.0, -1.0, -3.0, 0.5], abs=1e-15)
     assert [h.peak for h in (Step(), Ramp(2.0), Sine(0.5), table)] == [1.0, 1.0, 1.0, 3.0]
@@ -84,6 +87,18 @@ def test_the_line_that_stands_for_a_history() -> None:
     )
     assert mean == pytest.approx([0.75, 1.0])
     assert change == pytest.approx([12.0 * 0.75 * 0.125, 0.0], abs=1e-9)
+
+
+def test_a_half_sine_leaves_its_swing(one_mass: OneMass) -> None:
+    """Reference: analytic, the residual amplitude after a pulse (Clough and Penzien 1975, 5-2)."""
+    natural, duration, force, spring = 9.0, 0.5, 5.0, 81.0
+    system = one_mass(1.0, PowerContact(1.0e4, 1.0).behind(1.0e3), spring=spring, force=0.0)
+    pulse = driven(system, force, Sine(0.5 / duration, end=duration))
+    data = AdaptiveStep()(Motion(pulse, 4.0, output_step=0.002)).data
+    ratio = np.pi / duration / natural
+    left = force / spring * 2.0 * ratio / (1.0 - ratio**2) * np.cos(0.5 * np.pi / ratio)
+    swing = data["tip"].values[data.time.values > duration]
+    assert 0.5 * np.ptp(swing) == pytest.approx(abs(left), rel=1.0e-4)
 
 
 def forced(time: Array, spring: float, dashpot: float, frequency: float, phase: float) -> Array:

@@ -12,6 +12,7 @@ FORMS = [
         "colour = 1":
             "time.colour: unknown key; known ones are duration, output_step, step, tolerance",
         "durration = 0.6": "time.durration: unknown key; the nearest known one is duration",
+        "duration = 0.6\nangle = 45.0": "time.angle: unknown key; use gravity.angle",
         'duration = "0.6"': "time.duration: must be a number, got '0.6'",
         "duration = true": "time.duration: must be a number, got true",
         '"\\u001b[31m" = 1':
@@ -22,6 +23,8 @@ FORMS = [
         "terms = [2, 2.5]": "model[2].terms[2]: must be a whole number, got 2.5",
     }),
     *replacing("[material]", {
+        "[material]\nE = 2.1e11":
+            "material.E: unknown key; use youngs_modulus, Young's modulus E in Pa",
         "[materials]": "materials: unknown key; the nearest known one is material",
         "[life]\ndetail_category = 0.0\n\n[material]":
             "life.detail_category: must be a number greater than 0, got 0.0",

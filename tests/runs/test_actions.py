@@ -265,8 +265,8 @@ def test_histories_are_what_the_case_says(tmp_path: Path) -> None:
         ),
         (
             '[[load]]\nsegment = "beam"\nmagnitude = 1.0\nramp = 1.0\nreleased = true',
-            "load[1].released: a load that is let go has acted for ever, without ramp, frequency "
-            "or table; leave one of them out",
+            "load[1].released: a load that is let go has acted for ever, without a "
+            "history; leave one of them out",
         ),
         (
             '[[stop]]\nsegment = "beam"\nx = 10.0\nplay = 0.01\nstiffness = 0.0',
