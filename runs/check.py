@@ -26,7 +26,6 @@ from geometry.axial import axial_force, moving_force_places
 from geometry.boom import Boom, Direction, Joint
 from geometry.fit import room
 from geometry.section import Section
-from geometry.typography import TO_MILLI
 from runs.case import actions
 from runs.case.checked_case import CheckedCase
 from runs.case.kinds.model import ModelTable
@@ -64,7 +63,7 @@ from runs.pipeline.statics import (
     statics,
 )
 from runs.pipeline.turning import shaper_lines, turning_lines
-from runs.report.formatting import number
+from runs.report.formatting import milli, number
 from runs.report.tables import WIDE, Cell, Column, Table
 
 if TYPE_CHECKING:
@@ -160,7 +159,7 @@ def check_case(declared: CheckedCase) -> Check:
     lines += [
         *actions.series_notes(case),
         *proportion_cautions(case, boom),
-        *overload_cautions(extremes),
+        *overload_cautions(extremes, boom),
         *(
             f"caution: the wall {one.wall!r} of {one.segment!r} buckles at {number(one.factor, 3)} "
             f"times the loads at rest, at x = {case.system.text(one.x, 'm')} (panel formulas)"
@@ -479,8 +478,8 @@ def _static_lines(case: Case, boom: Boom, found: Statics | None) -> Iterator[str
         float(closed_contact_modes(one.system, one.position)[0][0]) / (2.0 * np.pi) for one in found
     )
     yield (
-        f"Static tip deflection (t = 0) {_BEAMS}: {number(TO_MILLI * state.tip, 4)} mm; without "
-        f"play {number(TO_MILLI * bonded.tip, 4)} mm."
+        f"Static tip deflection (t = 0) {_BEAMS}: {milli(state.tip)} mm; without "
+        f"play {milli(bonded.tip)} mm."
     )
     yield (
         f"First natural frequency, joints in contact, {_BEAMS}: {number(hertz, 4)} Hz; without "
@@ -490,8 +489,8 @@ def _static_lines(case: Case, boom: Boom, found: Statics | None) -> Iterator[str
     causes = "Play and the walls under pads rotate" if padded else "Play rotates"
     for tilt in tilts(state.boom, state.system, state.position):
         yield (
-            f"{causes} {tilt.inner!r} by {number(TO_MILLI * tilt.rotation, 4)} mrad in "
-            f"{tilt.outer!r}, which moves the tip by {number(TO_MILLI * tilt.tip, 4)} mm."
+            f"{causes} {tilt.inner!r} by {milli(tilt.rotation)} mrad in "
+            f"{tilt.outer!r}, which moves the tip by {milli(tilt.tip)} mm."
         )
     yield from pad_wall_lines(state.boom, state.tip)
     yield from tip_cautions(_BEAMS, state.tip, boom)

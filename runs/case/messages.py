@@ -15,6 +15,7 @@ from geometry.boom_error import BoomError
 from geometry.fields import NAME, describe, fields_of, names_of
 from geometry.typography import choices
 from runs.case import schema
+from runs.case.history import HistoryTable
 from runs.case.kinds import KINDS
 from runs.case.sections import SHAPES
 from runs.process.terminal import shorten
@@ -201,6 +202,8 @@ def _field(location: Sequence[int | str]) -> FieldInfo:
 def _unknown_key(location: Sequence[int | str]) -> str:
     table, key = _table(location), str(location[-1])
     known = list(names_of(table))
+    if table is schema.AxialTable and key in HistoryTable.model_fields:
+        return "an axial force is constant; give it at its largest, or one [[load_case]] per value"
     use = _SYNONYMS.get(key.lower(), "")
     if "." in use:
         return f"unknown key; use {use}"

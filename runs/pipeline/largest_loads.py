@@ -23,6 +23,7 @@ from geometry.boom import Boom
 from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.panels import PanelBuckling, weakest_panels
+from runs.pipeline.proportions import tip_cautions
 from runs.pipeline.section_forces import section_forces, with_cylinder_forces
 from runs.pipeline.static_results import StaticResult, instants, positions, static_result
 from runs.pipeline.strength import Fibres, largest_stresses
@@ -265,9 +266,15 @@ def in_units(value: float, unit: str, system: System) -> str:
     return f"{number(system.of(value, unit), 3)} {system.label(unit)}"
 
 
-def overload_cautions(extremes: Sequence[StaticExtreme]) -> list[str]:
-    """Return a caution for each utilisation above 1 in the static states."""
-    return [
+def overload_cautions(extremes: Sequence[StaticExtreme], boom: Boom) -> list[str]:
+    """Return cautions on utilisations above 1, and on a large deflection after t = 0."""
+    far = [
+        caution
+        for one in extremes
+        if one.name == "tip" and one.time > 0.0
+        for caution in tip_cautions(f"under the loads of t = {one.time:.4g} s", one.largest, boom)
+    ]
+    return far + [
         f"caution: at rest under the loads of t = {one.time:.4g} s the utilisation is {used}"
         for one in extremes
         if (used := one.utilisation) is not None and (used.value or 0.0) > 1.0

@@ -10,8 +10,7 @@ from typing import Any
 from beam_model.statics import Elements, static_state
 from geometry.boom import Boom, Collar, Joint, Segment
 from geometry.joint import PadSize
-from geometry.typography import TO_MILLI
-from runs.report.formatting import number
+from runs.report.formatting import milli
 
 # Remedies are given above this share of the tip deflection, if they reduce the tip deflection to
 # this fraction.
@@ -38,14 +37,14 @@ def pad_wall_lines(boom: Boom, tip: float) -> Iterator[str]:
     part = share / tip if tip else 0.0
     caution = "caution: walls" if part > GOVERNING_SHARE else "Walls"
     yield (
-        f"{caution} bend under pads, which moves the tip by {number(TO_MILLI * share, 4)} mm, "
+        f"{caution} bend under pads, which moves the tip by {milli(share)} mm, "
         f"{100.0 * part:.2g} % of its deflection (estimate from plates)."
     )
     if part < LARGE_SHARE:
         return
     remedies = ((static_state(changed).tip, what) for what, changed in _remedies(boom))
     better = sorted((abs(there), what) for there, what in remedies if there / tip < HELPFUL)
-    listed = "; ".join(f"{what} ({number(TO_MILLI * there, 4)} mm)" for there, what in better)
+    listed = "; ".join(f"{what} ({milli(there)} mm)" for there, what in better)
     if better:
         yield f"Remedies, with the deflection of the tip: {listed}."
 

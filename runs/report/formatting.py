@@ -34,13 +34,20 @@ def number(value: float | None, digits: int = 3) -> str:
 
 
 SHOWN = {"m": ("mm", TO_MILLI), "N": ("kN", TO_KILO), "N m": ("kN m", TO_KILO)}
+# Decimals of displayed amounts, beyond which digits are round-off.
+_DECIMALS = 9
 SHOWN |= {"Pa": ("MPa", TO_MEGA), "Hz": ("Hz", 1.0), "1": ("", 1.0)}
 
 
 def amount(value: float, unit: str) -> str:
     """Return an amount in SI units as text in its display unit."""
     name, factor = SHOWN[unit]
-    return f"{number(factor * value)} {name}".strip()
+    return f"{number(round(factor * value, _DECIMALS))} {name}".strip()
+
+
+def milli(value: float, digits: int = 4) -> str:
+    """Return a length in mm, or a rotation in mrad, as text."""
+    return number(round(TO_MILLI * value, _DECIMALS), digits)
 
 
 def percent(part: float, digits: int = 3) -> str:

@@ -53,6 +53,7 @@ def summary_table(results: Results) -> Table | None:
             *((one.static[:1], one.static[1:], one.static_extended) for one in own), strict=True
         )
     )
+    aside = [max((s.tip_lateral or 0.0 for s in one.static), key=abs, default=0.0) for one in own]
     dynamic = [*map(_farthest, own, tips)]
     travel = [farthest(x - x[0]) if x[0] else None for x in tips]
     bending, plates = ([one and _stress(one) for one in several] for several in (fibres, walls))
@@ -64,6 +65,7 @@ def summary_table(results: Results) -> Table | None:
         # A motion that starts undeformed is not in static equilibrium at t = 0.
         Column("Tip travel from t = 0", travel, ".1f", "mm"),
         Column("Residual vibration of the tip", [_vibration(one) for one in own], unit="mm"),
+        Column("Static lateral tip deflection", [one or None for one in aside], ".1f", "mm"),
         Column("Lateral tip deflection, maximum", _each(own, "lateral deflection"), unit="mm"),
         Column("First natural frequency", hertz, ".3g", "Hz"),
         Column("Period of the motion (measured)", periods, ".3g", "s"),

@@ -104,11 +104,22 @@ def result_table(results: Results) -> Table:
         forces = [one.largest if one else None for one in contacts]
     used = [[one.value or 0.0 for one in utilisations(results, n).values()] for n in names]
     tips = [farthest(results.trajectories["tip"].sel(model=name).values) for name in names]
+    lateral = []
+    if "tip_lateral" in results.trajectories:
+        aside = results.trajectories["tip_lateral"]
+        still = [[state.tip_lateral or 0.0 for state in designs[name].static] for name in names]
+        most = [max(tips, key=abs, default=None) for tips in still]
+        moved = [farthest(aside.sel(model=name).values) for name in names]
+        lateral = [
+            Column("static\nlateral", most, ".1f", "mm"),
+            Column("dynamic\nlateral", moved, ".1f", "mm"),
+        ]
     columns = [
         Column("model", names),
         Column("static tip\nt = 0", [tip[0] if tip else None for tip in static], ".1f", "mm"),
         Column("static tip\nmax. load", highest, ".1f", "mm"),
         Column("dynamic\ntip", tips, ".1f", "mm"),
+        *lateral,
         Column("factor\nφ", [one.factor if one else None for one in peaks], ".3g"),
         Column("first\nmode", [m[0].frequency if m else None for m in modes], ".3g", "Hz"),
         Column("pad\nforce" if pads else "contact\nforce", forces, ".3g", "kN"),

@@ -25,6 +25,9 @@ FORMS = [
     *replacing("[material]", {
         "[material]\nE = 2.1e11":
             "material.E: unknown key; use youngs_modulus, Young's modulus E in Pa",
+        "[[axial]]\nforce = 1e3\nramp = 0.5\n\n[material]":
+            "axial[1].ramp: an axial force is constant; give it at its largest, or one "
+            "[[load_case]] per value",
         "[materials]": "materials: unknown key; the nearest known one is material",
         "[life]\ndetail_category = 0.0\n\n[material]":
             "life.detail_category: must be a number greater than 0, got 0.0",

@@ -104,7 +104,12 @@ def test_overloads_are_cautions(tmp_path: Path) -> None:
     """Reference: exact messages, with pressures of the lever rule over 0.1 MPa."""
     text = boom_of(RAMP.replace("ramp = 0.1\n", ""), PAD.replace("1e6", "1e5"))
     found = [*extremes_of(tmp_path, text).values()]
-    assert overload_cautions(found) == [
+    far = StaticExtreme("tip", "tip", "m", -0.1, -1.4, 0.25)
+    boom = build_boom(read_case(tmp_path, text))
+    assert overload_cautions([far, *found[1:]], boom) == [
+        "caution: under the loads of t = 0.25 s the tip rests at -1.4 m, "
+        f"{140.0 / boom.length:.2g} % of the boom's length and more than 5 %: small displacements "
+        "do not hold; check units and loads",
         "caution: at rest under the loads of t = 0 s the utilisation is 3.39 at pad, fly segment, "
         "x = 6 m: exceeds the allowable pressure",
         "caution: at rest under the loads of t = 0 s the utilisation is 4.39 at pad, fly segment, "
