@@ -64,13 +64,18 @@ def proportion_cautions(case: Case, boom: Boom) -> list[str]:
 def _ineffective_inputs(case: Case) -> Iterator[str]:
     """Yield cautions on inputs that have no effect, or less than the user may intend."""
     duration = case.time.duration
-    ramps = [(f"load[{i}].ramp", load.ramp) for i, load in enumerate(case.loads, start=1)]
-    ramps += [(f"base[{i}].ramp", base.ramp) for i, base in enumerate(case.base, start=1)]
+    ramps = [
+        (f"{name}[{i}].{key}", getattr(table, key))
+        for name, tables in (("load", case.loads), ("base", case.base))
+        for i, table in enumerate(tables, start=1)
+        for key in ("ramp", "half_sine")
+    ]
     for key, ramp in ramps:
         if ramp is not None and ramp > duration:
+            kind = key.rpartition(".")[2].replace("_", " ")
             yield (
                 f"{key}: the run of {duration:g} s ends at {100.0 * duration / ramp:.3g} % of the "
-                f"ramp of {ramp:g} s; usual is a ramp that ends within the run"
+                f"{kind} of {ramp:g} s; usual is a {kind} that ends within the run"
             )
     for number, joint in enumerate(case.joints, start=1):
         if any(joint.normal_forces) and joint.friction == 0.0:

@@ -83,7 +83,8 @@ def print_results(results: Results, console: Console) -> None:
     """Print the governing results of each model, then the utilisations of the first main model."""
     if not results.summary.design.models:
         return
-    for table in filter(None, (result_table(results), limit_table(results))):
+    tables = result_table(results), lateral_table(results), limit_table(results)
+    for table in filter(None, tables):
         table.show(console)
     for line in filter(None, (play_effect(results), utilisation_verdict(results))):
         text = f"{results.main_models[0]}: {line[0].lower()}{line[1:]}"
@@ -104,22 +105,11 @@ def result_table(results: Results) -> Table:
         forces = [one.largest if one else None for one in contacts]
     used = [[one.value or 0.0 for one in utilisations(results, n).values()] for n in names]
     tips = [farthest(results.trajectories["tip"].sel(model=name).values) for name in names]
-    lateral = []
-    if "tip_lateral" in results.trajectories:
-        aside = results.trajectories["tip_lateral"]
-        still = [[state.tip_lateral or 0.0 for state in designs[name].static] for name in names]
-        most = [max(tips, key=abs, default=None) for tips in still]
-        moved = [farthest(aside.sel(model=name).values) for name in names]
-        lateral = [
-            Column("static\nlateral", most, ".1f", "mm"),
-            Column("dynamic\nlateral", moved, ".1f", "mm"),
-        ]
     columns = [
         Column("model", names),
         Column("static tip\nt = 0", [tip[0] if tip else None for tip in static], ".1f", "mm"),
         Column("static tip\nmax. load", highest, ".1f", "mm"),
         Column("dynamic\ntip", tips, ".1f", "mm"),
-        *lateral,
         Column("factor\nφ", [one.factor if one else None for one in peaks], ".3g"),
         Column("first\nmode", [m[0].frequency if m else None for m in modes], ".3g", "Hz"),
         Column("pad\nforce" if pads else "contact\nforce", forces, ".3g", "kN"),
@@ -127,6 +117,23 @@ def result_table(results: Results) -> Table:
     ]
     columns = [one for one in columns if any(cell is not None for cell in one.cells)]
     return Table(f"Results: {results.case.title}", columns)
+
+
+def lateral_table(results: Results) -> Table | None:
+    """Return the table of lateral tip deflections; None for a flat boom."""
+    designs = results.summary.design.models
+    if "tip_lateral" not in results.trajectories:
+        return None
+    names, moved = [*designs], results.trajectories["tip_lateral"]
+    still = [[state.tip_lateral or 0.0 for state in one.static] for one in designs.values()]
+    dynamic = [farthest(moved.sel(model=name).values) for name in names]
+    columns = [
+        Column("model", names),
+        Column("static, t = 0", [tips[0] if tips else None for tips in still], ".1f", "mm"),
+        Column("static, max. load", [max(t, key=abs, default=None) for t in still], ".1f", "mm"),
+        Column("dynamic", dynamic, ".1f", "mm"),
+    ]
+    return Table("Lateral tip deflection", columns)
 
 
 def _model_notes(results: Results) -> Iterator[str]:

@@ -34,6 +34,15 @@ def test_each_key_of_the_schema_has_its_row(reference: ModuleType) -> None:
         assert rows == [*table["properties"]]
 
 
+def test_the_page_names_each_table() -> None:
+    """Reference: the schema, whose lists of tables stand in double brackets."""
+    page = (DOCS / "case-file.md").read_text("utf-8")
+    for key, entry in case_schema()["properties"].items():
+        if "$ref" in str(entry):
+            listed = "'array'" in str(entry)
+            assert (f"`[[{key}]]`" if listed else f"`[{key}]`") in page
+
+
 def test_each_option_of_the_command_line_has_its_row(reference: ModuleType) -> None:
     """Reference: typer's own list."""
     page = reference.commands()
