@@ -185,7 +185,18 @@ def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
         along = np.sign(plate.end[across] - plate.start[across])
         places = folds[face.plate] + along * (np.array(area.spans) - plate.start[across])
         spans.append(np.sort(places, axis=1))
-    edges = np.unique(np.concatenate([folds, *(span.ravel() for span in spans)]))
+    # The intervals around the section with a collar, and its thickness.
+    strips = [
+        (collar, folds[k] + 0.5 * section.plates[k].length + np.array(ends))
+        for collar in segment.collars
+        for k, near, far in collar.strips(section)
+        for ends in ((-far, -near), (near, far))
+    ]
+    cuts_around = [*(span.ravel() for span in spans), *(ends for _, ends in strips)]
+    edges = np.concatenate([folds, *cuts_around])
+    # Collars that cover a wall end at its folds, to round-off.
+    at_fold = np.abs(np.subtract.outer(edges, folds)).min(axis=1) < section.near
+    edges = np.unique(np.concatenate([folds, edges[~at_fold]]))
     around = _Axis(_graded_nodes(edges, length, (0.0, folds[-1])), closed=True)
     plates = np.searchsorted(folds, around.nodes[:-1], side="right") - 1
 
@@ -196,16 +207,20 @@ def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
         _graded_nodes(np.unique([*cuts, *closed_at, *ends]), length, (start, end)), closed=False
     )
     middles = 0.5 * (along_x.nodes[:-1] + along_x.nodes[1:])
-    doubled = np.zeros(middles.size)
-    for collar in segment.collars:
-        doubled += collar.thickness * (np.abs(middles - collar.middle) < 0.5 * collar.length)
+    middles_around = 0.5 * (around.nodes[:-1] + around.nodes[1:])
+    doubled = np.zeros((middles.size, middles_around.size))
+    for collar, (near, far) in strips:
+        within = np.abs(middles - collar.middle) < 0.5 * collar.length
+        covered = (near < middles_around) & (middles_around < far)
+        doubled += collar.thickness * np.outer(within, covered)
 
     modulus, ratio = segment.material.youngs_modulus, segment.material.poissons_ratio
     walls = np.array([section.plates[number].thickness for number in plates])
     stiffness = 0.0
-    for more in np.unique(doubled):
+    kinds, kind = np.unique(doubled, axis=0, return_inverse=True)
+    for number, more in enumerate(kinds):
         rigidity = modulus * (walls + more) ** 3 / (12.0 * (1.0 - ratio**2))
-        x0, x1, x2, x02 = along_x.integrals((doubled == more).astype(float))
+        x0, x1, x2, x02 = along_x.integrals((kind == number).astype(float))
         s0, s1, s2, s02 = around.integrals(rigidity)
         stiffness = (
             stiffness

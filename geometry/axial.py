@@ -215,7 +215,7 @@ def _distributed_weights(segment: Segment, gravity: float) -> list[tuple[float, 
     if segment.section is not None:
         doubler = segment.material.density * gravity
         found += [
-            (*each.span, doubler * segment.mean_perimeter(each) * each.thickness)
+            (*each.span, doubler * segment.mean_width(each) * each.thickness)
             for each in segment.collars
         ]
     return found

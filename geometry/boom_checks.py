@@ -13,6 +13,7 @@ from geometry.fit import check_contact_faces, check_pads, check_room
 from geometry.joint import Joint, Stop
 from geometry.load import PartialLoad
 from geometry.observation import KINDS, SPATIAL_QUANTITIES
+from geometry.section import Direction
 from geometry.segment import SAME_PLACE
 from geometry.support_check import check_supported
 from geometry.telescoping import check_drives
@@ -83,6 +84,14 @@ def _check_mirrors(boom: Boom) -> None:
                 "does not mirror itself in z, and would twist as it bends sideways, which no "
                 "model in space knows; leave lateral_play out, or make the flanges alike",
             )
+        needed: tuple[Direction, ...] = ("y", "z") if boom.spatial else ("y",)
+        for index, collar in enumerate(segment.collars):
+            if not all(collar.is_symmetric(segment.widest, axis) for axis in needed):
+                raise BoomError(
+                    f"segments[{number}].collars[{index}].walls",
+                    f"do not mirror themselves in {' and '.join(needed)}; give the opposite walls, "
+                    "too",
+                )
 
 
 def _check_diaphragms(boom: Boom) -> None:

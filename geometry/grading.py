@@ -46,11 +46,12 @@ def graded_mesh(
     size: float,
     zones: Sequence[RefinementZone],
     closed: Sequence[str] = (),
+    across: Mapping[int, Sequence[float]] | None = None,
 ) -> SegmentMesh:
     """Mesh the walls of a segment as :func:`mesh_segment`, with refinement zones.
 
     Args:
-        section, breaks, closed: as in :func:`mesh_segment`.
+        section, breaks, closed, across: as in :func:`mesh_segment`.
         size: mesh size in m, the side of a square with the area of a rectangle far from all zones.
         zones: refinement zones.
 
@@ -58,7 +59,7 @@ def graded_mesh(
         ValueError: as in :func:`mesh_segment`.
     """
     along = _along(breaks, size, zones)
-    mesh = _diagonals_first(mesh_segment(section, breaks, _ACROSS * size, closed, along))
+    mesh = _diagonals_first(mesh_segment(section, breaks, _ACROSS * size, closed, along, across))
     while (cut := _too_large(mesh, section.mirrors, zones)).any():
         mesh = _bisect(mesh, cut)
     return mesh

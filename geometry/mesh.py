@@ -59,7 +59,12 @@ class SegmentMesh:
     @property
     def along(self) -> Array:
         """The x (num_triangles,) in m of the centroids of triangles."""
-        return np.asarray(self.points[self.triangles, 0].mean(axis=1))
+        return np.asarray(self.middles[:, 0])
+
+    @property
+    def middles(self) -> Array:
+        """The centroids (num_triangles, 3) of triangles in m."""
+        return np.asarray(self.points[self.triangles].mean(axis=1))
 
     def write(self, path: Path) -> None:
         """Write the mesh for ParaView (``.vtu``), with the wall of each triangle as a field."""
@@ -100,6 +105,7 @@ def mesh_segment(
     size: float,
     closed: Sequence[str] = (),
     along: Mapping[float, float] | None = None,
+    across: Mapping[int, Sequence[float]] | None = None,
 ) -> SegmentMesh:
     """Mesh the plates of a section, and diaphragms.
 
@@ -111,6 +117,8 @@ def mesh_segment(
         closed: names of the breaks with a diaphragm, in order.
         along: target edge lengths in m along the boom, by the x in m from which each applies;
             ``size`` before the first x.
+        across: distances in m from the middle of a plate with mesh lines on both sides, by the
+            plate's index.
 
     Raises:
         ValueError: the size is not a positive number, or there are no two distinct breaks.
@@ -125,14 +133,17 @@ def mesh_segment(
     lengths = [zones[max(start for start in zones if start <= x)] for x in outlines[:-1]]
     at = {name: int(np.abs(np.array(outlines) - x).argmin()) for name, x in breaks.items()}
     with _gmsh_model():
-        surfaces, rings = _build_patches(outlines, section.plates, size, lengths)
-        surfaces += [_close(outlines[at[name]], rings[at[name]], section, size) for name in closed]
+        halves = _half_plates(section.plates, across or {})
+        surfaces, rings = _build_patches(outlines, halves, size, lengths)
+        surfaces += [
+            _close(outlines[at[name]], rings[at[name]], section, halves, size) for name in closed
+        ]
         gmsh.model.geo.synchronize()
         for name in breaks:
             ring = rings[at[name]].curves
             for number, plate in enumerate(section.plates):
-                halves = ring[2 * number : 2 * number + 2]
-                gmsh.model.addPhysicalGroup(1, halves, name=f"{name}:{plate.name}")
+                curves = [*ring[2 * number], *ring[2 * number + 1]]
+                gmsh.model.addPhysicalGroup(1, curves, name=f"{name}:{plate.name}")
         gmsh.model.mesh.generate(2)
         return _extract(surfaces, tuple(plate.name for plate in section.plates))
 
@@ -148,6 +159,30 @@ def collar_breaks(segment: Segment) -> dict[str, float]:
 def diaphragm_breaks(segment: Segment) -> dict[str, float]:
     """Return the x in m of a segment's diaphragms, by name, in order."""
     return {f"diaphragm-{k}": plate.x for k, plate in enumerate(segment.diaphragms, start=1)}
+
+
+def strip_lines(segment: Segment) -> dict[int, list[float]]:
+    """Return the distances in m of the edges of collars from the middle of each plate."""
+    assert segment.section is not None
+    lines: dict[int, list[float]] = {}
+    for strip in (one for collar in segment.collars for one in collar.strips(segment.widest)):
+        half = 0.5 * segment.widest.plates[strip.wall].length
+        inside = [x for x in strip[1:] if SAME_PLACE * half < x < (1.0 - SAME_PLACE) * half]
+        lines[strip.wall] = _merge_places([*lines.get(strip.wall, []), *inside])
+    return lines
+
+
+def _half_plates(
+    plates: Sequence[Plate], across: Mapping[int, Sequence[float]]
+) -> list[list[Offset]]:
+    """Return the starts (y, z) in m of the patches of each half plate, two halves per plate."""
+    halves = []
+    for number, plate in enumerate(plates):
+        cuts = sorted(across.get(number, ()))
+        for near, sides in ((plate.start, [-x for x in reversed(cuts)]), (plate.middle, cuts)):
+            beyond = np.add(plate.middle, np.multiply.outer(sides, plate.tangent)).reshape(-1, 2)
+            halves.append([near, *map(tuple, beyond.tolist())])
+    return halves
 
 
 def _merge_places(values: Iterable[float]) -> list[float]:
@@ -187,58 +222,65 @@ def _restore_signal_handlers() -> None:
 
 
 class _Ring(NamedTuple):
-    """Points and curves of gmsh around a section; curve i begins at point i.
+    """Points of gmsh around a section, and the curves of each half plate from point i on.
 
     Points of even index are corners, points of odd index are middles of plates.
     """
 
     points: Sequence[int]
-    curves: Sequence[int]
+    curves: Sequence[Sequence[int]]
 
 
 def _build_patches(
     outlines: Sequence[float],
-    plates: Sequence[Plate],
+    halves: Sequence[Sequence[Offset]],
     across: float,
     along: Sequence[float],
 ) -> tuple[list[list[int]], list[_Ring]]:
     """Build the transfinite patches of walls.
 
-    ``across`` is the edge length around the section, ``along`` the edge length in each interval
-    along the boom.
+    ``halves`` has the starts of patches in each half plate; ``across`` is the edge length around
+    the section, ``along`` the edge length in each interval along the boom.
 
     Returns:
         The surfaces of each wall, and the ring of each outline.
     """
     geo = gmsh.model.geo
-    corners: list[Offset] = [place for plate in plates for place in (plate.start, plate.middle)]
+    corners = [place for half in halves for place in half]
+    half_of = [number for number, half in enumerate(halves) for _ in half]
+    first = [half_of.index(number) for number in range(len(halves))]
     n = len(corners)
     points = [[geo.addPoint(x, y, z) for y, z in corners] for x in outlines]
     rings = [[geo.addLine(p[j], p[(j + 1) % n]) for j in range(n)] for p in points]
     rails = [[geo.addLine(a[j], b[j]) for j in range(n)] for a, b in pairwise(points)]
-    surfaces: list[list[int]] = [[] for _ in plates]
+    surfaces: list[list[int]] = [[] for _ in halves[::2]]
     for i, (x0, x1) in enumerate(pairwise(outlines)):
         for j, (y0, z0) in enumerate(corners):
             k = (j + 1) % n
             y1, z1 = corners[k]
             loop = geo.addCurveLoop([rails[i][j], rings[i + 1][j], -rails[i][k], -rings[i][j]])
             surface = geo.addPlaneSurface([loop])
-            surfaces[j // 2].append(surface)
+            surfaces[half_of[j] // 2].append(surface)
             # With growing x, diagonals run from the middle of a wall to a corner. So the mesh has
             # the symmetries of the section, and a rotated box has the rotated mesh.
             geo.mesh.setTransfiniteSurface(
                 surface,
-                "Left" if j % 2 == 0 else "Right",
+                "Left" if half_of[j] % 2 == 0 else "Right",
                 [points[i][j], points[i + 1][j], points[i + 1][k], points[i][k]],
             )
             for ring in (rings[i][j], rings[i + 1][j]):
                 _divide(ring, float(np.hypot(y1 - y0, z1 - z0)), across)
             for rail in (rails[i][j], rails[i][k]):
                 _divide(rail, x1 - x0, along[i])
-    return surfaces, [_Ring(p, curves) for p, curves in zip(points, rings, strict=True)]
+    return surfaces, [
+        _Ring([p[j] for j in first], [ring[a:b] for a, b in pairwise([*first, n])])
+        for p, ring in zip(points, rings, strict=True)
+    ]
 
 
-def _close(x: float, ring: _Ring, section: Section, size: float) -> list[int]:
+def _close(
+    x: float, ring: _Ring, section: Section, halves: Sequence[Sequence[Offset]], size: float
+) -> list[int]:
     """Build the transfinite patches of a diaphragm, and return their surfaces.
 
     Spokes from the centre divide the diaphragm. If opposite half plates have equal numbers of
@@ -247,9 +289,12 @@ def _close(x: float, ring: _Ring, section: Section, size: float) -> list[int]:
     """
     low, high = section.bounds
     middle = gmsh.model.geo.addPoint(x, *(0.5 * (a + b) for a, b in zip(low, high, strict=True)))
-    halves = [_edges(0.5 * plate.length, size) for plate in section.plates]
-    if all(before == after for before, after in zip(halves, np.roll(halves, -2), strict=True)):
-        spokes = dict(zip(range(1, len(ring.points), 2), np.roll(halves, -1), strict=True))
+    counts = [
+        sum(_edges(float(np.hypot(*np.subtract(b, a))), size) for a, b in pairwise([*one, end[0]]))
+        for one, end in zip(halves[::2], halves[1::2], strict=True)
+    ]
+    if all(before == after for before, after in zip(counts, np.roll(counts, -2), strict=True)):
+        spokes = dict(zip(range(1, len(ring.points), 2), np.roll(counts, -1), strict=True))
     else:
         across = 0.5 * min(section.size("y"), section.size("z"))
         spokes = dict.fromkeys(range(len(ring.points)), _edges(across, size))
@@ -270,7 +315,7 @@ def _mesh_between_spokes(ring: _Ring, middle: int, spokes: Mapping[int, int]) ->
         geo.mesh.setTransfiniteCurve(curves[j], edges + 1)
     surfaces = []
     for before, after in zip([places[-1] - count, *places], places, strict=False):
-        sides = [ring.curves[j % count] for j in range(before, after)]
+        sides = [curve for j in range(before, after) for curve in ring.curves[j % count]]
         loop = geo.addCurveLoop([*sides, curves[after], -curves[before % count]])
         surfaces.append(geo.addPlaneSurface([loop]))
         ends = [ring.points[j % count] for j in range(before, after + 1)]

@@ -77,7 +77,12 @@ def add_thickness(segment: Segment, mesh: SegmentMesh) -> PlatedMesh:
     thickness = plain.copy()
     for collar in segment.collars:
         start, end = collar.span
-        thickness[mesh.on_walls & (x > start) & (x < end)] += collar.thickness
+        within = (x > start) & (x < end)
+        for wall, low, high in collar.strips(segment.widest):
+            plate = segment.widest.plates[wall]
+            beside = np.abs((mesh.middles[:, 1:] - plate.middle) @ plate.tangent)
+            covered = within & (mesh.walls == wall) & (beside > low) & (beside < high)
+            thickness[covered] += collar.thickness
     for number, diaphragm in enumerate(segment.diaphragms, start=len(mesh.plates)):
         thickness[mesh.walls == number] = diaphragm.thickness
     return PlatedMesh(

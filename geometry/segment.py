@@ -19,10 +19,11 @@ from geometry.boom_error import BoomError
 from geometry.compression import NO_COMPRESSION, Compression
 from geometry.fields import PART, In, Place, Positive, resolve_distances
 from geometry.material import Material
-from geometry.section import COMPONENT, Section, SectionError
+from geometry.section import COMPONENT, Direction, Section, SectionError
 from geometry.stiffeners import Collar, Diaphragm
 from geometry.support import Support, check_support
 from geometry.taper import areas, check_alike, interpolate_section, mean_area, middle_section
+from geometry.typography import choices
 
 # Fraction of a segment's length below which two x are equal: far below any part, above round-off.
 SAME_PLACE = 1.0e-10
@@ -234,7 +235,7 @@ class Segment:
             for one in self.diaphragms
         )
         of_collars = (
-            PointMass(one.middle, density * self.mean_perimeter(one) * one.length * one.thickness)
+            PointMass(one.middle, density * self.mean_width(one) * one.length * one.thickness)
             for one in self.collars
         )
         return (*of_diaphragms, *of_collars)
@@ -244,9 +245,18 @@ class Segment:
         """The mass in kg, including all attached masses."""
         return self.mass_per_length * self.length + sum(point.mass for point in self.all_masses)
 
-    def mean_perimeter(self, collar: Collar) -> float:
-        """Return the length of the mid-lines in m at the middle of a collar."""
-        return self.section_at(collar.middle).perimeter
+    def mean_width(self, collar: Collar) -> float:
+        """Return the width in m around the section at the middle of a collar."""
+        return collar.width(self.section_at(collar.middle))
+
+    @property
+    def mirrors(self) -> tuple[Direction, ...]:
+        """The directions of symmetry of the section with its collars."""
+        return tuple(
+            axis
+            for axis in self.widest.mirrors
+            if all(collar.is_symmetric(self.widest, axis) for collar in self.collars)
+        )
 
     def prismatic_at(self, x: float) -> Segment:
         """Return the prismatic segment with the section of this one at x in m."""
@@ -367,6 +377,7 @@ class Segment:
     def _check_collars(self, where: str) -> None:
         for number, collar in enumerate(self.collars):
             key = f"{where}.collars[{number}]"
+            self._check_strips(key, collar)
             self._check_thickness(key, collar.thickness)
             if not collar.length > SAME_PLACE * self.length:
                 raise BoomError(
@@ -382,6 +393,26 @@ class Segment:
                     f"{where}.collars",
                     f"two lie on one another from {right:g} m on; give one of the thickness of "
                     "both there",
+                )
+
+    def _check_strips(self, where: str, collar: Collar) -> None:
+        if self.section is None:
+            return
+        plates = {plate.name: plate for plate in self.widest.plates}
+        for name in collar.walls:
+            if name not in plates:
+                raise BoomError(
+                    f"{where}.walls",
+                    f"{name!r} is no wall of {self.name!r}; give {choices([*plates])}",
+                )
+        if collar.across is not None:
+            low, high = collar.across
+            half = 0.5 * min(plates[name].length for name in collar.walls or plates)
+            if not low < high <= half * (1.0 + SAME_PLACE):
+                raise BoomError(
+                    f"{where}.across",
+                    "must run from a smaller to a larger distance from the middle of the wall, at "
+                    f"most {half:.6g} m, got [{low:g}, {high:g}] m",
                 )
 
     def _check_diaphragms(self, where: str) -> None:

@@ -3,9 +3,27 @@
 
 from __future__ import annotations
 
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from pydantic import Field
 from pydantic.dataclasses import dataclass as part
 
-from geometry.fields import PART, Category, Length, Place
+from geometry.fields import PART, Category, In, Length, Name, NotNegative, Place, Positive
+from geometry.section import COMPONENT, Direction, Section
+
+
+class Strip(NamedTuple):
+    """Part of a wall between two distances from its middle, on both sides of the middle.
+
+    Args:
+        wall: index in the plates of the section.
+        low, high: smallest and largest distance in m.
+    """
+
+    wall: int
+    low: float
+    high: float
 
 
 @part(frozen=True, slots=True, config=PART)
@@ -20,7 +38,12 @@ class Collar:
     span: tuple[Place, Place]
     """the x of its two ends in m, in ascending order"""
     thickness: Length
-    """the additional thickness in m of all walls"""
+    """the additional thickness in m of the walls"""
+    walls: Annotated[tuple[Name, ...], Field(max_length=20)] = ()
+    """the names of its walls, such as "top" and "bottom"; all walls unless given"""
+    across: Annotated[tuple[NotNegative, Positive], In("m")] | None = None
+    """the smallest and largest distance in m from the middle of each wall, on both sides of it;
+    the whole width unless given"""
     detail_category: Category | None = None
     """the number of the detail category of the welds at its ends, for [[spectrum]]"""
 
@@ -33,6 +56,27 @@ class Collar:
     def middle(self) -> float:
         """The x of the middle in m."""
         return 0.5 * sum(self.span)
+
+    def strips(self, section: Section) -> list[Strip]:
+        """Return the covered parts of the walls of a section."""
+        low, high = self.across or (0.0, np.inf)
+        return [
+            Strip(k, low, min(high, 0.5 * plate.length))
+            for k, plate in enumerate(section.plates)
+            if (not self.walls or plate.name in self.walls) and low < 0.5 * plate.length
+        ]
+
+    def width(self, section: Section) -> float:
+        """Return the total width in m of its strips around a section."""
+        return sum(2.0 * (strip.high - strip.low) for strip in self.strips(section))
+
+    def is_symmetric(self, section: Section, axis: Direction) -> bool:
+        """Return whether the mirror images along an axis of its walls are its walls."""
+        middles = np.array([section.plates[strip.wall].middle for strip in self.strips(section)])
+        images = middles.copy()
+        images[:, COMPONENT[axis] - 1] *= -1.0
+        apart = np.abs(images[:, None] - middles).max(axis=2).min(axis=1)
+        return bool((apart < section.near).all())
 
 
 @part(frozen=True, slots=True, config=PART)

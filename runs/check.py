@@ -218,8 +218,9 @@ def _stiffeners(boom: Boom, system: System) -> Table:
         if segment.section is None:
             continue
         for one in segment.collars:
-            area = segment.mean_perimeter(one) * one.length
-            rows.append(("collar", segment.name, one.span, one.thickness, area))
+            area = segment.mean_width(one) * one.length
+            name = ", ".join(("collar", *one.walls))
+            rows.append((name, segment.name, one.span, one.thickness, area))
         for plate in segment.diaphragms:
             area, ends = segment.section_at(plate.x).enclosed_area, (plate.x, plate.x)
             rows.append(("diaphragm", segment.name, ends, plate.thickness, area))

@@ -19,7 +19,7 @@ from geometry.contact_places import ContactLine, pads, stop_patches
 from geometry.cylinder import GroundLine, ground_lines
 from geometry.grading import graded_mesh
 from geometry.load import Load
-from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
+from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
 from geometry.observation import Quantity, Read
 from geometry.plating import PlatedMesh, add_thickness, tapered_mesh
 from geometry.refinement import refinement_zones
@@ -217,13 +217,13 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
     breaks |= {f"extension-{k}": x for k, x in enumerate(boom.moving_intervals(number), start=1)}
     breaks |= collar_breaks(segment) | diaphragm_breaks(segment)
     box = segment.widest, breaks, options.mesh_size
-    closed = tuple(diaphragm_breaks(segment))
+    closed, across = tuple(diaphragm_breaks(segment)), strip_lines(segment)
     if options.contact_tolerance is None or options.contact_line == "surface":
-        mesh = mesh_segment(*box, closed=closed)
+        mesh = mesh_segment(*box, closed=closed, across=across)
     else:
         tolerance, line = options.contact_tolerance, options.contact_line
         fine = refinement_zones(boom, number, tolerance, line, stop_patches(boom), pads(boom))
-        mesh = graded_mesh(*box, fine, closed=closed)
+        mesh = graded_mesh(*box, fine, closed=closed, across=across)
     built = add_thickness(segment, mesh)
     return built if segment.head_section is None else tapered_mesh(segment, built)
 

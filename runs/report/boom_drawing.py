@@ -261,8 +261,11 @@ def _draw_segment(panel: Panel, number: int) -> None:
         return
     for collar in segment.collars:
         ends = collar.span
-        for edge in zip(*(edges(boom, segment, x) for x in ends), strict=True):
-            panel.line([*zip(ends, edge, strict=True)], color=color, linewidth=2.6)
+        walls = {strip.wall for strip in collar.strips(segment.widest)}
+        both = zip(*(edges(boom, segment, x) for x in ends), strict=True)
+        for side, edge in zip((-1, 1), both, strict=True):
+            if segment.widest.face("z", side).plate in walls:
+                panel.line([*zip(ends, edge, strict=True)], color=color, linewidth=2.6)
     for plate in segment.diaphragms:
         upright = [(plate.x, z) for z in edges(boom, segment, plate.x)]
         panel.line(upright, color=color, linewidth=1.6)

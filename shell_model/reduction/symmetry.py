@@ -183,7 +183,7 @@ class SymmetryReduction:
     """
 
     def __init__(self, shell: SegmentShell) -> None:
-        self.shell, self._comm, self._mirrors = shell, shell.comm, shell.section.mirrors
+        self.shell, self._comm, self._mirrors = shell, shell.comm, shell.segment.mirrors
 
         def of_mesh() -> SymmetryCell | None:
             if shell.mesh is None:

@@ -12,7 +12,7 @@ from slepc4py import SLEPc
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array
-from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
+from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
 from geometry.plating import add_thickness
 from geometry.segment import Segment
 from shell_model.segment.cross_section import Row
@@ -34,7 +34,9 @@ def shell_alone(segment: Segment, size: float, places: Sequence[float] = ()) -> 
     breaks = {"start": segment.start, "end": segment.end} | plates | collar_breaks(segment)
     lines = [*places, *(support.x for support in segment.supports)]
     breaks |= {f"place-{k}": x for k, x in enumerate(lines, start=1)}
-    mesh = mesh_segment(segment.section, breaks, size, closed=tuple(plates))
+    mesh = mesh_segment(
+        segment.section, breaks, size, closed=tuple(plates), across=strip_lines(segment)
+    )
     return assemble_segment(MPI.COMM_SELF, segment, add_thickness(segment, mesh))
 
 

@@ -34,9 +34,18 @@ STIFFENERS = [
     *adding("height_to_width = 1.5", {
         "collars = [{ span = [1.0, 2.0] }]":
             "segment[1].collars[1].thickness: missing; it is the additional thickness in m of "
-            "all walls",
+            "the walls",
         "collars = [{ span = [1.0, 2.0], thick = 0.1 }]":
             "segment[1].collars[1].thick: unknown key; the nearest known one is thickness",
+        "collars = [{ span = [1.0, 2.0], thickness = 0.01, walls = ['lid'] }]":
+            "segment[1].collars[1].walls: 'lid' is no wall of 'outer'; give 'bottom', 'right', "
+            "'top' or 'left'",
+        "collars = [{ span = [1.0, 2.0], thickness = 0.01, walls = ['left'] }]":
+            "segment[1].collars[1].walls: do not mirror themselves in y; give the opposite "
+            "walls, too",
+        "collars = [{ span = [1.0, 2.0], thickness = 0.01, across = [0.1, 0.05] }]":
+            "segment[1].collars[1].across: must run from a smaller to a larger distance from the "
+            "middle of the wall, at most 0.162958 m, got [0.1, 0.05] m",
         "diaphragms = [{ x = 1.0 }]":
             "segment[1].diaphragms[1].thickness: missing; it is the thickness in m",
         "collars = [{ span = [1.0, 2.0], thickness = 5.0 }]":

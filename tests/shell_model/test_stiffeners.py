@@ -16,7 +16,7 @@ from mpi4py import MPI
 
 from dynamics.excitation import Step
 from geometry.boom import Collar, Diaphragm, Load, Segment, Support
-from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
+from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
 from geometry.plating import PlatedMesh, add_thickness
 from geometry.section import BoxSection
 from runs.report.scene import Scene
@@ -31,7 +31,11 @@ from tests.touching import touching
 
 # At both ends, on a support, within a collar, and free.
 PLATES = tuple(Diaphragm(x, 0.008) for x in (0.0, 2.0, 5.0, 8.0, 10.0))
-COLLARS = (Collar((9.0, 10.0), 0.01), Collar((4.5, 5.5), 0.004))
+COLLARS = (
+    Collar((9.0, 10.0), 0.01),
+    Collar((4.5, 5.5), 0.004),
+    Collar((2.5, 3.5), 0.006, across=(0.04, 0.1)),
+)
 
 
 def meshed(segment: Segment, size: float) -> PlatedMesh:
@@ -42,7 +46,8 @@ def meshed(segment: Segment, size: float) -> PlatedMesh:
     breaks |= {f"support-{one.x:g}": one.x for one in segment.supports}
     # Where there is none, the mesh is that of the stiffened box all the same.
     breaks |= {f"place-{one.x:g}": one.x for one in PLATES if one.x <= segment.end}
-    return add_thickness(segment, mesh_segment(segment.section, breaks, size, closed=tuple(plates)))
+    mesh = mesh_segment(segment.section, breaks, size, tuple(plates), across=strip_lines(segment))
+    return add_thickness(segment, mesh)
 
 
 @cache
@@ -77,8 +82,12 @@ def test_rigid_motions_carry_the_mass_of_the_stiffeners() -> None:
     shell = shell_of(COLLARS, PLATES)
     inertia = shell.rigid_motions().T @ times(shell.mass, shell.rigid_motions())
     perimeter, opening = 2.0 * (BOX.height + BOX.width), BOX.height * BOX.width
+    widths = perimeter, perimeter, 8.0 * 0.06
     parts = [(BOX.area * 10.0, 0.0)]
-    parts += [(perimeter * one.length * one.thickness, one.middle - 5.0) for one in COLLARS]
+    parts += [
+        (width * one.length * one.thickness, one.middle - 5.0)
+        for width, one in zip(widths, COLLARS, strict=True)
+    ]
     parts += [(opening * one.thickness, one.x - 5.0) for one in PLATES]
     mass = STEEL.density * sum(volume for volume, _ in parts)
     moment = STEEL.density * sum(volume * arm for volume, arm in parts)
@@ -120,7 +129,7 @@ def test_a_thrown_segment_flies_with_its_stiffeners(inertial: bool) -> None:
 def test_an_outline_where_a_diaphragm_stands_has_the_walls_nodes_alone() -> None:
     """Reference: the plain box on the same mesh. Supports hold as much of it, too."""
     held = (Support(0.0), Support(2.0, "clamped"))
-    shells = shell_of(supports=held), shell_of(COLLARS, PLATES, held)
+    shells = shell_of(supports=held), shell_of(COLLARS[:2], PLATES, held)
     for x in (0.0, 2.0, 5.0, 10.0):
         around = [set(map(tuple, shell.outline(x).places.round(9) + 0.0)) for shell in shells]
         assert around[0] == around[1]
@@ -157,6 +166,26 @@ def test_a_collar_all_along_is_a_thicker_box() -> None:
     assert natural_frequencies(collared, 8)[1:] == pytest.approx(frequencies, rel=1.0e-8)
     plain = natural_frequencies(shell_of(supports=HELD), 8)[1:]
     assert np.abs(plain / frequencies - 1.0).max() > 0.01  # the tolerance is below the effect
+
+
+def test_strips_on_the_flanges_bend_as_by_hand() -> None:
+    """Reference: analytic. Timoshenko's overhang, whose second moment strips raise by 2 A z²."""
+    strips = Collar((0.0, 10.0), 0.012, walls=("top", "bottom"), across=(0.02, 0.08))
+    shells = shell_of(supports=HELD), shell_of((strips,), supports=HELD)
+    plain, stiff = (compliance(one, one.outline(10.0).wall_deflection("z")) for one in shells)
+    near, far = (support.x for support in HELD)
+    arm, span = 10.0 - far, far - near
+    sheared = (arm + arm**2 / span) / (STEEL.shear_modulus * BOX.shear_area)
+
+    def beam(second_moment: float) -> float:
+        bent = arm**2 * (span + arm) / (3.0 * STEEL.youngs_modulus * second_moment)
+        return bent + sheared
+
+    own = BOX.second_moment_of_area
+    more = 4.0 * 0.06 * 0.012 * (0.5 * BOX.height) ** 2
+    expected = beam(own + more) / beam(own)
+    assert expected < 0.8
+    assert stiff / plain == pytest.approx(expected, rel=0.01)
 
 
 @pytest.mark.slow

@@ -36,6 +36,12 @@ def with_collar(boom: Boom) -> Boom:
     return replace(boom, segments=(collared, boom.segments[1]))
 
 
+def with_strips(boom: Boom) -> Boom:
+    """Return the boom with doublers on the outer halves of the flanges at the head."""
+    strips = Collar((9.6, 10.0), 0.008, walls=("top", "bottom"), across=(0.06, 0.14))
+    return replace(boom, segments=(replace(boom.segments[0], collars=(strips,)), boom.segments[1]))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("pad", "change"),
@@ -43,8 +49,9 @@ def with_collar(boom: Boom) -> Boom:
         (PadSize(0.1, 0.06), lambda boom: boom),
         (PadSize(0.2, 0.04, offset=0.03), lambda boom: boom),
         (PadSize(0.1, 0.06), with_collar),
+        (PadSize(0.1, 0.06), with_strips),
     ],
-    ids=["beside the webs", "away from the webs", "under a collar"],
+    ids=["beside the webs", "away from the webs", "under a collar", "under strips"],
 )
 def test_the_estimate_is_that_of_the_shell(pad: PadSize, change: Callable[[Boom], Boom]) -> None:
     """Reference: other code, the shell, whose own error of the local compliance is 1 %."""

@@ -196,7 +196,7 @@ class Shell(ModelTable):
             return _DOFS * squares
         pressed = self.contact_line, stop_patches(boom), pads(boom)
         return _GRADED_DOFS * squares + _DOFS_AT_ZONES * sum(
-            (1 << len(segment.section.mirrors)) * zone.num_squares(self.mesh_size)
+            (1 << len(segment.mirrors)) * zone.num_squares(self.mesh_size)
             for number, segment in enumerate(boom.segments)
             if segment.section is not None
             for zone in refinement_zones(boom, number, self.contact_tolerance, *pressed)
