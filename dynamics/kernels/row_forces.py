@@ -33,7 +33,7 @@ _MOST_ITERATIONS = 25
 # displacements.
 _CONVERGED, _ROUND_OFF = 1.0e-13, 4.0e-16
 
-# Pivot below which a row depends linearly on earlier rows; such a row keeps its force.
+# Pivot below which a column depends linearly on earlier columns; the force of its row is kept.
 _DEPENDENT = 1.0e-11
 
 
@@ -206,33 +206,39 @@ def solve_contact_forces(
 def _eliminate(problem: Problem, count: int) -> None:
     """Replace the residuals of the ``count`` active rows by the changes of their forces.
 
-    This is Gaussian elimination with partial pivoting, in place in the Jacobian.
+    This is Gaussian elimination with partial pivoting, in place in the Jacobian. Columns without
+    pivot are exchanged to the end, as their order in ``active`` is.
     """
     matrix, right, active = problem.jacobian, problem.residual, problem.active
     for p in range(count):
         for q in range(count):
             matrix[p, q] = matrix[p, active[q]]
-    for p in range(count):
+    rank, p = count, 0
+    while p < rank:
         pivot = p
         for q in range(p + 1, count):
             if abs(matrix[q, p]) > abs(matrix[pivot, p]):
                 pivot = q
+        if abs(matrix[pivot, p]) <= _DEPENDENT:
+            # The other columns are still solved from all remaining rows.
+            rank -= 1
+            active[p], active[rank] = active[rank], active[p]
+            for q in range(count):
+                matrix[q, p], matrix[q, rank] = matrix[q, rank], matrix[q, p]
+            continue
         if pivot != p:
-            for k in range(p, count):
+            for k in range(p, rank):
                 matrix[p, k], matrix[pivot, k] = matrix[pivot, k], matrix[p, k]
             right[p], right[pivot] = right[pivot], right[p]
-        if abs(matrix[p, p]) <= _DEPENDENT:
-            continue
         for q in range(p + 1, count):
             factor = matrix[q, p] / matrix[p, p]
             if factor != 0.0:
-                for k in range(p + 1, count):
+                for k in range(p + 1, rank):
                     matrix[q, k] -= factor * matrix[p, k]
                 right[q] -= factor * right[p]
-    for p in range(count - 1, -1, -1):
-        if abs(matrix[p, p]) <= _DEPENDENT:
-            right[p] = 0.0
-            continue
-        for k in range(p + 1, count):
+        p += 1
+    right[rank:count] = 0.0
+    for p in range(rank - 1, -1, -1):
+        for k in range(p + 1, rank):
             right[p] -= matrix[p, k] * right[k]
         right[p] /= matrix[p, p]
