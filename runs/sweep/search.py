@@ -11,10 +11,14 @@ import numpy as np
 from rich.console import Console
 
 from geometry.typography import choices
+from runs.case.build import build_boom
 from runs.case.messages import BadInput
+from runs.case.schema import Case
 from runs.case.units import scale
 from runs.pipeline.limits import Limit
+from runs.pipeline.pad_walls import pad_wall_lines
 from runs.pipeline.quantities import QUANTITIES
+from runs.pipeline.statics import statics
 from runs.report.tables import Table
 from runs.sweep.points import Plan
 from runs.sweep.run import Outcome
@@ -130,4 +134,16 @@ def print_bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console
     ways = np.sign(np.diff(found))
     note = f"The {quantity.title} is not monotone over {key}: other places may hold, too."
     notes = [note] if (ways > 0.0).any() and (ways < 0.0).any() else []
+    notes += rigid_wall_cautions(plan.points[0].case, plan.coordinates["model"][0])
     Table.of_rows("search", f"Bracket of {key}: {bound}", columns, rows, notes).show(console)
+
+
+def rigid_wall_cautions(case: Case, name: str) -> list[str]:
+    """Return a caution if a model of a case is a beam and walls under pads govern its tip."""
+    model = next(one for one in case.models if one.name == name)
+    found = None if model.needs_shell else statics(case, build_boom(case))
+    if found is None:
+        return []
+    state = found.with_play
+    cautions = [one for one in pad_wall_lines(state.boom, state.tip) if one.startswith("caution")]
+    return [f"{one} {name} has rigid walls: the bound is unsafe; take a shell" for one in cautions]

@@ -9,6 +9,9 @@ import pandas as pd
 import pytest
 
 from runs import cli
+from runs.case.reading import load
+from runs.sweep.search import rigid_wall_cautions
+from tests.docs.conftest import toml_blocks
 from tests.runs.cantilever import CANTILEVER, static_tip
 
 LENGTHS = "segment[1].length=3:5:3"
@@ -44,6 +47,24 @@ def test_a_bound_is_bracketed(capsys: pytest.CaptureFixture[str]) -> None:
         f"{low:.6g}",
         f"{high:.6g}",
     ]
+
+
+def test_a_beam_on_walls_that_govern_is_a_caution() -> None:
+    """Reference: exact words. Pads away from the webs on flanges of 2 mm bend these alone."""
+    text = toml_blocks("tutorial.md")[0]
+    Path("case.toml").write_text(text, encoding="utf-8")
+    assert rigid_wall_cautions(load("case.toml"), "beam") == []
+    for old, new in (
+        ("flange = 0.006", "flange = 0.002"),
+        ("flange = 0.005", "flange = 0.002"),
+        ("thickness = 0.012", "thickness = 0.012, offset = 0.039"),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    Path("case.toml").write_text(text, encoding="utf-8")
+    (caution,) = rigid_wall_cautions(load("case.toml"), "beam")
+    assert caution.startswith("caution: walls bend under pads, which moves the tip by ")
+    assert caution.endswith(" beam has rigid walls: the bound is unsafe; take a shell")
 
 
 @pytest.mark.parametrize(
