@@ -10,7 +10,8 @@ from geometry.boom import Boom
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.schema import Case, SpectrumTable
+from runs.case.load_tables import SpectrumTable
+from runs.case.schema import Case
 from runs.pipeline.combinations import combination_states
 from runs.pipeline.fatigue import detail_damages
 from runs.pipeline.proofs import winter

@@ -21,14 +21,8 @@ from geometry.joint import BareStop
 from geometry.load import AngularAcceleration, Load, Moment, PartialLoad
 from geometry.typography import choices
 from runs.case.history import build_history
-from runs.case.schema import (
-    AxialTable,
-    Case,
-    GravityTable,
-    LoadTable,
-    PayloadTable,
-    VelocityTable,
-)
+from runs.case.load_tables import AxialTable, LoadTable, PayloadTable
+from runs.case.schema import Case, GravityTable, VelocityTable
 from runs.case.segment import SegmentTable
 
 STANDARD_GRAVITY = 9.80665

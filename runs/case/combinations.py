@@ -17,17 +17,16 @@ from geometry.cylinder import Cylinder
 from geometry.typography import choices
 from runs.case.actions import STANDARD_GRAVITY, axial_force
 from runs.case.build import build_boom, check_names
-from runs.case.schema import (
+from runs.case.load_tables import (
     AxialTable,
     BaseTable,
-    Case,
     CombinationTable,
-    GravityTable,
     Group,
     LoadCaseTable,
     LoadTable,
     PayloadTable,
 )
+from runs.case.schema import Case, GravityTable
 
 # Factors by group of loads, and factors 1 for a load case without combination.
 Factors = Mapping[Group, float]

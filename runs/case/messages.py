@@ -17,6 +17,7 @@ from geometry.typography import choices
 from runs.case import schema
 from runs.case.history import HistoryTable
 from runs.case.kinds import KINDS
+from runs.case.load_tables import AxialTable
 from runs.case.sections import SHAPES
 from runs.process.terminal import shorten
 
@@ -202,7 +203,7 @@ def _field(location: Sequence[int | str]) -> FieldInfo:
 def _unknown_key(location: Sequence[int | str]) -> str:
     table, key = _table(location), str(location[-1])
     known = list(names_of(table))
-    if table is schema.AxialTable and key in HistoryTable.model_fields:
+    if table is AxialTable and key in HistoryTable.model_fields:
         return "an axial force is constant; give it at its largest, or one [[load_case]] per value"
     use = _SYNONYMS.get(key.lower(), "")
     if "." in use:

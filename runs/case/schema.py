@@ -7,7 +7,6 @@ The string below a key is its description in the JSON Schema and in messages.
 from __future__ import annotations
 
 from functools import reduce
-from math import prod
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
@@ -21,9 +20,7 @@ from geometry.fields import (
     MOST_STATIONS,
     PART,
     Few,
-    Flag,
     In,
-    Name,
     NotNegative,
     Number,
     Place,
@@ -35,7 +32,6 @@ from geometry.material import Material
 from geometry.observation import Observation, Recorded
 from geometry.support import Support
 from runs.case.contact import JointTable
-from runs.case.history import HistoryTable
 from runs.case.hoist import HoistTable
 from runs.case.kinds import KINDS
 from runs.case.kinds.model import ModelTable
@@ -49,6 +45,15 @@ from runs.case.limits import (
     Part,
     Text,
     validation_error,
+)
+from runs.case.load_tables import (
+    AxialTable,
+    BaseTable,
+    CombinationTable,
+    LoadCaseTable,
+    LoadTable,
+    PayloadTable,
+    SpectrumTable,
 )
 from runs.case.segment import SegmentTable
 from runs.case.turning import LuffTable, SlewTable
@@ -94,72 +99,6 @@ class StopTable(BareStop):
     """the exponent n of the contact law"""
 
 
-# Groups of loads with a common factor in a combination.
-Group = Literal["dead", "payload", "wind", "dynamic", "test"]
-
-
-class LoadTable(HistoryTable):
-    """A load on one segment."""
-
-    segment: str
-    """the name of the segment"""
-    direction: Literal["z", "y"] = "z"
-    """up, or to the side"""
-    x: Place | None = None
-    """the x in m of a point load; along the whole segment unless given"""
-    start: Place | None = Field(None, alias="from")
-    """the x in m from which a load along the segment acts; its start unless given"""
-    end: Place | None = Field(None, alias="to")
-    """the x in m up to which a load along the segment acts; its end unless given"""
-    magnitude: Annotated[Number, In("N/m")] = 1.0
-    """the load in N at x, or in N/m along the segment, or the moment in N m; a factor, 1 unless
-    given, if the heading of its file has such a unit"""
-    moment: Flag = False
-    """whether the load is a moment at x, positive where it increases the slope of the segment"""
-    released: Flag = False
-    """whether the load acts before t = 0 and is released at t = 0"""
-    group: Group = "payload"
-    """the group of the load, whose factor combinations give"""
-
-    amount: ClassVar[str] = "magnitude"
-
-    def declared_units(self, key: str) -> tuple[str, ...]:
-        if key == "magnitude" and self.moment:
-            return ("N m",)
-        if key == "magnitude" and self.x is not None:
-            return ("N",)
-        return super().declared_units(key)
-
-
-class AxialTable(CaseTable):
-    """A constant axial force towards the base, such as that of a hoist rope."""
-
-    segment: str | None = None
-    """the name of the segment on which it acts; the last one unless given"""
-    x: Place | None = None
-    """the x in m of its point of application; the segment's end unless given"""
-    force: Annotated[Number, In("N")] | None = None
-    """the force in N towards the base; unless given, the force follows from the hoist rope"""
-    falls: Count | None = None
-    """the number of falls of a hoist rope, which share the mass on it"""
-    mass: Annotated[Positive, In("kg")] | None = None
-    """the mass in kg that the rope carries; the payload's unless given"""
-    group: Group = "payload"
-    """the group of the force, whose factor combinations give"""
-
-
-class PayloadTable(CaseTable):
-    """A mass at the tip."""
-
-    mass: Annotated[Positive, In("kg")]
-    """the mass in kg"""
-    gravity: Annotated[NotNegative, In("m/s^2")] | None = None
-    """the acceleration of gravity in m/s^2 that acts on the payload alone from t = 0, 0 for none;
-    9.80665 unless given, or that of the table gravity"""
-    group: Group = "payload"
-    """the group of its weight, whose factor combinations give; dead for a cage or a hook"""
-
-
 class GravityTable(CaseTable):
     """Weight of all masses, by the luffing angle and the acceleration."""
 
@@ -177,20 +116,6 @@ class GravityTable(CaseTable):
     def along(self) -> float:
         """The component g sin θ in m/s², towards the base."""
         return self.acceleration * float(sindg(self.angle))
-
-
-class BaseTable(HistoryTable):
-    """An acceleration of the ground, which acts as an inertia load on all masses."""
-
-    direction: Literal["z", "y"] = "z"
-    """the direction: up, or to the side"""
-    acceleration: Annotated[Number, In("m/s^2")] = 1.0
-    """the acceleration in m/s^2; a factor, 1 unless given, if the heading of its file has
-    such a unit"""
-    group: Group = "dynamic"
-    """the group of the inertia loads, whose factor combinations give"""
-
-    amount: ClassVar[str] = "acceleration"
 
 
 class VelocityTable(CaseTable):
@@ -304,114 +229,6 @@ class LimitsTable(CaseTable):
 
     # The quantities whose limit is the least permitted value.
     LEAST: ClassVar = frozenset({"first_frequency"})
-
-
-class LoadCaseTable(CaseTable):
-    """A load case of the boom at rest; its keys replace those of the case."""
-
-    name: Name
-    """the name of the load case"""
-    angle: Annotated[float, Field(strict=True, ge=-90.0, le=90.0), In("deg")] | None = None
-    """the luffing angle in degrees, in place of gravity.angle; the ground of cylinders turns with
-    it about the foot"""
-    extension: Annotated[dict[str, NotNegative], In("m")] = Field(default_factory=dict)
-    """inner segment = extension in m, in place of that of its joint"""
-    payload: Annotated[NotNegative, In("kg")] | None = None
-    """a mass in kg at the tip in addition to that of the table payload; it weighs along and across
-    the boom, as a load of the group payload"""
-    loads: Annotated[tuple[LoadTable, ...], Few] | None = Field(None, alias="load")
-    """the loads in place of all [[load]] of the case; those of the case unless given"""
-    axial: Annotated[tuple[AxialTable, ...], Few] | None = None
-    """the forces along the boom in place of all [[axial]] of the case; those unless given"""
-    base: Annotated[tuple[BaseTable, ...], Few] | None = None
-    """the accelerations of the ground in place of all [[base]] of the case; those unless given"""
-
-
-def _factor(given: Any) -> Any:
-    """Return a plain number as a tuple of one factor."""
-    return (given,) if is_number(given) else given
-
-
-# The numbers whose product is the factor.
-Factor = Annotated[
-    tuple[NotNegative, ...],
-    In("1"),
-    Field(min_length=1, max_length=9),
-    BeforeValidator(_factor, json_schema_input_type=NotNegative | tuple[NotNegative, ...]),
-]
-
-
-class FactorsTable(CaseTable):
-    """Factors of the groups of loads: a number, or numbers whose product is the factor."""
-
-    dead: Factor | None = None
-    """the factor of the weight of the boom and of the loads along its segments"""
-    payload: Factor | None = None
-    """the factor of the payload and of loads without another group"""
-    wind: Factor | None = None
-    """the factor of loads of the group wind"""
-    dynamic: Factor | None = None
-    """the factor of accelerations of the ground and of loads of the group dynamic"""
-    test: Factor | None = None
-    """the factor of loads of the group test"""
-
-    def of(self, group: Group) -> float | None:
-        """Return the factor of a group; None if it is not given."""
-        numbers: tuple[float, ...] | None = getattr(self, group)
-        return None if numbers is None else prod(numbers)
-
-
-class ResistanceTable(CaseTable):
-    """Factors by which proofs divide resistances."""
-
-    material: Annotated[Positive, In("1")] = 1.0
-    """the factor on yield strengths"""
-    stability: Annotated[Positive, In("1")] = 1.0
-    """the factor on buckling resistances of plates and of the boom"""
-    pad: Annotated[Positive, In("1")] = 1.0
-    """the factor on allowable pressures of pads"""
-    cylinder: Annotated[Positive, In("1")] = 1.0
-    """the factor on capacities of cylinders"""
-    pin: Annotated[Positive, In("1")] = 1.0
-    """the factor on shear resistances of pins"""
-
-
-ProofName = Literal["yield", "plate", "column", "pad", "cylinder", "pin", "deflection"]
-# The proofs of a combination unless it names others.
-PROOFS: tuple[ProofName, ...] = ("yield", "plate", "column", "pad", "cylinder", "pin")
-
-
-class CombinationTable(CaseTable):
-    """A combination of loads, in some of the load cases or in all."""
-
-    name: Name
-    """the name of the combination"""
-    load_cases: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
-    """the names of its load cases; all unless given"""
-    factors: FactorsTable
-    """group = factor, for each group of its load cases"""
-    resistance: ResistanceTable = ResistanceTable.model_validate({})
-    """the table of resistance factors"""
-    motion: Flag = False
-    """whether prove and runs take the extremes of the motion under these loads, by the first model
-    of beam elements, in place of those at rest"""
-    proofs: tuple[ProofName, ...] = PROOFS
-    """the proofs that the combination demands: yield, plate, column, pad, cylinder and pin unless
-    given; deflection compares the tip with limits.tip_at_rest"""
-
-
-class SpectrumTable(CaseTable):
-    """A sequence of load cases that repeats, for the proof of fatigue."""
-
-    name: Name
-    """the name of the spectrum"""
-    load_cases: Annotated[tuple[str, ...], Field(min_length=2, max_length=1000)]
-    """the names of the load cases in their order, from which the sequence starts again"""
-    repeats: Annotated[int, Field(strict=True, ge=1, le=10**9)]
-    """the number of repetitions in the service life"""
-    motion: Flag = False
-    """whether the cycles of the motions under the loads of the load cases count, by the first model
-    of beam elements, in place of their states at rest"""
 
 
 if TYPE_CHECKING:

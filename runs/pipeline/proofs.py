@@ -15,7 +15,8 @@ import numpy as np
 from beam_model.statics import estimate_critical_factor
 from dynamics.failure import NumericsError
 from geometry.arrays import Array
-from runs.case.schema import Case, CombinationTable
+from runs.case.load_tables import CombinationTable
+from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.combinations import CombinationState
 from runs.pipeline.fatigue import detail_damages

@@ -17,7 +17,7 @@ from protractile.cases import change
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.schema import LoadTable
+from runs.case.load_tables import LoadTable
 from runs.pipeline.design_results import DesignResults
 from runs.pipeline.models import build
 from runs.pipeline.static_results import (

@@ -13,9 +13,10 @@ from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
 from runs.case.hoist import HoistTable, WindTable
+from runs.case.load_tables import LoadTable
 from runs.case.messages import BadInput
 from runs.case.reading import load
-from runs.case.schema import Case, LoadTable, StartTable
+from runs.case.schema import Case, StartTable
 from runs.pipeline.models import build
 
 HOIST = (CASES / "hoist.toml").read_text(encoding="utf-8")

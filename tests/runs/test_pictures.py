@@ -14,7 +14,7 @@ from PIL import Image
 
 from geometry.arrays import Array
 from geometry.boom import Cylinder
-from runs.case.schema import LoadTable, PayloadTable
+from runs.case.load_tables import LoadTable, PayloadTable
 from runs.report import opengl, sheet, snapshots, theme
 from runs.report.boom_pictures import BoomView, draw_boom
 from runs.report.opengl import RenderingUnavailable

@@ -21,7 +21,8 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
 from runs.case.kinds.shell import Shell
-from runs.case.schema import Case, LoadTable
+from runs.case.load_tables import LoadTable
+from runs.case.schema import Case
 from runs.case.sections import SectionTable
 from runs.folder.cache import Cache, load_or_compute
 from runs.pipeline.models import build
