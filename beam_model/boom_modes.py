@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 
 import numpy as np
 from scipy.linalg import block_diag, null_space
@@ -19,6 +20,7 @@ from beam_model.component import (
 from beam_model.telescoping import moving_axial_forces
 from dynamics.second_order import buckling_factor, soften_modes
 from geometry.arrays import Array
+from geometry.axial import largest_change
 from geometry.boom import Boom, Direction
 from geometry.cylinder import ground_lines
 from geometry.telescoping import sample_extensions, station_positions
@@ -28,6 +30,9 @@ _Part = tuple[int, Motion]
 
 # Fraction of the largest singular value below which a constraint is neglected.
 ROUND_OFF = 1.0e-9
+
+# Number of places on a segment at which deflections are read for changes of axial forces.
+_PLACES = 41
 
 
 class BoomModes:
@@ -123,7 +128,8 @@ def critical_factor(
     """Return the buckling factor of the axial forces for bonded joints.
 
     It is infinite without axial forces, and None for a mechanism. For a telescoping boom it is the
-    minimum over several extensions, including the extreme ones.
+    minimum over several extensions, including the extreme ones. Axial forces that change with time
+    also count at their largest value at the foot.
 
     Args:
         boom: boom with its axial forces.
@@ -132,16 +138,19 @@ def critical_factor(
             0 where it is missing.
     """
     walls = walls or {}
+    levels = largest_change(boom.axial_changes) if boom.axial_changes else np.zeros(0)
     drives = [number for number, joint in enumerate(boom.joints) if joint.drive is not None]
     smallest = np.inf
     for group in _coupled_groups(boom.bonded, models):
-        first = group.geometric_stiffness
+        initial = group.geometric_stiffness
+        added = group.changes(levels) if levels.any() else []
         passing = {n: moving_axial_forces(boom, models, group.members, n) for n in drives}
-        if not (first.any() or any(passing.values())):
+        largest = sum(added, initial)
+        if not (initial.any() or largest.any() or any(passing.values())):
             continue
         if (group.modes().omega2 == 0.0).any():
             return None
-        for extensions in sample_extensions(boom):
+        for extensions, first in product(sample_extensions(boom), (initial, largest)):
             moving = (
                 force.geometric_stiffness(extensions[number])
                 for number, forces in passing.items()
@@ -220,6 +229,25 @@ class _CoupledGroup:
             )
 
         return BeamMember(read)
+
+    def changes(self, levels: Array) -> list[Array]:
+        """Return the parts of K_G by the changes of axial forces at values of their histories."""
+        boom = self._boom
+        lines: list[dict[Direction, tuple[Array, Array]]] = [
+            {
+                direction: (x, np.array([member.at(direction, place) for place in x]))
+                for direction in boom.directions
+            }
+            for member, x in zip(
+                self.members,
+                [np.linspace(*segment.ends, _PLACES) for segment in boom.segments],
+                strict=True,
+            )
+        ]
+        return [
+            level * change.geometric_stiffness(lines)
+            for level, change in zip(levels, boom.axial_changes, strict=True)
+        ]
 
     def ties(
         self, moved: Mapping[int, Sequence[tuple[float, float]]]

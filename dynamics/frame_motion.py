@@ -138,6 +138,21 @@ class FrameAcceleration:
         return np.asarray(own + frame.gravity * weight[self.direction])
 
 
+class Spin(FrameAcceleration):
+    """Centrifugal acceleration in 1/s² per m of deflection along y or z; a history.
+
+    The deflections v and w of a boom that slews and luffs have the centrifugal accelerations ψ̇² v
+    and (α̇² + ψ̇² sin² α) w.
+    """
+
+    def __call__(self, time: Array) -> Array:
+        slewed = self.frame.slew_angle(time, 1) ** 2
+        if self.direction == "y":
+            return slewed
+        sine = np.sin(self.frame.luff_angle(time))
+        return np.asarray(self.frame.luff_angle(time, 1) ** 2 + slewed * sine**2)
+
+
 class PathAcceleration(FrameAcceleration):
     """Acceleration of a point of the straight boom along a fixed axis.
 

@@ -156,8 +156,7 @@ class GapSystem:
         if (self.damping < 0.0).any():
             raise ValueError("damping must not be negative")
         for number, travel in enumerate(self.travels):
-            tables = [travel.table, *(force.table for force in travel.axial_forces)]
-            if any(table.coefficients.shape[3] != n for table in tables):
+            if any(one.num_modes != n for one in (travel.table, *travel.axial_forces)):
                 raise ValueError(f"the rows of travel {number} must have {n} modes")
             if any(not 0 <= row < len(getattr(self, kind)) for kind, row in travel.moved_rows):
                 raise ValueError(f"travel {number} must move rows of the system")
@@ -249,10 +248,10 @@ class GapSystem:
         return self.transform(*soften_modes(self.omega2, self.geometric_stiffness))
 
     def transform(self, omega2: Array, shapes: Array) -> GapSystem:
-        """Return the system in other coordinates b of a = Φ b, without travels.
+        """Return the system in other coordinates b of a = Φ b.
 
         Args:
-            omega2: ω² (num_shapes,) of the new coordinates in rad²/s².
+            omega2: ω² (num_shapes,) of the new coordinates in rad²/s², with K_G.
             shapes: mass-normalised Φ (num_modes, num_shapes).
         """
         return replace(
@@ -269,7 +268,7 @@ class GapSystem:
             excitations=[replace(x, load=x.load @ shapes) for x in self.excitations],
             released_load=self.released_load @ shapes,
             initial_impulse=self.initial_impulse @ shapes,
-            travels=(),
+            travels=[travel.transform(shapes) for travel in self.travels],
             geometric_stiffness=np.zeros((0, 0)),
         )
 

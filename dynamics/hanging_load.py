@@ -39,6 +39,35 @@ _GROUND = 100.0
 
 
 @dataclass(frozen=True, slots=True)
+class RopeForce:
+    """Slow rise of the rope force to the weight of a load that lies on the ground; a history.
+
+    Args:
+        hoist: hoisted length in m over time.
+        stretch: stretch in m of rope and boom under the weight.
+        slack: length in m that is wound up before the rope is straight.
+    """
+
+    hoist: History
+    stretch: float
+    slack: float
+    peak: float = 1.0
+
+    @property
+    def kinks(self) -> Sequence[float]:
+        """The times in s at which the hoisting speed changes."""
+        return self.hoist.kinks
+
+    @property
+    def fastest(self) -> float:
+        """The highest frequency of hoisting in rad/s."""
+        return self.hoist.fastest
+
+    def __call__(self, time: Array) -> Array:
+        return np.clip((self.hoist(time) - self.slack) / self.stretch, 0.0, self.peak)
+
+
+@dataclass(frozen=True, slots=True)
 class Pendulum:
     """Horizontal motion of a hanging load.
 
@@ -129,37 +158,27 @@ class HangingLoad:
         lateral = np.zeros(tip.shape) if aside is None else aside.row
         coordinates = np.eye(own, system.num_modes + own, system.num_modes) / np.sqrt(self.mass)
 
-        def widen(rows: Array) -> Array:
-            return np.pad(rows, [(0, 0)] * (rows.ndim - 1) + [(0, own)])
-
-        def widen_table(table: RowTable) -> RowTable:
-            return RowTable(table.knots, widen(table.coefficients))
+        wide = system.transform(
+            np.append(system.omega2, np.zeros(own)),
+            np.eye(system.num_modes, system.num_modes + own),
+        )
+        tip, lateral = (np.pad(row, (0, own)) for row in (tip, lateral))
 
         def stretches(time: float) -> Array:
             """Return the rows (own, num_modes + own) of the tip displacement less the load's."""
             if self.pendulum is None:
-                return np.asarray(self.cosine * widen(tip[None]) - coordinates)
-            return np.asarray(widen(self.pendulum.read(time, tip, lateral)[:own]) - coordinates)
+                return np.asarray(self.cosine * tip[None] - coordinates)
+            return np.asarray(self.pendulum.read(time, tip, lateral)[:own] - coordinates)
 
         height, first = coordinates[0], len(system.rows)
         hung = stretches(0.0)
-        travels = [
-            replace(
-                travel,
-                table=widen_table(travel.table),
-                axial_forces=[
-                    replace(force, table=widen_table(force.table)) for force in travel.axial_forces
-                ],
-            )
-            for travel in system.travels
-        ]
+        travels, excitations = list(wide.travels), list(wide.excitations)
         if self.hoist is not None:
             constant = np.pad(hung[None, None, :1], [(0, 0), (0, 3), (0, 0), (0, 0)])
             table = RowTable(np.array([0.0, 1.0]), constant)
             travels.append(Travel(self.hoist, table, (("rows", first),), shifts=(1.0,)))
         pulling = PowerContact(self.stiffness, 1.0).upper().behind(self.slack or 0.0)
         contacts: list[tuple[Array, ContactLaw]] = [(hung[0], pulling)]
-        excitations = [replace(one, load=widen(one.load)) for one in system.excitations]
         if self.pendulum is not None:
             swing = self.pendulum
             spring = PowerContact(self.weight / swing.length, 1.0)
@@ -187,32 +206,17 @@ class HangingLoad:
             contacts.append((height, ground.behind(0.0, -self.weight / ground.below)))
         numbers = [len(system.stations) + number for number in range(len(contacts))]
         return replace(
-            system,
-            omega2=np.append(system.omega2, np.zeros(own)),
-            load=widen(system.load) - self.weight * height,
-            rows=np.concatenate([widen(system.rows), [row for row, _ in contacts]]),
+            wide,
+            load=wide.load - self.weight * height,
+            rows=np.concatenate([wide.rows, [row for row, _ in contacts]]),
             laws=[*system.laws, *(law for _, law in contacts)],
             station_of_row=np.array([*system.station_of_row, *numbers], dtype=np.int64),
             stations=[*system.stations, *(x for _ in contacts)],
             station_directions=[*system.station_directions, *("z" for _ in contacts)],
             grounded=[*system.grounded, *numbers],
-            observers={
-                **{
-                    name: seen._replace(row=widen(seen.row))
-                    for name, seen in system.observers.items()
-                },
-                "load_height": Observer(height),
-            },
-            damping=widen(system.damping),
-            dashpots=widen(system.dashpots),
-            friction_rows=widen(system.friction_rows),
+            observers={**wide.observers, "load_height": Observer(height)},
             excitations=excitations,
-            released_load=widen(system.released_load),
-            initial_impulse=widen(system.initial_impulse),
             travels=travels,
-            geometric_stiffness=np.pad(
-                system.geometric_stiffness, (0, own if system.geometric_stiffness.size else 0)
-            ),
         )
 
     def separate_rope(self, motion: Trajectory) -> Trajectory:

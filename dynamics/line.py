@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -42,6 +42,15 @@ class Line:
     rows: Mapping[Quantity, Array]
     paired: bool
 
+    @property
+    def deflections(self) -> Iterator[tuple[Literal["y", "z"], tuple[Array, Array]]]:
+        """Directions with ascending x (num_places,) in m and rows (num_places, num_modes)."""
+        x, index = np.unique(self.x, return_index=True)
+        names: dict[Quantity, Literal["y", "z"]] = {"deflection": "z", "lateral": "y"}
+        for name, direction in names.items():
+            if name in self.rows:
+                yield direction, (x, self.rows[name][index])
+
     def read(self, states: Array) -> dict[Quantity, Array]:
         """Return each quantity (..., num_places) for modal coordinates (..., num_modes).
 
@@ -50,8 +59,12 @@ class Line:
         return {name: states[..., : row.shape[1]] @ row.T for name, row in self.rows.items()}
 
     def transform(self, basis: Array) -> Line:
-        """Return the line in other coordinates b of a = Φ b, with Φ (num_modes, num_others)."""
-        return replace(self, rows={name: row @ basis for name, row in self.rows.items()})
+        """Return the line in other coordinates b of a = Φ b, with Φ (num_modes, num_others).
+
+        Further coordinates a, as in :meth:`read`, are ignored.
+        """
+        rows = {name: row @ basis[: row.shape[1]] for name, row in self.rows.items()}
+        return replace(self, rows=rows)
 
     def one_sided_row(self, name: Quantity, x: float, side: int) -> Array:
         """Return the row (num_modes,) of a quantity at x from one side; 0 outside the segment.

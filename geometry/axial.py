@@ -8,22 +8,29 @@ inboard of it cause tension.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from operator import attrgetter
+from typing import Any
 
 import numpy as np
 
 from geometry.arrays import Array
 from geometry.compression import NO_COMPRESSION, Compression
-from geometry.joint import Joint
+from geometry.joint import Joint, sample_times
 from geometry.load import Body
-from geometry.segment import SAME_PLACE, Segment
+from geometry.section import Direction
+from geometry.segment import SAME_PLACE, PointMass, Segment
 from geometry.taper import mean_area
 
 # Number of steps of uniform weight in a tapered segment. Forces are exact at the ends of steps;
 # between them the error is some thousandths of the weight of a step.
 _STEPS = 8
+
+# Number of point masses that replace the mass per length of a segment, and Gauss points between two
+# of them.
+_LUMPS, _GAUSS = 20, np.polynomial.legendre.leggauss(3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,8 +184,86 @@ def moving_force_places(
     }
 
 
+@dataclass(frozen=True, slots=True)
+class AxialChange:
+    """Change of the stiffness across the boom by axial and centrifugal forces.
+
+    At the value h of the history, it reduces the strain energy by ½ h (∫ P w′² dx + Σ m w²).
+
+    Args:
+        history: factor h over time, see :mod:`dynamics.excitation`.
+        compressions: axial force P of each segment in N at the factor 1; none unless given.
+        masses: point masses m of each segment in kg; none unless given.
+        direction: direction of the deflection w of the masses.
+    """
+
+    history: Any
+    compressions: Sequence[Compression] = ()
+    masses: Sequence[Sequence[PointMass]] = ()
+    direction: Direction = "z"
+
+    @property
+    def times(self) -> Array:
+        """The times (num_times,) from t = 0 on in s at which the history is sampled."""
+        return sample_times(self.history)
+
+    def geometric_stiffness(
+        self, deflections: Sequence[Mapping[Direction, tuple[Array, Array]]]
+    ) -> Array:
+        """Return the reduction of the stiffness (num_modes, num_modes) at the factor 1.
+
+        ``deflections`` are, for each segment and direction, ascending x (num_places,) in m and rows
+        (num_places, num_modes) of deflections.
+        """
+        from scipy.interpolate import CubicSpline
+
+        total = np.zeros(())
+        for number, lines in enumerate(deflections):
+            for direction, (x, rows) in lines.items():
+                total = total + np.zeros((rows.shape[1],) * 2)
+                spline = CubicSpline(x, rows)
+                if self.compressions and (pressed := self.compressions[number]):
+                    slopes, weights = _at_gauss_points(spline.derivative(), {*x, *pressed.places})
+                    total = total + (slopes.T * (weights[1] * pressed(weights[0]))) @ slopes
+                if self.masses and direction == self.direction:
+                    moved = spline([mass.x for mass in self.masses[number]])
+                    total = total + (moved.T * [m.mass for m in self.masses[number]]) @ moved
+        return total
+
+
+def largest_change(changes: Sequence[AxialChange]) -> Array:
+    """Return the factors (num_changes,) of the histories when they compress the foot most."""
+    times = np.unique(np.concatenate([np.zeros(1), *(change.times for change in changes)]))
+    factors = np.array([change.history(times) for change in changes])
+    pressed = [one.compressions[0].transferred if one.compressions else 0.0 for one in changes]
+    return np.asarray(factors[:, (np.array(pressed) @ factors).argmax()])
+
+
+def _at_gauss_points(function: Any, places: set[float]) -> tuple[Array, Array]:
+    """Return values (num_points, num_modes), and x in m and weights in m (2, num_points)."""
+    ends = np.array(sorted(places))
+    half = 0.5 * np.diff(ends)[:, None]
+    x = ends[:-1, None] + half * (1.0 + _GAUSS[0])
+    return function(x.ravel()), np.array([x.ravel(), (half * _GAUSS[1]).ravel()])
+
+
+def lumped_masses(segment: Segment) -> tuple[PointMass, ...]:
+    """Return the masses of a segment as point masses."""
+    ends = np.linspace(segment.start, segment.end, _LUMPS + 1)
+    x, length = 0.5 * (ends[1:] + ends[:-1]), segment.length / _LUMPS
+    ratio = segment.property_ratio(attrgetter("mass_per_length"), x)
+    masses = segment.mass_per_length * length * ratio
+    own = (PointMass(*one) for one in zip(x.tolist(), masses.tolist(), strict=True))
+    return (*own, *segment.all_masses)
+
+
 def axial_force(
-    segments: Sequence[Segment], joints: Sequence[Joint], number: int, x: Array, time: Array
+    segments: Sequence[Segment],
+    joints: Sequence[Joint],
+    number: int,
+    x: Array,
+    time: Array,
+    changes: Sequence[AxialChange] = (),
 ) -> Array:
     """Return P (..., num_places) of a segment in N; at a jump, it is the value of either side.
 
@@ -188,12 +273,16 @@ def axial_force(
         number: index of the segment.
         x: positions (num_places,) in m.
         time: times (...) in s.
+        changes: changes of the axial forces.
     """
     total = np.broadcast_to(segments[number].compression(x), (*time.shape, x.size))
     for position, joint in enumerate(joints):
         found = moving_force(segments, joints, position)
         if joint.drive is not None and found is not None and found.segment == number:
             total = total + found.change(x, joint.drive.history(time))
+    for change in changes:
+        if change.compressions:
+            total = total + change.history(time)[..., None] * change.compressions[number](x)
     return total
 
 

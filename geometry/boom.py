@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TypeVar
 
-from geometry.axial import moving_force_places
+from geometry.axial import AxialChange, moving_force_places
 from geometry.boom_checks import check_boom
 from geometry.boom_error import BoomError
 from geometry.cylinder import Cylinder
@@ -88,6 +88,7 @@ class Boom:
     stops: Sequence[Stop] = ()
     observations: Sequence[Observation] = ()
     cylinders: Sequence[Cylinder] = ()
+    axial_changes: Sequence[AxialChange] = ()
 
     def __post_init__(self) -> None:
         if not self.segments:
@@ -130,7 +131,7 @@ class Boom:
     @property
     def compressed(self) -> bool:
         """True if a segment carries an axial force."""
-        return any(segment.compression for segment in self.segments)
+        return any(segment.compression for segment in self.segments) or bool(self.axial_changes)
 
     @property
     def directions(self) -> tuple[Direction, ...]:

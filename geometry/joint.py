@@ -146,15 +146,20 @@ class Drive:
     @cached_property
     def times(self) -> Array:
         """The times (num_times,) from t = 0 on in s, including kinks."""
-        kinks = np.array([0.0, *self.history.kinks])
-        times = np.union1d(kinks, np.linspace(kinks.min(), kinks.max(), _TIMES))
-        return np.asarray(times[times >= 0.0])
+        return sample_times(self.history)
 
     @cached_property
     def reach(self) -> tuple[float, float]:
         """The minimum (at most 0) and the maximum (at least 0) of the extension in m."""
         ways = self.history(self.times)
         return min(0.0, float(ways.min())), max(0.0, float(ways.max()))
+
+
+def sample_times(history: Any) -> Array:
+    """Return times (num_times,) in s from t = 0 on that sample a history, with its kinks."""
+    kinks = np.array([0.0, *history.kinks])
+    times = np.union1d(kinks, np.linspace(kinks.min(), kinks.max(), _TIMES))
+    return np.asarray(times[times >= 0.0])
 
 
 @part(frozen=True, slots=True, config=PART)

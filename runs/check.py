@@ -345,8 +345,9 @@ def _extreme_axial_force(
     ends = [x + side * _BESIDE * segment.length for x in jumps for side in (-1.0, 1.0)]
     x = np.unique(np.clip([*ends, segment.start, segment.end], segment.start, segment.end))
     times = [joint.drive.times for joint in boom.joints if joint.drive is not None]
+    times += [change.times for change in boom.axial_changes]
     time = np.unique(np.concatenate([np.zeros(1), *times]))
-    forces = axial_force(boom.segments, boom.joints, number, x, time)
+    forces = axial_force(boom.segments, boom.joints, number, x, time, boom.axial_changes)
     for cylinder, force in cylinders:
         forces = forces - force * cylinder.normal_force(x, segment.foot)
     largest = float(forces.flat[np.abs(forces).argmax()])

@@ -36,6 +36,7 @@ def standard_boom(boom: Boom) -> Boom:
             else load
             for load in boom.loads
         ),
+        axial_changes=(),
     )
 
 

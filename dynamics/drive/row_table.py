@@ -12,11 +12,12 @@ theory, Timoshenko and Gere 1961). For rows that are cubic in s this is exact.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from itertools import pairwise
 
 import numpy as np
+from scipy.linalg import eigh
 
 from dynamics.arrays import Array
 
@@ -34,6 +35,9 @@ _COEFFICIENTS = 0.5 * np.array(
      [-9.0, 27.0, -27.0, 9.0]]
 )  # fmt: skip
 _TEST_POINTS = np.array([0.15, 0.5, 0.85])
+
+# Least relative change of the stiffness of a direction by an axial force that changes with time.
+_LEAST_CHANGE = 1.0e-4
 
 # i + j + 1, the reciprocals of ∫₀¹ uⁱ uʲ du for the powers in slopes.
 _POWERS = 1.0 + np.add.outer(np.arange(3), np.arange(3))
@@ -101,6 +105,15 @@ class RowTable:
         pieces = [cubic * lengths**power for power, cubic in enumerate(powers)]
         return cls(knots, np.ascontiguousarray(np.stack(pieces, axis=1)))
 
+    @property
+    def num_modes(self) -> int:
+        """The number of modal coordinates."""
+        return self.coefficients.shape[3]
+
+    def transform(self, shapes: Array) -> RowTable:
+        """Return the rows in other coordinates b of a = Φ b, with Φ (num_modes, num_others)."""
+        return replace(self, coefficients=self.coefficients @ shapes)
+
     def __call__(self, s: float) -> Array:
         """Return the rows (num_rows, num_modes) at s in m."""
         piece, part, _ = self.locate(s)
@@ -129,6 +142,15 @@ class MovingAxialForce:
 
     force: float
     table: RowTable
+
+    @property
+    def num_modes(self) -> int:
+        """The number of modal coordinates."""
+        return self.table.num_modes
+
+    def transform(self, shapes: Array) -> MovingAxialForce:
+        """Return the force in other coordinates, as :meth:`RowTable.transform`."""
+        return replace(self, table=self.table.transform(shapes))
 
     @property
     def planes(self) -> int:
@@ -162,6 +184,48 @@ class MovingAxialForce:
         modes = slopes.shape[3]
         total = slopes.reshape(-1, modes).T @ weighed.reshape(-1, modes)
         return np.asarray(self.force * np.sign(s) * total)
+
+
+@dataclass(frozen=True, slots=True)
+class ChangingAxialForce:
+    """Axial force that is proportional to the value s of a history: K_G(s) = s Vᵀ diag(c) V.
+
+    Args:
+        factors: c (num_vectors,).
+        vectors: V (num_vectors, num_modes).
+    """
+
+    factors: Array
+    vectors: Array
+
+    @classmethod
+    def of(cls, geometric: Array, stiffness: Array, peak: float) -> ChangingAxialForce:
+        """Return the force of a geometric stiffness K_G (num_modes, num_modes) at s = 1.
+
+        Directions in which it changes the stiffness by less than a ten-thousandth at s = ``peak``
+        are left out.
+
+        Args:
+            geometric: K_G in 1/s².
+            stiffness: positive definite stiffness (num_modes, num_modes) in 1/s².
+            peak: largest |s|.
+        """
+        factors, shapes = eigh(geometric, stiffness)
+        matter = np.abs(factors) * peak > _LEAST_CHANGE
+        return cls(factors[matter], np.ascontiguousarray((stiffness @ shapes[:, matter]).T))
+
+    @property
+    def num_modes(self) -> int:
+        """The number of modal coordinates."""
+        return self.vectors.shape[1]
+
+    def transform(self, shapes: Array) -> ChangingAxialForce:
+        """Return the force in other coordinates, as :meth:`RowTable.transform`."""
+        return replace(self, vectors=self.vectors @ shapes)
+
+    def geometric_stiffness(self, s: float) -> Array:
+        """Return K_G (num_modes, num_modes) at a value s."""
+        return np.asarray(s * (self.vectors.T * self.factors) @ self.vectors)
 
 
 def _combined(weights: Array, arrays: Array) -> Array:

@@ -9,12 +9,13 @@ one of both segments at a position that moves with the extension.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 import numpy as np
 
-from dynamics.drive.row_table import MovingAxialForce, RowTable
+from dynamics.arrays import Array
+from dynamics.drive.row_table import ChangingAxialForce, MovingAxialForce, RowTable
 from dynamics.drive.stick_slip import ElasticDrive
 from dynamics.excitation import History
 
@@ -39,22 +40,22 @@ class Travel:
         table: rows (num_moving, num_modes) over the extension.
         moved_rows: (kind, index) of each row in the gap system.
         suffix: suffix of the names of its results; None for no results.
-        axial_forces: axial forces that move with the extension.
+        axial_forces: axial forces that move with the extension, or are proportional to it.
         axial_load: axial load in N of all segments that the drive moves.
         elastic: data of an elastic drive; None for a rigid drive.
         shifts: increase of the displacement of each row per m of extension, as for the rope of a
             winch; none unless given.
 
     Raises:
-        ValueError: the table has another number of rows or shifts, or the history does not begin
-            with 0.
+        ValueError: the table has another number of rows or shifts, or a history that moves rows
+            does not begin with 0.
     """
 
     history: History
     table: RowTable
     moved_rows: Sequence[tuple[RowKind, int]]
     suffix: str | None = None
-    axial_forces: Sequence[MovingAxialForce] = ()
+    axial_forces: Sequence[MovingAxialForce | ChangingAxialForce] = ()
     axial_load: float = 0.0
     elastic: ElasticDrive | None = None
     shifts: Sequence[float] = ()
@@ -66,5 +67,15 @@ class Travel:
         if len(self.shifts) not in (0, rows):
             raise ValueError(f"shifts must be none or {rows}, got {len(self.shifts)}")
         start = float(self.history(np.zeros(())))
-        if abs(start) > 1.0e-9:
+        if rows and abs(start) > 1.0e-9:
             raise ValueError(f"a travel must be 0 at t = 0, got {start:g} m")
+
+    @property
+    def telescopes(self) -> bool:
+        """True if the travel moves a segment, not a load or an axial force."""
+        return bool(self.moved_rows) and not self.shifts
+
+    def transform(self, shapes: Array) -> Travel:
+        """Return the travel in other coordinates b of a = Φ b, with Φ (num_modes, num_others)."""
+        forces = [force.transform(shapes) for force in self.axial_forces]
+        return replace(self, table=self.table.transform(shapes), axial_forces=forces)

@@ -283,7 +283,7 @@ def march(
     tally, driven, free, now = state.tally, state.driven, problem.free, problem.force
     n, m, contacts, frictions = a.size, y.size, laws.limits.size, laws.friction.shape[1]
     moves, excited = moving.number.size > 0, system.excitations.shape[0] > 0
-    softens, travels = axial.force.size > 0, driven.size
+    softens, travels = axial.force.size + axial.factors.size > 0, driven.size
     end, load, total, pull = system.load.copy(), system.load.copy(), np.zeros(n), np.zeros(n)
     tilt, y_end, a_mean = np.zeros(n if excited else 0), np.zeros(m), np.zeros(n)
     rows_end, rows_mean = (rows.copy(), rows.copy()) if moves else (rows, rows)

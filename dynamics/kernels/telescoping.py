@@ -14,6 +14,7 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array, Indices
+from dynamics.drive.row_table import ChangingAxialForce, MovingAxialForce
 from dynamics.drive.travel import ROW_KINDS
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import SUMS
@@ -42,7 +43,7 @@ class MovingRows(NamedTuple):
 
 
 class AxialForces(NamedTuple):
-    """Axial forces that move with travels, one for each plane of bending.
+    """Axial forces that move with travels, one for each plane of bending, or change with them.
 
     Args:
         force: (num_forces,) N in N.
@@ -53,6 +54,8 @@ class AxialForces(NamedTuple):
         slopes: (num_pieces, 3, most_modes) coefficients of w′, as in
             :class:`dynamics.drive.row_table.MovingAxialForce`.
         products: (num_pieces, most_modes, most_modes) ∫ w′ᵀ w′ ds from 0 to each piece.
+        changed_by: (num_vectors,) index of the travel of each vector.
+        factors, vectors: those of :class:`dynamics.drive.row_table.ChangingAxialForce`.
     """
 
     force: Array
@@ -62,6 +65,9 @@ class AxialForces(NamedTuple):
     knots: Array
     slopes: Array
     products: Array
+    changed_by: Indices
+    factors: Array
+    vectors: Array
 
 
 def moving_rows(system: GapSystem) -> MovingRows:
@@ -88,13 +94,15 @@ def moving_rows(system: GapSystem) -> MovingRows:
 
 
 def moving_axial_forces(system: GapSystem) -> AxialForces:
-    """Return the axial forces of a system that move with travels."""
+    """Return the axial forces of a system that move or change with travels."""
+    forces = [(k, one) for k, travel in enumerate(system.travels) for one in travel.axial_forces]
     every = [
-        (number, one, plane)
-        for number, travel in enumerate(system.travels)
-        for one in travel.axial_forces
+        (k, one, plane)
+        for k, one in forces
+        if isinstance(one, MovingAxialForce)
         for plane in range(one.planes)
     ]
+    changing = [(k, one) for k, one in forces if isinstance(one, ChangingAxialForce)]
     reach = [np.abs(one.slopes[:, :, plane]).max(axis=(0, 1)) for _, one, plane in every]
     moved = [np.flatnonzero(part > _NOTHING * part.max(initial=0.0)) for part in reach]
     most = max((modes.size for modes in moved), default=0)
@@ -118,6 +126,9 @@ def moving_axial_forces(system: GapSystem) -> AxialForces:
         np.concatenate([np.zeros(0), *(one.table.knots for _, one, _ in every)]),
         slopes,
         products,
+        np.array([k for k, one in changing for _ in one.factors], dtype=np.int64),
+        np.concatenate([np.zeros(0), *(one.factors for _, one in changing)]),
+        np.concatenate([np.zeros((0, system.num_modes)), *(one.vectors for _, one in changing)]),
     )
 
 
@@ -199,3 +210,11 @@ def add_axial_forces(
         for i in range(count):
             total[axial.modes[t, i]] += share * force[i]
             energies[axial.spans[t, 0]] += 0.5 * share * own[i] * force[i]
+    for r in range(axial.factors.size):
+        vector, level = axial.vectors[r], 0.0
+        for i in range(a.size):
+            level += vector[i] * a[i]
+        pressed = share * extensions[axial.changed_by[r]] * axial.factors[r] * level
+        for i in range(a.size):
+            total[i] += pressed * vector[i]
+        energies[axial.changed_by[r]] += 0.5 * pressed * level

@@ -9,7 +9,7 @@ from dynamics.drive.stick_slip import ELASTIC_DRIVE_VARIABLES
 from dynamics.energy import DRIVEN_ENERGIES
 from dynamics.excitation import InitialImpulse, ReleasedLoad
 from dynamics.trajectory import DRIVE_VARIABLES, STATION_VARIABLES
-from geometry.axial import with_compression
+from geometry.axial import Thrust, with_compression
 from geometry.boom import (
     Boom,
     BoomError,
@@ -29,10 +29,10 @@ from runs.case import actions
 from runs.case.actions import field_values
 from runs.case.contact import JointTable
 from runs.case.elastic_drive import check_elastic_drives
-from runs.case.hoist import check_hoist, hoist_thrust
+from runs.case.hoist import check_hoist, hoist_changes
 from runs.case.schema import Case
 from runs.case.segment import SegmentTable
-from runs.case.turning import check_turning, frame_motion, turning_loads
+from runs.case.turning import check_turning, frame_motion, turning_changes, turning_loads
 
 # Names of outputs that every boom has.
 _OUTPUT_NAMES = {
@@ -67,11 +67,12 @@ def build_boom(case: Case) -> Boom:
         _segment(case, number, section, ends[number]) for number, section in enumerate(sections)
     )
     along = 0.0 if case.gravity is None else case.gravity.along
-    thrusts = actions.thrusts(case, segments) + hoist_thrust(
-        case, len(segments) - 1, segments[-1].end
-    )
+    hanging = 0.0 if case.hoist is None else case.hoist.initial_mass
+    rope = Thrust(len(segments) - 1, segments[-1].end, hanging * along)
+    thrusts = (*actions.thrusts(case, segments), rope)
     segments = with_compression(segments, joints, thrusts, along)
     check_turning(case, _is_spatial(case))
+    check_hoist(case, _is_spatial(case))
     frame = frame_motion(case, segments)
     boom = Boom(
         segments,
@@ -83,10 +84,13 @@ def build_boom(case: Case) -> Boom:
         actions.stops(case),
         case.observe,
         case.cylinders,
+        (
+            *hoist_changes(case, segments, joints),
+            *turning_changes(frame, segments, joints, hanging),
+        ),
     )
     check_contacts_at_rest(boom)
     check_elastic_drives(case, boom)
-    check_hoist(case, _is_spatial(case))
     return boom
 
 

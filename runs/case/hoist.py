@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
@@ -11,10 +11,10 @@ from pydantic import Field
 
 from dynamics.excitation import HistorySum, is_constant
 from dynamics.gap_system import GapSystem
-from dynamics.hanging_load import HangingLoad, Pendulum
+from dynamics.hanging_load import HangingLoad, Pendulum, RopeForce
 from dynamics.motion import initial_state
-from geometry.axial import Thrust
-from geometry.boom import Boom, BoomError
+from geometry.axial import AxialChange, Thrust, with_compression
+from geometry.boom import Boom, BoomError, Joint, Segment
 from geometry.fields import Few, Flag, In, NotNegative, Number, Positive
 from geometry.telescoping import drives_of
 from runs.case.drive import TravelTable
@@ -66,6 +66,21 @@ class HoistTable(TravelTable):
     """the forces of wind on a load that swings"""
     dropped: Flag = False
     """whether the hanging load is dropped at t = 0"""
+
+    @property
+    def rope_stiffness(self) -> float:
+        """The stiffness in N/m of all falls; the table is checked."""
+        if self.stiffness is not None:
+            return self.stiffness
+        assert self.area
+        assert self.modulus
+        assert self.length
+        return self.falls * self.modulus * self.area / self.length
+
+    @property
+    def initial_mass(self) -> float:
+        """The mass in kg that hangs on the rope from t = 0 on."""
+        return self.mass if self.hanging and not self.dropped else 0.0
 
 
 def check_hoist(case: Case, spatial: bool) -> None:
@@ -120,18 +135,12 @@ def hanging_load(case: Case, boom: Boom) -> HangingLoad | None:
     table = case.hoist
     if table is None or case.gravity is None or table.dropped:
         return None
-    stiffness = table.stiffness
-    if stiffness is None:
-        assert table.area
-        assert table.modulus
-        assert table.length
-        stiffness = table.falls * table.modulus * table.area / table.length
     given = table.travel is not None or table.table is not None
     history = table.history("hoist") if given else None
     gravity = case.gravity.acceleration
     return HangingLoad(
         table.mass,
-        stiffness,
+        table.rope_stiffness,
         gravity,
         None if history is None or is_constant(history) else history,
         case.gravity.across / gravity,
@@ -155,11 +164,18 @@ def _pendulum(case: Case, boom: Boom, length: float, winds: Sequence[WindTable])
     )
 
 
-def hoist_thrust(case: Case, segment: int, x: float) -> tuple[Thrust, ...]:
-    """Return the constant axial force of a hanging load on the tip of the boom."""
-    if case.hoist is None or case.gravity is None or case.hoist.dropped:
-        return ()
-    return (Thrust(segment, x, case.hoist.mass * case.gravity.along),)
+def hoist_changes(
+    case: Case, segments: Sequence[Segment], joints: Sequence[Joint]
+) -> Iterator[AxialChange]:
+    """Yield the change of axial forces by a load that the rope lifts from the ground."""
+    table = case.hoist
+    if table is None or case.gravity is None or table.hanging or not case.gravity.along:
+        return
+    rope = Thrust(len(segments) - 1, segments[-1].end, table.mass * case.gravity.along)
+    pressed = with_compression(segments, joints, [rope])
+    stretch = table.mass * case.gravity.acceleration / table.rope_stiffness
+    force = RopeForce(table.history("hoist"), stretch, table.slack)
+    yield AxialChange(force, [segment.compression for segment in pressed])
 
 
 def with_hanging_load(system: GapSystem, case: Case, boom: Boom) -> GapSystem:

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 from pydantic import Field
 
 from dynamics.excitation import HistorySum, PiecewiseLinear, Spline
-from dynamics.frame_motion import FrameAcceleration, FrameMotion
-from geometry.boom import BoomError, Direction, Segment
+from dynamics.frame_motion import FrameAcceleration, FrameMotion, Spin
+from geometry.axial import AxialChange, Thrust, lumped_masses, with_compression
+from geometry.boom import BoomError, Direction, PointMass, Segment
 from geometry.fields import In, Number, Positive
 from geometry.joint import Joint
 from geometry.load import AngularAcceleration, Load
@@ -124,3 +125,37 @@ def turning_loads(
                 yield AngularAcceleration(number, direction, -1.0, None, growing)
                 for point, history in zip(segment.masses, points, strict=True):
                     yield Load(number, direction, -point.mass, point.x, history)
+
+
+def turning_changes(
+    frame: FrameMotion, segments: Sequence[Segment], joints: Sequence[Joint], hanging: float
+) -> Iterator[AxialChange]:
+    """Yield the changes of axial forces by slewing and luffing, and the centrifugal terms.
+
+    ``hanging`` is the mass in kg of a load on a rope, which counts as a mass at the tip.
+    """
+    if not (frame.slew.kinks or frame.luff.kinks):
+        return
+    directions: tuple[Direction, ...] = ("y", "z")
+    masses = [lumped_masses(segment) for segment in segments]
+    yield from (
+        AxialChange(spin, masses=masses, direction=direction)
+        for direction in directions
+        if (spin := Spin(frame, direction)).peak
+    )
+    if hanging:
+        masses[-1] += (PointMass(segments[-1].end, hanging),)
+    moved = [tuple(drives_of(joints, number)) for number in range(len(segments))]
+    for drives in dict.fromkeys(moved):
+        extension = HistorySum(tuple(drive.history for drive in drives))
+        for x in (0.0, None):
+            history = FrameAcceleration(frame, "x", x, extension)
+            thrusts = [
+                Thrust(number, mass.x, mass.mass * (1.0 if x is not None else mass.x))
+                for number, own in enumerate(masses)
+                if moved[number] == drives
+                for mass in own
+            ]
+            if history.peak:
+                pressed = with_compression(segments, joints, thrusts)
+                yield AxialChange(history, [segment.compression for segment in pressed])

@@ -23,7 +23,7 @@ _RIGID_FRACTION = 1.0e-6
 def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, Array]:
     """Return the bonded system, and its modes (num_modes, num_bonded_modes) in the old coordinates.
 
-    Of the stations only those on the ground remain.
+    Of the stations only those on the ground remain, and their travels.
 
     >>> from runs.pipeline.bonded import bonded_system
     >>> pair = replace(ball, omega2=np.array([0.0, 4.0]), load=np.zeros(2), stations=[1.0],
@@ -34,7 +34,7 @@ def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem,
     array([2.])
 
     Args:
-        system: gap system with its contacts.
+        system: gap system with its contacts; no segment telescopes.
         rests: equilibria (num_modes,) in which contacts are closed or open.
     """
     on_ground = np.isin(system.station_of_row, system.grounded)
@@ -51,8 +51,9 @@ def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem,
     basis = free @ shapes
     grounded = list(system.grounded)
     stays = np.flatnonzero(on_ground)
+    moved, place_of = system.transform(omega2, basis), {row: k for k, row in enumerate(stays)}
     found = replace(
-        system.transform(omega2, basis),
+        moved,
         rows=system.rows[stays] @ basis,
         laws=[system.laws[row] for row in stays],
         station_of_row=np.array(
@@ -63,5 +64,9 @@ def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem,
         grounded=range(len(grounded)),
         friction_rows=np.zeros((0, omega2.size)),
         frictions=(),
+        travels=[
+            replace(one, moved_rows=[("rows", place_of[row]) for _, row in one.moved_rows])
+            for one in moved.travels
+        ],
     )
     return found, basis

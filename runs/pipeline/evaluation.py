@@ -27,7 +27,7 @@ from runs.pipeline.design_results import DesignResults, ModelDesignResults, play
 from runs.pipeline.hoisting import hoisting
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.model_quality import quality_notes, reference_of
-from runs.pipeline.models import MotionPlan
+from runs.pipeline.models import MotionPlan, complete_system
 from runs.pipeline.modes import ModeComparison, match_modes, modes
 from runs.pipeline.motion_results import MotionAndStatics, evaluate_motion
 from runs.pipeline.panels import weakest_panels
@@ -145,11 +145,10 @@ class ModelEvaluation:
     def add_bonded(self, own: ModelDesignResults) -> ModelDesignResults:
         """Return design results with those of the same model without play, if it has any."""
         boom, case, model = self.boom, self.case, self.model
-        if model.bonded or not boom.joints or case.hoist is not None:
-            # The boom without play has no rope.
+        if model.bonded or not boom.joints:
             return own
         try:
-            bonded = _bonded_model(boom, model, self._played, self._found)
+            bonded = _bonded_model(boom, case, model, self._played, self._found)
             found = positions(bonded.system, self._times)
             other = bonded.at_rest(found)
         except NUMERICAL_ERRORS:
@@ -176,15 +175,16 @@ class ModelEvaluation:
 
 
 def _bonded_model(
-    boom: Boom, model: Model, played: LoadedModel, found: Mapping[float, Array]
+    boom: Boom, case: Case, model: Model, played: LoadedModel, found: Mapping[float, Array]
 ) -> LoadedModel:
     """Return the same model without play."""
     without = boom.bonded
     if (own := model.system_without_play(boom)) is not None:
-        system = own[0].gather_loads()
+        system = complete_system(own[0], case, without, own[1]).gather_loads()
         return LoadedModel(without, system, with_cylinder_forces(without, system, own[1]))
     initial = [position for time, position in found.items() if _at_initial_extension(boom, time)]
-    system, basis = bonded_system(played.system.at_time(0.0), initial)
+    still = played.system.at_time(0.0) if boom.driven else played.system
+    system, basis = bonded_system(still, initial)
     return LoadedModel(without, system, [line.transform(basis) for line in played.lines])
 
 

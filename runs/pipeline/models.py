@@ -3,15 +3,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dynamics.drive.row_table import ChangingAxialForce, RowTable
+from dynamics.drive.travel import Travel
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.hanging_load import HangingLoad
+from dynamics.line import Line
 from dynamics.motion import Motion, build_motion
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
@@ -23,6 +26,9 @@ from runs.case.schema import Case, Model
 
 if TYPE_CHECKING:
     from dynamics.integrator import AdaptiveStep, FixedStep
+
+# Least stiffness of a direction, as a fraction of the least of the segments' modes.
+_LEAST_STIFFNESS = 1.0e-6
 
 # Maximum number of steps: more would take days, and are an input error.
 MOST_STEPS = 1.0e10
@@ -48,8 +54,38 @@ def build_on(
 ) -> BuiltModel:
     """Build a model like :func:`build`, from a boom that has its contact laws already."""
     built = model.build(model_boom, context)
-    system = with_elastic_drives(built.system, case, model_boom.boom)
-    return replace(built, system=with_hanging_load(system, case, model_boom.boom))
+    boom = model_boom.boom.bonded if model.bonded else model_boom.boom
+    alone = context is None or context.comm.rank == 0
+    lines = model.lines(boom, built) if boom.axial_changes and alone else ()
+    system = complete_system(built.system, case, boom, lines)
+    if context is not None and boom.axial_changes:
+        system = replace(system, travels=context.comm.bcast(system.travels))
+    return replace(built, system=system)
+
+
+def complete_system(system: GapSystem, case: Case, boom: Boom, lines: Sequence[Line]) -> GapSystem:
+    """Return the system of a model with elastic drives, changing axial forces and hoisted load.
+
+    ``lines`` are those along the segments; none if no axial force changes.
+    """
+    system = with_elastic_drives(system, case, boom)
+    system = replace(system, travels=[*system.travels, *axial_travels(system, boom, lines)])
+    return with_hanging_load(system, case, boom)
+
+
+def axial_travels(system: GapSystem, boom: Boom, lines: Sequence[Line]) -> Iterator[Travel]:
+    """Yield the changes of axial forces, as travels that move no row."""
+    deflections = [dict(line.deflections) for line in lines]
+    # Contacts count as stiff as the softest segment, so that no direction lacks stiffness.
+    least = min(system.omega2[system.omega2 > 0.0], default=1.0)
+    stiffness = np.diag(np.maximum(system.omega2, _LEAST_STIFFNESS * least))
+    stiffness += least * (system.rows.T * system.row_masses) @ system.rows
+    still = RowTable(np.array([0.0, 1.0]), np.zeros((1, 4, 0, system.num_modes)))
+    for change in boom.axial_changes if lines else ():
+        geometric = change.geometric_stiffness(deflections)
+        force = ChangingAxialForce.of(geometric, stiffness, change.history.peak)
+        if force.factors.size:
+            yield Travel(change.history, still, (), axial_forces=[force])
 
 
 def initial_motion(system: GapSystem, case: Case) -> Motion:

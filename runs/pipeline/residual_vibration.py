@@ -94,7 +94,8 @@ def residual_vibration(
         case: case of the model.
         model: the model.
     """
-    ends = [time for travel in system.travels for time in travel.history.kinks]
+    travels = [one for one in system.travels if one.telescopes or any(one.shifts)]
+    ends = [time for travel in travels for time in travel.history.kinks]
     if not ends or max(ends) > trajectory.time[-1]:
         # The largest vibration may come after the end of the run.
         return None
@@ -106,7 +107,7 @@ def residual_vibration(
         _vibration_at_constant_extension(system.at_time(when).in_own_modes(), case, model)
         for when in (0.0, max(ends))
     ]
-    speed = max(_speed(travel) for travel in system.travels)
+    speed = max(_speed(travel) for travel in travels)
     return ResidualVibration(tip, time, speed, *stands)
 
 

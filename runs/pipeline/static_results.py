@@ -135,13 +135,13 @@ def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:
 
 
 def instants(system: GapSystem, duration: float) -> list[float]:
-    """Return 0 and the times in s at which a variable load or a hoist has its extreme values.
+    """Return 0 and the times in s at which a load, hoist or axial force has its extreme values.
 
     Args:
         system: gap system whose ``load`` includes all constant loads.
         duration: duration of the motion in s.
     """
-    winches = [travel for travel in system.travels if travel.shifts]
+    winches = [travel for travel in system.travels if not travel.telescopes]
     times, values = _sample_histories([*system.excitations, *winches], system, duration)
     return _distinct_times(times, values, [0, *values.argmax(axis=1), *values.argmin(axis=1)])
 
@@ -153,7 +153,7 @@ def extended_instants(system: GapSystem, duration: float) -> list[float]:
         system: gap system whose ``load`` includes all constant loads.
         duration: duration of the motion in s.
     """
-    drives = [travel for travel in system.travels if not travel.shifts]
+    drives = [travel for travel in system.travels if travel.telescopes]
     times, ways = _sample_histories(drives, system, duration)
     _, loads = _sample_histories(system.excitations, system, duration)
     found: list[int] = []

@@ -33,7 +33,11 @@ def static_tip(case: Case, time: float) -> float:
 
 
 def test_hanging_load_at_rest() -> None:
-    """Reference: the same boom under the load across it and the same force along it."""
+    """Reference: the same boom under the load across it and the same force along it.
+
+    Changes of the stiffness below a ten-thousandth are left out; the axial force of the load makes
+    a difference of several percent.
+    """
     case = of_beam(load(str(CASES / "hoist.toml")))
     weight = 5000.0 * 9.80665
     across = LoadTable(segment="fly", x="head", magnitude=-0.5 * weight)  # type: ignore[arg-type] # read as in a file
@@ -41,7 +45,7 @@ def test_hanging_load_at_rest() -> None:
     assert force is not None
     axial = case.axial[0].model_copy(update={"force": force + np.sqrt(0.75) * weight})
     loaded = case.model_copy(update={"hoist": None, "loads": (across,), "axial": (axial,)})
-    assert static_tip(case, 5.0) == pytest.approx(static_tip(loaded, 0.0), rel=1e-6)
+    assert static_tip(case, 5.0) == pytest.approx(static_tip(loaded, 0.0), rel=1e-5)
     assert abs(static_tip(case, 0.0)) < 0.5 * abs(static_tip(case, 5.0))
 
 
@@ -58,7 +62,8 @@ def test_results_of_a_hoist() -> None:
     # The ground, a hundred times as stiff as four falls, is left at this height.
     left = 5000.0 * 9.80665 / (100.0 * 4.0 * 1.0e11 * 1.1e-4 / 35.0)
     first = data["time"].values[np.argmax(height > left)]
-    assert found.lift_off == pytest.approx(first, abs=0.005)
+    # On the ground the load oscillates with a period of 40 ms.
+    assert found.lift_off == pytest.approx(first, abs=0.01)
     assert found.force == pytest.approx(found.factor * 5000.0 * 9.80665)
     assert 1.0 < found.factor < 1.5
     assert (found.swing_out, found.swing_aside) == (None, None)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -140,9 +139,9 @@ class Shell(ModelTable):
         )
         shell = with_plays_and_loads(made, model_boom.boom)
         factor = shell.critical_factor
-        if boom.driven and factor is not None:
-            # The reduced shell gives the factor at one extension, the beam over the whole travel.
-            on_the_way = self.critical_factor(replace(model_boom, boom=boom))
+        if (boom.driven or model_boom.boom.axial_changes) and factor is not None:
+            # The reduced shell gives the factor at t = 0, the beam over the whole motion.
+            on_the_way = self.critical_factor(model_boom)
             factor = min(factor, on_the_way or factor)
         return BuiltModel(shell.system, shell.num_dofs, shell.seconds, factor, shell)
 
