@@ -25,6 +25,7 @@ from runs.case.schema import Case
 from runs.pipeline.combinations import CombinationState
 from runs.pipeline.largest_loads import StaticBeam
 from runs.pipeline.model_output import force_places
+from runs.pipeline.panels import weakest_panels
 from runs.pipeline.section_forces import with_cylinder_forces
 from runs.pipeline.strength import wall_stresses
 from runs.pipeline.wall_buckling import buckled_shell
@@ -33,8 +34,8 @@ from runs.pipeline.wall_buckling import buckled_shell
 def shell_states(case: Case, model: Shell, context: BuildContext) -> list[CombinationState]:
     """Return the static states of all combinations by a shell, on rank 0. Collective.
 
-    With a table ``buckling`` the segments' buckling factors are those of the state with the
-    farthest tip of each geometry.
+    With a table ``buckling`` the segments' buckling factors are those of the state of each
+    geometry with the lowest estimate by panel formulas.
 
     Args:
         case: a checked case.
@@ -149,30 +150,30 @@ def _buckled(
     built: BuiltModel,
     context: BuildContext,
 ) -> list[CombinationState]:
-    """Return the states, with buckling results for the one with the largest tip deflection.
+    """Return the states, with buckling results for the governing one. Collective.
 
-    Collective.
+    It has the lowest estimate by panel formulas.
     """
     from shell_model.buckling import StaticState
     from shell_model.standard import with_plays_and_loads
 
     assert case.buckling is not None
     assert built.shell is not None
-    states, state, farthest = list(states), None, 0
-    if context.comm.rank == 0:
-        tips = [
-            max((abs(rest.tip) for rest in one.beam.rests), default=0.0) if one.beam else -1.0
-            for one in states
-        ]
-        farthest = int(np.argmax(tips))
-        if (beam := states[farthest].beam) is not None and built.shell.fields is not None:
-            own = with_plays_and_loads(built.shell, shared[1 + farthest])
-            rest = int(np.argmax([abs(one.tip) for one in beam.rests]))
+    states, state, governing = list(states), None, 0
+    if context.comm.rank == 0 and built.shell.fields is not None:
+        factors = [
+            (min((one.factor for one in weakest_panels(shared[0].segments, rest)), default=np.inf),
+             number, one.beam.positions[k])
+            for number, one in enumerate(states)
+            if one.beam
+            for k, rest in enumerate(one.beam.rests)
+        ]  # fmt: skip
+        if factors:
+            _, governing, position = min(factors, key=lambda found: found[0])
+            own = with_plays_and_loads(built.shell, shared[1 + governing])
             extensions = dict.fromkeys(range(len(shared[0].joints)), 0.0)
-            state = StaticState.from_fields(
-                built.shell.fields, own.system, beam.positions[rest], extensions
-            )
+            state = StaticState.from_fields(built.shell.fields, own.system, position, extensions)
     buckled = buckled_shell(shared[0], model, built, state, case.buckling.modes, context.comm)
     if buckled is not None:
-        states[farthest] = states[farthest]._replace(buckling=buckled.segments)
+        states[governing] = states[governing]._replace(buckling=buckled.segments)
     return states

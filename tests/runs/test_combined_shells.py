@@ -79,7 +79,7 @@ def test_proofs_by_patches_and_factors(states: list[CombinationState], tmp_path:
         next(wall.patch for wall in state.walls if wall.segment == "base") for state in states
     )
     assert patch.demand >= patches["base"]
-    # Of both geometries, the state with the farthest tip has factors.
+    # Of both geometries, the state with the lowest estimate has factors.
     buckled = [state for state in states if state.buckling]
     assert [one.combined.name for one in buckled] == ["A, raised", "A, level"]
     assert ("buckling", "base") in proofs
