@@ -117,6 +117,32 @@ def test_random_steps_meet_their_laws(equal_rows: bool) -> None:
     assert solved > 390
 
 
+def test_equal_friction_rows_stick_at_once() -> None:
+    """Reference: analytic, no slip below the friction limit. Pads in the corners of a rigid section
+    have equal friction rows, whose Jacobian is singular: no equation may get lost with a pivot."""
+    random, time = np.random.default_rng(3), 1.0e-3
+    for _ in range(200):
+        copies = random.permutation(np.repeat(random.normal(size=(3, 4)), 2, axis=0))
+        system = GapSystem(
+            omega2=np.zeros(4),
+            load=np.zeros(4),
+            rows=random.normal(size=(2, 4)),
+            laws=[PowerContact(1.0e6, 1.0)] * 2,
+            station_of_row=np.zeros(2, dtype=np.int64),
+            stations=[0.0],
+            observers={},
+            friction_rows=copies,
+            frictions=[DryFriction(1.0, 0, 1.0e9)] * 6,
+        )
+        stacked = system.all_rows
+        compliance, start = 0.5 * time**2 * stacked @ stacked.T, np.zeros(8)
+        problem = row_problem(8, 6)
+        problem.free[:] = time * stacked @ random.normal(size=4)
+        assert solve_contact_forces(row_laws(system), problem, compliance, start, time)
+        slip = (problem.free - compliance @ problem.force)[2:]
+        assert np.abs(slip).max() < 1e-12 * np.abs(problem.free).max()
+
+
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0, 2.7])
 @pytest.mark.parametrize(
     ("before", "after"),
