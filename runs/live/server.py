@@ -200,7 +200,8 @@ class _Handler(BaseHTTPRequestHandler):
     def _begin(self, kind: str) -> None:
         self.send_response(HTTPStatus.OK)
         self.send_header("Content-Type", kind)
-        self.send_header("Cache-Control", "no-store")
+        # With "no-store" Chromium reports answers as aborted that the page has read to their end.
+        self.send_header("Cache-Control", "no-cache")
         self.send_header("Referrer-Policy", "no-referrer")
         self.end_headers()
 
