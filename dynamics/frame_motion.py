@@ -61,6 +61,17 @@ class FrameMotion:
         along, luffed = x - self.foot + extension(time), self.luff_angle(time)
         return self.radius + along * np.cos(luffed), along * np.sin(luffed)
 
+    def drive_moments(self, time: Array, x: float, mass: float, extension: MotionLaw) -> Array:
+        """Return the moments (2, ...) in N·m of slewing and luffing that move a mass.
+
+        They are m ρ a_y about the slewing axis, and m σ (a_z + g cos α) about the foot. Arguments
+        are those of :meth:`accelerations`, and the mass in kg.
+        """
+        _, aside, across = self.accelerations(time, x, extension)
+        along, luffed = x - self.foot + extension(time), np.cos(self.luff_angle(time))
+        slewing = (self.radius + along * luffed) * aside
+        return mass * np.array([slewing, along * (across + self.gravity * luffed)])
+
     def accelerations(self, time: Array, x: float, extension: MotionLaw) -> Array:
         """Return a_x, a_y and a_z (3, ...) in m/s² of a point of the boom at times (...) in s.
 

@@ -13,6 +13,7 @@ import re
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from math import pi
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +28,9 @@ _SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
 # Spaces that separate two cells: not next to a comma, before a bracket or slash, or after a slash.
 _SPACES = re.compile(r"(?<![\s,/])\s+(?![\s,\[(/])")
 _HEADING = re.compile(r"(.*?)\s*(?:\[(.+)\]|\((.+)\)|/(.+)|\bin (.+))")
+
+# Units of angles in degrees, which have no dimension.
+_ANGLES = {"deg": 1.0, "°": 1.0, "rad": 180.0 / pi}
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +50,11 @@ class Column:
         Raises:
             ValueError: the unit is unknown, or of another dimension.
         """
+        if self.unit in _ANGLES and unit in _ANGLES:
+            return _ANGLES[unit] / _ANGLES[self.unit]
         own, given = Unit.of(self.unit), Unit.of(unit)
+        if self.unit in _ANGLES:
+            raise ValueError("no unit of an angle")
         if self.factor and not any(given.dimension):
             return given.factor
         if given.dimension != own.dimension:

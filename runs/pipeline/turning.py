@@ -10,10 +10,14 @@ import numpy as np
 
 from dynamics.arrays import Array
 from dynamics.damping import closed_contact_damping, closed_contact_modes
-from dynamics.excitation import MotionLaw, Shaped
+from dynamics.excitation import HistorySum, MotionLaw, Shaped
 from dynamics.gap_system import GapSystem
+from geometry.axial import lumped_masses
+from geometry.boom import Boom
+from geometry.telescoping import drives_of
 from runs.case.drive import resolving_times
 from runs.case.schema import Case
+from runs.case.turning import frame_motion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,6 +85,40 @@ def shaper_lines(case: Case, system: GapSystem, rest: Array | None) -> Iterator[
                 f"{key}: shaper = [{pairs}] would leave no vibration of these modes, without play, "
                 f"and takes {later:.3g} s longer."
             )
+
+
+def drive_moments(case: Case, boom: Boom, data: xr.Dataset) -> dict[str, tuple[Array, Array]]:
+    """Return moment (num_times,) in N·m and power in W of slewing and of luffing, by key.
+
+    The boom counts as rigid. A load on a rope acts by the computed rope force and swing.
+
+    Args:
+        case: a checked case.
+        boom: boom of the case.
+        data: trajectory of a model.
+    """
+    frame, time, last = frame_motion(case, boom.segments), data["time"].values, len(boom.segments)
+    total = np.zeros((2, time.size))
+    for number, segment in enumerate(boom.segments):
+        extension = HistorySum(tuple(one.history for one in drives_of(boom.joints, number)))
+        for point in lumped_masses(segment):
+            total += frame.drive_moments(time, point.x, point.mass, extension)
+    if "rope_force" in data:
+        extension = HistorySum(tuple(one.history for one in drives_of(boom.joints, last - 1)))
+        out, up = frame.position(time, boom.tip, extension)
+        pendulum = case.hoist.pendulum if case.hoist and case.hoist.pendulum else np.inf
+        pull = data["rope_force"].attrs["weight"] / pendulum
+        aside, ahead = (
+            pull * data[name].values if name in data else 0.0 * time
+            for name in ("swing_aside", "swing_out")
+        )
+        total += -aside * out, data["rope_force"].values * (out - frame.radius) + ahead * up
+    rates = {"slew": frame.slew_angle(time, 1), "luff": frame.luff_angle(time, 1)}
+    return {
+        key: (moment, moment * rate)
+        for moment, (key, rate) in zip(total, rates.items(), strict=True)
+        if getattr(case, key) is not None
+    }
 
 
 def swing_cautions(case: Case, data: xr.Dataset) -> Iterator[str]:

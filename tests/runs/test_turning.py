@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from dynamics.equilibrium import equilibrium_at
 from dynamics.excitation import SCurve, Stroke
@@ -30,7 +31,7 @@ from runs.case.schema import Case
 from runs.case.turning import LuffTable, turning_loads
 from runs.pipeline.estimates import Preview
 from runs.pipeline.models import build
-from runs.pipeline.turning import shaper_lines, turning_cautions, turning_lines
+from runs.pipeline.turning import drive_moments, shaper_lines, turning_cautions, turning_lines
 from runs.report.result_tables import luffing_table
 
 ARM = (CASES / "inspection-arm.toml").read_text(encoding="utf-8")
@@ -159,6 +160,23 @@ def test_shaper_that_check_offers(tmp_path: Path, bonded: bool, least: float, mo
     assert least < vibrations[1] / vibrations[0] < most
 
 
+def test_moment_and_work_of_slewing(tmp_path: Path) -> None:
+    """Reference: by hand, J ψ̈ and ½ J ψ̇² of a rigid boom, and 0 after a stop."""
+    case = slewing_arm(tmp_path, SLEW)
+    boom, time = build_boom(case), np.linspace(0.0, 6.0, 6001)
+    (moment, power) = drive_moments(case, boom, xr.Dataset(coords={"time": time}))["slew"]
+    inertia = sum(
+        segment.mass_per_length * (segment.end**3 - segment.start**3) / 3.0
+        + sum(point.mass * point.x**2 for point in segment.all_masses)
+        for segment in boom.segments
+    )
+    rate = np.deg2rad(15.0)
+    work = np.cumsum(power) * 1e-3
+    assert moment[500] == pytest.approx(inertia * rate, rel=1e-3)
+    assert work[2000] == pytest.approx(0.5 * inertia * rate**2, rel=2e-3)
+    assert work[-1] == pytest.approx(0.0, abs=2e-3 * work[2000])
+
+
 def test_cylinder_that_luffs() -> None:
     """Reference: by hand, a right angle at the pin between a lug and a ground 3 m and 4 m away."""
     jack = Cylinder(0, 3.0, ground=(0.0, -4.0), stiffness=1.0)
@@ -227,3 +245,21 @@ def test_flat_boom_does_not_slew(tmp_path: Path) -> None:
     path.write_text(CRANE.replace("[payload]", SLEW + "[payload]"), encoding="utf-8")
     with pytest.raises(BadInput, match="slew: the boom is flat, and nothing moves along 'y'; give"):
         load(str(path))
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("deg", 1.0), ("rad", 180.0 / np.pi)])
+def test_unit_of_angles_in_a_file(tmp_path: Path, unit: str, factor: float) -> None:
+    (tmp_path / "angles.csv").write_text(f"t [s],psi [{unit}]\n0,0\n2,0.5\n", encoding="utf-8")
+    case = slewing_arm(tmp_path, '[slew]\nfile = "angles.csv"\n')
+    assert case.slew is not None
+    assert case.slew.table == ((0.0, 0.0), (2.0, pytest.approx(0.5 * factor)))
+
+
+def test_file_of_angles_with_another_unit(tmp_path: Path) -> None:
+    (tmp_path / "angles.csv").write_text("t [s],psi [m]\n0,0\n2,0.5\n", encoding="utf-8")
+    with pytest.raises(BadInput) as error:
+        slewing_arm(tmp_path, '[slew]\nfile = "angles.csv"\n')
+    assert str(error.value).endswith(
+        "slew.file: 'angles.csv' has a unit in line 1, column 2 that is no unit of an angle; give "
+        "deg or another unit of the kind"
+    )
