@@ -109,8 +109,9 @@ def contact_compliance(boom: Boom) -> Array:
     rows = _contact_rows(boom)
     stops = sum(len(stop.sides) for _, stop in boom.numbered_stops)
     found = np.zeros((len(rows) + stops,) * 2)
-    for station in {pad.station for pad, _ in rows if pad.patch is not None}:
-        at = [i for i, (pad, _) in enumerate(rows) if pad.station == station and pad.patch]
+    # Vertical and lateral pads at one x belong together: flanges that bend make webs bulge.
+    for place in {(pad.number, pad.x) for pad, _ in rows if pad.patch is not None}:
+        at = [i for i, (pad, _) in enumerate(rows) if (pad.number, pad.x) == place and pad.patch]
         joint, sides = rows[at[0]][0].joint, np.array([rows[i][1] for i in at])
         inner = boom.segments[joint.inner]
         areas = [_pad_area(*rows[i], inner) for i in at]

@@ -55,7 +55,7 @@ from runs.pipeline.proportions import (
     proportion_cautions,
     tip_cautions,
 )
-from runs.pipeline.static_results import tilts
+from runs.pipeline.static_results import bulge_cautions, tilts
 from runs.pipeline.statics import (
     Statics,
     contact_and_support_reactions,
@@ -159,6 +159,7 @@ def check_case(declared: CheckedCase) -> Check:
     lines += [
         *actions.series_notes(case),
         *proportion_cautions(case, boom),
+        *([] if beam is None else bulge_cautions(_BEAMS, beam.rests[0], shown)),
         *overload_cautions(extremes, boom),
         *(
             f"caution: the wall {one.wall!r} of {one.segment!r} buckles at {number(one.factor, 3)} "

@@ -15,7 +15,7 @@ import xarray as xr
 from dynamics.trajectory import PointwiseDifferences
 from geometry.axial import moving_force
 from geometry.boom import Boom
-from geometry.typography import TO_MILLI, TO_PERCENT, join_words, with_minus_signs
+from geometry.typography import TO_PERCENT, join_words, with_minus_signs
 from runs.case.actions import series_notes
 from runs.case.schema import Case, Model
 from runs.pipeline.comparison import Distributions, PeakDifferences, compare
@@ -27,6 +27,7 @@ from runs.pipeline.proportions import (
     proportion_cautions,
     tip_cautions,
 )
+from runs.pipeline.static_results import bulge_cautions
 from runs.pipeline.summary import Comparisons, Summary, WholeRun
 from runs.pipeline.turning import pendulum_frequency, swing_cautions, turning_cautions
 
@@ -36,8 +37,6 @@ _DIVERGED = 0.2
 # Factor above the frequency of a pendulum from which modes are those of the boom.
 _APART = 1.2
 
-# Fraction of a lateral play: a caution is given if bulging walls close more of it.
-BULGED = 0.1
 # Relative error of a reduction or a mesh above which a caution is given.
 MAX_RELATIVE_ERROR = 0.01
 
@@ -238,7 +237,12 @@ def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list
         *(f"failed: {name}: {why}" for name, why in summary.failures.items()),
         *_static(summary, case, boom),
         *stress_cautions(summary, boom),
-        *bulge_cautions(summary, boom),
+        *(
+            caution
+            for name, own in summary.design.models.items()
+            if own.static
+            for caution in bulge_cautions(f"in {name}", own.static[0], boom)
+        ),
         *_large_displacements(boom, data),
         *swing_cautions(case, data),
         *_numerical(summary),
@@ -276,22 +280,6 @@ def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
                 f"caution: the walls of {name} carry the axial forces of the initial extension: "
                 "their stresses and utilisations neglect the change of axial forces by drives, "
                 "unlike those of outer fibres"
-            )
-
-
-def bulge_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
-    """Yield cautions on lateral plays of shells that bulging walls close in the static state."""
-    plays = {x: one.lateral_play or 0.0 for one in boom.joints for x in one.stations}
-    for name, own in summary.design.models.items():
-        found = [
-            f"{TO_MILLI * one.closed:.2g} of {TO_MILLI * plays[one.x]:g} mm at x = {one.x:g} m"
-            for one in (own.static[0].stations if own.static else ())
-            if one.direction == "y" and one.closed > BULGED * plays[one.x]
-        ]
-        if found:
-            yield (
-                f"caution: in {name} walls bulge under vertical pads at rest and close lateral "
-                f"play: {', '.join(found)}; beams do not show this"
             )
 
 

@@ -25,12 +25,15 @@ from geometry.boom import Boom
 from geometry.contact_places import contact_centres
 from geometry.cylinder import forces
 from geometry.telescoping import station_positions, travel
+from geometry.typography import TO_MILLI
 from runs.case.drive import resolving_times
 from runs.pipeline.pads import SIGNS, loaded_pads, side_force
 from runs.pipeline.section_forces import round_values, section_forces
 
 # Extensions that differ by less than this fraction count as equal.
 _SAME_EXTENSION = 1.0e-12
+# Fraction of a lateral play: a caution is given if bulging walls close more of it.
+BULGED = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -290,6 +293,24 @@ def _closed_play(system: GapSystem, gaps: Array, rows: Indices) -> float:
         [gaps[row] for row in rows if np.isfinite(system.laws[row].onset(side))] for side in SIGNS
     )
     return float(np.mean(right) - np.mean(left)) if right and left else 0.0
+
+
+def bulge_cautions(where: str, rest: StaticResult, boom: Boom) -> list[str]:
+    """Return a caution if walls that bulge at rest close lateral plays.
+
+    Args:
+        where: model in the text, for example ``in MODEL``.
+        rest: static state of the model.
+        boom: the boom, for its plays.
+    """
+    plays = {x: one.lateral_play or 0.0 for one in boom.joints for x in one.stations}
+    found = [
+        f"{TO_MILLI * one.closed:.2g} of {TO_MILLI * plays[one.x]:g} mm at x = {one.x:g} m"
+        for one in rest.stations
+        if one.direction == "y" and one.closed > BULGED * plays[one.x]
+    ]
+    text = f"caution: {where} walls bulge under vertical pads at rest and close lateral play: "
+    return [f"{text}{', '.join(found)}; beams with rigid walls do not show this"] if found else []
 
 
 def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> Iterator[Tilt]:

@@ -11,11 +11,10 @@ import pytest
 from runs import CASES
 from runs.case import reading
 from runs.case.build import build_boom
-from runs.pipeline.design_results import DesignResults, ModelDesignResults
-from runs.pipeline.model_quality import bulge_cautions
+from runs.pipeline.largest_loads import StaticBeam
 from runs.pipeline.models import build
-from runs.pipeline.static_results import StaticResult, positions, station_loads
-from tests.runs.summaries import summary_of
+from runs.pipeline.static_results import StaticResult, bulge_cautions, positions, station_loads
+from runs.pipeline.statics import boom_with_play
 
 
 def test_walls_that_bulge_are_a_caution() -> None:
@@ -42,8 +41,19 @@ def test_walls_that_bulge_are_a_caution() -> None:
     assert [one.closed / play for one in bulging] == pytest.approx([0.0, 0.0, 0.05, 0.3])
 
     static = StaticResult(0.0, 0.0, 0.0, [], [], bulging, {})
-    design = DesignResults({"shell": ModelDesignResults(static=[static])})
-    assert [*bulge_cautions(summary_of({}, design=design), boom)] == [
+    assert bulge_cautions("in shell", static, boom) == [
         f"caution: in shell walls bulge under vertical pads at rest and close lateral play: "
-        f"{300.0 * play:.2g} of {1000.0 * play:g} mm at x = 10 m; beams do not show this"
+        f"{300.0 * play:.2g} of {1000.0 * play:g} mm at x = 10 m; beams with rigid walls do not "
+        "show this"
     ]
+
+
+def test_the_check_tells_plays_that_walls_close() -> None:
+    """Reference: other code, the arm's shell at rest with edges of 0.2 m."""
+    checked = reading.load_checked(str(CASES / "inspection-arm.toml"))
+    boom = boom_with_play(checked.case, checked.boom)
+    (rest, *_) = StaticBeam.of(checked.case, boom).rests
+    closed = [one.closed for one in rest.stations if one.direction == "y"]
+    assert closed == pytest.approx([1.1985e-3, 1.8414e-3, 0.8242e-3, 1.3873e-3], rel=0.02)
+    (caution,) = bulge_cautions("in the beam estimate", rest, boom)
+    assert "1.2 of 4 mm at x = 3.5 m, 1.8 of 4 mm at x = 4.5 m" in caution
