@@ -180,9 +180,13 @@ def integrate_ensemble(
     unchanged = integrator(motion) if unchanged is None else unchanged
     same = integrator.like(unchanged)
     others = [EnsembleMember(motion, vary, change, same) for change in changes[1:]]
-    runs = [
-        _select_variables(unchanged, MEMBER_VARIABLES),
-        *run_members(others, executor, progress),
+    first = _select_variables(unchanged, MEMBER_VARIABLES)
+    # The stations of a load on a rope, which are the last ones, are left out.
+    stations = slice(first.sizes.get("station"))
+    runs = [first]
+    runs += [
+        one.isel(station=stations, missing_dims="ignore")
+        for one in run_members(others, executor, progress)
     ]
     ensemble = xr.concat(runs, "member", combine_attrs="drop_conflicts")
     ensemble.attrs = {

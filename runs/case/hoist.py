@@ -116,8 +116,6 @@ def check_hoist(case: Case, spatial: bool) -> None:
                 f"hoist.wind[{number}].direction",
                 "the boom is flat, and nothing moves along 'y'; give the joints lateral_play",
             )
-    if case.ensemble is not None:
-        raise BoomError("hoist", "an ensemble of hoisted loads is not available; leave one out")
     of_rope = {key: getattr(table, key) for key in ("area", "modulus", "length")}
     for key, value in of_rope.items():
         if table.stiffness is None and value is None:

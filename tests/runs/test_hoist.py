@@ -16,7 +16,7 @@ from runs.case.hoist import HoistTable, WindTable
 from runs.case.load_tables import LoadTable
 from runs.case.messages import BadInput
 from runs.case.reading import load
-from runs.case.schema import Case, StartTable
+from runs.case.schema import Case, EnsembleTable, StartTable
 from runs.pipeline.models import build
 
 HOIST = (CASES / "hoist.toml").read_text(encoding="utf-8")
@@ -67,6 +67,20 @@ def test_results_of_a_hoist() -> None:
     assert found.force == pytest.approx(found.factor * 5000.0 * 9.80665)
     assert 1.0 < found.factor < 1.5
     assert (found.swing_out, found.swing_aside) == (None, None)
+
+
+def test_ensemble_and_comparison_without_play() -> None:
+    """Reference: energy balance of all members, and the stiffer boom without play."""
+    case = change(of_beam(load(str(CASES / "hoist.toml"))), **{"time.duration": 0.6})
+    table = EnsembleTable(members=2, vary="load", relative=1e-3, seed=1)
+    results = run_case(case.model_copy(update={"ensemble": table}))
+    found = results.summary.models["series"].ensemble
+    assert found is not None
+    assert found.energy_residual < 1e-11
+    own = results.summary.design.models["series"]
+    assert own.motion_bonded is not None
+    static, bonded = (one[-1].tip for one in (own.static, own.static_bonded))
+    assert static < 1.02 * bonded < 0.0
 
 
 def test_dropped_load() -> None:
