@@ -202,11 +202,12 @@ def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
     plates = np.searchsorted(folds, around.nodes[:-1], side="right") - 1
 
     closed_at = [one.x for one in segment.diaphragms if low < one.x < high]
-    cuts = [low, high, *(x for area in areas for x in (area.start, area.end))]
-    ends = [x for collar in segment.collars for x in collar.span if low < x < high]
-    along_x = _Axis(
-        _graded_nodes(np.unique([*cuts, *closed_at, *ends]), length, (start, end)), closed=False
-    )
+    pad_ends = [x for area in areas for x in (area.start, area.end)]
+    collar_ends = [x for collar in segment.collars for x in collar.span if low < x < high]
+    cuts = np.unique([low, high, *pad_ends, *closed_at, *collar_ends])
+    # A pad at the end of its segment ends there to round-off only.
+    cuts = cuts[np.diff(cuts, prepend=-np.inf) > section.near]
+    along_x = _Axis(_graded_nodes(cuts, length, (start, end)), closed=False)
     middles = 0.5 * (along_x.nodes[:-1] + along_x.nodes[1:])
     middles_around = 0.5 * (around.nodes[:-1] + around.nodes[1:])
     doubled = np.zeros((middles.size, middles_around.size))
@@ -233,7 +234,8 @@ def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
     # Values on folds and diaphragms are zero; slopes are free.
     free = np.ones((along_x.nodes.size, 2, around.nodes.size - 1, 2), dtype=bool)
     free[:, :, np.isin(around.nodes[:-1], folds), 0] = False
-    free[np.isin(along_x.nodes, closed_at), 0] = False
+    for x in closed_at:
+        free[np.abs(along_x.nodes - x) < section.near, 0] = False
     rows = np.array(
         [
             np.kron(

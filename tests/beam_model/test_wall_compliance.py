@@ -79,3 +79,12 @@ def test_an_end_is_softer_than_the_middle_of_a_tube() -> None:
         float(wall_compliance.wall_compliance(tube(), [pad(x, x + 0.1)])[0, 0]) for x in (0.0, 1.0)
     )
     assert 1.2 < end / middle < 4.0
+
+
+def test_a_pad_that_ends_at_the_end_of_its_segment_to_round_off() -> None:
+    """Reference: the pad that ends exactly there."""
+    exact, rounded = (
+        wall_compliance.wall_compliance(tube(), [pad(LENGTH - 0.1, end)])
+        for end in (LENGTH, np.nextafter(LENGTH, 0.0))
+    )
+    assert rounded == pytest.approx(exact, rel=1e-9)
