@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 import pytest
 
@@ -88,8 +90,9 @@ def test_weight_that_turns() -> None:
     """Reference: analytic, g cos α across and g sin α along the boom, less those at t = 0."""
     frame = FrameMotion(luff=SCurve(50.0, 1.0), angle=20.0, gravity=10.0)
     end = np.array([2.0])
-    for direction, function in (("x", np.sin), ("z", np.cos)):
+    parts: tuple[tuple[Literal["x", "z"], np.ufunc], ...] = ("x", np.sin), ("z", np.cos)
+    for direction, function in parts:
         change = 10.0 * (function(np.deg2rad(70.0)) - function(np.deg2rad(20.0)))
-        history = FrameAcceleration(frame, direction, 3.0)  # type: ignore[arg-type] # both are directions
+        history = FrameAcceleration(frame, direction, 3.0)
         assert history(end) == pytest.approx(change)
         assert not history(np.zeros(1)).any()
