@@ -41,12 +41,15 @@ Modes = Annotated[
     str | None,
     typer.Option(
         metavar="N|auto",
-        help="Most coordinates of each shell segment; auto for as many as its tolerance needs.",
+        help="Maximum number of coordinates of each shell segment; auto: as many as the "
+        "tolerance requires.",
     ),
 ]
 NoCache = Annotated[
     bool,
-    typer.Option("--no-cache", help="Reduce shells again, without the user's cache."),
+    typer.Option(
+        "--no-cache", help="Repeat the model reduction of shells, without the user's cache."
+    ),
 ]
 Large = Annotated[
     bool, typer.Option("--large", help="Start a run that may take more than 4 GB or an hour.")
@@ -81,10 +84,12 @@ def _print_version(requested: bool) -> None:
 def protractile(
     version: Annotated[
         bool,
-        typer.Option("--version", callback=_print_version, is_eager=True, help="Print it and end."),
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version and exit."
+        ),
     ] = False,
 ) -> None:
-    """Vibrations of telescopic booms whose segments touch across plays."""
+    """Simulate vibrations of telescopic booms with play between their segments."""
 
 
 @app.command()
@@ -103,7 +108,7 @@ def run(
     large: Large = False,
     no_pictures: Annotated[bool, typer.Option("--no-pictures", help="Draw no snapshots.")] = False,
 ) -> int:
-    """Run the models of a case, judge them, and write everything to a folder."""
+    """Run the models of a case, compare them, and write the results to a folder."""
     from runs.case import reading
 
     effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
@@ -223,8 +228,8 @@ def sweep(
         str | None,
         typer.Option(
             metavar="QUANTITY<NUMBER",
-            help="Bisect between the values of the one key, down to 0.1 %, until a quantity of "
-            "sweep.csv is there, in the unit of the case: 'tip<0.9', 'first_frequency>1.2'.",
+            help="Find by bisection the value of the key, to 0.1 %, at which a quantity of "
+            "sweep.csv reaches a limit in the unit of the case: 'tip<0.9', 'first_frequency>1.2'.",
         ),
     ] = None,
     sensitivity: Annotated[
@@ -244,11 +249,11 @@ def sweep(
         ),
     ] = None,
 ) -> int:
-    """Run a case over values of its numbers, and chart its models.
+    """Run a parameter study of a case, and chart the results of its models.
 
-    Finished points stay in the folder and are not run again. Inferred sections follow from the
-    play in the case file, at every point. Under mpirun all ranks except the first run points;
-    otherwise all cores do. Ensembles are left out.
+    Finished points stay in the folder and are not run again. Sections that are
+    inferred use the play in the case file, not the varied one. Under mpirun all ranks except the
+    first run points; otherwise all cores do. Ensembles are not run.
     """
     from runs.case.messages import BadInput
     from runs.folder.cache import Cache
@@ -321,7 +326,7 @@ def frequencies(
     mesh_size: MeshSize = None,
     no_cache: NoCache = False,
 ) -> int:
-    """Chart the first frequencies over values of a case, with joints in contact and bonded."""
+    """Chart the first frequencies over the values of keys, with joints in contact and bonded."""
     from runs.folder.cache import Cache
     from runs.sweep import frequencies as charts
     from runs.sweep import points

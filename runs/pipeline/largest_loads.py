@@ -248,15 +248,22 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
         columns.append(Column("utilisation", used, ".3g", "%"))
     more = ["Drives stay where they are at t = 0."] if boom.driven else []
     title = "Static results at t = 0" + (" and under the maximum loads" if vary else "")
-    kinds = "Stresses are outer-fibre stresses. Contact forces act upwards where positive."
+    kinds = (
+        "Stresses are outer-fibre stresses. Contact forces act on the outer segment, upwards "
+        "where positive."
+    )
     return Table(title, columns, [beam_note(boom), kinds, *more])
 
 
 def beam_note(boom: Boom) -> str:
     """Return a sentence on the model of the statics."""
     theory = "Timoshenko" if static_theory(boom) == "timoshenko" else "Euler-Bernoulli"
-    walls = ", on walls that bend under pads" if any(one.padded for one in boom.joints) else ""
-    return f"`check` computes these values with its own {theory} beam{walls}."
+    walls = (
+        ", with the compliance of walls under pads"
+        if any(one.padded for one in boom.joints)
+        else ""
+    )
+    return f"Estimate by a {theory} beam{walls}."
 
 
 def in_units(value: float, unit: str, system: System) -> str:

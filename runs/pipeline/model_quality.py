@@ -142,7 +142,10 @@ def quality_notes(
         yield QualityNote("horizon", line)
     if errors := [model.step_error for model in models.values() if model.step_error]:
         most = _percent(max(errors))
-        yield QualityNote("step", f"The time step changes the tip by {most} of its range at most.")
+        yield QualityNote(
+            "step",
+            f"The estimated error of the tip by the time step is {most} of its range at most.",
+        )
     for name, model in models.items():
         if (error := model.reduction_errors.get("contact_compliance")) is not None:
             yield QualityNote(

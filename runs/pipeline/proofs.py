@@ -129,7 +129,7 @@ class Proofs(NamedTuple):
         text = (
             f"{failed} of {len(self.proofs)} proofs fail"
             if failed
-            else f"All {len(self.proofs)} proofs hold"
+            else f"All {len(self.proofs)} proofs are satisfied"
         )
         change = f"; {governs.remedy}" if failed else ""
         return f"{text}. Governing: {governs.text(system)}{change}."
@@ -327,22 +327,23 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
     asked = {name for state in states for name in state.combined.combination.proofs}
     steels = [one.name for one in boom.segments if one.yield_strength is None]
     if steels and asked & {"yield", "plate"}:
-        yield f"Not proved: yield and plate of {', '.join(steels)}, without yield strength."
+        names = ", ".join(steels)
+        yield f"Not verified: yield and plate buckling of {names}, without yield strength."
     pressures = any(one.utilisation is not None for one in beam.rests[0].stations)
     if "pad" in asked and boom.joints and not pressures:
-        yield "Not proved: pads, without allowable_pressure."
+        yield "Not verified: pads, without allowable_pressure."
     if "cylinder" in asked and any(one.capacity is None for one in boom.cylinders):
-        yield "Not proved: cylinder, without capacity."
+        yield "Not verified: cylinder, without capacity."
     pins = [one.foot.pin for one in boom.segments if one.foot is not None]
     pins += [one.pin for one in boom.cylinders]
     if "pin" in asked and not any(pins):
-        yield "Not proved: pins, without the table pin."
+        yield "Not verified: pins, without the table pin."
     if not case.spectra:
-        yield "Not proved: fatigue, without [[spectrum]]."
+        yield "Not verified: fatigue, without [[spectrum]]."
     if "deflection" not in asked:
-        yield "Not proved: deflection, in the proofs of no combination."
+        yield "Not verified: deflection, which no combination lists."
     elif case.limits is None or case.limits.tip_at_rest is None:
-        yield "Not proved: deflection, without limits.tip_at_rest."
+        yield "Not verified: deflection, without limits.tip_at_rest."
 
 
 def proof_table(found: Proofs, case: Case) -> Table:

@@ -48,7 +48,7 @@ MOST, GAP = 8, 0.35
 
 CAPTION = (
     "The boom in its initial position: to scale, along its axis with its joints, and its sections. "
-    "The legend explains the symbols; a segment is tinted where another one is inside it."
+    "The legend explains the symbols; overlaps are shaded."
 )
 
 
@@ -334,7 +334,7 @@ def _remarks(case: Case, boom: Boom) -> Iterator[str]:
     for base in case.base:
         yield f"the ground shakes along {base.direction}"
     if case.gravity is not None:
-        yield f"weights by {formatting.number(case.gravity.acceleration, 4)} m/s²"
+        yield f"self-weight, g = {formatting.number(case.gravity.acceleration, 4)} m/s²"
 
 
 def _join_values(values: Iterable[float]) -> str:

@@ -56,7 +56,7 @@ def first_contacts(run: FigureContext) -> list[Figure]:
     caption = (
         f"Contact force at each station, mean over {TO_MILLI * FORCE_WINDOW:g} ms"
         + ("" if run.stays_in_contact else " of many short impacts")
-        + ". Positive where the inner segment presses up."
+        + ". Forces act on the outer segment, upwards where positive."
         + initial_position_note(run.case)
     )
     chart = Chart(run.time, "force (kN)", curves, stations, (0.0, end))

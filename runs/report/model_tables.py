@@ -124,7 +124,7 @@ def step_table(results: Results) -> Table:
     ]
     notes = [
         "Step error: differences of deflections between the step and twice the step, summed over "
-        "windows of the motion. In chaotic motion no step keeps a tolerance. Contact changes: "
+        "windows of the motion. In chaotic motion no step meets a tolerance. Contact changes: "
         "openings and closings."
     ]
     tried = [model.steps_for_peaks for model in models]

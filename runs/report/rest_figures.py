@@ -70,9 +70,11 @@ def at_rest(run: FigureContext) -> list[Figure]:
     if bonded and not rests.keys() & set(run.bonded):
         lines["without play"] = rest_lines(bonded[0], "without play", theme.PLAY_FREE)
     caption = (
-        "Static under the maximum load: deflection and section forces. Positive normal forces are "
-        "tension, positive moments give tension at the top. In an overlap each segment has its own "
-        "curve." + initial_position_note(run.case) + extension_note(run.case, rests.values())
+        "Static state under the maximum load: deflection and section forces. Positive normal "
+        "forces are tension, positive moments give tension at the top. In an overlap each segment "
+        "has its own curve."
+        + initial_position_note(run.case)
+        + extension_note(run.case, rests.values())
     )
     far = max(rests.values(), key=lambda rest: abs(rest.tip)).tip
     tip = with_minus_signs(f"{TO_MILLI * far:.1f}")

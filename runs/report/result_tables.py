@@ -92,8 +92,8 @@ def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table | Non
         Column("rotation", [tilt.rotation for _, tilt in tilts], ".3g", "mrad"),
         Column("resulting tip deflection", [tilt.tip for _, tilt in tilts], ".1f", "mm"),
     )
-    note = "By play and contact compliance, in a shell also by the compliance of its walls."
-    title = "Static under the maximum load: rotation of joints by play and local compliance"
+    note = "The rotation is due to play and contact compliance, in a shell also to wall compliance."
+    title = "Static state under the maximum load: rotation of joints by play and local compliance"
     return Table(title, columns, (note + as_extended,), "tilts")
 
 
@@ -106,8 +106,8 @@ def _contact_table(rests: dict[str, StaticResult], as_extended: str) -> Table | 
         forces = {one.place: one.force for one in rest.stations}
         if forces:
             columns.append(Column(name, [forces.get(place) for place in places], ".4g", "kN"))
-    note = "Forces at stations, positive where the inner segment presses up, or towards larger y."
-    title = "Static under the maximum load: contact forces"
+    note = "Forces at stations, on the outer segment, positive upwards or towards larger y."
+    title = "Static state under the maximum load: contact forces"
     return Table(title, columns, (note + as_extended,), "pressed")
 
 
@@ -129,7 +129,7 @@ def _reaction_table(results: Results) -> Table | None:
         "Beam elements under the loads at t = 0. Transverse forces are positive towards the upper "
         "side of the boom, axial forces towards the tip.",
     )
-    return Table("Static at t = 0: support reactions", columns, notes, "reactions")
+    return Table("Static state at t = 0: support reactions", columns, notes, "reactions")
 
 
 def _unless_none(title: str, carried: list[float], form: str, unit: str) -> Iterator[Column]:
@@ -158,7 +158,7 @@ def mode_table(results: Results) -> Table | None:
     columns += [
         Column(name, [found.get(way) for way in rows], ".4g", "Hz") for name, found in of.items()
     ]
-    notes = ("Contacts stay as at rest at t = 0, closed or open.",)
+    notes = ("Contacts that are closed in the static state at t = 0 remain closed, others open.",)
     return Table("Modes in the static state at t = 0", columns, notes, "modes")
 
 

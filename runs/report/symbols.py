@@ -241,7 +241,9 @@ def _force(
         return Symbol("loads", index, places, 0.0, sign, f"{size} sideways{how}")
     if value > 0.0:
         return Symbol("loads", index, places, "bottom", FORCE_UP, f"{size} up across the boom{how}")
-    return Symbol("loads", index, places, "top", FORCE_DOWN, f"{size} down across the boom{how}")
+    return Symbol(
+        "loads", index, places, "top", FORCE_DOWN, f"{size} down, perpendicular to the boom{how}"
+    )
 
 
 def _history(table: HistoryTable) -> str:

@@ -56,9 +56,9 @@ def test_all_that_a_lift_has_is_said() -> None:
         "support",
         "cylinder, 30 MN/m",
         "payload, 150 kg",
-        "1.595 kN down across the boom within 0.1 s",
+        "1.595 kN down, perpendicular to the boom within 0.1 s",
         "play 3 mm",
-        "weights by 9.807 m/s²",
+        "self-weight, g = 9.807 m/s²",
     ]
 
 
@@ -90,7 +90,7 @@ def test_a_force_down_points_down() -> None:
     acts across it comes from the left, and a payload hangs all the same."""
     case = load(str(CASES / "crane.toml"))
     acts = {symbol.meaning: symbol for symbol in boom_symbols(case, build_boom(case))}
-    load_across = acts["24.52 kN down across the boom within 0.5 s"]
+    load_across = acts["24.52 kN down, perpendicular to the boom within 0.5 s"]
     (_, tail), (_, head) = load_across.rotated(0.0).vertices[:2]
     assert tail > head == 0.0
     (x, z), _ = load_across.rotated(90.0).vertices[:2]

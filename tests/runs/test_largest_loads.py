@@ -175,6 +175,7 @@ def test_statics_name_their_model_and_fit_a_terminal(tmp_path: Path) -> None:
     assert "time of   utilisation" in shown
     assert "Static results at t = 0 and under the maximum loads" in shown
     assert (
-        "`check` computes these values with its own Timoshenko beam, on walls that bend \n"
-        "under pads.\nStresses are outer-fibre stresses. Contact forces act upwards where positive."
+        "Estimate by a Timoshenko beam, with the compliance of walls under pads.\n"
+        "Stresses are outer-fibre stresses. Contact forces act on the outer segment, \n"
+        "upwards where positive."
     ) in shown

@@ -119,9 +119,9 @@ def test_every_table_of_a_rest_says_under_which_loads(results: Results) -> None:
     ]
     tables = rest_tables(answering(results, reactions=bears))
     assert [table.title.partition(":")[0] for table in tables] == [
-        "Static under the maximum load",
-        "Static under the maximum load",
-        "Static at t = 0",
+        "Static state under the maximum load",
+        "Static state under the maximum load",
+        "Static state at t = 0",
     ]
     moments = [row[2] for row in tables[-1].rows]
     assert moments == ["5", "0"]
