@@ -15,7 +15,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import Any
 
 import numpy as np
@@ -42,6 +42,9 @@ EXPONENT_GOAL = 1.2
 DEFAULT_GOAL, MOTION_GOAL = 5.0, 1.5
 MILLION_GOALS = 300.0, 8.0
 
+# Goal for the wall time in s of the buckling of a segment of 300,000 degrees of freedom.
+BUCKLING_GOAL = 60.0
+
 STAGES = ("mesh", "assembly", "rows", "reduction", "fields", "mesh error")
 
 # Stages with reported memory peaks.
@@ -57,6 +60,8 @@ class Sizes:
 
     #: Edge lengths in m, descending; the last gives about a million degrees of freedom per segment.
     meshes: Sequence[float] = (0.1, 0.06, 0.035, 0.018)
+    #: Edge lengths in m of the coarser of the two meshes of a buckling analysis.
+    buckling: Sequence[float] = (0.062, 0.036)
     default: float = 0.1  #: edge length in m of the motions
     #: Numbers of ranks on which the default mesh is reduced and moves; the last is that of the
     #: meshes.
@@ -93,6 +98,7 @@ def measure(sizes: Sizes) -> Iterator[Table]:
         {"dofs a segment": ".0f", "idle": ".2f", **dict.fromkeys(REMEMBERED, ".2f")},
         [(run["dofs"], run["idle"], *(run["peaks"][at] for at in REMEMBERED)) for run in runs],
     )
+    yield _buckling(sizes)
     dofs, last, (seconds, peak) = [run["dofs"] for run in runs], runs[-1], MILLION_GOALS
     wall = _exponent(dofs, [run["total_seconds"] for run in runs])
     # Memory of processes at their start, without shells.
@@ -129,6 +135,28 @@ def _stages(name: str, title: str, runs: Sequence[Mapping[str, Any]], note: str)
         ],
         (note,),
     )  # fmt: skip
+
+
+def _buckling(sizes: Sizes) -> Table:
+    """Return cost and lowest factor of the buckling of a bent segment, by size and by ranks."""
+    rows = []
+    for mesh in sizes.buckling:
+        runs = [_measure_run(ranks, "buckle", mesh) for ranks in sizes.ranks]
+        first = np.array(runs[0]["factors"])
+        rows += [
+            (run["dofs"], run["ranks"], run["wall"], run["cpu"], run["peak"], first[0],
+             float(np.abs(run["factors"] / first - 1.0).max()))
+            for run in runs
+        ]  # fmt: skip
+    columns = {
+        "dofs": ".0f", "ranks": ".0f", "wall s": ".1f", "CPU s": ".1f", "GB a rank": ".2f",
+        "lowest factor": ".6g", "factors off one rank": ".1g",
+    }  # fmt: skip
+    notes = (
+        "Four factors of the paper's outer segment, on the mesh and on one with half its edge "
+        f"length, which has the given dofs. Goal: {BUCKLING_GOAL:g} s for 300,000 on two cores.",
+    )
+    return Table.of_rows("scaling-buckling", "Buckling of a segment", columns, rows, notes)
 
 
 def _exponent(sizes: Sequence[float], values: Sequence[float]) -> float:
@@ -199,6 +227,42 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
     print(json.dumps(result))
 
 
+def _buckle(size: str) -> None:
+    """Buckle the walls of a bent segment; rank 0, which alone has the mesh, prints results."""
+    from mpi4py import MPI
+
+    from geometry.boom import Boom
+    from shell_model.boom_shell import ShellOptions, segment_mesh
+    from shell_model.buckling import StaticState, buckle_segments
+
+    comm = MPI.COMM_WORLD
+    case = case_file.load(str(CASES / SIZED["paper"]))
+    boom = Boom(build_boom(case).segments[:1], ())
+    options, mesh, forces = ShellOptions(float(size)), None, None
+    if comm.rank == 0:
+        mesh = segment_mesh(boom, 0, options)
+        x, _, z = mesh.points[mesh.triangles].mean(axis=1).T
+        forces = np.outer((boom.segments[0].end - x) * z, [1.0e6, 0.0, 0.0])
+    state = StaticState([comm.bcast(forces)], np.zeros(0), {})
+    comm.barrier()
+    start, begin = perf_counter(), process_time()
+    (found,) = buckle_segments(boom, [mesh], state, options, 4, comm)
+    seconds, cpu = perf_counter() - start, comm.gather(process_time() - begin)
+    peaks = comm.gather(_peak())
+    if found.mesh is not None and cpu is not None and peaks is not None:
+        edges = np.sort(found.mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2))
+        num_edges = len(np.unique(edges, axis=0))
+        result = {
+            "dofs": 3 * len(found.mesh.points) + 6 * num_edges,
+            "ranks": comm.size,
+            "wall": seconds,
+            "cpu": sum(cpu),
+            "peak": max(peaks),
+            "factors": found.factors.tolist(),
+        }
+        print(json.dumps(result))
+
+
 def _motion(system: GapSystem, duration: float, step: float) -> list[float]:
     """Return step, seconds of a motion, nanoseconds of a step, contact changes, energy residual."""
     # The first output compiles the loop.
@@ -226,7 +290,9 @@ def scaling(sizes: Sizes, folder: Path, console: Console) -> None:
 
 if __name__ == "__main__":
     show_notices()
-    if len(sys.argv) > 1:
+    if sys.argv[1:2] == ["buckle"]:
+        _buckle(sys.argv[2])
+    elif len(sys.argv) > 1:
         _run(*sys.argv[1:])
     else:
         scaling(Sizes(), OUT, wide_console())

@@ -16,7 +16,7 @@ from studies.cost.scaling import STAGES, STEPS, Sizes, scaling
 pytestmark = pytest.mark.slow
 
 
-SIZES = Sizes(meshes=(1.0, 0.5), default=1.0, ranks=(1,), duration=0.2)
+SIZES = Sizes(meshes=(1.0, 0.5), buckling=(0.5,), default=1.0, ranks=(1,), duration=0.2)
 
 
 def test_every_stage_is_measured(tmp_path: Path) -> None:
@@ -34,6 +34,9 @@ def test_every_stage_is_measured(tmp_path: Path) -> None:
     assert by_size[0]["dofs a segment"] < by_size[1]["dofs a segment"]
     assert len(data["scaling-goals"]) == 4
     assert [run["case"] for run in by_default] == ["paper", "friction"]
+    (buckled,) = data["scaling-buckling"]
+    assert buckled["ranks"] == 1
+    assert buckled["lowest factor"] > 0.0
     motions = data["scaling-motion"]
     assert [motion["step s"] for motion in motions] == 2 * list(STEPS)
     assert all(motion["energy residual"] < 1.0e-2 for motion in motions[1::2])
