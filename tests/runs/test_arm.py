@@ -25,7 +25,7 @@ def test_arm_with_friction_moves_in_a_gust(friction: float) -> None:
     tables["joint"] = [
         joint | {"friction": friction, "lateral_play": 0.002} for joint in tables["joint"]
     ]
-    tables["time"]["duration"] = 0.6
+    tables["time"]["duration"] = 1.6
     beam = tables["model"][1]
     tables["model"] = [beam | {"step": 1e-3}, beam | {"name": "fine", "step": 5e-4}]
     results = pt.run_case(pt.load_case(tables))
