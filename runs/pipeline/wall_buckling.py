@@ -18,6 +18,9 @@ from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
 from runs.pipeline.static_results import extended_positions, instants, positions
 
+# Relative difference below which displacements of a mode are equal; its residual is smaller.
+_MIRRORED = 1.0e-3
+
 if TYPE_CHECKING:
     from mpi4py import MPI
 
@@ -113,7 +116,7 @@ def buckled_shell(
     if comm.rank != 0:
         return None
     names = [segment.name for segment in boom.segments]
-    segments = [_with_locations(name, one) for name, one in zip(names, found, strict=True)]
+    segments = [with_locations(name, one) for name, one in zip(names, found, strict=True)]
     return BuckledShell(segments, _first_shapes(found))
 
 
@@ -139,14 +142,16 @@ def _static_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | No
     )
 
 
-def _with_locations(name: str, found: SegmentBuckling) -> WallBuckling:
+def with_locations(name: str, found: SegmentBuckling) -> WallBuckling:
     """Return the factors of a segment and the location of the largest displacement of each mode."""
     mesh, shapes = found.mesh, found.shapes
     assert mesh is not None
     assert shapes is not None
     walls, places = [], []
     for shape in shapes:
-        point = int(np.linalg.norm(shape, axis=1).argmax())
+        # Mirror images have equal displacements: take the first one, whatever the round-off.
+        sizes = np.linalg.norm(shape, axis=1)
+        point = int(np.argmax(sizes > (1.0 - _MIRRORED) * sizes.max()))
         # A point on a fold belongs to two walls.
         wall = int(mesh.walls[(mesh.triangles == point).any(axis=1)].min())
         walls.append(mesh.plates[wall] if wall < len(mesh.plates) else "diaphragm")

@@ -13,17 +13,23 @@ from PIL import Image
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
+from geometry.mesh import mesh_segment
+from geometry.plating import add_thickness
 from protractile.cases import run_case
 from runs import CASES
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Summary
+from runs.pipeline.wall_buckling import with_locations
 from runs.report import opengl, sheet
 from runs.report.buckling_pictures import render_buckling
 from runs.report.opengl import RenderingUnavailable
 from runs.report.result_tables import buckling_table
 from runs.report.summary_table import summary_table
+from shell_model.buckling import SegmentBuckling
+from studies.wall_buckling import TUBE
 from tests.runs.case_texts import read_case
 from tests.runs.moving_segments import moving_scene
+from tests.shell_model.booms import box_segment
 
 SHELL = """
 [[model]]
@@ -87,6 +93,21 @@ def test_a_telescoping_shell_buckles_where_its_tip_is_farthest(tmp_path: Path) -
     assert shell.farthest_static is not None
     for own, estimate in zip(shell.buckling, shell.panels, strict=True):
         assert estimate.factor < own.factors[0] < 2.0 * estimate.factor
+
+
+def test_round_off_does_not_choose_between_mirrored_walls() -> None:
+    """Reference: by hand, displacements of the left and the right web that differ by 1e-12."""
+    segment = box_segment("box", 0.0, 2.0, TUBE)
+    mesh = add_thickness(segment, mesh_segment(TUBE, {"start": 0.0, "end": 2.0}, 0.2))
+    webs = np.isclose(np.abs(mesh.points[:, 1]), 0.2) & np.isclose(mesh.points[:, 2], 0.0)
+    shape = np.where(webs, 1.0, 0.0)[:, None] * [0.0, 1.0, 0.0]
+    shapes = np.array([shape * (1.0 + 1e-12 * way * mesh.points[:, 1:2]) for way in (-1, 1)])
+    found = SegmentBuckling(np.array([2.0, 2.0]), np.zeros(2), mesh, shapes)
+    (wall, other), (x, other_x) = (
+        getattr(with_locations("box", found), key) for key in ("walls", "x")
+    )
+    assert wall == other
+    assert x == other_x
 
 
 def test_a_case_without_the_table_has_none(tmp_path: Path) -> None:
