@@ -35,7 +35,7 @@ from runs.pipeline.summary import (
     ModelSummary,
     StationSpring,
 )
-from runs.pipeline.wall_buckling import wall_buckling
+from runs.pipeline.wall_buckling import buckled_shell, farthest_state
 from shell_model.stages import Stages
 
 # Loaded wall of the outer segment, by direction and sign of the force of the inner segment.
@@ -110,7 +110,9 @@ def run_model(
     if case.buckling is not None and isinstance(model, Shell):
         assert comm is not None
         with stages.stage("buckling"):
-            buckling = wall_buckling(boom, case, model, built, comm)
+            joined = model.model_boom(boom).boom
+            state = farthest_state(joined, case, built) if comm.rank == 0 else None
+            buckling = buckled_shell(joined, model, built, state, case.buckling.modes, comm)
     with members.rank_executor(comm if case.ensemble else None) as executor:
         if not context.first_rank:
             return None

@@ -63,27 +63,6 @@ class BuckledShell:
     shapes: xr.Dataset | None
 
 
-def wall_buckling(
-    boom: Boom, case: Case, model: Shell, built: BuiltModel, comm: MPI.Intracomm
-) -> BuckledShell | None:
-    """Return the buckling of a shell's walls, on rank 0; None elsewhere. Collective.
-
-    Args:
-        boom: boom of the case.
-        case: case with a ``buckling`` table.
-        model: a shell of the case.
-        built: the built shell.
-        comm: ranks that share the shell.
-
-    Raises:
-        NumericsError: the boom has no static state, or the modes of a segment cannot be computed.
-    """
-    assert case.buckling is not None
-    joined = model.model_boom(boom).boom
-    state = _static_state(joined, case, built) if comm.rank == 0 else None
-    return buckled_shell(joined, model, built, state, case.buckling.modes, comm)
-
-
 def buckled_shell(
     boom: Boom,
     model: Shell,
@@ -103,7 +82,7 @@ def buckled_shell(
         comm: ranks that share the shell.
 
     Raises:
-        NumericsError: as for :func:`wall_buckling`.
+        NumericsError: there is no static state, or the modes of a segment cannot be computed.
     """
     from shell_model.buckling import buckle_segments
 
@@ -120,8 +99,14 @@ def buckled_shell(
     return BuckledShell(segments, _first_shapes(found))
 
 
-def _static_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | None:
-    """Return the static state with the largest tip deflection; None without an equilibrium."""
+def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | None:
+    """Return the static state with the largest tip deflection; None without an equilibrium.
+
+    Args:
+        boom: boom with the contacts of the model.
+        case: case with the duration of the loads.
+        built: a built shell, whose fields are on this rank.
+    """
     from shell_model.buckling import StaticState
 
     system, duration = built.system.gather_loads(), case.time.duration
