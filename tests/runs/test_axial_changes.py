@@ -62,7 +62,7 @@ def test_frequency_of_a_rotating_cantilever(key: str, speed: float, flapping: fl
 
 
 def test_beam_column_that_luffs() -> None:
-    """Reference: other code, scipy's DOP853 of three modes of a cantilever with a mass at its tip.
+    """Reference: other code, scipy's LSODA of three modes of a cantilever with a mass at its tip.
 
     The weight along the beam grows to a sixth of the buckling load as the beam rises to 80 degrees.
     """
