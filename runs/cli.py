@@ -379,15 +379,16 @@ def prove(
     """
     from runs.case.kinds.shell import Shell
     from runs.case.messages import BadInput
-    from runs.case.reading import load, select
+    from runs.case.reading import load
     from runs.prove import print_proofs
 
     checked = load(case)
     if shell is None:
         return print_proofs(checked, case, Terminal())
-    (model,) = select(checked, case, [shell]).models
-    if not isinstance(model, Shell):
-        raise BadInput(case, "--shell", f"{shell!r} is no shell; leave it out for beam elements")
+    shells = {one.name: one for one in checked.models if isinstance(one, Shell)}
+    if shell not in shells:
+        what = f"{shell!r} is no shell of the case; leave it out for beam elements"
+        raise BadInput(case, "--shell", what)
     comm = ranks.enter_mpi(checked, case)
     assert comm is not None
     from runs.case.kinds.model import BuildContext
@@ -396,7 +397,7 @@ def prove(
     with ranks.end_all_ranks_on_error(comm), progress.display([shell]) as report_progress:
         stages = partial(report_progress, shell)
         workshop = BuildContext(comm, stages, None if no_cache else Cache.of_user())
-        return print_proofs(checked, case, Terminal(), (model, workshop))
+        return print_proofs(checked, case, Terminal(), (shells[shell], workshop))
 
 
 @app.command()

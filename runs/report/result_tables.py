@@ -236,15 +236,16 @@ def drive_table(results: Results) -> Table | None:
 
 def turning_table(results: Results) -> Table | None:
     """Return moment, power and work of slewing and luffing of every model; None without them."""
+    case = results.case
+    if case.slew is None and case.luff is None:
+        return None
     rows, time = [], results.trajectories["time"].values
     for model in results.trajectories["model"].values:
         data = results.trajectories.sel(model=model)
-        for key, (moment, power) in drive_moments(results.case, results.boom, data).items():
+        for key, (moment, power) in drive_moments(case, results.boom, data).items():
             largest = float(moment[np.abs(moment).argmax()])
             work = float((0.5 * (power[1:] + power[:-1]) * np.diff(time)).sum())
             rows.append((str(model), key, largest, float(power.max()), work))
-    if not rows:
-        return None
     models, keys, moments, powers, works = zip(*rows, strict=True)
     columns = (
         Column("model", models),

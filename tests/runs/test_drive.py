@@ -307,7 +307,7 @@ def _check_rests(results: Results) -> None:
         [ended.tilts[0].tip],
     ]
     assert pressed.columns[1].cells == [one.force for one in ended.stations]
-    assert tilts.notes[0].endswith("of its walls. Extension as at 0.2 s.")
+    assert tilts.notes[0].endswith("to wall compliance. Extension as at 0.2 s.")
     # Both stand for too short to swing farther than they start.
     standing = ["(without telescoping", f"{1e3 * begun.tip:.1f}, {1e3 * ended.tip:.1f})"]
     assert str(cells["Residual vibration of the tip, mm"]).splitlines()[1:] == standing
