@@ -339,7 +339,7 @@ def boom_table(found: Mapping[str, BoomErrors], sizes: Sizes) -> Table:
         rows.append((name, *sizes_of, *(100.0 * part for part in parts)))
     columns = {
         "boom": "", "length /\nheight": ".1f", "overlap /\nheight": ".2f", "shear\n(%)": ".2f",
-        "pressed\nwalls (%)": ".2f", f"rule,\n{EULER} (%)": ".2f", f"rule,\n{PLAIN} (%)": ".2f",
+        "local\ncompliance (%)": ".2f", f"rule,\n{EULER} (%)": ".2f", f"rule,\n{PLAIN} (%)": ".2f",
         f"{EULER}\n(%)": ".2f", f"{PLAIN}\n(%)": ".2f", f"{SPRUNG}\n(%)": ".3f",
     }  # fmt: skip
     return Table.of_rows(
@@ -393,8 +393,8 @@ def springs_table(found: Mapping[str, BoomErrors], sizes: Sizes) -> Table:
         rows.append((name, peak, tip, bending, too_high, of_flanges))
     columns = {
         "boom": "", "first peak,\nworst (%)": ".3f", "tip,\nworst (%)": ".2f",
-        "free bending of the\ninner segment (Hz)": ".1f", "too high\n(%)": ".2f",
-        "of the\nflanges (%)": ".2f",
+        "free bending of the\ninner segment (Hz)": ".1f", "error of the\nbeam (%)": ".2f",
+        "0.065 (f/f_fl)²\n(%)": ".2f",
     }  # fmt: skip
     return Table.of_rows(
         "rule-of-thumb-springs",
