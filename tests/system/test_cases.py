@@ -49,7 +49,9 @@ def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
     assert list(models) == [model.name for model in case.models]
     assert max(model.energy_residual for model in models.values()) < 1e-3
     with_play = [
-        str(model) for model in results.trajectories["model"].values if model[-4:] != "bonded"
+        str(model)
+        for model in results.trajectories["model"].values
+        if not str(model).endswith("bonded")
     ]
     tips = results.trajectories["tip"].sel(model=with_play).values
     before = results.trajectories["time"].values < 0.11
