@@ -41,7 +41,7 @@ class BoomModes:
     Segments connected by bonded joints, or by cylinders, have common modes.
 
     Args:
-        boom: boom with joints, bonded or with play, flat or in space.
+        boom: boom with joints, bonded or with play, planar or three-dimensional.
         models: model of each segment.
 
     Attributes:

@@ -45,9 +45,9 @@ class Stiffness:
     """Effective stiffness of a segment as a beam.
 
     Args:
-        bending: E J in N·m² for z, and in space for y.
-        shear: G A_s in N for z, and in space for y.
-        torsion: G J_t in N·m² in space.
+        bending: E J in N·m² for z, in three-dimensional booms also for y.
+        shear: G A_s in N for z, in three-dimensional booms also for y.
+        torsion: G J_t in N·m² of three-dimensional booms.
     """
 
     bending: tuple[float, ...]

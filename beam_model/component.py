@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Components of the motion of a segment, and their natural modes.
 
-The components are deflection along z, in space also deflection along y and twist. They are
+The components are deflection along z, in 3-D booms also deflection along y and twist. They are
 uncoupled in a straight segment with a symmetric section.
 """
 
@@ -145,7 +145,7 @@ class BeamMember:
 
 @dataclass(frozen=True, slots=True)
 class SegmentModel:
-    """Components of a segment: ``z``, and in space also ``y`` and ``twist``."""
+    """Components of a segment: ``z``, in 3-D booms also ``y`` and ``twist``."""
 
     components: Mapping[Motion, Component]
 

@@ -4,7 +4,7 @@
 The moment is M = −E J θ′. The shear force is normal to the straight axis; with an axial force P it
 is M′ − P w′. Its mean over an element is exact: under a uniform load q, the moment of an element of
 length h has an error of q h²/12 at both ends, but none in its mean slope. Between point forces,
-shear forces are interpolated linearly from the middles of elements.
+shear forces are interpolated linearly between the centres of elements.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Gap systems of beams: series, finite elements and rigid segments, flat or in space."""
+"""Gap systems of beams: series, finite elements and rigid segments, planar or three-dimensional."""
 
 from __future__ import annotations
 

@@ -154,7 +154,7 @@ def _contact_rows(boom: Boom) -> list[tuple[Pad, Side]]:
 
 
 def _pad_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
-    """Return the area of a pad in space, or of a symmetric pair of pads in a flat boom."""
+    """Return the area of a pad; in a planar boom, of a symmetric pair of pads."""
     assert pad.patch is not None
     near, far = pad.patch.across(inner.section_at(pad.x).face(pad.direction, side))
     halves = (1, -1) if pad.face is None else (pad.half,)

@@ -207,7 +207,7 @@ class PowerContact(ContactLaw):
 
     @property
     def below(self) -> float:
-        """The stiffness k₁ in N/mⁿ."""
+        """The stiffness k₁ in N/mⁿ at negative displacement."""
         return self.stiffness if self.stiffness_below is None else self.stiffness_below
 
     @property

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Construction of gap systems from contacts, friction and observations, for beams and shells.
 
-A reading denotes a displacement of a model, from which a row over its modes follows. A beam adds
-rows as readings. A shell is first reduced for its readings, and rows follow in the reduced modes.
+A reading is a displacement operator of a model; its row gives the displacement from the modes. For
+a beam the operators are rows already. A shell is first reduced for its operators, and the rows
+follow in the reduced modes.
 The rules of contact and friction are the same for both.
 """
 
@@ -25,7 +26,7 @@ L = TypeVar("L")
 
 
 class LawRow(NamedTuple, Generic[R, L]):
-    """Contact or friction row: reading of its displacement, law, and index of its station."""
+    """Contact or friction row: displacement operator, law, and index of its station."""
 
     reading: R
     law: L
@@ -37,7 +38,7 @@ class LawRow(NamedTuple, Generic[R, L]):
 
 
 class Dashpot(NamedTuple, Generic[R]):
-    """Dashpot at a station: coefficient in N·s/m, and (weight, reading) of each point."""
+    """Dashpot at a station: coefficient in N·s/m, and (weight, operator) of each point."""
 
     coefficient: float
     station: int
@@ -50,7 +51,7 @@ class Dashpot(NamedTuple, Generic[R]):
 
 
 class ObservedReading(NamedTuple, Generic[R]):
-    """Output as in :class:`dynamics.gap_system.Observer`, with a reading in place of its row."""
+    """Output as in :class:`dynamics.gap_system.Observer`, with a displacement operator."""
 
     reading: R
     unit: str = "m"
@@ -79,11 +80,17 @@ class GapBuilder(Generic[R]):
         points: Iterable[tuple[int, float, R]],
         shim: float = 0.0,
     ) -> tuple[int, ...]:
-        """Add a contact row for each point (side, weight, reading of the displacement).
+        """Add a contact row for each point (side, weight, displacement operator).
 
-        Side 1 is contact at positive displacement, −1 at negative displacement, each with the
-        weight as factor of the law; side 0 is the whole law. A side without contact in the law has
-        no row. A shim of ``shim`` in m closes the contact earlier by this length.
+        Side 1 is contact at positive displacement only, −1 at negative displacement only, each with
+        the law scaled by the weight. Side 0 is contact on both sides, with the unscaled law. A side
+        without contact in the law has no row.
+
+        Args:
+            station: index of the station.
+            law: contact law of the station.
+            points: contact points.
+            shim: length in m by which the contact closes earlier.
 
         Returns:
             The indices of the rows.
@@ -117,7 +124,7 @@ class GapBuilder(Generic[R]):
         Args:
             station: index of the station.
             coefficient: μ.
-            slide: reading of the sliding displacement.
+            slide: operator of the sliding displacement.
             normal_force: prescribed normal force in N; None for the force of the contact rows.
             pressing: indices of the contact rows.
         """
@@ -172,7 +179,7 @@ class GapBuilder(Generic[R]):
         """Return the gap system in modal coordinates.
 
         Args:
-            read: function that returns the row (num_modes,) of a reading.
+            read: function that returns the row (num_modes,) of a displacement operator.
             omega2, load: ω² and load (num_modes,) of the modes.
             places: x in m and direction of each station.
             observed: outputs of a trajectory, by name.

@@ -142,7 +142,7 @@ class Boom:
     def stations(self) -> list[tuple[float, Direction]]:
         """The x in m and the direction of all contact stations, without bonded joints.
 
-        The order is: joints along z, in space joints along y, stops.
+        The order is: joints along z, in three-dimensional booms joints along y, stops.
         """
         return self._stations_of_joints + [(stop.x, "z") for stop in self.stops]
 

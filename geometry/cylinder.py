@@ -98,7 +98,7 @@ class Cylinder:
 
         Args:
             where: attribute of the boom, for example ``cylinders[0]``.
-            spatial: whether the boom moves in space.
+            spatial: whether the boom is three-dimensional.
 
         Raises:
             BoomError: the cylinder has no length, or a flat boom has two side by side.

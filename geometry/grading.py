@@ -52,7 +52,7 @@ def graded_mesh(
 
     Args:
         section, breaks, closed, across: as in :func:`mesh_segment`.
-        size: mesh size in m, the side of a square with the area of a rectangle far from all zones.
+        size: mesh size in m outside all zones: the square root of the area of a rectangle.
         zones: refinement zones.
 
     Raises:

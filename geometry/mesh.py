@@ -224,7 +224,7 @@ def _restore_signal_handlers() -> None:
 class _Ring(NamedTuple):
     """Points of gmsh around a section, and the curves of each half plate from point i on.
 
-    Points of even index are corners, points of odd index are middles of plates.
+    Points of even index are corners, points of odd index are centres of plates.
     """
 
     points: Sequence[int]

@@ -19,7 +19,7 @@ Quantity = Literal[Recorded, "distortion"]
 # Displacements of a cross-section, which are linear in the coordinates of a model.
 Read = Literal["deflection", "rotation", "distortion", "lateral", "twist"]
 
-# Displacements that only booms in space have.
+# Displacements that only three-dimensional booms have.
 SPATIAL_QUANTITIES: tuple[Read, ...] = ("lateral", "twist")
 
 

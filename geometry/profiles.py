@@ -102,10 +102,10 @@ def u_section(
 def _mirrored(
     twice: Sequence[tuple[float, float]] | Array, thicknesses: Sequence[float]
 ) -> PolygonSection:
-    """Return the section of a right half and its mirror image.
+    """Return the symmetric section with the given right half.
 
     Args:
-        twice: 2 (y, z) in m of the corners of the right half (num_corners, 2), upwards.
+        twice: doubled (y, z) in m of the right half's corners (num_corners, 2), upwards.
         thicknesses: thicknesses in m of the bottom, the plates between the corners, and the top.
     """
     right = 0.5 * np.array(twice)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Check of support: supports, cylinders, joints and stops must prevent all rigid motions.
 
-Rigid motions of a segment are translation along z and rotation in the plane x-z; in space also
+Rigid motions of a segment are translation along z and rotation in the plane x-z; in 3-D also
 those in the plane x-y, and rotation about the axis. Each restraint is a row over the rigid motions
 of all segments. The boom is supported if only zero motion satisfies rows · motion = 0. If a
 one-sided stop is necessary, the loads at t = 0 must press the segment against it.
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 # Fraction of the largest row or force below which a remainder is round-off.
 _ROUND_OFF = 1.0e-9
 
-# Number of rigid motions of a segment in the plane, and in space.
+# Number of rigid motions of a segment in planar and in three-dimensional booms.
 _FLAT, _SPATIAL = 2, 5
 
 
@@ -37,7 +37,7 @@ def check_supported(boom: Boom) -> None:
     """Check that supports, cylinders, joints and stops prevent all rigid motions.
 
     Args:
-        boom: boom whose parts are on their segments.
+        boom: boom whose supports, cylinders, joints and stops lie within their segments.
 
     Raises:
         BoomError: a segment can move as a rigid body.
@@ -109,7 +109,7 @@ class _RigidBody(Member):
 
     @property
     def motions(self) -> slice:
-        """The degrees of freedom of the segment: for z, in space also for y and twist."""
+        """The degrees of freedom of the segment: for z, in 3-D booms also for y and twist."""
         count = _SPATIAL if self.boom.spatial else _FLAT
         return slice(count * self.number, count * (self.number + 1))
 

@@ -43,7 +43,7 @@ class TelescopingStations:
 
     @property
     def suffix(self) -> str | None:
-        """The suffix for the names of results; None for several joints."""
+        """The suffix of result names; None for a stop that several joints move."""
         if len(self.joints) > 1:
             return None
         return "" if self.joints[0] == 0 else f"-{self.joints[0] + 1}"
@@ -126,9 +126,11 @@ def sample_extensions(boom: Boom) -> list[dict[int, float]]:
 
 
 def station_positions(joint: Joint, extension: float) -> list[tuple[float, float]]:
-    """Return (x on the outer segment, x on the inner segment) in m of each station.
+    """Return each station's material coordinates (x of outer, x of inner segment) in m.
 
-    The x are material coordinates at an ``extension`` in m.
+    Args:
+        joint: joint, with or without a drive.
+        extension: extension in m since t = 0.
     """
     carriers = () if joint.drive is None else joint.drive.carriers
     return [

@@ -260,7 +260,7 @@ def _joints(case: Case, boom: Boom) -> Table:
 
 
 def _clearances(joint: Joint) -> Iterator[str]:
-    """Yield the clearances of a joint in mm, along z, and in space along y."""
+    """Yield the clearances of a joint in mm, along z, in 3-D booms also along y."""
     sides: Mapping[Direction, tuple[str, str]] = {"z": ("above", "below"), "y": ("right", "left")}
     for direction, names in sides.items():
         if direction == "y" and joint.lateral_play is None:
@@ -313,8 +313,8 @@ def axial_forces(boom: Boom, found: Statics | None) -> Table:
     """Return the table of each segment's extreme axial force, positive in compression.
 
     Args:
-        boom: that of a case.
-        found: its static states, whose cylinders push the boom along; None without an equilibrium.
+        boom: boom of the case.
+        found: static states, which give the cylinder forces; None without an equilibrium.
     """
     if not boom.compressed and not boom.cylinders:
         return Table("", [])

@@ -81,7 +81,7 @@ class BoomShell:
         stations: x in m and direction of each station.
         touching: possible contacts, friction and dashpots at any extension.
         rows: rows of contacts, friction and dashpots at t = 0.
-        ties: readings that bonded joints constrain to zero.
+        ties: displacement operators that bonded joints constrain to zero.
         own_loads: uniform load vector (num_owned,) of each segment in N, constant from t = 0 on.
         loads: loads with a history, and their load vectors (num_owned,).
         observed: outputs of a motion.
@@ -119,7 +119,7 @@ class BoomShell:
 
     @property
     def joint_readings(self) -> list[Reading]:
-        """The readings of contacts, then of friction."""
+        """The displacement operators of contacts, then of friction."""
         contacts = [contact.reading for contact in self.rows.contacts]
         return contacts + [friction.reading for friction in self.rows.frictions]
 
@@ -142,7 +142,7 @@ class BoomShell:
         return self.columns(number, [*self.joint_readings, *self.ties])
 
     def columns(self, number: int, readings: Iterable[Reading]) -> Array:
-        """Return the rows of readings of a segment as columns (num_owned, num_rows). Collective."""
+        """Return a segment's operators as columns (num_owned, num_rows). Collective."""
         shell = self.shells[number]
         rows = [shell.row(reading[number]) for reading in readings if number in reading]
         return np.array(rows).reshape(-1, shell.free.size).T

@@ -78,7 +78,7 @@ _ASSEMBLE_DIAGONAL = (
 
 
 def create_triangle_mesh(comm: MPI.Comm, points: Array, triangles: Indices) -> Any:
-    """Create a distributed mesh of flat triangles in space, up to three on an edge.
+    """Create a distributed mesh of flat triangles in three dimensions, up to three on an edge.
 
     Args:
         comm: the ranks that share the mesh.

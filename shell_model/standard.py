@@ -49,7 +49,7 @@ def with_plays_and_loads(shell: ReducedShell, boom: Boom) -> ReducedShell:
         if not (joint.bonded or boom.spatial or _shimmed(joint))
         for _ in joint.stations
     ]
-    # Rows of stops, and all rows in space, already have their clearances.
+    # Rows of stops, and all rows of 3-D booms, already have their clearances.
     more += [(0.0, 0.0)] * (len(system.stations) - len(more))
     factors = np.array([_own_load(segment) for segment in boom.segments])
     changing = [load for load in boom.loads if _changing(load)]

@@ -211,7 +211,7 @@ class TelescopingShell:
     def _with_few_modes(
         self, number: int, segment: ReducedSegment, columns: Array
     ) -> ReducedSegment:
-        """Return the segment in modes that pads excite, and responses to all other forces.
+        """Reduce a segment to the modes that pads excite and responses to all other forces.
 
         ``columns`` (num_owned, num_columns) are the rows of pads at all extensions.
         """

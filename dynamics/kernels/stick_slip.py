@@ -62,7 +62,7 @@ _WEIGHTS = np.array([9.0, 49.0, 64.0, 49.0, 9.0]) / 180.0
 def motion_after(
     body: SlidingMass, state: Array, interval: LinearInterval, time: float
 ) -> tuple[float, float, float]:
-    """Return z in m, ṡ in m/s and the force without friction in N after a time in this phase."""
+    """Return the lag in m, ṡ in m/s and the drive force in N after ``time`` in this phase."""
     if state[SIGN] == 0.0:
         lag, rate = state[LAG] + interval.rate * time, interval.rate
     else:

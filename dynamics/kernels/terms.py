@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Terms of contact laws in compiled loops: force, energy, slope and discrete gradient.
 
-:mod:`dynamics.contact_term` has the formulas of the first three. It does not import numba, since
-that takes longer than the check of a case.
+The formulas of the first three are in :mod:`dynamics.contact_term`, which does not import numba:
+the import takes longer than the check of a case.
 """
 
 from __future__ import annotations

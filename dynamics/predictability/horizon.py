@@ -78,7 +78,7 @@ class Growth:
         return cls(float(-1.0 / slope), float(start), scatter)
 
     def change(self, time: float) -> float:
-        """Return the ε whose horizon is ``time`` in s."""
+        """Return the relative change ε of the loads with a horizon of ``time`` in s."""
         return float(np.exp(self.rate * (self.start - time)))
 
 

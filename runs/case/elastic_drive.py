@@ -113,7 +113,7 @@ def _drives(case: Case) -> Iterator[tuple[int, JointTable, DriveTable]]:
 
 
 def _moved_mass(boom: Boom, *joints: int) -> float:
-    """Return the mass in kg of the segments that all these joints' drives move together."""
+    """Return the mass in kg of the segments that every one of these joints' drives moves."""
     return sum(
         segment.mass
         for number, segment in enumerate(boom.segments)

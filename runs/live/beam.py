@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Results of the beam of a changed case: static results first, then motion."""
+"""Results of the live page's beam model for edited values: static results first, then motion."""
 
 from __future__ import annotations
 

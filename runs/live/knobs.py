@@ -83,7 +83,7 @@ class Knob:
 
 @dataclass(frozen=True)
 class Draft:
-    """Case whose numbers change; inferred plates stay those of the file.
+    """Case with editable numeric values; inferred plates stay those of the file.
 
     Args:
         file: file of the case.
@@ -128,7 +128,7 @@ class Draft:
 
     @property
     def keys(self) -> list[str]:
-        """The keys of all numbers."""
+        """The keys of all numeric values of the case that the page can edit."""
         return list(self._numbers)
 
     def knobs(self) -> list[Knob]:
@@ -223,7 +223,7 @@ class Draft:
             raise BadInput.from_validation(self.file, error) from None
 
     def with_shell(self, case: Case) -> Case:
-        """Return a changed case with the beam of the page and its shells, one of its own if none.
+        """Return an edited case with the page's beam and the case's shells, a default if none.
 
         Raises:
             BadInput: the case is invalid.
@@ -234,7 +234,7 @@ class Draft:
         return reading.check(both, self.file).case
 
     def beam(self, case: Case) -> CheckedCase:
-        """Return a changed case with the beam of the page as its only model, after all checks.
+        """Return a validated edited case whose only model is the live page's beam.
 
         Raises:
             BadInput: the case is invalid.

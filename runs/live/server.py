@@ -47,9 +47,9 @@ class LivePage:
     """Live page of a case, for any number of tabs.
 
     Args:
-        draft: the case.
+        draft: case with editable values.
         token: first part of the path of each address.
-        shells: runs of its shells.
+        shells: runs of the shell models of the case.
     """
 
     draft: Draft

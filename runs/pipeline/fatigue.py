@@ -71,7 +71,7 @@ def details(case: Case, boom: Boom) -> Iterator[Detail]:
 
 
 def detail_damages(case: Case) -> list[tuple[Detail, Damage]]:
-    """Return the governing detail of each name with its damage under all spectra of a case.
+    """Return the governing detail per detail name, with its damage under all spectra.
 
     The result is empty without spectra or without the package ``rainflow``.
 

@@ -58,7 +58,7 @@ class StaticExtreme(NamedTuple):
 
 
 class StaticBeam(NamedTuple):
-    """A boom of beam elements at rest under the loads of several instants.
+    """Static states of a boom of beam elements under the loads at several times.
 
     Args:
         boom: the boom, without drives.
@@ -202,7 +202,7 @@ class StaticBeam(NamedTuple):
 
 
 def weakest_at_rest(beam: StaticBeam) -> list[PanelBuckling]:
-    """Return the wall of each segment that buckles first in any of the static states."""
+    """Return the wall of each segment with the lowest buckling factor over all static states."""
     found: dict[str, PanelBuckling] = {}
     for rest in beam.rests:
         for one in weakest_panels(beam.boom.segments, rest):

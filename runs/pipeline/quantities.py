@@ -107,7 +107,7 @@ def measure(results: Results, model: str) -> Quantities:
 
 
 def decay_time(ratio: float, frequency: float | None) -> float | None:
-    """Return the time in s in which modal damping reduces a vibration to 10 %; None without it."""
+    """Return the time in s in which damping reduces a vibration to 10 %; None if undamped."""
     return (
         log(1.0 / DECAYED_SHARE) / (2.0 * pi * ratio * frequency) if ratio and frequency else None
     )

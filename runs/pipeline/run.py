@@ -80,7 +80,11 @@ class Run:
     def _evaluate_models(
         self, complete: Callable[[ModelEvaluation, ModelDesignResults], ModelDesignResults]
     ) -> dict[str, ModelDesignResults]:
-        """Return the design results of each model, which a function completes."""
+        """Return the design results of each model, by name.
+
+        Args:
+            complete: function that adds further results to the design results of a model.
+        """
         case, boom, summary = self.results.case, self.results.boom, self.results.summary
         design = {}
         for name, ran in self.model_runs.items():

@@ -231,7 +231,7 @@ def static_result(
     Args:
         boom: the boom, with the play of the system.
         system: system of the model.
-        lines: lines along the segments.
+        lines: output points along each segment, with rows of deflections and section forces.
         time: time in s of the loads and of the extension.
         position: equilibrium (num_modes,).
     """

@@ -90,7 +90,7 @@ def end() -> None:
 
 
 def _start(prepare: Callable[[], object]) -> None:
-    """Initialise a worker that is no rank, ends with its parent and ignores interrupts."""
+    """Initialise a worker that is not an MPI rank, exits with its parent, ignores interrupts."""
     show_notices()
     for name in [name for name in os.environ if name.startswith(_RANK_PREFIXES)]:
         del os.environ[name]

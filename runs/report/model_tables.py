@@ -178,7 +178,7 @@ def law_table(results: Results) -> Table | None:
 
 
 def space_table(results: Results) -> Table | None:
-    """Return the table of first peaks along y and z; None for a planar boom."""
+    """Return the table of first tip peaks along z and y; None for a planar boom."""
     models, duration = results.summary.models, results.case.time.duration
     reference = results.reference
     if reference is None or "tip_lateral" not in models[reference].first_peak:

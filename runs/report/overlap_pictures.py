@@ -104,7 +104,7 @@ class OverlapView:
 
     @property
     def stress(self) -> ShellStress:
-        """The stresses of the shell; beams have no walls in a sectional view."""
+        """The stresses of the shell; only shells have sectional views."""
         assert self.scene.stress is not None
         return self.scene.stress
 

@@ -24,7 +24,7 @@ TONES = {"✓": "yes", "✗": "no", "?": "open"}
 
 @dataclass(frozen=True, slots=True)
 class Addition:
-    """Additions of a client to the report of a run.
+    """Content that a calling program adds to the report of a run.
 
     Args:
         template: path of a template that extends ``report.html`` and fills its blocks ``added_…``.

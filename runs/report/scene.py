@@ -116,7 +116,7 @@ class Scene:
 
     @classmethod
     def views(cls, fields: xr.Dataset, motion: xr.Dataset, case: Case) -> list[Scene]:
-        """Return the scenes of a shell: seen from the side, in space also from above.
+        """Return the scenes of a shell: seen from the side, in 3-D booms also from above.
 
         For the view from above the boom is rotated about x, so that y points up.
 

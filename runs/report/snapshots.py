@@ -74,7 +74,7 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
     Args:
         views: scenes of its motion, see :meth:`Scene.views`.
         folder: folder of the files ``boom-WHEN.png``, ``overlap-WHEN.png`` (from the second joint
-            on ``overlap-2-WHEN.png``), ``stress-WHEN.png``, and in space ``boom-above-WHEN.png``.
+            on ``overlap-2-WHEN.png``), ``stress-WHEN.png``, in 3-D also ``boom-above-WHEN.png``.
         times: times in s; those of :func:`characteristic_instants` unless given.
 
     Returns:

@@ -89,7 +89,7 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
 
 
 def print_ranges(data: xr.Dataset, plan: Plan, console: Console) -> None:
-    """Print the ranges of the results of each model, distances, and admissible speeds."""
+    """Print each model's range of results, differences of models, and admissible speeds."""
     keys = [variable.name for variable in data.coords.values() if variable.name != "model"]
     by_name = {quantity.name: quantity for quantity in QUANTITIES}
     shown, residual = [by_name[name] for name in SHOWN], by_name["energy_residual"]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rows of contacts, friction and bonded joints between the shells of a boom.
 
-At a station, contact is possible above and below the inner segment, in space also at its sides. The
+At a station, contact is possible above and below the inner segment, in 3-D also at its sides. The
 joint determines the sides, since facet normals of a mesh have arbitrary signs. With surface
 contact, stations have friction only. The weights of points on each wall sum to one, so that a
 uniform displacement gives the contact law exactly.
@@ -31,7 +31,7 @@ _SIDES: tuple[Side, Side] = (1, -1)
 _POINTS = 4
 
 
-# Contact point: side, weight, and reading of the relative displacement u − w.
+# Contact point: side, weight, and operator of the relative displacement u − w.
 _Point = tuple[Side, float, Reading]
 
 
@@ -50,7 +50,7 @@ class _PadReadings:
     walls: Sequence[WallPoints]
 
     def contact(self, line: ContactLine) -> tuple[list[_Point], Reading]:
-        """Return the contact points of the pad, and the reading of its sliding. Collective."""
+        """Return the contact points of the pad, and the operator of its sliding. Collective."""
         pad = self.pad
         if pad.joint.lateral_play is not None:
             if pad.patch is None:
@@ -76,7 +76,7 @@ class _PadReadings:
         return points, sum(others, first)
 
     def at_corners(self, direction: Direction, inner: Offset, outer: Offset) -> Reading:
-        """Return the reading u − w on the corners at offsets (y, z) in m."""
+        """Return the operator of u − w on the corners at offsets (y, z) in m."""
         places = zip(self._ends, self.pad.intervals, (inner, outer), strict=True)
         rows = (self.corners[n].deflection(at, direction, *offset) for n, at, offset in places)
         return self._approach(*rows)
@@ -197,7 +197,7 @@ class ShellContacts:
 
 
 def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
-    """Return the constraints of bonded joints: deflections, and in space twist. Collective.
+    """Return the constraints of bonded joints: deflections, in 3-D booms also twist. Collective.
 
     Their forces act in the planes of walls.
     """

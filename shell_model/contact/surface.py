@@ -59,7 +59,7 @@ class SurfacePoint(NamedTuple):
     """Contact point of a surface; in a flat boom a symmetric pair of points.
 
     Args:
-        reading: reading of u − w, the mean for a pair.
+        reading: operator of the relative displacement u − w, the mean for a pair.
         law: one-sided contact law, with the penalty times the area of the point.
         station: index of the nearest station of the joint in the same direction.
         side: side of the inner segment in contact, 1 or −1.
@@ -129,7 +129,7 @@ def _on_wall(
     stations = np.abs(np.subtract.outer(x, joint.stations)).argmin(axis=1) + first
 
     def approaches(half: int) -> list[Reading]:
-        """Return the readings of u − w along the normal at the points of one half."""
+        """Return the operators of u − w along the normal at the points of one half."""
         places, ends = np.column_stack([x, half * beside]), (joint.inner, joint.outer)
         rows = (walls[number].rows(wall, places, wall.normal) for number in ends)
         return [

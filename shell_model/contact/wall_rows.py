@@ -24,7 +24,7 @@ from shell_model.segment.segment_shell import SegmentShell
 
 
 class _CornerLine(NamedTuple):
-    """Displacement nodes along a corner, alternately ends and middles of edges.
+    """Displacement nodes along a corner, alternately ends and midpoints of edges.
 
     Args:
         x: (num_nodes,) x in m, ascending.

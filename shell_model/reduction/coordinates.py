@@ -32,7 +32,7 @@ class BoomCoordinates:
     Args:
         comm: ranks that share the shells.
         shells, reduced: shell and reduced coordinates of each segment.
-        ties: readings that bonded joints constrain to zero.
+        ties: displacement operators that bonded joints constrain to zero.
         lines: springs to the ground, which the shells do not include.
 
     Attributes:
@@ -74,7 +74,7 @@ class BoomCoordinates:
             self._combination = tied @ turn
 
     def row(self, reading: Reading) -> Array:
-        """Return the row (num_modes,) of a reading, the same on every rank."""
+        """Return the row (num_modes,) of a displacement operator, the same on every rank."""
         rows = [self.push(number, self._shells[number].row(row)) for number, row in reading.items()]
         return np.asarray(np.sum(rows, axis=0))
 

@@ -213,7 +213,12 @@ class _Basis:
         self._append(solve(pushes[:, sizes > _DEPENDENT * sizes.max(initial=0.0)]))
 
     def errors(self, full: Sequence[_FullResponse], rows: Array) -> tuple[float, float]:
-        """Return the relative errors of the compliance and of the response of outputs."""
+        """Return the relative errors of the compliance and of the response at outputs.
+
+        Args:
+            full: responses of the full model at the sample frequencies.
+            rows: output rows (num_rows, num_outputs).
+        """
         gains, read = self._vectors.T @ self._forces, self._vectors.T @ rows
         compliance = transfer = 0.0
         for response in full:

@@ -96,7 +96,7 @@ def mirror_to_cell(places: Array, mirrors: Sequence[Direction]) -> Array:
 
 
 def on_plane(places: Array, axis: int) -> Mask:
-    """Return the mask (num_places,) of points (num_places, 3) in the mirror plane of an axis."""
+    """Return the mask (num_places,) of points (num_places, 3) on the plane normal to an axis."""
     return np.asarray(np.abs(places[:, axis]) <= _near(places))
 
 

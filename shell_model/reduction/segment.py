@@ -66,7 +66,7 @@ def reduce_segment(
         inputs: load vectors (num_owned, num_inputs); they may be zero or dependent.
         options: shifts and moments, or a tolerance.
         progress: callback that receives the completed fraction, 0 to 1.
-        readings: rows (num_owned, num_readings) of outputs, whose error is also measured.
+        readings: output rows (num_owned, num_readings), whose error is also measured.
         helper: second process, which reduces every second symmetry class of this rank.
 
     Raises:

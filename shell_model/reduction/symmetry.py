@@ -71,7 +71,7 @@ class SymmetryCell:
 
     @cached_property
     def plates(self) -> Plates:
-        """The plates of the cell on this rank, with the matrices of the whole segment."""
+        """The mesh of the cell on this rank, with matrices that count all images of the cell."""
         copies = 2.0 ** len(self.mirrors)
         return assemble_plates(MPI.COMM_SELF, self.segment, self.mesh, copies)
 
@@ -147,7 +147,7 @@ class Job:
 
     Args:
         symmetry_class: the symmetry class.
-        forces, readings: load vectors and rows of outputs (num_rows, num_columns) on the cell,
+        forces, readings: load vectors and output rows (num_rows, num_columns) on the cell,
             sums over all images.
         springs, masses: springs and masses of the segment on the rows of the cell.
     """
@@ -211,9 +211,9 @@ class SymmetryReduction:
             self._component[dofs - first] = _COMPONENTS[part]
 
     def jobs(self, inputs: Array, readings: Array) -> list[Job]:
-        """Return the jobs of all classes that an input excites, on rank 0. Collective.
+        """Return a job for each symmetry class that an input excites, on rank 0. Collective.
 
-        Inputs and readings are (num_owned, num_columns) on the whole segment.
+        Inputs and output rows (``readings``) are (num_owned, num_columns) on the whole segment.
         """
         shell = self.shell
         blocks = inputs, readings, shell.springs.rows, shell.masses.rows
@@ -276,7 +276,10 @@ class SymmetryReduction:
         return self._comm.gather(mine)
 
     def _images(self, gathered: list[_Entries]) -> Array:
-        """Return the images (4, num_rows, num_columns) of a block, halved on mirror planes."""
+        """Return the images (4, num_rows, num_columns) of a block.
+
+        Entries on a mirror plane are shared equally by both images.
+        """
         images = np.zeros((4, self.cell.component.size, gathered[0].columns))
         for entries in gathered:
             images[entries.image, entries.row, entries.column] = entries.value

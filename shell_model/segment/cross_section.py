@@ -47,7 +47,7 @@ class Reading(dict[int, Row]):
     """Displacement of a boom: rows by index of the segment."""
 
     def __add__(self, other: Reading) -> Reading:
-        """Return the sum of two readings."""
+        """Return the sum of two displacement operators."""
         both = {number: self.get(number, Row()) + row for number, row in other.items()}
         return Reading(self | both)
 
@@ -180,7 +180,7 @@ class SectionNodes:
         return Row.from_weights(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
 
     def _along(self, plate: Plate) -> tuple[Indices, Array]:
-        """Return the nodes of a plate, alternately ends and middles, and their positions in m.
+        """Return the nodes of a plate, alternately ends and midpoints, and their positions in m.
 
         They are in the order of y, or of z if the plate is steep.
         """

@@ -114,9 +114,9 @@ class SegmentShell(Shell):
         return np.asarray(inertia)
 
     def _loads_on(self, thickness: Callable[[PlatedMesh], Array]) -> dict[Direction, Array]:
-        """Return load vectors (num_owned,) of 1 N/m³ on a thickness in m. Collective.
+        """Return load vectors (num_owned,) of a body force of 1 N/m³. Collective.
 
-        The function ``thickness`` returns it (num_triangles,). Loads are zero in fixed rows, and
+        ``thickness`` returns thicknesses (num_triangles,) in m. Loads are zero in fixed rows, and
         exactly zero at vertices, where the integral of a quadratic shape function vanishes.
         Elsewhere at most two cells contribute in a plain box, so that the order of summation has no
         effect.

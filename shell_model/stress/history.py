@@ -50,7 +50,7 @@ class PlaceHistory:
 
 @dataclass(frozen=True, slots=True)
 class StressHistory:
-    """Largest stresses near each place in intervals of a run, whose middles are in s."""
+    """Largest stresses near each place in intervals of a run, with their centres in s."""
 
     time: list[float]
     places: list[PlaceHistory]

@@ -19,7 +19,7 @@ BOX = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)
 
 @pytest.fixture(scope="session")
 def beam(steel: Material) -> Callable[..., Segment]:
-    """Return a beam of the box above on [3, 8] m; numbers are pinned supports."""
+    """Return a factory of beams of BOX on [3, 8] m; numbers in ``supports`` are pinned supports."""
 
     def make(*, supports: Sequence[float | Support] = (), **changes: Any) -> Segment:
         numbers: dict[str, Any] = {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Beams calibrated by what answers their probes."""
+"""Beams calibrated by the compliances of a shell or of another beam."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Beams under axial forces: segments that tip over, both planes, bonded and resting booms."""
+"""Beams under axial forces: unstable segments, both planes, bonded booms and booms at rest."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ def test_rigid_motions_stay_where_pushes_leave_no_room() -> None:
     np.testing.assert_allclose(elastic_compliance(few), elastic_compliance(whole), rtol=1e-8)
 
 
-def test_few_coordinates_are_left_as_they_are() -> None:
+def test_condense_returns_a_small_system_unchanged() -> None:
     """Reference: non-regression, the same object."""
     few = system(12)
     assert condense(few, 12)[0] is few

@@ -141,8 +141,8 @@ def test_a_hinge_that_resists_rotation(
     beam: Beam, model_of: Callable[[Segment], Component], stiffness: float
 ) -> None:
     """Reference: analytic, between a pinned and a clamped end (Blevins 1979):
-    (kL/EJ) (1 + cos βL cosh βL) = βL (sin βL cosh βL − cos βL sinh βL). On the soft one the beam is
-    nearly rigid, ω² = 3k/m̄L³, and the highest mode's round-off takes up to 2e-5 of that.
+    (kL/EJ) (1 + cos βL cosh βL) = βL (sin βL cosh βL − cos βL sinh βL). On the soft spring the beam
+    is nearly rigid, ω² = 3k/m̄L³, and the highest mode's round-off takes up to 2e-5 of that.
     """
     segment = beam(supports=(Support(3.0, rotation_stiffness=stiffness),))
     model = model_of(segment)

@@ -67,7 +67,7 @@ def first_frequency(state: StaticState) -> float:
     return float(closed_contact_modes(state.system, state.position)[0][0]) / (2.0 * np.pi)
 
 
-def test_the_boom_alone_is_that_of_the_first_check(tmp_path: Path) -> None:
+def test_values_of_the_first_check(tmp_path: Path) -> None:
     """Reference: the page, to its digits."""
     text = toml_blocks("tutorial.md")[0]
     path = tmp_path / "my-lift.toml"

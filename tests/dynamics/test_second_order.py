@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Modes that axial forces soften, and motions that tip over until a contact holds them."""
+"""Modes softened by axial forces, and unstable motions limited by contact."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ LENGTH, STIFFNESS, MASS = 10.0, 1.0e7, 100.0
 
 
 def sines(x: float, count: int) -> Array:
-    """Its mass-normalised modes at x in m."""
+    """Return the mass-normalised modes of the beam at x in m."""
     k = np.arange(1, count + 1)
     return np.asarray(np.sqrt(2.0 / (MASS * LENGTH)) * np.sin(k * np.pi * x / LENGTH))
 
@@ -92,7 +92,7 @@ def rider(
 
 
 def lossy(history: History, **changes: Any) -> GapSystem:
-    """Return a rider with friction, damping of every kind, a ramped load, and two-sided play."""
+    """Return a mass that moves along the beam, with friction, dampers, a ramped load and play."""
     law = PowerContact(1.0e6, 1.5, damping=0.5).behind(1.0e-4)
     rubbing = DryFriction(0.3, 0, normal_force=400.0)
     system = rider(history, law, mass=20.0, weight=2.0e3, start=2.0, frictions=[rubbing], drag=50.0)
@@ -171,8 +171,8 @@ def test_it_runs_back_as_it_came() -> None:
     assert np.abs(home.states[::-1] - out.states).max() < 1.0e-9 * np.abs(out.states).max()
 
 
-def test_the_drive_against_friction() -> None:
-    """Reference: analytic, μ Σ|N| sign(ṡ), with the contact force and what is prescribed."""
+def test_drive_friction_force() -> None:
+    """Reference: analytic, μ Σ|N| sign(ṡ) of the contact and the prescribed normal force."""
     system = lossy(Stroke(-1.0, 5.0, ramp=0.05, start=0.1))
     run = FixedStep(1.0e-4)(Motion(system, 0.5, 1.0e-3))
     force = np.abs(run.data["contact_force"].values[:, 0])

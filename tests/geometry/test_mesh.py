@@ -46,7 +46,7 @@ def mesh() -> SegmentMesh:
 
 @pytest.fixture(scope="module")
 def closed_mesh() -> SegmentMesh:
-    """Return the same mesh with a plate at 9 m and one at the head."""
+    """Return the mesh of BOX with a diaphragm at 9 m and an end plate at the head."""
     return mesh_segment(BOX, BREAKS, 0.1, closed=CLOSED)
 
 

@@ -54,10 +54,10 @@ def drawn(
     [(6.5 + 4.8 - 6.0, 11.3, 0.7, 0.5), (0.5, 6.8, -0.3, 0.0)],
     ids=["out", "in"],
 )
-def test_all_of_the_way_may_be_used(
+def test_travel_may_reach_the_least_overlap(
     steel: Material, start: float, end: float, travel: float, least: float
 ) -> None:
-    """1.2 - 0.7 = 0.5 m of overlap are left; 0.3 m of the fly are out. In binary it is less."""
+    """1.2 - 0.7 = 0.5 m of overlap are left, 0.3 m of the fly are out; both less by round-off."""
     assert drawn(steel, start, end, travel, least).driven
 
 

@@ -12,15 +12,15 @@ CONTACT = next(line for line in COARSE.splitlines() if line.startswith("contact 
 # From the law of its joint on, for slips in several lines of it.
 FROM_EXPONENT = COARSE[COARSE.index("exponent = 2.0") :]
 
-# What stands in the case, what replaces it, and the line that this slip earns.
+# Input error: text of the case, its replacement, and the expected message.
 Slip = tuple[str, str, str]
 
 
 def replacing(text: str, slips: Mapping[str, str]) -> list[Slip]:
-    """Return the slips of a text of the case, each with its line by what replaces the text."""
+    """Return input errors: a text of the case, its replacement, and the expected message."""
     return [(text, slip, line) for slip, line in slips.items()]
 
 
 def adding(text: str, slips: Mapping[str, str]) -> list[Slip]:
-    """Return slips below a text of the case, each with its line by what is added."""
+    """Return input errors by lines added below a text of the case."""
     return replacing(text, {f"{text}\n{slip}": line for slip, line in slips.items()})

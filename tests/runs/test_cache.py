@@ -59,8 +59,8 @@ def test_an_entry_is_kept_again(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == [ENTRY]
 
 
-def test_the_least_recently_used_goes(tmp_path: Path) -> None:
-    """What is no entry stays, and so does the newest one, whatever its size."""
+def test_cache_evicts_the_least_recently_used_entry(tmp_path: Path) -> None:
+    """Other files and the newest entry are kept, whatever their size."""
     cache = Cache(tmp_path)
     (tmp_path / "mine").write_text(200 * "x", encoding="utf-8")
     for name, used in (("a", 10.0), ("b", 20.0)):
@@ -74,7 +74,7 @@ def test_the_least_recently_used_goes(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["c.record", "mine"]
 
 
-def test_what_a_killed_process_has_left_goes(tmp_path: Path) -> None:
+def test_cache_removes_files_of_a_killed_process(tmp_path: Path) -> None:
     program = (
         "import os; from pathlib import Path; from runs.folder.cache import Cache; "
         f"os.replace = lambda *_: os._exit(9); Cache(Path({str(tmp_path)!r})).store('a', 'first')"
@@ -136,8 +136,8 @@ def test_what_was_not_kept_there_is_dropped(
 
 
 @pytest.mark.parametrize("make", [os.mkfifo, os.mkdir])
-def test_what_is_no_file_is_no_entry(tmp_path: Path, make: Callable[[Path], object]) -> None:
-    """A pipe would wait for its writer."""
+def test_cache_ignores_pipes_and_folders(tmp_path: Path, make: Callable[[Path], object]) -> None:
+    """Opening a pipe would block until a process writes to it."""
     make(tmp_path / ENTRY)
     assert Cache(tmp_path).load("a", str) is None
 

@@ -34,7 +34,7 @@ INSTALLED = pytest.mark.skipif(
 
 
 def readings(deck: Path) -> dict[str, float]:
-    """Run a deck, and return the displacements of its readings by their comments."""
+    """Run a deck, and return the displacements of its output nodes, keyed by their comments."""
     subprocess.run(["ccx", deck.stem], cwd=deck.parent, check=True, capture_output=True)
     lines = deck.with_suffix(".dat").read_text("utf-8").splitlines()[3:]
     found = [float(line.split()[1]) for line in lines if line.strip()]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The models of a run are compared with the right one, and the numbers are the known ones."""
+"""Each model is compared with its reference model; the differences equal stored values."""
 
 from __future__ import annotations
 

@@ -128,7 +128,7 @@ def test_every_table_of_a_rest_says_under_which_loads(results: Results) -> None:
 
 
 def with_stress(results: Results, stress: float) -> Results:
-    """Return results with an outer stress in Pa, of a steel of 355 MPa, in plates a tenth more."""
+    """Return results with a stress in Pa at the outer fibre, 10 % more in plates; f_y = 355 MPa."""
     moved = results.summary.design.models[PLAYED].motion
     assert moved is not None
     fibre = replace(moved.fibres[0], stress=-stress, x=2.0, utilisation=stress / 355e6)

@@ -256,8 +256,8 @@ element_length = 1.0
 
 
 @pytest.mark.parametrize("text", [LIFT, LABORATORY, CRANE], ids=["lift", "laboratory", "crane"])
-def test_booms_have_none(tmp_path: Path, text: str) -> None:
-    """Of 1 m and of 60 m, with all that is printed of them."""
+def test_usual_booms_give_no_caution(tmp_path: Path, text: str) -> None:
+    """Booms of 1 m to 60 m; all printed text of `check` counts."""
     path = tmp_path / "case.toml"
     path.write_text(text, encoding="utf-8")
     shown = io.StringIO()

@@ -96,8 +96,8 @@ def test_the_change_of_a_sections_shape_leaves_out_its_motion_as_a_whole(shell: 
 def test_contact_in_the_run_is_contact_in_the_picture(
     shell: Scene, scale: float, section: float
 ) -> None:
-    """Reference: analytic. A relative displacement by the clearance leaves one wall between the
-    middles of two walls, and one by its opposite leaves twice the clearance besides."""
+    """Reference: analytic. In contact the mid-surfaces of two walls are one wall thickness
+    apart; on the opposite side the distance is larger by twice the clearance."""
     (overlap,) = shell.overlaps
     assert overlap == (0, 1, [0, 1], [9.0, 10.0], CLEARANCE)
     moved = np.zeros_like(shell.points)

@@ -97,7 +97,7 @@ def test_arm_that_has_luffed(tmp_path: Path) -> None:
 
 
 def test_loads_of_a_segment_that_extends_while_the_boom_turns() -> None:
-    """Reference: by hand, −m a of a mass at the current place, less that at its first place."""
+    """Reference: by hand, −m a of a mass at its current position, minus −m a at the initial one."""
     frame = FrameMotion(slew=SCurve(90.0, 2.0), radius=1.0)
     drive = Drive(SCurve(3.0, 2.0), ("inner", "outer"))
     segments = build_boom(load(str(CASES / "inspection-arm.toml"))).segments

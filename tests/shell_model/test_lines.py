@@ -120,9 +120,9 @@ def test_cuts_are_where_something_acts() -> None:
 
 
 @pytest.mark.slow
-def test_a_support_of_a_shell_bears_what_the_lever_rule_says() -> None:
-    """Reference: by hand, as in tests/beam_model/test_statics.py: −5933.9 N at 2 m;
-    a band across the support would miss a third of it.
+def test_support_reaction_of_a_shell() -> None:
+    """Reference: by hand, as in tests/beam_model/test_statics.py: −5933.9 N at 2 m.
+    The mean over a band around the support would lose a third of the reaction.
     """
     line, position = at_rest(flat_boom(), ShellOptions(mesh_size=0.2, contact_tolerance=0.02))[0]
     before, behind = (line.one_sided_row("shear", 2.0, side) @ position for side in (-1, 1))

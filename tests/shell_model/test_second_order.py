@@ -54,9 +54,9 @@ def sparse(matrix: PETSc.Mat) -> csr_array:
     return csr_array((values, columns, first), shape=matrix.getSize()[0:2])
 
 
-def test_walls_give_way_to_a_turn_by_the_whole_axial_force() -> None:
-    """Reference: analytic. Turned by θ a segment shortens by θ²/2 everywhere: K_G is the sum of P
-    over its length, collars and a weight that grows in it, and nothing for what only translates.
+def test_geometric_stiffness_of_a_rigid_rotation() -> None:
+    """Reference: analytic. A rotation by θ shortens the axis by θ²/2 per length: K_G of a unit
+    rotation is ∫P dx, with a collar and self-weight; K_G of a translation is 0.
     """
     fly = replace(telescope(0.0).segments[1], collars=(Collar((7.0, 8.0), 0.004),))
     (pressed,) = with_compression([fly], [], [Thrust(0, 9.0, 4e4)], gravity=9.0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Shells that taper follow their beams."""
+"""Tapered shells agree with tapered beams."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Where nothing may be skipped, what is skipped fails."""
+"""A skipped test fails in runs that must not skip tests."""
 
 from __future__ import annotations
 

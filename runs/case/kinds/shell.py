@@ -34,7 +34,7 @@ MOST_TRIANGLES = 20_000_000
 # Maximum number of contact points on half a wall: each costs time in reduction and time loop.
 MOST_POINTS = 256
 
-# Typical number of coordinates of each reduced segment, in the plane and in space.
+# Typical number of coordinates of each reduced segment, of planar and of 3-D booms.
 _FLAT, _SPATIAL = 60, 210
 # Measured costs. Number of dofs over area / (mesh size)²: of a uniform mesh, of a graded mesh
 # outside and inside its refinement zones. Bytes per dof, and per dof and coordinate; s per dof.
