@@ -11,7 +11,8 @@ section, so that it is too small for sloping walls far from collars and diaphrag
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +26,7 @@ from beam_model.segment_model import EACH_SIDE
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom
+from geometry.compression import NO_COMPRESSION
 from geometry.contact_places import Pad, pads
 from geometry.section import Direction, Side
 from geometry.segment import Segment
@@ -114,8 +116,10 @@ def contact_compliance(boom: Boom) -> Array:
         at = [i for i, (pad, _) in enumerate(rows) if (pad.number, pad.x) == place and pad.patch]
         joint, sides = rows[at[0]][0].joint, np.array([rows[i][1] for i in at])
         inner = boom.segments[joint.inner]
-        areas = [_pad_area(*rows[i], inner) for i in at]
+        areas = tuple(_pad_area(*rows[i], inner) for i in at)
         for segment in (inner, boom.segments[joint.outer]):
+            # Load cases and combinations share the cached walls of the unloaded segment.
+            segment = replace(segment, load=0.0, lateral=None, compression=NO_COMPRESSION)
             # The sign relates the direction of a row to the outward normal of its area.
             outward = wall_compliance(segment, areas)
             found[np.ix_(at, at)] += np.outer(sides, sides) * outward
@@ -162,7 +166,8 @@ def _pad_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
     return PressedArea(pad.patch.start, pad.patch.end, pad.direction, side, spans)
 
 
-def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
+@lru_cache(maxsize=64)
+def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     """Return the compliance (num_areas, num_areas) in m/N of the walls of a segment.
 
     An entry is the mean outward displacement of one area under a unit force on another.
@@ -170,6 +175,9 @@ def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
     Args:
         segment: segment with a section, collars and diaphragms.
         areas: pressed areas of one station.
+
+    Returns:
+        A read-only array, which later calls share.
     """
     start, end = min(area.start for area in areas), max(area.end for area in areas)
     section = segment.section_at(0.5 * (start + end))
@@ -252,7 +260,9 @@ def wall_compliance(segment: Segment, areas: Sequence[PressedArea]) -> Array:
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
-    return np.asarray(rows @ factor.solve(rows.T))
+    compliance = np.asarray(rows @ factor.solve(rows.T))
+    compliance.flags.writeable = False
+    return compliance
 
 
 def _graded_nodes(cuts: Array, length: float, fine: tuple[float, float]) -> Array:
