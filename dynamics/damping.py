@@ -31,15 +31,15 @@ DAMPED_MODES = 8
 # Relative bending of segments below which a mode has the damping of rigid motion.
 _BENT = 5.0e-3
 
-# Fraction of the largest dashpot rate below which a rate is round-off.
+# Fraction of the largest value (dashpot rate or contact force) below which a value is round-off.
 _ROUND_OFF = 1.0e-9
 
 
 def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
     """Return ω (num_shapes,) in rad/s, ascending, and shapes (num_modes, num_shapes).
 
-    Contacts that press at rest have their stiffness F'(y) at rest. If no contact presses at a
-    station between segments, all its rows are bonded.
+    Contacts that press at rest have their stiffness F'(y) at rest; a force that is round-off does
+    not press. If no contact presses at a station between segments, all its rows are bonded.
 
     Args:
         system: gap system of a boom.
@@ -50,8 +50,10 @@ def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[
     except NumericsError:
         stiffness = np.zeros(len(system.laws))
     else:
-        gaps = system.rows @ rest
-        stiffness = np.array([law.slope(y) for law, y in zip(system.laws, gaps, strict=True)])
+        gaps = list(zip(system.laws, system.rows @ rest, strict=True))
+        force = np.abs([float(law.force(y)) for law, y in gaps])
+        slope = np.array([law.slope(y) for law, y in gaps])
+        stiffness = np.where(force > _ROUND_OFF * force.max(initial=0.0), slope, 0.0)
     pressed = np.isin(system.station_of_row, system.station_of_row[stiffness > 0.0])
     tied = system.rows[~pressed & ~np.isin(system.station_of_row, system.grounded)]
     free = null_space(tied) if tied.size else np.eye(system.num_modes)

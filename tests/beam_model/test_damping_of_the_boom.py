@@ -88,6 +88,23 @@ def test_a_segment_that_flies_slows_down_at_the_ratio_of_the_first_mode(heavy: G
     assert run.energy_residual < 1e-12
 
 
+def test_contact_force_of_round_off_does_not_close_a_contact() -> None:
+    """Reference: analytic. A stop with 1e-17 m of penetration leaves its mass at 20 rad/s."""
+    stop = PowerContact(stiffness=1.0e6, exponent=1.0)
+    system = GapSystem(
+        omega2=np.array([400.0, 0.0]),
+        load=np.array([0.0, 10.0]),
+        rows=np.eye(2),
+        laws=[stop, stop],
+        station_of_row=np.array([0, 1]),
+        stations=[0.0, 1.0],
+        grounded=[0, 1],
+        observers={},
+    )
+    omega, _ = closed_contact_modes(system, np.array([1.0e-17, 1.0e-5]))
+    np.testing.assert_allclose(omega, [20.0, 1000.0], rtol=1e-12)
+
+
 def test_rest_under_weight_loses_nothing(heavy: GapSystem) -> None:
     """Reference: analytic. Nothing moves, however much the modes are damped."""
     damped = replace(heavy, damping=3e-4 * heavy.omega2)
