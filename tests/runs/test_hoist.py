@@ -35,8 +35,8 @@ def static_tip(case: Case, time: float) -> float:
 def test_hanging_load_at_rest() -> None:
     """Reference: the same boom under the load across it and the same force along it.
 
-    Changes of the stiffness below a ten-thousandth are left out; the axial force of the load makes
-    a difference of several percent.
+    Changes of the stiffness below a millionth are left out; the axial force of the load makes a
+    difference of several percent.
     """
     case = of_beam(load(str(CASES / "hoist.toml")))
     weight = 5000.0 * 9.80665
@@ -45,7 +45,7 @@ def test_hanging_load_at_rest() -> None:
     assert force is not None
     axial = case.axial[0].model_copy(update={"force": force + np.sqrt(0.75) * weight})
     loaded = case.model_copy(update={"hoist": None, "loads": (across,), "axial": (axial,)})
-    assert static_tip(case, 5.0) == pytest.approx(static_tip(loaded, 0.0), rel=1e-5)
+    assert static_tip(case, 5.0) == pytest.approx(static_tip(loaded, 0.0), rel=1e-7)
     assert abs(static_tip(case, 0.0)) < 0.5 * abs(static_tip(case, 5.0))
 
 
@@ -62,7 +62,7 @@ def test_results_of_a_hoist() -> None:
     # The ground, a hundred times as stiff as four falls, is left at this height.
     left = 5000.0 * 9.80665 / (100.0 * 4.0 * 1.0e11 * 1.1e-4 / 35.0)
     first = data["time"].values[np.argmax(height > left)]
-    # On the ground the load oscillates with a period of 40 ms.
+    # Rope force and weight are equal up to a quarter of the period of 40 ms on the ground earlier.
     assert found.lift_off == pytest.approx(first, abs=0.01)
     assert found.force == pytest.approx(found.factor * 5000.0 * 9.80665)
     assert 1.0 < found.factor < 1.5
