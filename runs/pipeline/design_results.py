@@ -17,6 +17,7 @@ from runs.pipeline.residual_vibration import ResidualVibration
 from runs.pipeline.static_results import StaticResult
 from runs.pipeline.statics import Reaction
 from runs.pipeline.strength import Life
+from runs.pipeline.turning import CraneDrives
 from runs.pipeline.wall_buckling import WallBuckling
 
 
@@ -44,6 +45,7 @@ class ModelDesignResults:
         residual_vibration: residual vibration of telescoping; None without telescoping, without an
             equilibrium, or if the run ends before the drives stop.
         hoisting: extreme values of a load on a rope; None without a hoist.
+        drives: demand on the drives of hoisting, slewing and luffing; None without them.
     """
 
     static: list[StaticResult] = field(default_factory=list)
@@ -59,6 +61,7 @@ class ModelDesignResults:
     panels: list[PanelBuckling] = field(default_factory=list)
     residual_vibration: ResidualVibration | None = None
     hoisting: Hoisting | None = None
+    drives: CraneDrives | None = None
 
     @property
     def farthest_static(self) -> StaticResult | None:

@@ -43,6 +43,7 @@ from runs.pipeline.static_results import (
 from runs.pipeline.statics import reactions, statics
 from runs.pipeline.strength import HAS_RAINFLOW, life, wall_stresses
 from runs.pipeline.summary import Summary
+from runs.pipeline.turning import crane_drives
 
 
 class LoadedModel(NamedTuple):
@@ -140,7 +141,8 @@ class ModelEvaluation:
             own = replace(own, panels=weakest_panels(played.boom.segments, rest))
         vibration = residual_vibration(system, trajectory, case, self.model)
         rope = hoisting(case, self.boom, trajectory)
-        return replace(own, residual_vibration=vibration, hoisting=rope)
+        drives = crane_drives(case, self.boom, trajectory.data)
+        return replace(own, residual_vibration=vibration, hoisting=rope, drives=drives)
 
     def add_bonded(self, own: ModelDesignResults) -> ModelDesignResults:
         """Return design results with those of the same model without play, if it has any."""

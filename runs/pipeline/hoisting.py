@@ -35,7 +35,7 @@ class Hoisting(Record):
     title = "Hoisting"
     notes = (
         "At lift-off the force of all falls reaches the weight of the load. φ₂ is their largest "
-        "force over this weight. A load that swings has its largest distance from the tip.",
+        "force over this weight. Swing is the largest distance of the load from the tip.",
     )
 
     lift_off: Annotated[

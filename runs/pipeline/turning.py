@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Descriptions of slewing and luffing, and the limits of their loads."""
+"""Descriptions of slewing and luffing, the limits of their loads, and the demand on the drives."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -15,9 +17,12 @@ from dynamics.gap_system import GapSystem
 from geometry.axial import lumped_masses
 from geometry.boom import Boom
 from geometry.telescoping import drives_of
+from geometry.typography import TO_KILO
 from runs.case.drive import resolving_times
+from runs.case.hoist import hanging_load
 from runs.case.schema import Case
 from runs.case.turning import frame_motion
+from runs.pipeline.metrics import Metric, Record
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,6 +35,50 @@ _SMALL = 0.2
 
 # Number of modes that shapers suppress, and the least part of the deflection of one of them.
 _SHAPED, _SHARE = 2, 0.05
+
+
+_moment = partial(Metric, unit="N m", factor=TO_KILO, shown_unit="kN m", form=".3g")
+_power = partial(Metric, unit="W", factor=TO_KILO, shown_unit="kW", form=".3g")
+_work = partial(Metric, unit="J", factor=TO_KILO, shown_unit="kJ", form=".3g")
+
+
+@dataclass(frozen=True, slots=True)
+class CraneDrives(Record):
+    """Largest moments in N·m and powers in W, and the work in J, of a crane's drives.
+
+    Values of drives that the case does not have are None.
+    """
+
+    title = "Drives of hoisting, slewing and luffing"
+    notes = (
+        "The winch pulls with the computed rope force. The moments about the slewing axis and the "
+        "foot move a rigid boom with its load on the rope.",
+    )
+
+    winch_power: Annotated[
+        float | None, _power("winch_power", title="power of the winch", heading="winch:\npower")
+    ] = None
+    winch_work: Annotated[
+        float | None, _work("winch_work", title="work of the winch", heading="work")
+    ] = None
+    slew_moment: Annotated[
+        float | None, _moment("slew_moment", title="slewing moment", heading="slewing:\nmoment")
+    ] = None
+    slew_power: Annotated[
+        float | None, _power("slew_power", title="slewing power", heading="power")
+    ] = None
+    slew_work: Annotated[
+        float | None, _work("slew_work", title="work of slewing", heading="work")
+    ] = None
+    luff_moment: Annotated[
+        float | None, _moment("luff_moment", title="luffing moment", heading="luffing:\nmoment")
+    ] = None
+    luff_power: Annotated[
+        float | None, _power("luff_power", title="luffing power", heading="power")
+    ] = None
+    luff_work: Annotated[
+        float | None, _work("luff_work", title="work of luffing", heading="work")
+    ] = None
 
 
 def _laws(case: Case) -> Iterator[tuple[str, str, MotionLaw]]:
@@ -119,6 +168,25 @@ def drive_moments(case: Case, boom: Boom, data: xr.Dataset) -> dict[str, tuple[A
         for moment, (key, rate) in zip(total, rates.items(), strict=True)
         if getattr(case, key) is not None
     }
+
+
+def crane_drives(case: Case, boom: Boom, data: xr.Dataset) -> CraneDrives | None:
+    """Return the demand on the drives of a crane in a motion; None without such drives.
+
+    Arguments are those of :func:`drive_moments`.
+    """
+    found: dict[str, float] = {}
+    steps = np.diff(data["time"].values)
+    load = hanging_load(case, boom)
+    if load is not None and load.hoist is not None:
+        # The force is the mean over the interval that ends at the time.
+        works = data["rope_force"].values[1:] * np.diff(load.hoist(data["time"].values))
+        found |= {"winch_power": (works / steps).max(), "winch_work": works.sum()}
+    for key, (moment, power) in drive_moments(case, boom, data).items():
+        found[f"{key}_moment"] = moment[np.abs(moment).argmax()]
+        found[f"{key}_power"] = power.max()
+        found[f"{key}_work"] = 0.5 * (power[1:] + power[:-1]) @ steps
+    return CraneDrives(**{key: float(value) for key, value in found.items()}) if found else None
 
 
 def swing_cautions(case: Case, data: xr.Dataset) -> Iterator[str]:

@@ -77,12 +77,13 @@ def model_table(results: Results) -> Table:
 
 
 def metric_columns(kind: type, rows: Sequence[object]) -> list[Column]:
-    """Return the columns of a kind of record, with a row for each record."""
-    return [
+    """Return the columns with values of a kind of record, with a row for each record."""
+    columns = [
         Column(one.heading, [getattr(row, name) for row in rows], one.form, one.unit_of_heading)
         for name, one in metrics(kind).items()
         if one.heading
     ]
+    return [one for one in columns if any(cell is not None for cell in one.cells)]
 
 
 def _is_unresolved(model: ModelSummary) -> bool:

@@ -16,7 +16,6 @@ from runs.pipeline.motion_results import Peak
 from runs.pipeline.proofs import proof_table
 from runs.pipeline.results import Results
 from runs.pipeline.static_results import StaticResult
-from runs.pipeline.turning import drive_moments
 from runs.report.figure_context import extension_note
 from runs.report.formatting import NONE, amount, number
 from runs.report.model_tables import metric_columns
@@ -37,7 +36,6 @@ def result_tables(results: Results) -> list[Table]:
         mode_table(results),
         peak_table(results),
         drive_table(results),
-        turning_table(results),
         luffing_table(results),
         stick_slip_table(results),
         *record_tables(results),
@@ -232,32 +230,6 @@ def drive_table(results: Results) -> Table | None:
         "contact forces on sloping segments and axial loads.",
     )
     return Table("Drives", columns, notes, "drives")
-
-
-def turning_table(results: Results) -> Table | None:
-    """Return moment, power and work of slewing and luffing of every model; None without them."""
-    case = results.case
-    if case.slew is None and case.luff is None:
-        return None
-    rows, time = [], results.trajectories["time"].values
-    for model in results.trajectories["model"].values:
-        data = results.trajectories.sel(model=model)
-        for key, (moment, power) in drive_moments(case, results.boom, data).items():
-            largest = float(moment[np.abs(moment).argmax()])
-            work = float((0.5 * (power[1:] + power[:-1]) * np.diff(time)).sum())
-            rows.append((str(model), key, largest, float(power.max()), work))
-    models, keys, moments, powers, works = zip(*rows, strict=True)
-    columns = (
-        Column("model", models),
-        Column("drive", keys),
-        Column("largest moment", moments, ".4g", "kN m"),
-        Column("largest power", powers, ".3g", "kW"),
-        Column("work", works, ".3g", "kJ"),
-    )
-    notes = (
-        "Moments about the slewing axis and the foot move a rigid boom with its load on the rope.",
-    )
-    return Table("Slewing and luffing drives", columns, notes, "turning")
 
 
 def luffing_table(results: Results) -> Table | None:

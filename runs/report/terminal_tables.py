@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping
 
 from rich.console import Console
 
-from geometry.typography import TO_MILLI
 from runs.client import show
 from runs.pipeline.results import Results
 from runs.pipeline.utilisation import utilisations
@@ -17,6 +16,7 @@ from runs.report.formatting import number, percent
 from runs.report.limits import limit_faults, limit_table
 from runs.report.model_tables import model_table
 from runs.report.pages import Addition
+from runs.report.result_tables import record_tables
 from runs.report.summary_table import (
     governing_pads,
     largest_peak,
@@ -84,7 +84,7 @@ def print_results(results: Results, console: Console) -> None:
     if not results.summary.design.models:
         return
     tables = result_table(results), lateral_table(results), limit_table(results)
-    for table in filter(None, tables):
+    for table in (*filter(None, tables), *record_tables(results)):
         table.show(console)
     for line in filter(None, (play_effect(results), utilisation_verdict(results))):
         text = f"{results.main_models[0]}: {line[0].lower()}{line[1:]}"
@@ -137,7 +137,7 @@ def lateral_table(results: Results) -> Table | None:
 
 
 def _model_notes(results: Results) -> Iterator[str]:
-    """Yield notes on the accuracy of shells and on residual vibration during telescoping."""
+    """Yield notes on the accuracy of shells."""
     for name, model in results.summary.models.items():
         if errors := model.reduction_errors:
             yield (
@@ -146,13 +146,3 @@ def _model_notes(results: Results) -> Iterator[str]:
                 f"{number(errors['readings'], 1)}, of the mesh at contacts "
                 f"{'unknown' if model.mesh_error is None else percent(model.mesh_error, 2)}"
             )
-    for name, own in results.summary.design.models.items():
-        if (vibration := own.residual_vibration) is None:
-            continue
-        levels = vibration.initial, vibration.final
-        ends = (number(None if level is None else TO_MILLI * level) for level in levels)
-        yield (
-            f"{name}: residual vibration of the tip {number(TO_MILLI * vibration.tip)} mm, "
-            f"telescoping at a mean {number(vibration.speed)} m/s; {' and '.join(ends)} mm at the "
-            "initial and final extension without telescoping"
-        )

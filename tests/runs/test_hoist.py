@@ -69,6 +69,19 @@ def test_results_of_a_hoist() -> None:
     assert (found.swing_out, found.swing_aside) == (None, None)
 
 
+def test_work_of_the_winch() -> None:
+    """Reference: the energy balance of a horizontal boom, in which only the winch moves rows."""
+    case = of_beam(load(str(CASES / "hoist.toml")))
+    results = run_case(change(case, **{"time.duration": 1.0, "gravity.angle": 0.0}))
+    drives = results.summary.design.models["series"].drives
+    assert drives is not None
+    work = float(results.trajectories["drive_work"].values[0, -1])
+    assert work > 100.0
+    assert drives.winch_work == pytest.approx(work, rel=1e-4)
+    force = float(results.trajectories["rope_force"].values.max())
+    assert drives.winch_power == pytest.approx(0.2 * force, rel=1e-2)
+
+
 def test_ensemble_and_comparison_without_play() -> None:
     """Reference: energy balance of all members, and the stiffer boom without play."""
     case = change(of_beam(load(str(CASES / "hoist.toml"))), **{"time.duration": 0.6})

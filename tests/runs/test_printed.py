@@ -10,8 +10,6 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.paper.statements import STATEMENTS
 from runs.paper.verdicts import Judgement, Verdict, decisive, print_verdicts
-from runs.pipeline.design_results import DesignResults, ModelDesignResults
-from runs.pipeline.residual_vibration import ResidualVibration
 from runs.pipeline.results import Results
 from runs.report.terminal_tables import print_models
 from tests.runs.summaries import model_summary, printed, summary_of
@@ -74,16 +72,4 @@ def test_every_run_shows_the_errors_of_its_reduction() -> None:
     assert printed(print_models, results).splitlines()[-1] == (
         "shell: 110 coordinates; error of the local compliance at contacts 2 × 10⁻⁹, of tip and "
         "head 8 × 10⁻⁷, of the mesh at contacts 0.83 %"
-    )
-
-
-def test_a_boom_that_telescopes_shows_its_residual_vibration() -> None:
-    """Reference: the summary's numbers in mm."""
-    case = case_file.load(str(CASES / "drawn-out.toml"))
-    vibration = ResidualVibration(0.0182, 1.0, 0.8, 0.0181, None)
-    summary = summary_of({"beam": model_summary()})
-    summary.design = DesignResults({"beam": ModelDesignResults(residual_vibration=vibration)})
-    assert printed(print_models, Results(case, xr.Dataset(), summary)).splitlines()[-1] == (
-        "beam: residual vibration of the tip 18.2 mm, telescoping at a mean 0.8 m/s; 18.1 and – mm "
-        "at the initial and final extension without telescoping"
     )
