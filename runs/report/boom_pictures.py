@@ -147,7 +147,11 @@ def draw_boom(
         orientation="horizontal",
     )
     bar.set_label("lateral deflection (mm)" if scene.from_above else "deflection (mm)")
-    curve = sheet.axes(150, 85, 820, 150)
+    crane = scene.crane
+    curve = sheet.axes(150, 85, 820 if crane is None else 500, 150)
+    if crane is not None:
+        inset = sheet.axes(720, 20, 330, 190)
+        crane.prepare(inset)
     curve.plot(time, tip, color=theme.FAINT, linewidth=2)
     curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
     with stage(camera.pixels, part) as plotter:
@@ -181,4 +185,6 @@ def draw_boom(
                 f"{', as at t = 0' if scene.boom.driven else ''}"
                 f"{f'; symbols: {symbols}' if symbols else ''}{pace}",
             )
+            if crane is not None:
+                sheet.show_once(*crane.draw(inset, instant.time))
             yield sheet.image()

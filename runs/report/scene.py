@@ -28,6 +28,7 @@ from geometry.typography import with_minus_signs
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.pipeline.model_output import BeamOutput, SegmentMotion
+from runs.report.crane_position import CranePosition
 from runs.report.symbols import Symbol, boom_symbols, edges
 from shell_model.stress.stresses import ShellStress
 
@@ -100,6 +101,7 @@ class Scene:
         from_above: True if y replaces z, see :meth:`views`.
         buckling: first buckling modes of a shell, see
             :class:`runs.pipeline.wall_buckling.BuckledShell`; None without any.
+        crane: positions of the crane and its load; None for other booms.
     """
 
     boom: Boom
@@ -113,6 +115,7 @@ class Scene:
     stress: ShellStress | None = None
     from_above: bool = False
     buckling: xr.Dataset | None = None
+    crane: CranePosition | None = None
 
     @classmethod
     def views(cls, fields: xr.Dataset, motion: xr.Dataset, case: Case) -> list[Scene]:
@@ -137,6 +140,7 @@ class Scene:
             motion=motion,
             stress=ShellStress.from_fields(fields),
             buckling=fields if "buckled" in fields else None,
+            crane=CranePosition.of(case, boom, motion),
         )
         if not boom.spatial:
             return [side]

@@ -28,13 +28,15 @@ from runs.process import workers
 from runs.report import opengl, theme
 from runs.report.boom_pictures import BoomView, draw_boom
 from runs.report.buckling_pictures import render_buckling
+from runs.report.crane_position import CranePosition
 from runs.report.figure_context import Figure
 from runs.report.overlap_pictures import StressScale, draw_overlap, draw_stress
 from runs.report.scene import Instant, Scene
 
 SNAPSHOTS = "snapshots"
 
-# Animation: duration in the run and on the screen in s, number of frames, size factor of the sheet.
+# Animation: duration in the run in s, but the whole run of a crane; duration on the screen in s,
+# number of frames, size factor of the sheet.
 ANIMATION = "motion.gif"
 ANIMATED, FRAMES, SHOWN, SMALL = 2.5, 50, 5.0, 0.6
 
@@ -159,8 +161,14 @@ def _ends(scene: Scene) -> tuple[float, float]:
 
 
 def _film(scene: Scene) -> list[Instant]:
-    begin, end = _ends(scene)
-    return [Instant(float(t)) for t in np.linspace(begin, min(end, begin + ANIMATED), FRAMES)]
+    times = np.linspace(_ends(scene)[0], _film_end(scene.motion, scene.crane), FRAMES)
+    return [Instant(t) for t in times.tolist()]
+
+
+def _film_end(motion: xr.Dataset, crane: CranePosition | None) -> float:
+    """Return the last time in s of the film of a motion."""
+    begin, end = motion["time"].values[[0, -1]].tolist()
+    return float(end if crane else min(end, begin + ANIMATED))
 
 
 def _when(motion: xr.Dataset, times: Times) -> dict[str, float]:
@@ -327,10 +335,10 @@ def describe_one(results: Results, path: Path) -> Figure:
     name = path.name.removeprefix(f"{model}-" if len(shells) > 1 else "")
     motion = results.trajectories.sel(model=model)
     if name == ANIMATION:
-        last = min(ANIMATED, float(motion["time"].values[-1]))
+        last = _film_end(motion, CranePosition.of(results.case, results.boom, motion))
         caption = (
-            f"The first {last:g} s of {model!r} in slow motion, in {SHOWN:g} s. Colours and "
-            "magnification as in the pictures of the boom."
+            f"The first {last:g} s of {model!r}, in {SHOWN:g} s. Colours and magnification as in "
+            "the pictures of the boom."
         )
         return Figure(path, f"Boom in motion, first {last:g} s", caption)
     if mode := _BUCKLING.fullmatch(name):
