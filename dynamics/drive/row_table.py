@@ -37,7 +37,7 @@ _COEFFICIENTS = 0.5 * np.array(
 _TEST_POINTS = np.array([0.15, 0.5, 0.85])
 
 # Least relative change of the stiffness of a direction by an axial force that changes with time.
-_LEAST_CHANGE = 1.0e-6
+_LEAST_CHANGE = 1.0e-5
 
 # i + j + 1, the reciprocals of ∫₀¹ uⁱ uʲ du for the powers in slopes.
 _POWERS = 1.0 + np.add.outer(np.arange(3), np.arange(3))
@@ -202,7 +202,7 @@ class ChangingAxialForce:
     def of(cls, geometric: Array, stiffness: Array, peak: float) -> ChangingAxialForce:
         """Return the force of a geometric stiffness K_G (num_modes, num_modes) at s = 1.
 
-        Directions in which it changes the stiffness by less than a millionth at s = ``peak`` are
+        Directions in which it changes the stiffness by less than 1e-5 at s = ``peak`` are
         left out.
 
         Args:

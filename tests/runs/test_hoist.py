@@ -35,7 +35,7 @@ def static_tip(case: Case, time: float) -> float:
 def test_hanging_load_at_rest() -> None:
     """Reference: the same boom under the load across it and the same force along it.
 
-    Changes of the stiffness below a millionth are left out; the axial force of the load makes a
+    Changes of the stiffness below 1e-5 are left out; the axial force of the load makes a
     difference of several percent.
     """
     case = of_beam(load(str(CASES / "hoist.toml")))
@@ -45,7 +45,7 @@ def test_hanging_load_at_rest() -> None:
     assert force is not None
     axial = case.axial[0].model_copy(update={"force": force + np.sqrt(0.75) * weight})
     loaded = case.model_copy(update={"hoist": None, "loads": (across,), "axial": (axial,)})
-    assert static_tip(case, 5.0) == pytest.approx(static_tip(loaded, 0.0), rel=1e-7)
+    assert static_tip(case, 5.0) == pytest.approx(static_tip(loaded, 0.0), rel=1e-6)
     assert abs(static_tip(case, 0.0)) < 0.5 * abs(static_tip(case, 5.0))
 
 
