@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
+from dynamics.contact import Gap
 from dynamics.excitation import HistorySum, is_constant
 from dynamics.gap_system import GapSystem
 from dynamics.hanging_load import HangingLoad, Pendulum, RopeForce
@@ -23,6 +24,9 @@ from runs.case.turning import frame_motion
 
 if TYPE_CHECKING:
     from runs.case.schema import Case
+
+# Slack in m of a rope that never pulls.
+_SLACK = 1.0e6
 
 
 class WindTable(HistoryTable):
@@ -180,7 +184,7 @@ def with_hanging_load(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
     """Return a model's system with the hoisted load of its case, if there is one.
 
     Raises:
-        NumericsError: the boom has no equilibrium from which to start.
+        NumericsError: see :func:`with_initial_slack`.
     """
     load, tip = hanging_load(case, boom), system.observers["tip"].row
     if case.hoist is not None and case.gravity is not None and case.hoist.dropped:
@@ -188,8 +192,23 @@ def with_hanging_load(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
         return replace(system, released_load=system.released_load - pull * tip)
     if load is None:
         return system
-    if load.slack is not None:
-        # The slack counts from the tip in its initial position.
-        rest = tip @ initial_state(system, case.start.at_rest)[1]
-        load = replace(load, slack=load.slack + load.cosine * float(rest))
-    return load.attach(system, tip, boom.segments[-1].end)
+    return with_initial_slack(load.attach(system, tip, boom.segments[-1].end), case)
+
+
+def with_initial_slack(system: GapSystem, case: Case) -> GapSystem:
+    """Return a system with the initial slack of its rope, if its load lies on the ground.
+
+    The slack of the case counts from the tip in its initial position. The last contacts of the
+    system are rope and ground.
+
+    Raises:
+        NumericsError: the boom has no equilibrium from which to start.
+    """
+    if case.hoist is None or case.hoist.hanging:
+        return system
+    *laws, rope, ground = system.laws
+    assert isinstance(rope, Gap)
+    slack = replace(system, laws=[*laws, replace(rope, above=_SLACK), ground])
+    rest = initial_state(slack, case.start.at_rest)[1]
+    straight = replace(rope, above=case.hoist.slack + float(system.rows[-2] @ rest))
+    return replace(system, laws=[*laws, straight, ground])

@@ -19,6 +19,7 @@ from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.telescoping import travel
+from runs.case.hoist import with_initial_slack
 from runs.case.kinds.model import BuiltModel
 from runs.case.schema import Case, Model
 from runs.pipeline.bonded import bonded_system
@@ -187,6 +188,7 @@ def _bonded_model(
     initial = [position for time, position in found.items() if _at_initial_extension(boom, time)]
     still = played.system.at_time(0.0) if boom.driven else played.system
     system, basis = bonded_system(still, initial)
+    system = with_initial_slack(system, case)
     return LoadedModel(without, system, [line.transform(basis) for line in played.lines])
 
 
