@@ -185,10 +185,10 @@ class DriveTable(TravelTable):
         return drive if high - low > _MIN_TRAVEL else None
 
 
-def max_speed(drive: Drive) -> float:
-    """Return the largest speed of a drive in m/s."""
-    times = resolving_times([drive.history], max(drive.history.kinks))
-    return float(np.abs(np.diff(drive.history(times)) / np.diff(times)).max())
+def max_speed(history: History) -> float:
+    """Return the largest speed in m/s of a travel in m over time."""
+    times = resolving_times([history], max(history.kinks))
+    return float(np.abs(np.diff(history(times)) / np.diff(times)).max())
 
 
 def resolving_times(histories: Sequence[History], duration: float) -> Array:

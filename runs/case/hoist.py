@@ -18,7 +18,7 @@ from geometry.axial import AxialChange, Thrust, with_compression
 from geometry.boom import Boom, BoomError, Joint, Segment
 from geometry.fields import Few, Flag, In, NotNegative, Number, Positive
 from geometry.telescoping import drives_of
-from runs.case.drive import TravelTable
+from runs.case.drive import TravelTable, max_speed
 from runs.case.history import HistoryTable, build_history
 from runs.case.turning import frame_motion
 
@@ -70,6 +70,11 @@ class HoistTable(TravelTable):
     """the forces of wind on a load that swings"""
     dropped: Flag = False
     """whether the hanging load is dropped at t = 0"""
+    phi_2_min: Annotated[Positive, In("1")] | None = None
+    """the least dynamic factor of the hoisting class, with beta_2: the results compare the computed
+    factor with φ₂ = phi_2_min + beta_2 v of the hoisting speed v (EN 13001-2)"""
+    beta_2: Annotated[NotNegative, In("s/m")] | None = None
+    """the increase in s/m of the dynamic factor with the hoisting speed, by the hoisting class"""
 
     @property
     def rope_stiffness(self) -> float:
@@ -85,6 +90,13 @@ class HoistTable(TravelTable):
     def initial_mass(self) -> float:
         """The mass in kg that hangs on the rope from t = 0 on."""
         return self.mass if self.hanging and not self.dropped else 0.0
+
+    @property
+    def factor_by_class(self) -> float | None:
+        """The factor φ₂ of the hoisting class; None without its constants."""
+        if self.phi_2_min is None or self.beta_2 is None:
+            return None
+        return self.phi_2_min + self.beta_2 * max_speed(self.history("hoist"))
 
 
 def check_hoist(case: Case, spatial: bool) -> None:
@@ -103,6 +115,11 @@ def check_hoist(case: Case, spatial: bool) -> None:
     for key in ("pendulum", "dropped"):
         if getattr(table, key) and not table.hanging:
             raise BoomError(f"hoist.{key}", "the load lies on the ground; give hanging = true")
+    for key, other in (("phi_2_min", "beta_2"), ("beta_2", "phi_2_min")):
+        if getattr(table, key) is None and getattr(table, other) is not None:
+            raise BoomError(f"hoist.{key}", f"missing; the hoisting class has it beside {other}")
+    if table.phi_2_min is not None and table.hanging:
+        raise BoomError("hoist.phi_2_min", "the load hangs, and is not lifted; leave it out")
     if table.wind and table.pendulum is None:
         raise BoomError("hoist.wind", "the load does not swing; give pendulum, its length in m")
     for key in ("travel", "table", "pendulum"):

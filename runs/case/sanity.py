@@ -163,7 +163,9 @@ def _joint_ranges(case: Case, boom: Boom, number: int) -> Iterator[UsualRange]:
         yield UsualRange(where + key, what, boom.smallest_overlap(joint), "m", least, np.inf, 100.0)
     if joint.drive is not None:
         what = f"the largest speed at which {inner.name!r} moves"
-        yield UsualRange(f"{where}.drive", what, max_speed(joint.drive), "m/s", 0.0, 5.0, 200.0)
+        yield UsualRange(
+            f"{where}.drive", what, max_speed(joint.drive.history), "m/s", 0.0, 5.0, 200.0
+        )
 
 
 def _contact_ranges(where: str, table: JointTable) -> Iterator[UsualRange]:

@@ -51,8 +51,8 @@ def drive_lines(boom: Boom, system: System) -> Iterator[str]:
         ]
         yield (
             f"A drive {' and '.join(travels)} from {max(0.0, min(kinks)):g} to {max(kinks):g} s, "
-            f"at {system.text(max_speed(joint.drive), 'm/s')} at most; the least overlap is "
-            f"{system.text(boom.smallest_overlap(joint), 'm')}."
+            f"at {system.text(max_speed(joint.drive.history), 'm/s')} at most; the least overlap "
+            f"is {system.text(boom.smallest_overlap(joint), 'm')}."
         )
 
 
@@ -128,7 +128,7 @@ def stick_slip_estimates(case: Case, boom: Boom) -> Iterator[StickSlipEstimate]:
         joint = boom.joints[number]
         assert joint.drive is not None
         name, friction = boom.segments[joint.inner].name, _friction(system, travel, case)
-        yield StickSlipEstimate(name, elastic, friction, max_speed(joint.drive))
+        yield StickSlipEstimate(name, elastic, friction, max_speed(joint.drive.history))
 
 
 def _friction(system: GapSystem, travel: Travel, case: Case) -> float:

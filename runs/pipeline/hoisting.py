@@ -28,6 +28,7 @@ class Hoisting(Record):
             ground; None if it does not, or if the load hangs at t = 0.
         force: largest force of all falls in N.
         factor: this force over the weight of the load.
+        by_class: factor φ₂,min + β₂ v of the hoisting class; None without its constants.
         swing_out, swing_aside: largest distances in m of the load from the tip, in the plane of the
             boom and aside; None if it does not swing so.
     """
@@ -57,6 +58,13 @@ class Hoisting(Record):
             "rope_factor", "1", "factor φ₂ of the rope", 1.0, "–", heading="factor φ₂", form=".3f"
         ),
     ]
+    by_class: Annotated[
+        float | None,
+        Metric(
+            "rope_factor_by_class", "1", "factor φ₂ of the hoisting class", 1.0, "–",
+            heading="φ₂ of the\nclass", form=".3f",
+        ),
+    ]  # fmt: skip
     swing_out: Annotated[
         float | None,
         _metres("swing_out", title="swing in the plane of the boom", heading="swing\nin plane"),
@@ -68,8 +76,8 @@ class Hoisting(Record):
 
 def hoisting(case: Case, boom: Boom, trajectory: Trajectory) -> Hoisting | None:
     """Return the extreme values of the hoisted load in a motion; None without a hoist."""
-    load, data = None if case.hoist is None else hanging_load(case, boom), trajectory.data
-    if load is None:
+    load, data = hanging_load(case, boom), trajectory.data
+    if case.hoist is None or load is None:
         return None
     raised = np.flatnonzero(data["rope_force"].values >= load.weight)
     force = float(data["rope_force_peak"].values.max())
@@ -77,7 +85,6 @@ def hoisting(case: Case, boom: Boom, trajectory: Trajectory) -> Hoisting | None:
         float(np.abs(data[name].values).max()) if name in data else None
         for name in ("swing_out", "swing_aside")
     )
-    lifts = load.slack is not None and raised.size
-    return Hoisting(
-        float(trajectory.time[raised[0]]) if lifts else None, force, force / load.weight, *swings
-    )
+    lift_off = float(trajectory.time[raised[0]]) if load.slack is not None and raised.size else None
+    by_class = case.hoist.factor_by_class
+    return Hoisting(lift_off, force, force / load.weight, by_class, *swings)

@@ -54,6 +54,7 @@ def test_hanging_load_at_rest() -> None:
 def test_results_of_a_hoist() -> None:
     """Reference: the height at which the load leaves the ground, and the energy balance."""
     case = of_beam(load(str(CASES / "hoist.toml")))
+    case = change(case, **{"hoist.phi_2_min": 1.1, "hoist.beta_2": 0.34})
     results = run_case(change(case, **{"time.duration": 4.0, "time.output_step": 2e-3}))
     (summary,) = results.summary.models.values()
     assert summary.energy_residual < 1e-11
@@ -68,6 +69,7 @@ def test_results_of_a_hoist() -> None:
     assert found.lift_off == pytest.approx(first, abs=0.01)
     assert found.force == pytest.approx(found.factor * 5000.0 * 9.80665)
     assert 1.0 < found.factor < 1.5
+    assert found.by_class == pytest.approx(1.1 + 0.34 * 0.2)
     assert (found.swing_out, found.swing_aside) == (None, None)
 
 
@@ -189,6 +191,16 @@ def test_load_swings_under_wind() -> None:
             "falls = 4\nhanging = true\npendulum = 10.0\nwind = [{ force = 100.0 }]\n",
             "hoist.wind[1].direction: the boom is flat, and nothing moves along 'y'; give the "
             "joints lateral_play",
+        ),
+        (
+            "falls = 4\n",
+            "falls = 4\nbeta_2 = 0.34\n",
+            "hoist.phi_2_min: missing; the hoisting class has it beside beta_2",
+        ),
+        (
+            "falls = 4\n",
+            "falls = 4\nhanging = true\nphi_2_min = 1.1\nbeta_2 = 0.34\n",
+            "hoist.phi_2_min: the load hangs, and is not lifted; leave it out",
         ),
         (
             "[gravity]\nangle = 60.0\n",

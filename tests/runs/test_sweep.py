@@ -259,6 +259,7 @@ def test_files_hold_the_same_numbers_with_units(planned: Planned) -> None:
         "lift_off": "s",
         "rope_force": "N",
         "rope_factor": "1",
+        "rope_factor_by_class": "1",
         "swing_out": "m",
         "swing_aside": "m",
         "winch_power": "W",
