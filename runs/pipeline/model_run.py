@@ -98,7 +98,9 @@ def run_model(
     stages = Stages(partial(context.progress, model.name))
     if model.needs_shell or context.first_rank:
         helper = context.helper if context.alone else None
-        tools = None if comm is None else BuildContext(comm, stages.progress, context.cache, helper)
+        tools = None
+        if comm is not None and model.needs_shell:
+            tools = BuildContext(comm, stages.progress, context.cache, helper)
         try:
             built = build(case, boom, model, tools)
         except NUMERICAL_ERRORS as error:
