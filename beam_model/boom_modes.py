@@ -31,7 +31,7 @@ _Part = tuple[int, Motion]
 # Fraction of the largest singular value below which a constraint is neglected.
 ROUND_OFF = 1.0e-9
 
-# Number of places on a segment at which deflections are read for changes of axial forces.
+# Number of places on a segment at which deflections are evaluated for changes of axial forces.
 _PLACES = 41
 
 
@@ -231,7 +231,7 @@ class _CoupledGroup:
         return BeamMember(read)
 
     def changes(self, levels: Array) -> list[Array]:
-        """Return the parts of K_G by the changes of axial forces at values of their histories."""
+        """Return the part of K_G for each change of axial forces, at values of the histories."""
         boom = self._boom
         lines: list[dict[Direction, tuple[Array, Array]]] = [
             {

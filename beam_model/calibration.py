@@ -167,7 +167,7 @@ def with_stiffness(segment: Segment, stiffness: Stiffness) -> Segment:
     material, section = segment.material, segment.section
     assert section is not None
     e, g = material.youngs_modulus, material.shear_modulus
-    # Properties of the other plane that are not given remain those of the section.
+    # Without properties for the other plane, the properties of the section remain.
     shear = (*stiffness.shear, g * section.turned().shear_area)[:2]
     changed = replace(
         segment,

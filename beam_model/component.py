@@ -121,7 +121,7 @@ class BeamMember:
     read: Callable[[Motion, Rule], Array]
 
     def at(self, motion: Motion, x: float) -> Array:
-        """Return the row (num_coordinates,) of a deflection or of the twist at x in m."""
+        """Return the row (num_coordinates,) of a deflection or the twist at x in m."""
         return self.read(motion, lambda component: component.at(x))
 
     def unit_load_vector(self, x: float, direction: Direction) -> Array:

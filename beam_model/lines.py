@@ -63,7 +63,7 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
         if model.components[direction].curvature is not None:
             plane = segment if direction == "z" else segment.turned()
             early, late = (
-                # E J is that of the section at x in this plane.
+                # E J belongs to the section at x in this plane.
                 np.array(
                     [
                         -plane.prismatic_at(x).bending_stiffness

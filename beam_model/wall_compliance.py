@@ -129,8 +129,8 @@ def contact_compliance(boom: Boom) -> Array:
 def station_compliance(boom: Boom) -> dict[tuple[int, Direction, int], float]:
     """Return the compliance of walls in m/N by joint, direction and index of the station.
 
-    All pads of a side are in contact; the compliance is that of the softer side. It is 0 where a
-    side has a contact at a corner.
+    All pads of a side are in contact; the value is the compliance of the softer side. It is 0 where
+    a side has a contact at a corner.
     """
     walls = contact_compliance(boom)
     sides: dict[tuple[int, Direction, int, Side], list[int]] = {}

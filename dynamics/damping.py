@@ -70,7 +70,7 @@ def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[
 def add_damping(
     system: GapSystem, ratio: float, rayleigh: tuple[float, float], rest: Array | None = None
 ) -> GapSystem:
-    """Return the system with damping in addition to that of its segments.
+    """Return the system with further damping, in addition to the damping of its segments.
 
     Args:
         system: gap system of a boom.

@@ -24,10 +24,10 @@ BALANCE = 1.0e-6
 # Unbalanced force at which the search ends, and its maximum number of steps.
 _AIM, _MOST_STEPS = 0.01 * BALANCE, 200
 
-# Least curvature of a step, as a fraction of that of the boom with closed contacts.
+# Minimum curvature of a step, as a fraction of the curvature of the boom with closed contacts.
 _FLAT = 1.0e-6
 
-# Slope of the energy at the end of a line search as a fraction of that at its beginning, and
+# Slope of the energy at the end of a line search as a fraction of the slope at its beginning, and
 # multiple of a step beyond which nothing holds the boom.
 _EXACT, _FARTHEST = 0.05, 1.0e9
 

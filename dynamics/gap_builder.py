@@ -136,7 +136,7 @@ class GapBuilder(Generic[R]):
     def add_dashpot(
         self, station: int, coefficient: float, points: Iterable[tuple[int, float, R]]
     ) -> None:
-        """Add a dashpot in N·s/m against the mean speed of points as in :meth:`add_contact`."""
+        """Add a dashpot in N·s/m that resists the mean speed of points; see :meth:`add_contact`."""
         if coefficient > 0.0:
             dashpot = self.dashpots.setdefault(station, Dashpot(coefficient, station, []))
             # The weights on each of both sides sum to one.

@@ -165,7 +165,7 @@ class HangingLoad:
         tip, lateral = (np.pad(row, (0, own)) for row in (tip, lateral))
 
         def stretches(time: float) -> Array:
-            """Return the rows (own, num_modes + own) of the tip displacement less the load's."""
+            """Return rows (own, num_modes + own) of the tip displacement relative to the load."""
             if self.pendulum is None:
                 return np.asarray(self.cosine * tip[None] - coordinates)
             return np.asarray(self.pendulum.read(time, tip, lateral)[:own] - coordinates)
@@ -239,7 +239,7 @@ class HangingLoad:
             data[name.replace("contact", "rope")] = force
         if self.pendulum is not None:
             slewed = self.pendulum.frame.slew_angle(motion.time)
-            # The gaps of the springs, the tip's place less the load's, in axes that stand still.
+            # The gaps of the springs: the position of the tip relative to the load, in fixed axes.
             gaps = -motion.data["gap"].values.T[own + 1 :]
             one, other = gaps if len(gaps) == 2 else (gaps[0], np.zeros(slewed.shape))
             swings = {"swing_out": np.cos(slewed) * one + np.sin(slewed) * other}

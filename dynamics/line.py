@@ -54,7 +54,7 @@ class Line:
     def read(self, states: Array) -> dict[Quantity, Array]:
         """Return each quantity (..., num_places) for modal coordinates (..., num_modes).
 
-        Further coordinates, such as that of a load on a rope, are ignored.
+        Further coordinates, such as the coordinate of a load on a rope, are ignored.
         """
         return {name: states[..., : row.shape[1]] @ row.T for name, row in self.rows.items()}
 

@@ -52,7 +52,7 @@ def with_coordinates(system: GapSystem, omega2: Array, rows: Array) -> GapSystem
     Args:
         system: gap system without travels.
         omega2: ω² (num_added,) in rad²/s².
-        rows: entries (num_rows, num_added) of all rows, in 1/√kg; those of dashpots in 1/√s.
+        rows: entries (num_rows, num_added) of all rows, in 1/√kg; entries of dashpots are in 1/√s.
     """
     contacts, frictions, dashpots = np.split(
         rows, np.cumsum([len(system.laws), len(system.frictions)])

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Trajectories: deflections, contact forces and energies over time.
 
-A trajectory is labelled (xarray) and includes its energy residual: kinetic, strain and contact
-energy, less the work of the loads, plus the losses of damping, friction and contact, should equal
-the initial energy.
+A trajectory is labelled (xarray) and includes its energy residual: the error of the balance
+"kinetic, strain and contact energy, less the work of the loads, plus the losses of damping,
+friction and contact, equal the initial energy".
 """
 
 from __future__ import annotations
@@ -294,7 +294,7 @@ class Trajectory:
 def prominent_peaks(values: Array, prominence: float) -> list[int]:
     """Return the indices of all peaks with a prominence.
 
-    They are those of ``scipy.signal.find_peaks``, whose import takes half a second.
+    They are the peaks of ``scipy.signal.find_peaks``, whose import takes half a second.
     """
     found: list[int] = []
     begin = 0

@@ -232,7 +232,7 @@ class AxialChange:
 
 
 def largest_change(changes: Sequence[AxialChange]) -> Array:
-    """Return the factors (num_changes,) of the histories when they compress the foot most."""
+    """Return the factor (num_changes,) of each history when it compresses the foot most."""
     times = np.unique(np.concatenate([np.zeros(1), *(change.times for change in changes)]))
     factors = np.array([change.history(times) for change in changes])
     pressed = [one.compressions[0].transferred if one.compressions else 0.0 for one in changes]
@@ -265,7 +265,7 @@ def axial_force(
     time: Array,
     changes: Sequence[AxialChange] = (),
 ) -> Array:
-    """Return P (..., num_places) of a segment in N; at a jump, it is the value of either side.
+    """Return the axial force (..., num_places) of a segment in N; at a jump, the value on one side.
 
     Args:
         segments: segments with their initial axial forces.

@@ -33,7 +33,7 @@ class Compression:
         return bool(self.ends)
 
     def __call__(self, x: Array) -> Array:
-        """Return P (num_places,) at x (num_places,) in m; at a jump, the value of either side."""
+        """Return P (num_places,) in N at x (num_places,) in m; at a jump, the value on one side."""
         if not self:
             return np.zeros(x.shape)
         places, ends = np.array(self.places), np.array(self.ends)

@@ -67,7 +67,7 @@ class ContactInterval:
 
     @classmethod
     def from_station(cls, segment: Segment, station: float, length: float) -> ContactInterval:
-        """Return the interval of a length in m, centred at a station as far as it fits."""
+        """Return an interval around a station, shifted to fit the segment; ``length`` is in m."""
         start = min(max(station - 0.5 * length, segment.start), segment.end - length)
         return cls(start, start + length, station)
 
@@ -131,7 +131,7 @@ class Pad:
 
     @property
     def half(self) -> int:
-        """The half of the wall in space: the sign of the point's coordinate across the wall."""
+        """The half of the wall with the point: the sign of its coordinate across the wall."""
         return int(np.sign(self._corner))
 
     @property

@@ -115,7 +115,7 @@ class Cylinder:
             )
 
     def load_vectors(self, body: Body, foot: Support | None) -> Iterator[Array]:
-        """Yield load vectors (num_dofs,) of 1 N, which are also the rows of the elongation.
+        """Yield load vectors (num_dofs,) of 1 N. They are also the rows of the elongation.
 
         For two cylinders, the second vector has ½ N in one and −½ N in the other. A point (y, z)
         of a section moves along x by −w′ z − v′ y, and along z by w + φ y. In addition, the segment

@@ -75,7 +75,8 @@ def u_section(
         height: distance between bottom and top.
         width: distance between the webs.
         radius: radius of the bends; if it is half the width, both form one semicircle.
-        facets: flat plates in each bend, between the level bottom and the web; one at least.
+        facets: number of flat plates in each bend between the level bottom and the web, at least
+            one.
         top, bottom, web: thicknesses of the top, of the bottom with its bends, and of the webs.
 
     Raises:

@@ -3,9 +3,9 @@
 
 Edge lengths are fractions of the loaded size: the length of a corner contact, the smaller side of a
 pad, or the size of the section if its walls share the force. The fractions are calibrated so that
-the error of the local compliance by the mesh is below the tolerance. The local compliance is that
-of a force less that of the same force distributed over the webs; its error is proportional to the
-square of the edge length.
+the error of the local compliance by the mesh is below the tolerance. The local compliance is the
+compliance under a force less the compliance under the same force distributed over the webs. Its
+error is proportional to the square of the edge length.
 """
 
 from __future__ import annotations

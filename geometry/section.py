@@ -259,7 +259,7 @@ def rectangle_faces(plates: Sequence[Plate]) -> tuple[Face, ...]:
 class BoxSection(Section):
     """Rectangular box, described by the mid-lines and thicknesses of its four walls.
 
-    Area, centroid and second moments are those of the outer rectangle less the inner one.
+    Area, centroid and second moments are exact for the outer rectangle without the inner one.
 
     >>> box = pt.BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006)
     >>> print(f"{1e4 * box.area:.0f} cm²")
@@ -268,8 +268,9 @@ class BoxSection(Section):
     Args:
         height: distance of the flange mid-lines (along z) in m.
         width: distance of the web mid-lines (along y) in m.
-        flange: thickness of the upper flange in m, and of the lower one unless that is given.
-        web: thickness of the right web (y > 0) in m, and of the left one unless that is given.
+        flange: thickness in m of the upper flange, and of the lower flange without
+            ``bottom_flange``.
+        web: thickness in m of the right web (y > 0), and of the left web without ``left_web``.
         bottom_flange: thickness of the lower flange in m; None if equal to ``flange``.
         left_web: thickness of the left web in m; None if equal to ``web``.
 

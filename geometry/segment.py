@@ -99,7 +99,8 @@ class Segment:
         collars, diaphragms: stiffeners of the plates, whose mass beams include; the properties
             above exclude them.
         compression: axial force, see :func:`geometry.axial.with_compression`.
-        shear_stiffnesses: G A_s in N along z and along y, if they differ from those of the section.
+        shear_stiffnesses: G A_s in N along z and along y, if they differ from the values of the
+            section.
     """
 
     name: str

@@ -96,7 +96,7 @@ def shear_centre(plates: Sequence[Plate]) -> Offset:
 def shear_plates(plates: Sequence[Plate], direction: Direction) -> tuple[tuple[int, float], ...]:
     """Return (index, force along the tangent) of the plates that carry a unit force on the axis.
 
-    The forces are those of the shear flow, and of the torque that shifts the force from the shear
+    The forces result from the shear flow and from the torque that shifts the force from the shear
     centre to the axis.
     """
     carried = ShearFlow.from_plates(plates, direction)

@@ -2,9 +2,9 @@
 """Check of support: supports, cylinders, joints and stops must prevent all rigid motions.
 
 Rigid motions of a segment are translation along z and rotation in the plane x-z; in 3-D also
-those in the plane x-y, and rotation about the axis. Each restraint is a row over the rigid motions
-of all segments. The boom is supported if only zero motion satisfies rows · motion = 0. If a
-one-sided stop is necessary, the loads at t = 0 must press the segment against it.
+translation along y, rotation in the plane x-y, and rotation about the axis. Each restraint is a row
+over the rigid motions of all segments. The boom is supported if only zero motion satisfies rows ·
+motion = 0. If a one-sided stop is necessary, the loads at t = 0 must press the segment against it.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def check_supported(boom: Boom) -> None:
 
 
 def check_contacts_at_rest(boom: Boom) -> None:
-    """Check that the loads at t = 0 press the one-sided stops that the boom needs.
+    """Check that the loads at t = 0 press segments against the one-sided stops that the boom needs.
 
     Args:
         boom: supported boom with loads.

@@ -39,8 +39,8 @@ class ShellOptions:
     Args:
         mesh_size: edge length in m; in a graded mesh, the length far from contacts and supports.
         contact_line: position of contact. ``near webs``: forces act between the webs of both
-            segments, as those of pads in the corners. ``across``: forces act over the width of the
-            inner flanges, which bend, in a flat boom. ``surface``: contact is possible over the
+            segments, like forces of pads in the corners. ``across``: forces act over the width of
+            the inner flanges, which bend, in a flat boom. ``surface``: contact is possible over the
             whole overlap.
         surface: options of surface contact.
         krylov: options of the reduction.

@@ -12,8 +12,8 @@ of −K_G φ = μ K φ: shift-and-invert at λ = 0, with one Cholesky factorisat
 walls have nearly the same λ; a Krylov space with several vectors for each mode separates them.
 
 Each segment buckles separately, on its supports, its cylinders and the tangent stiffness of its
-closed contacts. There, lateral motion and twist are fixed, and at one of them motion along the
-boom. :func:`dynamics.second_order.buckling_factor` covers buckling of the whole boom, such as
+closed contacts. There, lateral motion and twist are fixed; at one of them, motion along the boom is
+also fixed. :func:`dynamics.second_order.buckling_factor` covers buckling of the whole boom, such as
 column buckling.
 """
 
@@ -309,7 +309,7 @@ def rigid(shell: SegmentShell) -> float:
 
 
 def sideways(boom: Boom, number: int, shell: SegmentShell) -> Iterator[tuple[Array, float]]:
-    """Yield (row, stiffness) of rigid springs against lateral motion, twist and axial motion.
+    """Yield (row, stiffness) of rigid springs that prevent lateral motion, twist and axial motion.
 
     Rows are (num_owned,); stiffness is in N/m or N·m/rad. Collective.
     """

@@ -180,7 +180,7 @@ def _contact_compliance(full: BoomShell, segments: Sequence[ReducedSegment]) -> 
 def _reduce_segment(
     full: BoomShell, options: ShellOptions, stages: Stages, number: int, *extra_forces: Array
 ) -> ReducedSegment:
-    """Reduce a segment for its applied forces, further forces, and outputs. Collective."""
+    """Reduce a segment for its applied forces, ``extra_forces`` and outputs. Collective."""
     krylov, joined = options.krylov, full.joint_rows(number)
     at_surface = options.contact_line == "surface"
     if at_surface:

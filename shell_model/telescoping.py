@@ -266,7 +266,7 @@ class TelescopingShell:
         return float((np.abs(missed) / scale).max(initial=0.0))
 
     def _residuals(self, k: int) -> tuple[Array, Array]:
-        """Return compliance and inertia of sampled rows less those of the modes."""
+        """Return compliance and inertia of sampled rows, without the part of the modes."""
         rows, shifted = self._rows[k], self._apart.omega2 + squared(SLOW)
         compliance, inertia = (rows / shifted**power @ rows.swapaxes(1, 2) for power in (1, 2))
         return self._compliance(k, "compliance") - compliance, self._compliance(

@@ -36,7 +36,7 @@ _COEFFICIENTS = 0.5 * np.array(
 )  # fmt: skip
 _TEST_POINTS = np.array([0.15, 0.5, 0.85])
 
-# Least relative change of the stiffness of a direction by an axial force that changes with time.
+# Minimum relative change of the stiffness of a direction by an axial force that changes with time.
 _LEAST_CHANGE = 1.0e-5
 
 # i + j + 1, the reciprocals of ∫₀¹ uⁱ uʲ du for the powers in slopes.
@@ -200,7 +200,7 @@ class ChangingAxialForce:
 
     @classmethod
     def of(cls, geometric: Array, stiffness: Array, peak: float) -> ChangingAxialForce:
-        """Return the force of a geometric stiffness K_G (num_modes, num_modes) at s = 1.
+        """Return the force whose geometric stiffness is K_G (num_modes, num_modes) at s = 1.
 
         Directions in which it changes the stiffness by less than 1e-5 at s = ``peak`` are
         left out.

@@ -59,7 +59,7 @@ def compilation_lock() -> Iterator[None]:
 
 @intrinsic
 def borrow(typing_context: Any, arrays: Any) -> Any:
-    """Return a tuple of arrays without reference counts. The owner must keep the arrays alive.
+    """Return a tuple of arrays without reference counts; the caller must keep the arrays alive.
 
     Atomic counting would take as long as the arithmetic of a step with friction.
     """

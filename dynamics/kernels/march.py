@@ -22,7 +22,8 @@ from dynamics.kernels.telescoping import AxialForces, MovingRows, add_axial_forc
 from dynamics.kernels.terms import contact_energy, term_energy, term_force, term_slope
 from dynamics.trajectory import Output
 
-# Indices in the tally. From the work on, their order is that of ``dynamics.energy.ENERGIES``.
+# Indices in the tally. From the index of the work on, they have the order of
+# ``dynamics.energy.ENERGIES``.
 TIME, FIRST_CONTACT, CHANGES, STEPS, WORK, DAMPING, FRICTION, CONTACT, TALLY = range(9)
 
 # Largest h ω of a closed contact at which steps resolve its force: the largest sample of a
@@ -139,7 +140,7 @@ def _update_contacts(state: State, laws: Laws, end: Array, free: Array, time: fl
         closed = after & ~before
         if closed != 0:
             bound = high if closed == 1 else low
-            # Until contact, the displacement is that without contact forces.
+            # Until contact, the displacement equals the displacement without contact forces.
             passed = (bound - state.y[j]) / (free[j] - state.y[j])
             closing = min(closing, time * min(max(passed, 0.0), 1.0))
     if np.isnan(state.tally[FIRST_CONTACT]) and closing < np.inf:
@@ -216,8 +217,8 @@ def _set_loads(
 ) -> None:  # fmt: skip
     """Set the mean load (num_modes,) and its change ``tilt`` within a part of a step.
 
-    ``mean`` and ``change`` (num_excitations,) are those of the whole step. ``part`` is the length
-    of the part and ``middle`` its offset from the middle of the step, as fractions of the step.
+    ``mean`` and ``change`` (num_excitations,) apply to the whole step. ``part`` is the length of
+    the part and ``middle`` its offset from the middle of the step, as fractions of the step.
     """
     assign(load, system.load)
     tilt[:] = 0.0
@@ -271,7 +272,7 @@ def march(
         state: state at the start; it is changed.
         schedule: loads and extensions of all stretches.
         stretches: number of stretches of an output interval.
-        joined: j; 0 if other forces than those of contacts act.
+        joined: j; 0 if other forces than contact forces act.
         problem: work arrays of contact and friction forces.
         output: output to fill in.
     """

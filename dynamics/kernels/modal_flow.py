@@ -9,8 +9,8 @@ r = ∫ s dt, p = ∫ r dt/h and u = ∫∫ r dt dt/h²,
     v₁ = −ω² s a₀ + (1 − c s − ω² r) v₀ + s Q + (r/h − s/2) S
     ā  = (1 − ω² p) a₀ + (r/h) v₀ + p Q + (u − p/2) S
 
-The work of Q is Q (a₁ − a₀), that of S is S ((a₀ + a₁)/2 − ā), and the damping loss c ∫ v² dt is a
-quadratic form of v₀, v̇₀ and S/h.
+The work of Q is Q (a₁ − a₀), the work of S is S ((a₀ + a₁)/2 − ā), and the damping loss c ∫ v² dt
+is a quadratic form of v₀, v̇₀ and S/h.
 """
 
 from __future__ import annotations
@@ -164,7 +164,7 @@ def finish_flow(
         force: (num_modes,) mean force Q in N/√kg.
         change: (num_modes,) change S of the load in N/√kg; empty for constant loads.
         end: (num_modes,) a₁.
-        load: (num_modes,) part of Q whose work is returned together with that of S.
+        load: (num_modes,) part of Q whose work is returned together with the work of S.
     """
     h, omega2, damping = flow.time[length], flow.omega2, flow.damping
     impulse, gain, ramp = flow.impulse[length], flow.gain[length], flow.ramp[length]

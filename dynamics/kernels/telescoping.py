@@ -55,7 +55,7 @@ class AxialForces(NamedTuple):
             :class:`dynamics.drive.row_table.MovingAxialForce`.
         products: (num_pieces, most_modes, most_modes) ∫ w′ᵀ w′ ds from 0 to each piece.
         changed_by: (num_vectors,) index of the travel of each vector.
-        factors, vectors: those of :class:`dynamics.drive.row_table.ChangingAxialForce`.
+        factors, vectors: as in :class:`dynamics.drive.row_table.ChangingAxialForce`.
     """
 
     force: Array

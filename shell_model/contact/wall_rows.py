@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rows of displacements of a shell along the corners of a section, and at points of walls.
 
-The compliance under a point force at a fold diverges with the logarithm of the edge length, that
-under a force along an interval of the fold is finite. Corner rows are exact for any mesh. The row
-of a point on a wall has the six shape functions of the triangle that contains the point. So the
-meshes of two segments need not match.
+The compliance under a point force at a fold diverges with the logarithm of the edge length. The
+compliance under a force along an interval of the fold is finite. Corner rows are exact for any
+mesh. The row of a point on a wall has the six shape functions of the triangle that contains the
+point. So the meshes of two segments need not match.
 """
 
 from __future__ import annotations
@@ -71,8 +71,8 @@ class CornerLines:
         Args:
             stretch: interval of x on the corners.
             direction: component of the displacement.
-            y, z: offsets from the axis in m. The sign of ``z`` selects the upper or lower face, the
-                sign of ``y`` the lateral one.
+            y, z: offsets from the axis in m. The sign of ``z`` selects the upper or lower face; the
+                sign of ``y`` selects the right or left face.
         """
         side, across = (z, y) if direction == "z" else (y, z)
         section = self._segment.section_at(stretch.station)

@@ -85,7 +85,7 @@ class BoomCoordinates:
         return self.of_rows(np.concatenate(parts))
 
     def of_rows(self, apart: Array) -> Array:
-        """Return rows (…, num_modes) in the modes of the boom from rows in those of segments."""
+        """Return rows (…, num_modes) in the modes of the boom, from rows in modes of segments."""
         if self._combination is None:
             return apart
         return np.asarray(apart @ self._combination.astype(apart.dtype, copy=False))

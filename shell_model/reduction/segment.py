@@ -78,7 +78,8 @@ def reduce_segment(
     if not symmetry_classes:
         raise NumericsError("nothing acts on a segment, and it has no motion: give it a load")
     report = progress or (lambda part: None)
-    # The maximum number of coordinates of a symmetry class is proportional to that of its forces.
+    # The maximum number of coordinates of a symmetry class is proportional to the number of its
+    # forces.
     counts = comm.bcast([np.count_nonzero(job.forces.any(axis=0)) for job in jobs])
 
     most = options.most

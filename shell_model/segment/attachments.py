@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Springs and masses on a displacement of a section, such as its mean deflection.
+"""Springs and masses that act on a displacement of a section, such as its mean deflection.
 
 A spring k on the displacement with the row r adds k r rᵀ to the stiffness. The row distributes its
 force over the section, and other motions stay free.

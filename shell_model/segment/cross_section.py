@@ -24,7 +24,7 @@ class Row(dict[int, float]):
 
     @classmethod
     def from_weights(cls, dofs: Indices, weights: Array) -> Row:
-        """Return the row with weights of degrees of freedom; weights of repeated ones are added."""
+        """Return the row with weights of degrees of freedom; weights of the same one are added."""
         row = cls()
         for dof, weight in zip(dofs.tolist(), weights.tolist(), strict=True):
             row[dof] = row.get(dof, 0.0) + weight

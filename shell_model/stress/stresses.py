@@ -69,8 +69,8 @@ class Stress(NamedTuple):
 
     Args:
         membrane: σ_x, σ_s, τ_xs (..., 3) of the mid-surface.
-        bending: stress (..., 3) of the outer face less that of the mid-surface; the inner face has
-            the opposite difference.
+        bending: stress (..., 3) of the outer face less the stress of the mid-surface; the inner
+            face has the opposite difference.
     """
 
     membrane: npt.NDArray[np.float32]
