@@ -17,7 +17,7 @@ from geometry.section import Direction
 
 @dataclass(frozen=True, slots=True, config=PART)
 class Pin:
-    """Pin in double or multiple shear, for the verification of a foot or a cylinder.
+    """Pin in double or multiple shear, for the proof of strength of a foot or a cylinder.
 
     >>> round(1e-3 * pt.Pin(diameter=0.05, strength=6e8).resistance)
     1414

@@ -125,7 +125,7 @@ def with_weight(
         boom: the boom without weight.
         angle: luffing angle in degrees, positive where the tip is up.
         acceleration: acceleration of gravity in m/s².
-        thrusts: other axial forces, such as that of a hoist rope.
+        thrusts: other axial forces, such as the force of a hoist rope.
     """
     gravity = GravityTable(acceleration=float(acceleration), angle=float(angle))
     segments = with_compression(boom.segments, boom.joints, thrusts, gravity.along)

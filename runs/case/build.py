@@ -45,8 +45,8 @@ _OUTPUT_NAMES = {
     "model",
 }
 
-# Permitted relative difference of given beam properties from those of the plates: data sheets give
-# rounded numbers.
+# Permitted relative difference between given beam properties and the properties of the plates: data
+# sheets give rounded numbers.
 SECTION_TOLERANCE = 0.01
 
 
@@ -203,7 +203,7 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
 
 
 def _check_plays(where: str, table: JointTable) -> None:
-    """Check the play on one side against the play of both, and that shims go without play."""
+    """Check that the play of one side is within the whole play, and that shims leave no play."""
     for key, of, pressed in (
         ("play_above", "play", "interference"),
         ("lateral_play_right", "lateral_play", "lateral_interference"),

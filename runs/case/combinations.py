@@ -2,7 +2,7 @@
 """Load cases and combinations: static cases that follow from a case by other keys and by factors.
 
 The case of a combination has the masses of its load case. If the factor of a payload differs from
-that of the dead weight, a force at the tip, across and along the boom, adds the difference.
+the factor of the dead weight, a force at the tip, across and along the boom, adds the difference.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from runs.case.actions import STANDARD_GRAVITY, axial_force
 from runs.case.build import build_boom, check_names
 from runs.case.load_tables import (
     AxialTable,
-    BaseTable,
     CombinationTable,
+    GroundAccelerationTable,
     Group,
     LoadCaseTable,
     LoadTable,
@@ -115,7 +115,7 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
         for one in plain.base
     ]
     gravity, payload = plain.gravity, plain.payload
-    # Factor that the weight of the mass at the tip has already in the model.
+    # Factor by which the model already multiplies the weight of the mass at the tip.
     own = 0.0
     acceleration = STANDARD_GRAVITY
     if gravity is not None:
@@ -240,7 +240,7 @@ def _groups(case: Case, table: LoadCaseTable) -> Iterator[tuple[Group, str]]:
         yield case.payload.group, "the weight of the payload"
     if table.payload:
         yield "payload", f"the payload of {table.name!r}"
-    parts: dict[str, Sequence[LoadTable | AxialTable | BaseTable]] = {
+    parts: dict[str, Sequence[LoadTable | AxialTable | GroundAccelerationTable]] = {
         "load": case.loads if table.loads is None else table.loads,
         "axial": case.axial if table.axial is None else table.axial,
         "base": case.base if table.base is None else table.base,

@@ -50,7 +50,7 @@ class LoadTable(HistoryTable):
 
 
 class AxialTable(CaseTable):
-    """A constant axial force towards the base, such as that of a hoist rope."""
+    """A constant axial force towards the base, such as the force of a hoist rope."""
 
     segment: str | None = None
     """the name of the segment on which it acts; the last one unless given"""
@@ -78,7 +78,7 @@ class PayloadTable(CaseTable):
     """the group of its weight, whose factor combinations give; dead for a cage or a hook"""
 
 
-class BaseTable(HistoryTable):
+class GroundAccelerationTable(HistoryTable):
     """An acceleration of the ground, which acts as an inertia load on all masses."""
 
     direction: Literal["z", "y"] = "z"
@@ -109,7 +109,7 @@ class LoadCaseTable(CaseTable):
     """the loads in place of all [[load]] of the case; those of the case unless given"""
     axial: Annotated[tuple[AxialTable, ...], Few] | None = None
     """the forces along the boom in place of all [[axial]] of the case; those unless given"""
-    base: Annotated[tuple[BaseTable, ...], Few] | None = None
+    base: Annotated[tuple[GroundAccelerationTable, ...], Few] | None = None
     """the accelerations of the ground in place of all [[base]] of the case; those unless given"""
 
 

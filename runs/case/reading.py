@@ -297,7 +297,7 @@ def _history(path: str, key: str, table: History, system: System) -> History:
     if not read.measured and table.amount not in table.model_fields_set:
         what = describe(type(table).model_fields[table.amount])
         raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
-    # Without this the default value would be in SI units, not in those of the case file.
+    # Without this the default value would be in SI units, not in the units of the case file.
     amount = {table.amount: getattr(table, table.amount)}
     return table.model_copy(update={"file": None, "columns": None, "table": read.values, **amount})
 

@@ -48,8 +48,8 @@ from runs.case.limits import (
 )
 from runs.case.load_tables import (
     AxialTable,
-    BaseTable,
     CombinationTable,
+    GroundAccelerationTable,
     LoadCaseTable,
     LoadTable,
     PayloadTable,
@@ -227,7 +227,7 @@ class LimitsTable(CaseTable):
     settling_time: Annotated[Positive, In("s")] | None = None
     """the longest permitted time in s until the tip stays near its final mean"""
 
-    # The quantities whose limit is the least permitted value.
+    # The quantities whose limit is the smallest permitted value.
     LEAST: ClassVar = frozenset({"first_frequency"})
 
 
@@ -287,7 +287,7 @@ class Case(CaseKeys, CaseHeading):
     """the table of the slewing of the boom"""
     luff: LuffTable | None = None
     """the table of the luffing of the boom"""
-    base: Annotated[tuple[BaseTable, ...], Few] = ()
+    base: Annotated[tuple[GroundAccelerationTable, ...], Few] = ()
     """the accelerations of the ground"""
     observe: Annotated[tuple[ObserveTable, ...], Few] = ()
     """the additional outputs, one [[observe]] each"""

@@ -25,10 +25,10 @@ class Spread(NamedTuple):
 
 
 def take_means(tables: Mapping[str, object], file: str) -> tuple[dict[str, object], list[Spread]]:
-    """Return the tables of a case file with means in place of distributions, and these.
+    """Return the tables of a case file with means in place of distributions, and the distributions.
 
     Raises:
-        BadInput: a mean is no finite number, or a standard deviation is none above 0.
+        BadInput: a mean is not a finite number, or a standard deviation is not a number above 0.
     """
     found: list[Spread] = []
 

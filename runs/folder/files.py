@@ -67,7 +67,7 @@ def atomic_folder(folder: Path) -> Iterator[Path]:
     with scratch_folder(folder) as part:
         yield part
         with folder_lock(folder):
-            _take_the_place(part, folder, _files(part))
+            _move_to_final_path(part, folder, _files(part))
 
 
 @contextmanager
@@ -89,7 +89,7 @@ def modified_folder(folder: Path) -> Iterator[Path]:
         own = [
             name for name in _files(part) if name in listed or not _same_file(name, part, folder)
         ]
-        _take_the_place(part, folder, own)
+        _move_to_final_path(part, folder, own)
 
 
 @contextmanager
@@ -131,7 +131,8 @@ def scratch_folder(path: Path) -> Iterator[Path]:
             unlocked.rename(part)
             yield part
     except OSError as error:
-        # The error names the final path: a full disk gives none, the user does not know others.
+        # The error names the final path: the error of a full disk names no path, and the user does
+        # not know hidden paths.
         place = os.path.abspath(error.filename or path)
         for scratch in (unlocked, part):
             place = place.replace(str(scratch), str(path))
@@ -170,7 +171,7 @@ def _remove_left(path: Path) -> None:
             shutil.rmtree(left, ignore_errors=True)
 
 
-def _take_the_place(part: Path, folder: Path, own: Iterable[str]) -> None:
+def _move_to_final_path(part: Path, folder: Path, own: Iterable[str]) -> None:
     """Write the manifest of a new folder, and move it to its final path.
 
     Args:

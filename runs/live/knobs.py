@@ -188,7 +188,7 @@ class Draft:
         return low, high
 
     def _fitting(self, place: Place, value: float, low: float, high: float) -> list[float]:
-        """Return the range in which a number of a joint fits the segments; else the one given."""
+        """Return the range in which a number of a joint fits the segments, or the given range."""
         joint = self.boom.joints[int(place.steps[1])]
         outer, inner = (self.boom.segments[number] for number in (joint.outer, joint.inner))
         match place.steps[2:]:
@@ -223,7 +223,7 @@ class Draft:
             raise BadInput.from_validation(self.file, error) from None
 
     def with_shell(self, case: Case) -> Case:
-        """Return an edited case with the page's beam and the case's shells, a default if none.
+        """Return an edited case with the page's beam and the case's shells, or a default shell.
 
         Raises:
             BadInput: the case is invalid.

@@ -16,14 +16,14 @@ from scipy.linalg import eigh, null_space
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 
-# Modes with ω² below this fraction of the least positive ω² of the segments count as rigid.
+# Modes with ω² below this fraction of the smallest positive ω² of the segments count as rigid.
 _RIGID_FRACTION = 1.0e-6
 
 
 def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, Array]:
     """Return the bonded system, and its modes (num_modes, num_bonded_modes) in the old coordinates.
 
-    Of the stations only those on the ground remain, and their travels.
+    Only the stations on the ground remain, with their travels.
 
     >>> from runs.pipeline.bonded import bonded_system
     >>> pair = replace(ball, omega2=np.array([0.0, 4.0]), load=np.zeros(2), stations=[1.0],

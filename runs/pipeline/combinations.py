@@ -79,7 +79,7 @@ class CombinationState(NamedTuple):
 
 
 def combination_states(case: Case, moving: bool = True) -> list[CombinationState]:
-    """Return the states of all combinations; those of the case without combinations.
+    """Return the states of all combinations, or of the case itself if it has none.
 
     Args:
         case: a checked case.
@@ -111,7 +111,7 @@ def combination_results(case: Case) -> list[CombinationResult]:
 def combination_tables(
     results: Sequence[CombinationResult], case: Case, shell: str = ""
 ) -> Iterator[Table]:
-    """Yield the table of combinations, and that of their envelope, in the units of a case.
+    """Yield the table of combinations and the table of their envelope, in the units of a case.
 
     Args:
         results: results of the combinations.
@@ -148,7 +148,7 @@ def _marked(one: StaticExtreme, most: float, system: System) -> str:
 
 
 def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
-    """Return the table of the least and the largest value of each result, with its combination."""
+    """Return the table of the minimum and maximum of each result, with their combinations."""
     of_name: dict[str, list[tuple[StaticExtreme, str]]] = {}
     for result in results:
         for one in result.extremes:

@@ -2,7 +2,7 @@
 """Statics of all combinations of a case by a shell.
 
 Combinations with the same geometry share one reduced shell, which is reduced under unit loads of
-all of them. Its geometric stiffness is that of the largest axial forces, which is on the safe side.
+all of them. Its geometric stiffness belongs to the largest axial forces, which is conservative.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ from runs.pipeline.wall_buckling import buckled_shell
 def shell_states(case: Case, model: Shell, context: BuildContext) -> list[CombinationState]:
     """Return the static states of all combinations by a shell, on rank 0. Collective.
 
-    With a table ``buckling`` the segments' buckling factors are those of the state of each
-    geometry with the lowest estimate by panel formulas.
+    With a table ``buckling``, the buckling factors of segments are computed in one state of each
+    geometry: the state with the lowest estimate by panel formulas.
 
     Args:
         case: a checked case.
@@ -152,7 +152,7 @@ def _buckled(
 ) -> list[CombinationState]:
     """Return the states, with buckling results for the governing one. Collective.
 
-    It has the lowest estimate by panel formulas.
+    The governing state has the lowest estimate by panel formulas.
     """
     from shell_model.buckling import StaticState
     from shell_model.standard import with_plays_and_loads

@@ -28,8 +28,8 @@ class ModelDesignResults:
     Args:
         static: static states under the loads at t = 0 and, if loads vary, under their extreme
             values; empty without an equilibrium.
-        static_extended: static states at the largest and least extension, under the loads at the
-            time of that extension and the extreme loads while it lasts.
+        static_extended: static states at the largest and smallest extension, under the loads at the
+            time of this extension and the extreme loads while it lasts.
         static_bonded: static states without play, at times with the initial extension.
         modes: the first modes about the equilibrium under the loads at t = 0; empty without an
             equilibrium.

@@ -67,7 +67,7 @@ class LoadedModel(NamedTuple):
 
         Args:
             found: equilibria (num_modes,) by time in s.
-            extended: equilibria at the largest and least extension by time in s.
+            extended: equilibria at the largest and smallest extension by time in s.
         """
         static, static_extended = (
             [static_result(*self, time, position) for time, position in positions.items()]
@@ -84,7 +84,7 @@ class LoadedModel(NamedTuple):
         case: Case,
         model: Model,
     ) -> ModelDesignResults:
-        """Return the static results together with those of the motion and the fatigue life."""
+        """Return the static results with the results of the motion and the fatigue life."""
         still = np.array([*found.values()]).reshape(-1, self.system.num_modes)
         static, jumps = [*own.static, *own.static_extended], not model.smooth
         motions = MotionAndStatics(self.boom, self.lines, trajectory, still, static, jumps)
@@ -146,7 +146,7 @@ class ModelEvaluation:
         return replace(own, residual_vibration=vibration, hoisting=rope, drives=drives)
 
     def add_bonded(self, own: ModelDesignResults) -> ModelDesignResults:
-        """Return design results with those of the same model without play, if it has any."""
+        """Return design results with the results of the same model without play, if it has play."""
         boom, case, model = self.boom, self.case, self.model
         if model.bonded or not boom.joints:
             return own
@@ -221,7 +221,8 @@ def evaluate_run(
         states = combination_states(case)
         design = replace(design, combinations=[one.result for one in states])
         with suppress(*NUMERICAL_ERRORS):
-            # A combination without rest has no proofs; the table of combinations says so.
+            # A combination without an equilibrium has no proofs; the table of combinations states
+            # this.
             design = replace(design, proofs=prove(case, states))
     return replace(design, quality_notes=[*quality_notes(summary, design, case.time.duration)])
 

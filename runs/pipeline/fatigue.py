@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Fatigue damage of weld details under sequences of load cases.
 
-A detail moves with its segment. Its nominal stress in each load case is that of the outer fibres at
-its cross-section. Stress ranges are counted around the closed sequence of load cases.
+A detail moves with its segment. Its nominal stress in each load case is the stress of the outer
+fibres at its cross-section. Stress ranges are counted around the closed sequence of load cases.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from runs.pipeline.strength import HAS_RAINFLOW, MEGA, Fibres, count_stress_rang
 if TYPE_CHECKING:
     from runs.pipeline.combined_motion import BeamMotion
 
-# Number of cross-sections of a segment among which that of its worst weld is found.
+# Number of cross-sections of a segment at which its worst weld may be.
 _SECTIONS = 41
 
 # Stresses are taken at this distance in m on both sides of a detail, where forces may jump.

@@ -110,7 +110,7 @@ class StaticBeam(NamedTuple):
             duration: duration of the loads' histories in s.
 
         Raises:
-            NumericsError: the boom has no rest at t = 0.
+            NumericsError: the boom has no equilibrium at t = 0.
         """
         found = positions(system, instants(system, duration))
         if not found:

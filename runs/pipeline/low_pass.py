@@ -23,12 +23,12 @@ Number = Annotated[
     PlainSerializer(lambda value: value if math.isfinite(value) else None),
 ]
 
-# Cut-off over the first frequency with closed contacts. Play makes the boom slower than that; the
-# vibrations that impacts excite are faster.
+# Cut-off over the first frequency with closed contacts. Play makes the boom slower than this
+# frequency; the vibrations that impacts excite are faster.
 CUTOFF_SHARE = 0.8
 # Order of the filter, which runs forwards and backwards.
 ORDER = 4
-# Least prominence of a peak as a fraction of the range of the signal. It excludes shoulders.
+# Minimum prominence of a peak as a fraction of the range of the signal. It excludes shoulders.
 PROMINENCE = 0.2
 
 
@@ -118,7 +118,7 @@ class SlowPeaks:
 
     @classmethod
     def of(cls, members: Array, time: Array, cutoff: float) -> SlowPeaks:
-        """Return the peaks of an ensemble, in order, up to the first that a member lacks.
+        """Return the peaks of an ensemble, in order, up to the first peak that a member lacks.
 
         Peaks of two members match if they are nearer than half a period of the cut-off, since two
         peaks of one filtered motion are farther apart.

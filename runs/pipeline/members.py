@@ -156,7 +156,7 @@ def measure_predictability(
 
 
 def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsForPeaks | None:
-    """Return trials with increasing time steps, and the fewest steps that preserve the first peaks.
+    """Return trials with increasing time steps, and the smallest number that preserves the peaks.
 
     Args:
         motion: motion of the model, which is integrated up to the last compared peak.
@@ -196,7 +196,7 @@ def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsFor
 
 
 def _peaks_agree(trajectory: Trajectory, peaks: SlowPeaks, cutoff: float) -> bool:
-    """Return True if the first slow peaks agree with those of the ensemble."""
+    """Return True if the first slow peaks agree with the peaks of the ensemble."""
     times, heights = slow_peaks(trajectory.data["tip"].values, trajectory.time, cutoff)
     if times.size < PEAKS:
         return False

@@ -34,7 +34,7 @@ from runs.pipeline.turning import pendulum_frequency, swing_cautions, turning_ca
 # Members whose tips differ by more than this fraction of the range have diverged.
 _DIVERGED = 0.2
 
-# Factor above the frequency of a pendulum from which modes are those of the boom.
+# Ratio of the frequency of a mode to that of a pendulum above which the mode belongs to the boom.
 _APART = 1.2
 
 # Relative error of a reduction or a mesh above which a caution is given.

@@ -241,7 +241,7 @@ def calibration_card(boom: Boom, system: GapSystem, calibration: Calibration) ->
 
     Args:
         boom: boom of the case.
-        system: system of the model, whose contacts are those of the calibration.
+        system: system of the model, with the contacts of the calibration.
         calibration: calibration of the model.
     """
     return CalibrationCard(

@@ -27,7 +27,7 @@ from runs.case.schema import Case, Model
 if TYPE_CHECKING:
     from dynamics.integrator import AdaptiveStep, FixedStep
 
-# Least stiffness of a direction, as a fraction of the least of the segments' modes.
+# Minimum stiffness of a direction, as a fraction of the smallest stiffness of the segments' modes.
 _LEAST_STIFFNESS = 1.0e-6
 
 # Maximum number of steps: more would take days, and are an input error.
@@ -66,7 +66,7 @@ def build_on(
 def complete_system(system: GapSystem, case: Case, boom: Boom, lines: Sequence[Line]) -> GapSystem:
     """Return the system of a model with elastic drives, changing axial forces and hoisted load.
 
-    ``lines`` are those along the segments; none if no axial force changes.
+    ``lines`` are the lines along the segments, for the changes of axial forces.
     """
     system = with_elastic_drives(system, case, boom)
     system = replace(system, travels=[*system.travels, *axial_travels(system, boom, lines)])

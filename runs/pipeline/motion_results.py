@@ -125,7 +125,7 @@ class MotionAndStatics:
 def evaluate_motion(motions: MotionAndStatics) -> tuple[MotionResult, list[StressHistory]]:
     """Return the extreme values of a motion except wall stresses, and stress histories for fatigue.
 
-    The stress history of a segment is that of the point where the stress varies most.
+    The stress history of a segment belongs to the point where the stress varies most.
     """
     boom, envelopes, peaks = motions.boom, [], list(_output_peaks(motions))
     fibres, varying = [], []
@@ -154,7 +154,7 @@ def evaluate_motion(motions: MotionAndStatics) -> tuple[MotionResult, list[Stres
 def _peak(
     what: str, where: str, unit: str, time: Array, values: Array, still: Sequence[float] | Array
 ) -> Peak:
-    """Return the peak of values (num_times,) in motion, with that of static values (num_rests,)."""
+    """Return the peaks of values (num_times,) in motion and of static values (num_rests,)."""
     step = int(np.abs(values).argmax())
     at_rest = max((float(abs(value)) for value in still), default=None)
     return Peak(what, where, unit, float(abs(values[step])), float(time[step]), at_rest)

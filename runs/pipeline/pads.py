@@ -163,7 +163,7 @@ def loaded_pads(
         shares, shims = (np.array([pair[k] for pair in pairs]) for k in (1, 2))
         own = [pad.stiffness for pad in joint.pads if pad.touches(direction, side)]
         stiffness = PADS_OF_SIDE * sum(own) or 1.0
-        # Each pair that closes reduces the compression of those that closed before.
+        # Each pair that closes reduces the compression of the pairs that closed before.
         ways = (force / stiffness - np.cumsum(shares * shims)) / np.cumsum(shares)
         forces = stiffness * (shares * np.maximum(ways.min() + shims, 0.0)) / PADS_OF_SIDE
         found += [(pair[0], float(one)) for pair, one in zip(pairs, forces, strict=True)]

@@ -116,13 +116,13 @@ class Proof(NamedTuple):
 
 
 class Proofs(NamedTuple):
-    """Proofs of a case, the governing one first, and notes on what is not proved."""
+    """Proofs of a case, the governing one first, and notes on missing proofs."""
 
     proofs: list[Proof]
     notes: list[str]
 
     def governing(self, system: System) -> str:
-        """Return a sentence on the governing proof and the number of those that fail."""
+        """Return a sentence on the governing proof and the number of proofs that fail."""
         if not self.proofs:
             return "The case has no numbers for a proof."
         failed, governs = sum(not one.holds for one in self.proofs), self.proofs[0]

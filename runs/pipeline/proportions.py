@@ -37,7 +37,7 @@ MAX_LIFT = 0.3
 MANY_PERIODS = 1000.0
 
 # Young's modulus in Pa and density in kg/m³ of steel, and the relative differences within which a
-# number is that of steel.
+# number counts as the value of steel.
 STEEL, STEEL_WITHIN = (2.1e11, 7850.0), (0.06, 0.1)
 
 # Relative differences up to which two loads, and a force and a weight, count as the same.
@@ -97,7 +97,7 @@ def _ineffective_inputs(case: Case) -> Iterator[str]:
 
 
 def _materials(case: Case) -> Iterator[str]:
-    """Yield a caution for each density that does not belong to steel, which the modulus does."""
+    """Yield a caution for each material with the modulus of steel and another density."""
     tables = {f"segment[{i}].material": one.material for i, one in enumerate(case.segments, 1)}
     for where, table in {"material": case.material, **tables}.items():
         if table is None:

@@ -62,10 +62,10 @@ def measure(results: Results, model: str) -> Quantities:
     static one. The contact force is the largest mean over an output interval at any station, since
     the peak of an impact is too short to load a pad. The stress is the axial stress in an outer
     fibre; the wall stress of a shell is a mean over a patch. The pad pressure is the maximum over
-    pads and time. The damage is the fatigue damage at the governing place. The decay time is that
-    of the first mode. Residual vibration is that of
-    :class:`runs.pipeline.residual_vibration.ResidualVibration`; force and slip of elastic drives
-    are those of :class:`dynamics.drive.stick_slip.StickSlip`.
+    pads and time. The damage is the fatigue damage at the governing place. The decay time belongs
+    to the first mode. :class:`runs.pipeline.residual_vibration.ResidualVibration` defines the
+    residual vibration, and :class:`dynamics.drive.stick_slip.StickSlip` defines force and slip of
+    elastic drives.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     tip = np.asarray(results.trajectories["tip"].sel(model=model).values, dtype=float)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Residual vibration of the tip during telescoping, compared with that at constant extension.
+"""Residual vibration of the tip in telescoping, compared with vibration at constant extension.
 
 The amplitude is the largest distance of the tip from its equilibrium at the current extension and
 under the current loads.

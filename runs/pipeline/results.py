@@ -83,7 +83,7 @@ class Results:
         """Read a run's folder.
 
         Raises:
-            BadInput: the folder is not that of a run, or is incomplete.
+            BadInput: the folder is not the folder of a run, or is incomplete.
         """
         folder = Path(folder)
         if not folder.is_dir():

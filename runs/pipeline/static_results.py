@@ -150,7 +150,7 @@ def instants(system: GapSystem, duration: float) -> list[float]:
 
 
 def extended_instants(system: GapSystem, duration: float) -> list[float]:
-    """Return the times in s of the largest and least extension, and of extreme loads at these.
+    """Return the times in s of the largest and smallest extension, and of extreme loads there.
 
     Args:
         system: gap system whose ``load`` includes all constant loads.
@@ -208,7 +208,7 @@ def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float,
 
 
 def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]:
-    """Return the equilibria (num_modes,) at the largest and least extension, by time in s.
+    """Return the equilibria (num_modes,) at the largest and smallest extension, by time in s.
 
     Args:
         system: gap system of a model, whose ``load`` includes all constant loads.
@@ -288,7 +288,7 @@ def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[St
 
 
 def _closed_play(system: GapSystem, gaps: Array, rows: Indices) -> float:
-    """Return the play in m that walls close: mean approach on the right minus that on the left."""
+    """Return the play in m that walls close: mean approach on the right less the left one."""
     right, left = (
         [gaps[row] for row in rows if np.isfinite(system.laws[row].onset(side))] for side in SIGNS
     )

@@ -191,14 +191,14 @@ def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
 def outer_corners(section: Section) -> tuple[Array, Array]:
     """Return y and z (num_corners,) in m of the outer corners of the plates, from the centroid.
 
-    Half the thickness is added to the mid-line: in each direction that of the plate at the corner
-    whose normal is nearer to the direction.
+    Half the thickness is added to the mid-line. In each direction, it is the thickness of the plate
+    at the corner whose normal is nearer to the direction.
     """
     places, beyond = [], []
     for before, after in zip(
         section.plates[-1:] + section.plates[:-1], section.plates, strict=True
     ):
-        # The components of the normal are those of the tangent, exchanged.
+        # The normal has the components of the tangent, exchanged.
         normals = [0.5 * plate.thickness * np.abs(plate.tangent[::-1]) for plate in (before, after)]
         places.append(after.start)
         beyond.append(np.maximum(*normals))

@@ -201,7 +201,7 @@ class ModelSummary(SummaryTable):
 class WholeRun(SummaryTable):
     """Differences between the tips of two models, as fractions of the larger range.
 
-    ``largest`` and ``rms`` are those up to each of the times ``until`` in s.
+    ``largest`` and ``rms`` are the differences up to each of the times ``until`` in s.
     """
 
     until: list[float]

@@ -33,7 +33,7 @@ _SLOW = 0.05
 # The angle of a pendulum is not small above this ratio of its swing to its length.
 _SMALL = 0.2
 
-# Number of modes that shapers suppress, and the least part of the deflection of one of them.
+# Number of modes that shapers suppress, and minimum part of the deflection of each of them.
 _SHAPED, _SHARE = 2, 0.05
 
 

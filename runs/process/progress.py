@@ -16,7 +16,7 @@ from runs.process.terminal import printable, say
 # Callback that receives the name of the model, the stage, and the completed fraction of the stage.
 Progress = Callable[[str, str, float], None]
 
-# Least time in s between two lines. Shorter stages print nothing.
+# Minimum time in s between two lines. Shorter stages print nothing.
 EVERY = 5.0
 # Completed fraction of a stage above which its remaining time is estimated.
 LEAST_PART = 0.05

@@ -23,7 +23,7 @@ _GAP = " ... "
 
 
 class Terminal(Console):
-    """Console that ignores a closed pipe, such as that of ``head``."""
+    """Console that ignores a closed pipe, for example to ``head``."""
 
     def on_broken_pipe(self) -> None:
         """Ignore a closed pipe, whose reader needs no more output."""

@@ -41,7 +41,7 @@ class Curve:
         shown: True if the curve is visible at first, False if only on demand.
         panel: index of its panel.
         band: lower and upper limit (num_times,) of a band.
-        at: abscissa (num_times,); that of the chart unless given.
+        at: abscissa (num_times,); the abscissa of the chart unless given.
     """
 
     name: str

@@ -31,7 +31,7 @@ Part = Literal["case", "motion", "rest", "horizons", "numerics"]
 BACKGROUND_WIDTH = 0.5
 # Duration of a close-up over the time of the first peak.
 CLOSE_UP = 1.3
-# Least span of an axis, as a fraction of the scale of its quantity.
+# Minimum span of an axis, as a fraction of the scale of its quantity.
 MIN_SPAN = 0.02
 # Line styles of drives.
 EXTENSIONS = ("-", "--", "-.", ":")

@@ -25,7 +25,7 @@ def model_tables(results: Results) -> list[Table]:
     found = (
         model_table(results),
         step_table(results),
-        space_table(results),
+        lateral_peak_table(results),
         buckling_table(results),
         law_table(results),
         *calibration_tables(results),
@@ -178,8 +178,8 @@ def law_table(results: Results) -> Table | None:
     return Table("Contact laws", columns, notes, "laws")
 
 
-def space_table(results: Results) -> Table | None:
-    """Return the table of first tip peaks along z and y; None for a planar boom."""
+def lateral_peak_table(results: Results) -> Table | None:
+    """Return the table of first tip peaks along z and along y; None for a planar boom."""
     models, duration = results.summary.models, results.case.time.duration
     reference = results.reference
     if reference is None or "tip_lateral" not in models[reference].first_peak:

@@ -136,7 +136,7 @@ def _chart(run: FigureContext, place: str) -> Chart:
 
 
 def _limit(run: FigureContext, place: str) -> float | None:
-    """Return the permitted tip deflection in mm, with the sign of the largest; None for none."""
+    """Return the permitted tip deflection in mm, with the sign of the largest deflection."""
     limits = run.case.limits
     if place != "tip" or limits is None or limits.tip is None:
         return None

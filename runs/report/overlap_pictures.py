@@ -71,7 +71,7 @@ SHOWN_AREA = 0.995
 # Smaller stresses in Pa count as zero.
 LEAST = 1.0
 
-# Least number of elements across a web that resolve its stresses.
+# Minimum number of elements across a web that resolve its stresses.
 ENOUGH = 4
 
 # A round number above this fraction of the scale would overlap the number at its end.

@@ -184,7 +184,7 @@ def _level_tables(reference: str, levels: Mapping[str, Comparison]) -> list[Tabl
 
 
 def _both(values: Sequence[float]) -> str:
-    """Return the value of the model and that of the reference, in mm, separated by a slash."""
+    """Return the values of the model and of the reference in mm, separated by a slash."""
     if not np.isfinite(values).any():
         return NONE
     return " / ".join(fixed(value, 1, TO_MILLI) for value in reversed(values))

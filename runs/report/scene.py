@@ -161,8 +161,8 @@ class Scene:
         """Return a beam as tubes along its axis, with bending stresses in Pa.
 
         Sections stay plane and keep their shape: a point at (y, z) moves along x by −z w′ − y v′,
-        and with the section's twist. Stresses (num_frames, num_points) are those at the mid-lines
-        of the plates.
+        and with the section's twist. Stresses (num_frames, num_points) apply at the mid-lines of
+        the plates.
 
         Args:
             case: case of the run.

@@ -22,12 +22,13 @@ FAINT = "#a8a8a8"
 # Colours of energy losses.
 LOSS = "#8c6d1f"
 
-# Colours of Okabe and Ito (2008) without those too pale for lines; a darker purple, and two more.
+# Colours of Okabe and Ito (2008) except the colours that are too pale for lines, with a darker
+# purple, and two further colours.
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#111111", "#b0568c", "#6a3fd0", "#8a6d00")
 
 # Colours of two segments and their contact force, which the colour-blind can distinguish.
 OUTER, INNER, FORCE = "#56b4e9", "#e69f00", "#b03000"
-# SectionNodes of letters on a picture.
+# Outlines of letters on a picture.
 OUTLINED: list[AbstractPathEffect] = [withStroke(linewidth=3, foreground="white")]
 # Colour maps of deflections and of stresses; zero is light.
 DEFLECTION, STRESS = "viridis_r", "cividis_r"

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """First natural frequencies of a boom over case parameters.
 
-A boom with play is nonlinear and has no natural frequencies. The table has those with the contacts
-that are closed at rest under the loads (:func:`dynamics.damping.closed_contact_modes`), and those
-with bonded joints.
+A boom with play is nonlinear and has no natural frequencies. The table has the frequencies with the
+contacts that are closed at rest under the loads (:func:`dynamics.damping.closed_contact_modes`),
+and the frequencies with bonded joints.
 """
 
 from __future__ import annotations

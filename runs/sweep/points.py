@@ -88,7 +88,7 @@ def plan(
         file: a case file, or the name of the case in messages.
         texts: options KEY=VALUES, see :mod:`runs.sweep.variation`.
         models: names of models; all unless given.
-        mesh_size: mesh size of all shells in m; that of the case unless given.
+        mesh_size: mesh size of all shells in m; the mesh size of the case unless given.
         reference: name of the model with which the others are compared.
         whole: the checked case; read from the file unless given.
 
@@ -133,7 +133,7 @@ def plan(
 
 
 def chosen_beam(case: Case, models: Sequence[str] | None) -> list[str]:
-    """Return the names of the given models; else that of the last beam, with play if possible."""
+    """Return the given models, or else the name of the last beam, with play if possible."""
     if models is not None:
         return list(models)
     beams = [model for model in case.models if not model.needs_shell]
@@ -142,7 +142,7 @@ def chosen_beam(case: Case, models: Sequence[str] | None) -> list[str]:
 
 
 def tables_of(case: Case) -> Tables:
-    """Return a case as plain tables, without those that do not affect sweeps."""
+    """Return a case as plain tables, without the tables that do not affect sweeps."""
     unused = {names_of(Case)[key] for key in UNUSED}
     return case.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=unused)
 

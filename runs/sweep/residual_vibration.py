@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Residual vibration over telescoping speed, compared with that at constant extension."""
+"""Residual vibration over telescoping speed, compared with vibration at constant extension."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ class Outcome:
 
 
 def prepare(folder: Path, file: str) -> None:
-    """Create the folder of a sweep, or check that an existing folder is that of a sweep.
+    """Create the folder of a sweep, or check that an existing folder belongs to a sweep.
 
     Args:
         folder: folder as the user gave it.

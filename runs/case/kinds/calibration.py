@@ -142,7 +142,8 @@ class CalibratedTable(BeamTable):
         assert built.calibration is not None
         stiff = with_stiffnesses(boom, built.calibration.segments)
         along = lines(stiff, self.segments(stiff))
-        # The coordinates of the springs come after those of the beam, and do not affect its lines.
+        # The coordinates of the springs come after the coordinates of the beam, and do not affect
+        # its lines.
         own = along[0].rows["deflection"].shape[1]
         basis = np.eye(own, built.system.num_modes)
         return replace(built, lines=[line.transform(basis) for line in along])

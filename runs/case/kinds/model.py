@@ -270,7 +270,7 @@ class ModelTable(CaseTable):
         """
 
     def model_boom(self, boom: Boom) -> ModelBoom:
-        """Return the boom with the contact laws of the model in place of those of the joints.
+        """Return the boom with the contact laws of the model in place of the laws of the joints.
 
         Raises:
             BoomError: a joint has no contact law, or its law does not admit shims.
