@@ -133,7 +133,7 @@ def combination_tables(
     if moving:
         notes.append(f"In prove and reports {', '.join(moving)}: extremes of the motion.")
     if shell:
-        notes.append(f"By {shell}; one reduced shell for each geometry, with its axial forces.")
+        notes.append(f"By {shell}, with the axial forces of each combination.")
     else:
         notes.append(beam_note(boom_with_play(case, build_boom(case))))
     notes += [f"{one.name}: no rest is found." for one in results if not one.extremes]

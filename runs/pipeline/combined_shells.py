@@ -15,6 +15,7 @@ import numpy as np
 
 from dynamics.excitation import InitialImpulse, ReleasedLoad, Step
 from dynamics.failure import NUMERICAL_ERRORS
+from geometry.axial import AxialChange
 from geometry.boom import Boom
 from geometry.load import Load
 from runs.case.build import build_boom
@@ -53,7 +54,7 @@ def shell_states(case: Case, model: Shell, context: BuildContext) -> list[Combin
         shared = _shared([booms[number] for number in numbers])
         built = model.build(ModelBoom(shared[0]), context)
         states = [
-            _state(combined[number], boom, model, built)
+            _state(combined[number], boom, shared[0], model, built)
             for number, boom in zip(numbers, shared[1:], strict=True)
             if context.comm.rank == 0
         ]
@@ -117,16 +118,27 @@ def _by_kind(boom: Boom) -> dict[str, Load]:
     return found
 
 
-def _state(combined: CombinedCase, boom: Boom, model: Shell, built: BuiltModel) -> CombinationState:
-    """Return the static states of a combination, on rank 0."""
+def _state(
+    combined: CombinedCase, boom: Boom, shared: Boom, model: Shell, built: BuiltModel
+) -> CombinationState:
+    """Return the static states of a combination, on rank 0.
+
+    ``shared`` has the axial forces of the reduced shell.
+    """
     from shell_model.standard import with_plays_and_loads
     from shell_model.stress.history import stress_near_places
     from shell_model.stress.stresses import ShellStress
 
     assert built.shell is not None
     own = with_plays_and_loads(built.shell, boom)
-    system = own.system.gather_loads()
-    along = with_cylinder_forces(boom, system, model.lines(boom, replace(built, shell=own)))
+    lines = model.lines(boom, replace(built, shell=own))
+    deflections = [dict(line.deflections) for line in lines]
+    forces, largest = (
+        AxialChange(Step(), [one.compression for one in segments]).geometric_stiffness(deflections)
+        for segments in (boom.segments, shared.segments)
+    )
+    system = replace(own.system.gather_loads(), geometric_stiffness=forces - largest)
+    along = with_cylinder_forces(boom, system, lines)
     try:
         with np.errstate(all="ignore"):
             beam = StaticBeam.at_rest(boom, system, along, combined.case.time.duration)
