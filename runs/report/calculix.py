@@ -4,8 +4,8 @@
 Each triangle is an S6 element. Elastic supports, cylinders and pads act on weighted means of
 displacements: each mean is a node with an equation for its displacement, and a spring to the
 ground. A contact that is closed in the static state is a spring with the tangent stiffness of its
-law, and a force that gives the static contact force. Open contacts, friction and the geometric
-stiffness of axial forces are left out. So the deck is linear.
+law, and a force that gives the static contact force. Axial forces act by loads K_G w of the static
+deflection w. Open contacts and friction are left out. So the deck is linear.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
 from dynamics.excitation import InitialImpulse, ReleasedLoad
@@ -187,6 +188,7 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
     from dynamics.equilibrium import equilibrium_at
     from shell_model.boom_shell import assemble_boom
     from shell_model.buckling import TOUCHING, rigid, sideways
+    from shell_model.segment.solver import times
 
     model = exported(case, file)
     model_boom = model.model_boom(build_boom(case))
@@ -199,7 +201,8 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
         if present:
             what = "cannot be exported to CalculiX, for which one process writes a flat boom, with"
             raise BadInput(file, key, f"{what} no load on a rope; leave it out")
-    system = build(case, boom, model, BuildContext(comm, cache=cache)).system
+    built = build(case, boom, model, BuildContext(comm, cache=cache))
+    rest = equilibrium_at(built.system)
     full = assemble_boom(boom, model.options(), comm)
     shells = full.shells
 
@@ -207,8 +210,8 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
         return {n: shells[n].row(row) for n, row in reading.items()}
 
     springs = [SpringRow(what, parts(seen.reading)) for what, seen in full.observed.items()]
-    gaps = system.rows @ equilibrium_at(system)
-    for contact, law, gap in zip(full.rows.contacts, system.laws, gaps, strict=True):
+    gaps = built.system.rows @ rest
+    for contact, law, gap in zip(full.rows.contacts, built.system.laws, gaps, strict=True):
         force = float(law.force(np.array([gap]))[0])
         if force != 0.0:
             slope = float(law.slope(gap + np.array([-TOUCHING, TOUCHING])).max())
@@ -225,6 +228,14 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
             loads[one.segment] += float(one.history(np.zeros(1))[0]) * push
     for n, moment in full.pin_moments:
         loads[n] = loads[n] + moment
+    lines = model.lines(boom, built)
     for n, shell in enumerate(shells):
         springs += [SpringRow("held sideways", {n: row}, k) for row, k in sideways(boom, n, shell)]
+        if shell.geometric is not None:
+            x, rows = dict(lines[n].deflections)["z"]
+            still = np.zeros(shell.free.size)
+            still[shell.node_dofs[:, 2] - shell.owned[0]] = CubicSpline(x, rows @ rest)(
+                shell.nodes[:, 0]
+            )
+            loads[n] += times(shell.geometric, still[:, None])[:, 0]
     write_atomically(path, deck(f"{case.title}: {model.name}", shells, springs, loads))

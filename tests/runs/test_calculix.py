@@ -49,8 +49,9 @@ def readings(deck: Path) -> dict[str, float]:
     [
         # Between webs there is no bending of walls.
         ("coarse", None, {}, 1e-4),
-        # Pads on flanges, a cylinder, three segments; level, so that no axial force softens it.
+        # Pads on flanges, a cylinder, three segments; axial forces add 1.5 % to the raised tip.
         ("lift", 0.06, {"gravity.angle": 0.0}, 0.01),
+        ("lift", 0.06, {}, 0.01),
     ],
 )
 def test_a_boom_rests_in_calculix_as_here(
