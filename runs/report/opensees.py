@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Export of a boom of beam elements as an independent OpenSeesPy script.
 
-The script has beam elements with nodal loads. Contacts are zero-length elements, whose elastic
-material follows points of the contact law in series with the spring of a calibrated station.
-Friction under given normal forces is elastic-plastic. Coupling between springs of different
-stations and section fields are left out.
+The script has beam elements with nodal loads, and a truss for each cylinder. Contacts are zero-
+length elements, whose elastic material follows points of the contact law in series with the spring
+of a calibrated station. Friction under given normal forces is elastic-plastic. Coupling between
+springs of different stations and section fields are left out.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def script(
     """
     _check(case, model_boom)
     boom = model_boom.boom
-    touching = _touching(boom, calibrated=calibration is not None)
+    touching = _touching(boom)
     stiff = boom if calibration is None else with_stiffnesses(boom, calibration.segments)
     parts = [_part(stiff, number, model, touching) for number in range(len(boom.segments))]
     data = {
@@ -92,7 +92,8 @@ def script(
         "OUTPUT_STEP": case.time.output_step,
         "SEGMENTS": [_segment(stiff, n, part, model) for n, part in enumerate(parts)],
         "CONTACTS": list(_contacts(model_boom, parts, calibration)),
-        "FRICTIONS": list(_frictions(boom, parts, calibrated=calibration is not None)),
+        "CYLINDERS": list(_cylinders(boom, parts)),
+        "FRICTIONS": list(_frictions(boom, parts)),
         "LOADS": list(_loads(case, boom, parts)),
     }
     lines = "\n".join(f"{name} = {value!r}" for name, value in data.items())
@@ -105,7 +106,11 @@ def _check(case: Case, model_boom: ModelBoom) -> None:
     segments = boom.segments
     for key, present in (
         ("joint.lateral_play", boom.spatial),
-        ("cylinder", bool(boom.cylinders)),
+        ("cylinder.dashpot", any(one.dashpot > 0.0 for one in boom.cylinders)),
+        (
+            "segment.supports.depth",
+            bool(boom.cylinders) and any(s.depth for one in segments for s in one.supports),
+        ),
         ("axial", boom.compressed),
         ("segment.head_section", any(segment.head_section is not None for segment in segments)),
         ("joint.bonded", any(joint.bonded for joint in boom.joints)),
@@ -133,12 +138,11 @@ def _check(case: Case, model_boom: ModelBoom) -> None:
             )
 
 
-def _touching(boom: Boom, *, calibrated: bool) -> list[tuple[int, float]]:
+def _touching(boom: Boom) -> list[tuple[int, float]]:
     """Return segment and x in m of each contact point."""
     found = [(stop.segment, stop.x) for _, stop in boom.numbered_stops]
     for pad in pads(boom):
-        x = pad.middle if calibrated else pad.x
-        found += [(pad.joint.inner, x), (pad.joint.outer, x)]
+        found += [(pad.joint.inner, pad.middle), (pad.joint.outer, pad.middle)]
     return found
 
 
@@ -205,7 +209,7 @@ def _contacts(
         return _points(law, 0.0 if spring is None else 1.0 / spring)
 
     for pad in pads(boom):
-        outer, inner = _ends(pad, parts, calibrated=calibration is not None)
+        outer, inner = _ends(pad, parts)
         for side in (pad.side,) if pad.side else (1, -1):
             law = pad.joint.law(pad.direction).one_sided(side)
             if law is None:
@@ -235,12 +239,24 @@ def _points(law: ContactLaw, compliance: float) -> list[list[float]]:
     return [(side * along)[::order].tolist(), (side * pressed)[::order].tolist()]
 
 
-def _frictions(boom: Boom, parts: Sequence[Part], *, calibrated: bool) -> Iterator[list[object]]:
+def _cylinders(boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, object]]:
+    """Yield node, lug, ground end, stiffness and length of each cylinder, in SI units."""
+    for one in boom.cylinders:
+        yield {
+            "node": [one.segment, parts[one.segment].node(one.x)],
+            "lug": [one.x, -one.depth],
+            "ground": list(one.ground),
+            "stiffness": one.stiffness,
+            "length": one.length,
+        }
+
+
+def _frictions(boom: Boom, parts: Sequence[Part]) -> Iterator[list[object]]:
     """Yield two nodes and the friction force in N, for each friction."""
     for pad in pads(boom):
         if pad.joint.friction > 0.0:
             assert pad.normal_force is not None
-            ends = _ends(pad, parts, calibrated=calibrated)
+            ends = _ends(pad, parts)
             yield [*ends, pad.joint.friction * pad.normal_force]
 
 
@@ -264,10 +280,11 @@ def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, 
         }
 
 
-def _ends(pad: Pad, parts: Sequence[Part], *, calibrated: bool) -> list[list[int]]:
+def _ends(pad: Pad, parts: Sequence[Part]) -> list[list[int]]:
     """Return segment and node of both segments at a pad, the outer segment first."""
-    x = pad.middle if calibrated else pad.x
-    return [[number, parts[number].node(x)] for number in (pad.joint.outer, pad.joint.inner)]
+    return [
+        [number, parts[number].node(pad.middle)] for number in (pad.joint.outer, pad.joint.inner)
+    ]
 
 
 def exported(case: Case, file: str, name: str | None = None) -> BeamElements:

@@ -14,6 +14,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+import protractile as pt
 from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium
 from runs import CASES
@@ -119,6 +120,20 @@ def test_a_beam_rests_and_peaks_elsewhere_as_here(tmp_path: Path) -> None:
     assert 500 < tip.argmax() < 790
     peak = run(script, "--duration", "0.8", "--step", "2e-4")
     assert peak == pytest.approx(tip.max(), rel=2e-3)
+
+
+@INSTALLED
+@pytest.mark.slow
+def test_lift_rests_on_its_cylinder_in_opensees_as_here(tmp_path: Path) -> None:
+    """Reference: other code, OpenSees, a truss for the cylinder of the level lift."""
+    level = {"gravity.angle": 0.0, "damping.modal": 0.0, "start.state": "rest"}
+    case = pt.change(pt.load_case(CASES / "lift.toml"), **level)
+    case = case_file.select(case, "", ["timoshenko"])
+    script = tmp_path / "boom.py"
+    write(case, "", None, script, None)
+    system = build(case, build_boom(case), case.models[0]).system.gather_loads()
+    rest = system.observers["tip"].row @ equilibrium(system, system.load)
+    assert run(script, "--static") == pytest.approx(float(rest), rel=1e-6)
 
 
 @INSTALLED
