@@ -68,6 +68,16 @@ class Calibration:
     segments: Sequence[Stiffness]
     residual: Array
 
+    def beam(self, boom: Boom, segments: Callable[[Boom], Sequence[SegmentModel]]) -> GapSystem:
+        """Return the gap system of a calibrated beam.
+
+        Args:
+            boom: boom with the sections, joints and pads of the shell; masses and loads may differ.
+            segments: function that returns the beams of a boom.
+        """
+        stiff = with_stiffnesses(boom, self.segments)
+        return with_springs(gap_system(stiff, segments(stiff), EACH_SIDE), self.residual)
+
     def spring(self, row: int) -> float | None:
         """Return the stiffness in N/m in series with a contact row; None if it is rigid."""
         compliance = float(self.residual[row, row])
@@ -79,17 +89,14 @@ def calibrate(
     shell: GapSystem,
     probe_responses: Sequence[ProbeResponses],
     segments: Callable[[Boom], Sequence[SegmentModel]],
-) -> tuple[GapSystem, Calibration]:
-    """Return a beam with the effective stiffness and local compliance of a shell.
+) -> Calibration:
+    """Return the effective stiffness and the local compliance of a shell for beams of its boom.
 
     Args:
         boom: boom whose segments all have sections.
         shell: gap system of the shell of the boom, with contacts near the webs or at pads.
         probe_responses: probe responses of the segments of the shell.
         segments: function that returns the beams of a boom.
-
-    Returns:
-        The gap system of the beam, and its calibration.
     """
     found = [
         effective_stiffness(segment, probed)
@@ -97,8 +104,7 @@ def calibrate(
     ]
     stiff = with_stiffnesses(boom, found)
     beam = gap_system(stiff, segments(stiff), EACH_SIDE)
-    residual = residual_compliance(beam, shell)
-    return with_springs(beam, residual), Calibration(found, residual)
+    return Calibration(found, residual_compliance(beam, shell))
 
 
 def elastic_compliance(system: GapSystem) -> Array:

@@ -15,10 +15,12 @@ from dynamics.trajectory import Trajectory
 from geometry.typography import TO_MILLI
 from runs.case.checked_case import CheckedCase
 from runs.live.boom_figure import boom_figure
+from runs.live.calibrated import build_beam
+from runs.live.knobs import Draft
 from runs.pipeline.design_results import DesignResults, ModelDesignResults
 from runs.pipeline.evaluation import LoadedModel
 from runs.pipeline.model_run import summarise_motion
-from runs.pipeline.models import MotionPlan, build_on
+from runs.pipeline.models import MotionPlan
 from runs.pipeline.motion_results import MotionResult
 from runs.pipeline.pads import pad_loads
 from runs.pipeline.proportions import proportion_cautions
@@ -46,20 +48,23 @@ Rows = list[tuple[str, str]]
 _PANEL, _BELOW = 150, 60
 
 
-def beam_results(checked: CheckedCase, check_current: Callable[[], None]) -> Iterator[Any]:
+def beam_results(
+    checked: CheckedCase, draft: Draft, check_current: Callable[[], None]
+) -> Iterator[Any]:
     """Yield the results of a case's only model as JSON values.
 
     The static results come first, then a preview of the motion, then the motion with error control.
 
     Args:
         checked: the checked case with one beam.
+        draft: draft of the case, whose shells may calibrate the beam.
         check_current: callback between steps of the computation; it raises an error to end it.
 
     Raises:
         NumericsError: the beam has no equilibrium, or its motion cannot be computed.
     """
     case, boom, (model,) = checked.case, checked.boom, checked.case.models
-    built = build_on(checked.model_boom(model), case, model)
+    built, stiffness = build_beam(checked, draft.case, draft.shells)
     loaded = LoadedModel.of(boom, model, built)
     duration = case.time.duration
     check_current()
@@ -81,7 +86,7 @@ def beam_results(checked: CheckedCase, check_current: Callable[[], None]) -> Ite
     assert farthest is not None
     yield {
         "stage": "rest",
-        "rows": _rows_at_rest(own, results),
+        "rows": [*_rows_at_rest(own, results), ("Stiffness of the beam", stiffness)],
         "utilisation": utilisation_verdict(results, model.name),
         "cautions": proportion_cautions(case, boom),
         "boom": boom_figure(case, boom, farthest),

@@ -21,6 +21,7 @@ from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.checked_case import CheckedCase
 from runs.case.kinds.finite_element import BeamElements
+from runs.case.kinds.model import select_kind
 from runs.case.kinds.shell import Shell
 from runs.case.limits import is_table
 from runs.case.messages import BadInput
@@ -222,6 +223,11 @@ class Draft:
         except ValidationError as error:
             raise BadInput.from_validation(self.file, error) from None
 
+    @property
+    def shells(self) -> list[Shell]:
+        """The shells of the case, or a default one."""
+        return select_kind(Shell, self.case.models) or [Shell()]
+
     def with_shell(self, case: Case) -> Case:
         """Return an edited case with the page's beam and the case's shells, or a default shell.
 
@@ -229,8 +235,7 @@ class Draft:
             BadInput: the case is invalid.
         """
         (beam,) = self.beam(case).case.models
-        shells = [model for model in case.models if model.meshed] or [Shell()]
-        both = case.model_copy(update={"models": (beam, *shells)})
+        both = case.model_copy(update={"models": (beam, *self.shells)})
         return reading.check(both, self.file).case
 
     def beam(self, case: Case) -> CheckedCase:

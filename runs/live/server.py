@@ -93,7 +93,7 @@ class LivePage:
         try:
             check_current()
             checked = self.draft.beam(self.draft.changed(dict(request["values"])))
-            yield from beam_results(checked, check_current)
+            yield from beam_results(checked, self.draft, check_current)
         finally:
             self._computing.release()
 

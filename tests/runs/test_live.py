@@ -14,13 +14,19 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from dynamics.equilibrium import equilibrium
 from runs import CASES
+from runs.case.build import build_boom
+from runs.case.kinds.model import BuildContext
 from runs.case.messages import BadInput
+from runs.folder.cache import Cache
 from runs.live import beam
 from runs.live.knobs import Draft
 from runs.live.server import LivePage, make_server
 from runs.pipeline.context import RunContext
+from runs.pipeline.models import build
 from runs.pipeline.run import run_case
+from runs.report.formatting import fixed
 from tests.runs.sweeping import COARSE
 
 LIFT = str(CASES / "lift.toml")
@@ -74,8 +80,9 @@ def test_a_number_that_the_boom_refuses_is_named(draft: Draft) -> None:
 
 
 @pytest.mark.slow
-def test_the_beam_has_the_numbers_of_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_beam_has_the_numbers_of_a_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: the same beam by a run of the case, at the tolerance of the page."""
+    monkeypatch.setenv("PROTRACTILE_CACHE", str(tmp_path))
     draft = Draft.load(str(COARSE))
     checked = draft.beam(draft.changed({}))
     kept: list[Any] = []
@@ -83,7 +90,7 @@ def test_the_beam_has_the_numbers_of_a_run(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(
         beam, "summary_table", lambda results: kept.append(results) or make(results)
     )
-    found = list(beam.beam_results(checked, lambda: None))
+    found = list(beam.beam_results(checked, draft, lambda: None))
     assert [one["stage"] for one in found] == ["rest", "preview", "motion"]
     run = run_case(checked.case, "", RunContext())
     assert run is not None
@@ -93,6 +100,47 @@ def test_the_beam_has_the_numbers_of_a_run(monkeypatch: pytest.MonkeyPatch) -> N
     assert own.design.models["beam"].static == other.design.models["beam"].static
     assert own.design.models["beam"].motion == other.design.models["beam"].motion
     assert own.pads == other.pads
+
+
+@pytest.mark.slow
+def test_beam_is_calibrated_by_a_shell_of_the_cache(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: other code path, a calibrated beam of the case, also with another payload."""
+    pytest.importorskip("dolfinx", reason="shells need FEniCSx")
+    from mpi4py import MPI
+
+    monkeypatch.setenv("PROTRACTILE_CACHE", str(tmp_path / "cache"))
+    shell = (
+        '[[model]]\nname = "shell"\nkind = "shell"\nmesh_size = 0.3\ncontact_tolerance = "any"\n'
+    )
+    text, _, _ = Path(LIFT).read_text(encoding="utf-8").partition("[[model]]")
+    (tmp_path / "lift.toml").write_text(text + shell, encoding="utf-8")
+    draft = Draft.load(str(tmp_path / "lift.toml"))
+
+    def rows(changes: dict[str, float]) -> dict[str, str]:
+        case = draft.beam(draft.changed(changes))
+        return dict(next(beam.beam_results(case, draft, lambda: None))["rows"])
+
+    plain = rows({})
+    assert plain["Stiffness of the beam"] == "of its sections;\nrun the shell to calibrate it"
+    (made,) = draft.shells
+    context = BuildContext(MPI.COMM_SELF, cache=Cache.of_user())
+    build(draft.case, draft.boom, made, context)
+    for changes in ({}, {"payload.mass": 100.0, "joint[1].play": 0.004}):
+        found = rows(changes)
+        assert found["Stiffness of the beam"] == "calibrated by shell"
+        case = draft.changed(changes)
+        (own,) = draft.beam(case).case.models
+        model = own.model_copy(update={"calibrated_by": made, "contact": None})
+        built = build(case, build_boom(case), model, context)
+        rest = equilibrium(built.system, built.system.load_at(0.0))
+        tip = 1e3 * float(built.system.observers["tip"].row @ rest)
+        assert found["Tip deflection under the loads of t = 0"] == f"{fixed(tip, 1)} mm"
+        assert (
+            found["Tip deflection under the loads of t = 0"]
+            != plain["Tip deflection under the loads of t = 0"]
+        )
 
 
 @pytest.fixture(scope="module")

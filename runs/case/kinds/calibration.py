@@ -25,13 +25,14 @@ from runs.case.kinds.model import (
 from runs.case.kinds.shell import Shell
 
 if TYPE_CHECKING:
+    from beam_model.calibration import Calibration
     from dynamics.gap_system import GapSystem
     from dynamics.line import Line
     from shell_model.reduced_shell import ReducedShell
 
 
 # Keys of the motion, which a calibrating shell must not have: only the beam is integrated.
-_OF_MOTION = ("contact", "step")
+OF_MOTION = ("contact", "step")
 
 
 def _named_or_table(given: Any) -> str:
@@ -79,7 +80,7 @@ class CalibratedTable(BeamTable):
         shell = models.get(self.calibrated_by) if isinstance(self.calibrated_by, str) else None
         if not isinstance(shell, Shell):
             return self
-        unused: dict[str, object] = dict.fromkeys(_OF_MOTION)
+        unused: dict[str, object] = dict.fromkeys(OF_MOTION)
         return self.model_copy(update={"calibrated_by": shell.model_copy(update=unused)})
 
     def check(self, where: str, model_boom: ModelBoom) -> None:
@@ -101,7 +102,7 @@ class CalibratedTable(BeamTable):
                 f"the shell touches by {self.calibrated_by.contact_line!r}, where a beam has no "
                 "springs; give one with contact_line = 'near webs'",
             )
-        for unused in _OF_MOTION:
+        for unused in OF_MOTION:
             if getattr(self.calibrated_by, unused) is not None:
                 raise BoomError(
                     f"{key}.{unused}",
@@ -119,34 +120,35 @@ class CalibratedTable(BeamTable):
         made = self.calibrated_by.build(model_boom, context)
         assert made.shell is not None
         begin = perf_counter()
-        boom = model_boom.boom
-        beam, calibration = calibrate(
-            boom, made.shell.system, made.shell.probe_responses, self.segments
-        )
-        built = BuiltModel(
-            beam,
-            beam.num_modes,
-            made.seconds,
-            self.critical_factor(model_boom),
-            calibration=calibration,
-        )
-        moving = self.motion_model(built, made.shell, boom)
-        seconds = {"calibration": perf_counter() - begin}
-        return replace(moving, seconds=made.seconds | seconds)
+        boom, shell = model_boom.boom, made.shell
+        calibration = calibrate(boom, shell.system, shell.probe_responses, self.segments)
+        built = self.motion_model(self.build_calibrated(model_boom, calibration), shell, boom)
+        seconds = made.seconds | {"calibration": perf_counter() - begin}
+        return replace(built, seconds=seconds)
 
-    def motion_model(self, built: BuiltModel, shell: ReducedShell, boom: Boom) -> BuiltModel:
-        """Return the model whose motion is integrated: by default the calibrated beam."""
+    def build_calibrated(self, model_boom: ModelBoom, calibration: Calibration) -> BuiltModel:
+        """Return the calibrated beam of a boom."""
         from beam_model.calibration import with_stiffnesses
         from beam_model.lines import lines
 
-        assert built.calibration is not None
-        stiff = with_stiffnesses(boom, built.calibration.segments)
+        system = calibration.beam(model_boom.boom, self.segments)
+        stiff = with_stiffnesses(model_boom.boom, calibration.segments)
         along = lines(stiff, self.segments(stiff))
         # The coordinates of the springs come after the coordinates of the beam, and do not affect
         # its lines.
         own = along[0].rows["deflection"].shape[1]
-        basis = np.eye(own, built.system.num_modes)
-        return replace(built, lines=[line.transform(basis) for line in along])
+        basis = np.eye(own, system.num_modes)
+        return BuiltModel(
+            system,
+            system.num_modes,
+            critical_factor=self.critical_factor(model_boom),
+            calibration=calibration,
+            lines=[line.transform(basis) for line in along],
+        )
+
+    def motion_model(self, built: BuiltModel, shell: ReducedShell, boom: Boom) -> BuiltModel:
+        """Return the model whose motion is integrated: by default the calibrated beam."""
+        return built
 
     def system_without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
         # The springs of a calibrated beam act in its contacts: these are bonded instead.

@@ -127,10 +127,10 @@ class Shell(ModelTable):
 
     def build(self, model_boom: ModelBoom, context: BuildContext | None = None) -> BuiltModel:
         from shell_model.reduced_shell import reduce_boom
-        from shell_model.standard import standard_boom, with_plays_and_loads
+        from shell_model.standard import with_plays_and_loads
 
         assert context is not None
-        boom, options = standard_boom(model_boom.boom), self.options()
+        boom, options = self.content(model_boom.boom)
         # A small shell does not repay the seconds that a second process takes to load FEniCSx.
         helper = context.helper if self.estimate_dofs(boom) > _SMALL else None
         made = context.cached_shell(
@@ -144,6 +144,12 @@ class Shell(ModelTable):
             on_the_way = self.critical_factor(model_boom)
             factor = min(factor, on_the_way or factor)
         return BuiltModel(shell.system, shell.num_dofs, shell.seconds, factor, shell)
+
+    def content(self, boom: Boom) -> tuple[Boom, ShellOptions]:
+        """Return all inputs of the reduced shell of a boom."""
+        from shell_model.standard import standard_boom
+
+        return standard_boom(boom), self.options()
 
     def options(self) -> ShellOptions:
         """Return mesh size, contact line and reduction for the shell model of the boom."""

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The beam of the live page, calibrated by a shell of its geometry if the cache has one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from geometry.boom import Boom, BoomError
+from runs.case.build import build_boom
+from runs.case.checked_case import CheckedCase
+from runs.case.kinds.calibration import OF_MOTION, CalibratedTable
+from runs.case.kinds.model import BuiltModel
+from runs.case.kinds.shell import Shell
+from runs.case.schema import Case
+from runs.folder.cache import Cache, key
+from runs.pipeline.models import build_on, complete_system
+
+if TYPE_CHECKING:
+    from beam_model.calibration import Calibration
+
+# Tables that change masses, loads and axial forces, and no stiffness of the unloaded shell.
+_LOADS = ("payload", "gravity", "loads", "axial", "base", "hoist", "slew", "luff")
+
+# The last calibration that was computed, by the key of its shell.
+_LAST: dict[str, Calibration] = {}
+
+
+def build_beam(
+    checked: CheckedCase, original: Case, shells: Sequence[Shell]
+) -> tuple[BuiltModel, str]:
+    """Return the case's only model, a beam, and a text on its stiffness.
+
+    Args:
+        checked: the checked case.
+        original: case of the file, whose shell may be in the cache.
+        shells: shells that may calibrate the beam.
+    """
+    case, boom, (model,) = checked.case, checked.boom, checked.case.models
+    with_loads = case.model_copy(update={name: getattr(original, name) for name in _LOADS})
+    for shell in shells:
+        unused: dict[str, object] = dict.fromkeys(OF_MOTION)
+        by = shell.model_copy(update=unused)
+        beam = model.model_copy(update={"calibrated_by": by, "contact": shell.contact})
+        assert isinstance(beam, CalibratedTable)
+        # A beam that telescopes, or whose shell touches elsewhere, cannot be calibrated.
+        with suppress(BoomError, ImportError):
+            beam.check("", beam.model_boom(boom))
+            for same in (boom, build_boom(with_loads)):
+                if calibration := _stored(beam, by, beam.model_boom(same).boom):
+                    built = beam.build_calibrated(beam.model_boom(boom), calibration)
+                    system = complete_system(built.system, case, boom, built.lines)
+                    return replace(built, system=system), f"calibrated by {shell.name}"
+    plain = build_on(checked.model_boom(model), case, model)
+    return plain, "of its sections;\nrun the shell to calibrate it"
+
+
+def _stored(beam: CalibratedTable, shell: Shell, boom: Boom) -> Calibration | None:
+    """Return the calibration by the shell of a boom; None if the cache does not have the shell."""
+    import petsc4py
+
+    # Otherwise PETSc ends the process where a browser closes a connection.
+    petsc4py.init(["-no_signal_handler"])
+    from beam_model.calibration import calibrate
+    from shell_model.reduced_shell import ReducedShell
+    from shell_model.standard import with_plays_and_loads
+
+    name, cache = key([*shell.content(boom)]), Cache.of_user()
+    if name not in _LAST and cache is not None and (found := cache.load(name, ReducedShell)):
+        made = with_plays_and_loads(found, boom)
+        _LAST.clear()
+        _LAST[name] = calibrate(boom, made.system, made.probe_responses, beam.segments)
+    return _LAST.get(name)
