@@ -249,7 +249,7 @@ def _check_friction(where: str, joint: Joint, spatial: bool) -> None:
         raise BoomError(
             f"{where}.normal_forces",
             "missing, and the joint has friction; give normal_forces, one in N for each station, "
-            "since in a flat boom no other plane presses",
+            "since a flat boom has no lateral contact forces",
         )
     if joint.normal_forces and len(joint.normal_forces) != len(joint.stations):
         raise BoomError(

@@ -153,7 +153,7 @@ FAULTS: dict[str, list[Changes]] = {
         {"joint": {"play": 0.028}},
     ],
     "joints[0].normal_forces: missing, and the joint has friction; give normal_forces, one "
-    "in N for each station, since in a flat boom no other plane presses": [
+    "in N for each station, since a flat boom has no lateral contact forces": [
         {"joint": {"friction": 0.2}},
     ],
     "joints[0].normal_forces: must have one number for each of the 2 stations, got 3": [

@@ -9,7 +9,7 @@ CONTACTS = [
     *adding("exponent = 2.0", {
         "friction = 0.2":
             "joint[1].normal_forces: missing, and the joint has friction; give normal_forces, "
-            "one in N for each station, since in a flat boom no other plane presses",
+            "one in N for each station, since a flat boom has no lateral contact forces",
         "friction = 0.2\nnormal_forces = [4500.0]":
             "joint[1].normal_forces: must have one number for each of the 2 stations, got 1",
         "lateral_play = 0.01\nlateral_exponent = 1.5":

@@ -166,8 +166,8 @@ theory = "euler-bernoulli"
          "telescopes; leave contact_line out, or joint[1].drive"),
         ('kind = "kantorovich"\nterms = [2, 3]\nbase = "as printed"',
          'kind = "shell"\nmodes = 40',
-         "model[1]: the shell 'kantorovich-5' takes the coordinates that all of its way asks for; "
-         "leave modes out, or joint[1].drive"),
+         "model[1]: the shell 'kantorovich-5' needs its own number of coordinates for all "
+         "extensions; leave modes out, or joint[1].drive"),
         ('theory = "timoshenko"',
          'theory = "timoshenko"\ncalibrated_by = { name = "fine", kind = "shell" }',
          "model[3]: the springs of 'timoshenko' are those of the place where it rests, and cannot "

@@ -117,7 +117,7 @@ class Shell(ModelTable):
             )
         if self.modes is not None:
             return (
-                f"the shell {self.name!r} takes the coordinates that all of its way asks for; "
+                f"the shell {self.name!r} needs its own number of coordinates for all extensions; "
                 "leave modes out"
             )
         return super().cannot_telescope
