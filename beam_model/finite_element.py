@@ -61,9 +61,9 @@ def finite_element_segment(
     """Return the model of one segment.
 
     Args:
-        segment: segment; supports get nodes, as do masses and jumps of the axial force that are not
-            close to another node. With lateral
-            properties the model includes deflection along y and twist.
+        segment: segment. Nodes are at its supports, and at masses and jumps of the axial force
+            that are not close to another node. With lateral properties the model includes
+            deflection along y and twist.
         element_length: maximum element length in m.
         breaks: further x in m of nodes.
         theory: beam theory; ``timoshenko`` needs the section for its shear area.

@@ -53,7 +53,7 @@ class Integrator(Protocol):
         ...
 
     def like(self, trajectory: Trajectory) -> Integrator:
-        """Return an integrator with the steps of a trajectory of this one."""
+        """Return an integrator with the step sizes of a trajectory that this one computed."""
         ...
 
     def finer(self) -> Integrator:

@@ -34,7 +34,7 @@ class Metric:
 
 
 class Record:
-    """Results of one model that reports show as a row of a table."""
+    """Results of one model, one row of a table in reports."""
 
     __slots__ = ()
     title: ClassVar[str]

@@ -331,7 +331,7 @@ def _shade(axes: Axes, off: xr.DataArray) -> ContourSet:
 
 
 def _write_ends(axes: Axes, until: xr.DataArray, longest: float) -> None:
-    """Write the end of the comparison of tips at points where it is earlier than elsewhere."""
+    """Write the time up to which tips are compared at points where it is shorter than elsewhere."""
     y, x = (until[dim].values for dim in until.dims)
     for row, column in np.argwhere(until.values < longest):
         text = f"{until.values[row, column]:.1f} s"

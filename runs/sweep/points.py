@@ -133,7 +133,7 @@ def plan(
 
 
 def chosen_beam(case: Case, models: Sequence[str] | None) -> list[str]:
-    """Return the given models, or else the name of the last beam, with play if possible."""
+    """Return the given models; without any, the name of the last beam, if possible with play."""
     if models is not None:
         return list(models)
     beams = [model for model in case.models if not model.needs_shell]

@@ -214,7 +214,7 @@ class ModelTable(CaseTable):
 
     @property
     def bonded(self) -> bool:
-        """True if the segments are model_boom without play."""
+        """True if the segments are bonded, without play."""
         return False
 
     @property
