@@ -160,8 +160,8 @@ def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
     ]
     columns = [
         Column("result", [*of_name]),
-        Column("least", [in_units(one.largest, one.unit, system) for one, _ in least]),
-        Column("largest", [in_units(one.largest, one.unit, system) for one, _ in most]),
-        Column("governs", governs),
+        Column("minimum", [in_units(one.largest, one.unit, system) for one, _ in least]),
+        Column("maximum", [in_units(one.largest, one.unit, system) for one, _ in most]),
+        Column("governing", governs),
     ]
     return Table("Envelope of the combinations", columns, name="envelope")

@@ -328,22 +328,22 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
     steels = [one.name for one in boom.segments if one.yield_strength is None]
     if steels and asked & {"yield", "plate"}:
         names = ", ".join(steels)
-        yield f"Not verified: yield and plate buckling of {names}, without yield strength."
+        yield f"No proof: yield and plate buckling of {names}, without yield strength."
     pressures = any(one.utilisation is not None for one in beam.rests[0].stations)
     if "pad" in asked and boom.joints and not pressures:
-        yield "Not verified: pads, without allowable_pressure."
+        yield "No proof: pads, without allowable_pressure."
     if "cylinder" in asked and any(one.capacity is None for one in boom.cylinders):
-        yield "Not verified: cylinder, without capacity."
+        yield "No proof: cylinder, without capacity."
     pins = [one.foot.pin for one in boom.segments if one.foot is not None]
     pins += [one.pin for one in boom.cylinders]
     if "pin" in asked and not any(pins):
-        yield "Not verified: pins, without the table pin."
+        yield "No proof: pins, without the table pin."
     if not case.spectra:
-        yield "Not verified: fatigue, without [[spectrum]]."
+        yield "No proof: fatigue, without [[spectrum]]."
     if "deflection" not in asked:
-        yield "Not verified: deflection, which no combination lists."
+        yield "No proof: deflection, which no combination lists."
     elif case.limits is None or case.limits.tip_at_rest is None:
-        yield "Not verified: deflection, without limits.tip_at_rest."
+        yield "No proof: deflection, without limits.tip_at_rest."
 
 
 def proof_table(found: Proofs, case: Case) -> Table:

@@ -6,8 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
-from geometry.typography import with_minus_signs
-
 if TYPE_CHECKING:
     from runs.pipeline.results import Results
 
@@ -38,11 +36,11 @@ class Utilisation(NamedTuple):
     value: float | None
 
     def __str__(self) -> str:
-        """Return value, location and comparison with 1 as text. The value must not be None."""
+        """Return value in %, location and verdict as text. The value must not be None."""
         assert self.value is not None
         relation = "exceeds" if self.value > 1.0 else "below"
         return (
-            f"{with_minus_signs(f'{self.value:.3g}')} at {self.part}, {self.segment} segment, "
+            f"{100.0 * self.value:.3g} % at {self.part}, {self.segment} segment, "
             f"x = {self.x:.4g} m: {relation} {LIMITS[self.part]}"
         )
 

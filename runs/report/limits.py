@@ -17,7 +17,7 @@ def limit_table(results: Results) -> Table | None:
         return None
     columns = [
         Column("limit", [str(check.limit) for check in checks]),
-        Column("holds", ["✓" if check.holds else "✗" for check in checks]),
+        Column("satisfied", ["✓" if check.holds else "✗" for check in checks]),
     ]
     columns += [
         Column(name, [check.limit.shown(check.values.get(name)) for check in checks])

@@ -113,7 +113,7 @@ def result_table(results: Results) -> Table:
         Column("factor\nφ", [one.factor if one else None for one in peaks], ".3g"),
         Column("first\nmode", [m[0].frequency if m else None for m in modes], ".3g", "Hz"),
         Column("pad\nforce" if pads else "contact\nforce", forces, ".3g", "kN"),
-        Column("utilis-\nation", [max(several, default=0.0) or None for several in used], ".3g"),
+        Column("utilis-\nation", [max(one, default=0.0) or None for one in used], ".3g", "%"),
     ]
     columns = [one for one in columns if any(cell is not None for cell in one.cells)]
     return Table(f"Results: {results.case.title}", columns)

@@ -130,7 +130,11 @@ def print_bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console
         for i in _bracket(plan, outcomes, bound)
     ]
     unit = f" ({plan.units[0]})" if plan.units[0] else ""
-    columns = {f"{key}{unit}": "", f"{quantity.title}\n{quantity.shown_unit}": ".5g", "holds": ""}
+    columns = {
+        f"{key}{unit}": "",
+        f"{quantity.title}\n{quantity.shown_unit}": ".5g",
+        "satisfied": "",
+    }
     ways = np.sign(np.diff(found))
     note = f"The {quantity.title} is not monotone over {key}: other places may hold, too."
     notes = [note] if (ways > 0.0).any() and (ways < 0.0).any() else []

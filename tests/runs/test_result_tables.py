@@ -162,9 +162,9 @@ def test_the_verdict_names_the_governing_utilisation_first(results: Results) -> 
     """Reference: by hand, as above; without a yield strength nothing is told."""
     assert utilisation_verdict(results) == ""
     assert utilisation_verdict(with_stress(results, 340e6)) == (
-        "Utilisation 1.05 at plate, outer segment, x = 10 m: exceeds yield; 0.958 at outer fibre, "
-        "outer segment, x = 2 m: below yield. No safety factor is included. No yield strength is "
-        "given of outer and inner."
+        "Utilisation 105 % at plate, outer segment, x = 10 m: exceeds yield; 95.8 % at outer "
+        "fibre, outer segment, x = 2 m: below yield. No safety factor is included. No yield "
+        "strength is given of outer and inner."
     )
 
 
@@ -176,11 +176,11 @@ def test_the_verdict_names_pads_of_unknown_strength(results: Results) -> None:
     told = with_stress(replace(results, case=steel), 300e6)
     unpressed, known = replace(pad, force=0.0, pressure=0.0), replace(pad, utilisation=1.35)
     for one, start, end in (
-        (pad, "Utilisation 0.93 at plate", "No allowable pressure is given of pads of inner."),
-        (unpressed, "Utilisation 0.93 at plate", "No safety factor is included."),
+        (pad, "Utilisation 93 % at plate", "No allowable pressure is given of pads of inner."),
+        (unpressed, "Utilisation 93 % at plate", "No safety factor is included."),
         (
             known,
-            "Utilisation 1.35 at pad, inner segment, x = 10 m: exceeds the allowable pressure",
+            "Utilisation 135 % at pad, inner segment, x = 10 m: exceeds the allowable pressure",
             "No safety factor is included.",
         ),
     ):
@@ -194,11 +194,11 @@ def test_a_fatigue_life_that_is_used_up_exceeds_it(results: Results) -> None:
     life = Life("inner", 10.0, 0.0, 0.2, 4.0, 9e7, 8e7, [9e7], [4.0], 1.6e-4, 3.2)
     told = answering(results, own={"life": [life]})
     assert utilisation_verdict(told) == (
-        "Utilisation 3.2 at detail, inner segment, x = 10 m: exceeds the fatigue life. No "
+        "Utilisation 320 % at detail, inner segment, x = 10 m: exceeds the fatigue life. No "
         "safety factor is included. No yield strength is given of outer and inner."
     )
     terminal = printed(print_results, told, width=250).splitlines()
-    assert terminal[-1].startswith(f"{PLAYED}: utilisation 3.2 at detail, inner segment")
+    assert terminal[-1].startswith(f"{PLAYED}: utilisation 320 % at detail, inner segment")
     table = summary_table(told)
     assert table is not None
     assert list(table.strong) == ["3.2"]
