@@ -83,11 +83,19 @@ def modified_folder(folder: Path) -> Iterator[Path]:
             if source.is_dir() and not source.is_symlink():
                 target.mkdir()
             elif target != part / MANIFEST:
-                _link(source, target)
+                try:
+                    os.link(source, target, follow_symlinks=False)
+                except OSError:
+                    # The file system has no links.
+                    shutil.copy2(source, target, follow_symlinks=False)
         yield part
         listed = _manifest_checksums(folder)
         own = [
-            name for name in _files(part) if name in listed or not _same_file(name, part, folder)
+            name
+            for name in _files(part)
+            if name in listed
+            or not (folder / name).is_file()
+            or not filecmp.cmp(part / name, folder / name)
         ]
         _move_to_final_path(part, folder, own)
 
@@ -204,11 +212,6 @@ def _files(folder: Path) -> list[str]:
     return [name for path in paths if (name := str(path.relative_to(folder))) != MANIFEST]
 
 
-def _same_file(name: str, one: Path, other: Path) -> bool:
-    """Return True if two folders have the same file under a name."""
-    return (other / name).is_file() and filecmp.cmp(one / name, other / name)
-
-
 def _manifest_checksums(folder: Path) -> dict[str, str]:
     """Return the checksums in the manifest of a folder by relative path."""
     manifest = folder / MANIFEST
@@ -223,11 +226,3 @@ def _manifest_checksums(folder: Path) -> dict[str, str]:
 def _digest(path: Path) -> str:
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def _link(source: Path, target: Path) -> None:
-    """Link a file, or copy it if links are impossible."""
-    try:
-        os.link(source, target, follow_symlinks=False)
-    except OSError:
-        shutil.copy2(source, target, follow_symlinks=False)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ from dynamics.line import Line, Quantity
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.axial import foot_thrust
-from geometry.boom import Boom, Segment
+from geometry.boom import Boom
 from geometry.cylinder import forces
 from geometry.section import Direction
 from runs.pipeline.section_forces import round_values, section_forces
@@ -133,17 +133,20 @@ def evaluate_motion(motions: MotionAndStatics) -> tuple[MotionResult, list[Stres
     for number, (segment, line) in enumerate(zip(boom.segments, motions.lines, strict=True)):
         curves = section_forces(boom, number, line, motions.trajectory.states, time)
         still = section_forces(boom, number, line, motions.positions, rest_times)
-        low: dict[str, list[float]] = {
-            n: round_values(one.min(axis=0)) for n, one in curves.items()
-        }
-        high: dict[str, list[float]] = {
-            n: round_values(one.max(axis=0)) for n, one in curves.items()
-        }
+        low, high = (
+            {str(name): round_values(limit(one, axis=0)) for name, one in curves.items()}
+            for limit in (np.min, np.max)
+        )
         envelopes.append(Envelope(segment.name, round_values(line.x), low, high))
-        if "moment" in curves:
-            peaks += _bending_moments(segment, curves, still, time)
-            if motions.jumps:
-                peaks += _reactions(motions, number)
+        for plane in _PLANES:
+            if plane.moment in curves:
+                moments = curves[plane.moment]
+                largest_at = moments[:, np.abs(moments).max(axis=0).argmax()]
+                at_rest = np.abs(still[plane.moment]).max(axis=1)
+                name = f"{plane.name}bending moment"
+                peaks.append(_peak(name, segment.name, "N m", time, largest_at, at_rest))
+        if "moment" in curves and motions.jumps:
+            peaks += _reactions(motions, number)
         if (found := Fibres.of(segment, line)) is not None:
             largest, most = largest_stresses(segment, found, curves, still, time)
             fibres.append(largest)
@@ -178,20 +181,6 @@ def _output_peaks(motions: MotionAndStatics) -> Iterator[Peak]:
     if "rope_force_peak" in data:
         rope = data["rope_force_peak"]
         yield _peak("rope force", "", "N", time, rope.values, [rope.attrs["weight"]])
-
-
-def _bending_moments(
-    segment: Segment,
-    curves: Mapping[Quantity, Array],
-    still: Mapping[Quantity, Array],
-    time: Array,
-) -> Iterator[Peak]:
-    for plane in _PLANES:
-        if plane.moment in curves:
-            moments = curves[plane.moment]
-            most = moments[:, np.abs(moments).max(axis=0).argmax()]
-            at_rest = np.abs(still[plane.moment]).max(axis=1)
-            yield _peak(f"{plane.name}bending moment", segment.name, "N m", time, most, at_rest)
 
 
 def _reactions(motions: MotionAndStatics, number: int) -> Iterator[Peak]:

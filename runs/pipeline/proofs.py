@@ -151,8 +151,11 @@ def prove(case: Case, states: Sequence[CombinationState]) -> Proofs:
             other = found.setdefault((one.kind, one.part), one)
             if one.utilisation > other.utilisation:
                 found[one.kind, one.part] = one
-    for one in _fatigue(case):
-        found[one.kind, one.part] = one
+    for detail, damage in detail_damages(case):
+        name = detail.name
+        found["fatigue", name] = Proof(
+            "fatigue", name, name, detail.x, damage.sum, 1.0, "1", damage.spectrum
+        )
     proofs = sorted(found.values(), key=lambda one: -one.utilisation)
     return Proofs(proofs, [*_missing_data_notes(case, states)])
 
@@ -310,13 +313,6 @@ def _foot_proofs(beam: StaticBeam, table: CombinationTable, case: Case) -> Itera
         if segment.foot is not None and segment.foot.pin is not None and name in forces:
             resistance = segment.foot.pin.resistance / table.resistance.pin
             yield Proof("pin", name, name, segment.foot.x, forces[name], resistance, "N")
-
-
-def _fatigue(case: Case) -> Iterator[Proof]:
-    """Yield the proof of each detail under all spectra; none without spectra and categories."""
-    for detail, damage in detail_damages(case):
-        name = detail.name
-        yield Proof("fatigue", name, name, detail.x, damage.sum, 1.0, "1", damage.spectrum)
 
 
 def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Iterator[str]:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,6 @@ import xarray as xr
 from rich.console import Console
 
 from runs.folder.files import atomic_path, folder_lock, modified_folder
-from runs.pipeline.limits import Limit
 from runs.pipeline.metrics import Metric, metrics
 from runs.pipeline.quantities import QUANTITIES
 from runs.pipeline.results import CONVENTIONS
@@ -111,22 +110,17 @@ def print_ranges(data: xr.Dataset, plan: Plan, console: Console) -> None:
         ("model", *(heading.replace(" ", "\n") for heading in headings)),
         rows,
     ).show(console)
-    vibrations = vibration_curves(data).items()
-    for line in (
-        *_within_limits(data, plan.limits),
-        *(line for name, one in vibrations for line in describe(name, one)),
-    ):
+    lines = []
+    for limit, name in product(plan.limits, data["model"].values):
+        numbers = data[limit.quantity.name].sel(model=name).values.ravel()
+        held = sum(limit.permits(value) for value in numbers)
+        lines.append(f"{name}: {limit} at {held} of {numbers.size} points")
+    for name, one in vibration_curves(data).items():
+        lines += describe(name, one)
+    for line in lines:
         console.print(line, markup=False, highlight=False)
     if plan.reference is not None:
         _print_distances(data, plan.reference, console)
-
-
-def _within_limits(data: xr.Dataset, limits: Sequence[Limit]) -> Iterator[str]:
-    """Yield a sentence for each model on the number of points that satisfy the limits."""
-    for limit, name in product(limits, data["model"].values):
-        values = data[limit.quantity.name].sel(model=name).values.ravel()
-        held = sum(limit.permits(value) for value in values)
-        yield f"{name}: {limit} at {held} of {values.size} points"
 
 
 def _print_distances(data: xr.Dataset, reference: str, console: Console) -> None:

@@ -179,7 +179,9 @@ def test_check_marks_the_governing_combination(tmp_path: Path) -> None:
     case = read_case(tmp_path, LIFT + CASES + FACTORS)
     found = combination_results(case)
     first, envelope = combination_tables(found, case)
-    tips = [state.largest("tip").largest for state in found]  # type: ignore[union-attr]
+    extremes = [state.largest("tip") for state in found]
+    tips = [one.largest for one in extremes if one is not None]
+    assert len(tips) == len(found)
     marked = dict(zip(first.columns[0].cells, first.columns[1].text, strict=True))
     governing = found[tips.index(min(tips))].name
     assert [name for name, tip in marked.items() if "*" in tip] == [governing]

@@ -27,7 +27,6 @@ from runs.case.limits import ContactTolerance, Count, Modes, Part
 if TYPE_CHECKING:
     from dynamics.line import Line
     from shell_model.boom_shell import ShellOptions
-    from shell_model.reduction.krylov import KrylovOptions
 
 # Maximum number of triangles: a finer mesh is an input error.
 MOST_TRIANGLES = 20_000_000
@@ -155,12 +154,17 @@ class Shell(ModelTable):
         """Return mesh size, contact line and reduction for the shell model of the boom."""
         from shell_model.boom_shell import ShellOptions
         from shell_model.contact.surface import POINTS, SurfaceOptions
+        from shell_model.reduction.krylov import KrylovOptions
 
+        if self.modes == "auto":
+            krylov = KrylovOptions(tolerance=self.tolerance)
+        else:
+            krylov = KrylovOptions(most=self.modes)
         return ShellOptions(
             mesh_size=self.mesh_size,
             contact_line=self.contact_line,
             surface=SurfaceOptions(self.surface_points or POINTS, self.surface_stiffness),
-            krylov=self._krylov(),
+            krylov=krylov,
             contact_tolerance=None if self.contact_tolerance == "any" else self.contact_tolerance,
         )
 
@@ -206,13 +210,6 @@ class Shell(ModelTable):
             if segment.section is not None
             for zone in refinement_zones(boom, number, self.contact_tolerance, *pressed)
         )
-
-    def _krylov(self) -> KrylovOptions:
-        from shell_model.reduction.krylov import KrylovOptions
-
-        if self.modes == "auto":
-            return KrylovOptions(tolerance=self.tolerance)
-        return KrylovOptions(most=self.modes)
 
     def _check_contact(self, where: str, model_boom: ModelBoom) -> None:
         """Check that the contact line suits the boom, and that no key is for another line."""
