@@ -36,7 +36,7 @@ class Utilisation(NamedTuple):
     value: float | None
 
     def __str__(self) -> str:
-        """Return value in %, location and verdict as text. The value must not be None."""
+        """Return value, location and comparison with 100 % as text; the value is not None."""
         assert self.value is not None
         relation = "exceeds" if self.value > 1.0 else "below"
         return (
