@@ -202,7 +202,7 @@ class ChangingAxialForce:
     def of(cls, geometric: Array, stiffness: Array, peak: float) -> ChangingAxialForce:
         """Return the force whose geometric stiffness is K_G (num_modes, num_modes) at s = 1.
 
-        Directions in which it changes the stiffness by less than 1e-5 at s = ``peak`` are
+        Directions in which its relative change of the stiffness at s = ``peak`` is below 1e-5 are
         left out.
 
         Args:
