@@ -76,7 +76,7 @@ def test_a_pressed_boom_swings_with_the_ratio(heavy: GapSystem, mode: int, ratio
     assert run.energy_residual < 1e-6
 
 
-def test_a_segment_that_flies_slows_down_at_the_ratio_of_the_first_mode(heavy: GapSystem) -> None:
+def test_free_segment_decays_at_the_ratio_of_the_first_mode(heavy: GapSystem) -> None:
     """Reference: analytic, exp(−ζω₁t)."""
     wide = replace(heavy, load=0.0 * heavy.load, laws=[LINEAR.law.behind(10.0)] * len(heavy.laws))
     damped = with_modal_damping(wide, 0.05)

@@ -72,7 +72,7 @@ def test_section_forces_of_a_column_refer_to_the_straight_axis(
     np.testing.assert_allclose(found["moment"], expected, rtol=2e-3, atol=100.0)
 
 
-def test_a_joint_with_play_passes_what_the_lever_rule_says(paper_boom: Boom) -> None:
+def test_joint_with_play_transfers_forces_of_the_lever_rule(paper_boom: Boom) -> None:
     """Reference: by hand, 550.7 N upwards at 14 m on 9 and 10 m: the moment of the inner segment is
     55.07 · 9²/2 N m at 10 m, pulling at the bottom, and its shear force jumps there by 2753.5 N.
     """

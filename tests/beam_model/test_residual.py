@@ -12,7 +12,7 @@ from beam_model.calibration import elastic_compliance, residual_compliance, with
 from tests.beam_model.test_section_fields import MODES, system
 
 
-def test_springs_add_what_the_fine_model_gives_way() -> None:
+def test_springs_add_the_compliance_of_the_fine_model() -> None:
     """Reference: analytic, the static compliance of the fine model."""
     fine, coarse = system(), system(12)
     residual = residual_compliance(coarse, fine)
@@ -24,7 +24,7 @@ def test_springs_add_what_the_fine_model_gives_way() -> None:
     assert not sprung.observers["tip"].row[12:].any()
 
 
-def test_what_would_push_back_is_no_spring() -> None:
+def test_negative_residual_compliance_is_left_out() -> None:
     """Reference: analytic, D = g gᵀ − h hᵀ has the positive part g gᵀ for orthogonal g and h."""
     coarse = system(12)
     g, h = np.array([1.0, 1.0, 1.0]) * 1e-9, np.array([1.0, -1.0, 0.0]) * 1e-10

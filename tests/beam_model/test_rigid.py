@@ -84,7 +84,7 @@ def test_a_body_swings_on_springs(paper_boom: Boom) -> None:
     assert np.sqrt(np.sort(modes.omega2)) == pytest.approx(np.sort(expected), rel=1e-12)
 
 
-def test_supports_leave_what_they_do_not_hold(paper_boom: Boom, spatial_boom: Boom) -> None:
+def test_supports_leave_unheld_rigid_motions_free(paper_boom: Boom, spatial_boom: Boom) -> None:
     outer, inner = spatial_boom.segments
     sizes = {
         name: component.load.size for name, component in rigid_segment(inner).components.items()

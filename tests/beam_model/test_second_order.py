@@ -57,7 +57,7 @@ def telescope(thrust: float, bonded: bool = False, **changes: object) -> Boom:
     return Boom(with_compression((arm, fly), (joint,), [Thrust(1, 14.0, thrust)]), (joint,))
 
 
-def test_a_segment_that_only_contacts_hold_tips_over(build: Build) -> None:
+def test_segment_held_by_contacts_only_tips_over(build: Build) -> None:
     """Reference: analytic. Turned by θ about its middle a free beam gives way by P L θ²/2 against
     the kinetic energy m̄ L³ θ̇²/24, with the shear and bending that it has besides 1e-3 more.
     """
@@ -113,7 +113,7 @@ def test_both_planes_buckle_each_by_its_own_stiffness(
         assert factor == pytest.approx(euler / 1.0e5, rel=1e-4)
 
 
-def test_a_boom_bears_what_its_stiffer_parts_carry(build: Build) -> None:
+def test_buckling_factor_depends_on_the_locked_segment(build: Build) -> None:
     """Reference: analytic, by order. Locked at the head the stiffer arm carries the force through
     the overlap, at the tail the fly does; a cylinder from the arm's foot leaves the arm free of it.
     """

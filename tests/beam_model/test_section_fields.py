@@ -53,7 +53,7 @@ def test_a_condensed_system_answers_slow_forces_alike() -> None:
     assert error < 1e-3 * np.abs(answer(cut) - answer(whole)).max()
 
 
-def test_modes_that_are_pushed_are_kept_before_slower_ones_that_are_not() -> None:
+def test_excited_modes_are_kept_before_slower_unexcited_modes() -> None:
     """Reference: analytic, of pushes of one size that leave out every second mode the order by
     b²/ω⁴ is that of ω; of 16 modes beside two blocks of four the slowest eighth of 24 is kept.
     """

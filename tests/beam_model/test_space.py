@@ -104,7 +104,7 @@ def test_a_torque_twists_in_proportion_to_its_arm(beam: Beam) -> None:
 
 
 @pytest.mark.parametrize("kind", ["series", "euler-bernoulli", "timoshenko"])
-def test_lateral_bending_is_that_of_the_box_on_its_side(beam: Beam, kind: str) -> None:
+def test_lateral_bending_equals_bending_of_the_turned_box(beam: Beam, kind: str) -> None:
     """Reference: the flat model of a segment whose box is turned by hand."""
     box = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)
     side = BoxSection(height=0.40, width=0.60, flange=0.01, web=0.04)
@@ -265,7 +265,7 @@ def test_a_boom_on_its_side_does_the_same_on_its_side(spatial_boom: Boom) -> Non
     same(one, other, {f"{name}_lateral": name for name in names}, 1e-9)
 
 
-def test_friction_rows_rub_across_what_presses(spatial_boom: Boom) -> None:
+def test_friction_acts_across_the_contact_normal(spatial_boom: Boom) -> None:
     """Reference: analytic, (10) and (11): pressed along z a pad rubs along y, and back."""
     (joint,) = spatial_boom.joints
     boom = replace(spatial_boom, joints=(replace(joint, friction=0.3),))

@@ -19,7 +19,7 @@ from tests.touching import touching
 LAW = PowerContact(1.0e9, 1.0).behind(7.0e-3)
 
 
-def test_supports_and_stations_bear_what_the_lever_rule_says(paper_boom: Boom) -> None:
+def test_reactions_of_supports_and_stations_follow_the_lever_rule(paper_boom: Boom) -> None:
     """Reference: by hand. 550.7 N upwards at 14 m on 9 and 10 m, all with 831.6 N at 5 m on 0 and
     2 m.
     """
@@ -45,7 +45,7 @@ def test_supports_and_stations_bear_what_the_lever_rule_says(paper_boom: Boom) -
     assert np.abs([h.moment for h in found.reactions]).max() < 1e-3
 
 
-def test_what_is_handed_on_is_counted_once(paper_boom: Boom) -> None:
+def test_transferred_loads_are_counted_once(paper_boom: Boom) -> None:
     """Reference: by hand, as above with the support at the inner segment's tail, 9 m: the ground
     bears what is left there, and nothing where the outer segment's head holds the inner one.
     """
@@ -98,7 +98,7 @@ def test_three_supports_bear_by_their_stiffness(beam: Callable[..., Segment]) ->
     assert forces == pytest.approx([0.375 * span, 1.25 * span, 0.375 * span])
 
 
-def test_a_cylinder_bears_what_turns_about_the_hinge(beam: Callable[..., Segment]) -> None:
+def test_cylinder_carries_the_moment_about_the_hinge(beam: Callable[..., Segment]) -> None:
     """Reference: by hand. 500 N at 2.5 m from the hinge on an upright cylinder 2 m from it."""
     segment = beam(supports=[3.0], load=-100.0)
     jack = Cylinder(0, 5.0, depth=0.3, ground=(5.0, -2.0), stiffness=1.0e7)

@@ -137,7 +137,7 @@ def test_a_spring_under_the_end_of_a_cantilever(
 
 @KINDS
 @pytest.mark.parametrize("stiffness", [2.0e6, 4.0e8])
-def test_a_hinge_that_resists_rotation(
+def test_frequencies_with_a_rotational_spring_at_the_hinge(
     beam: Beam, model_of: Callable[[Segment], Component], stiffness: float
 ) -> None:
     """Reference: analytic, between a pinned and a clamped end (Blevins 1979):

@@ -89,7 +89,7 @@ def numbers(box: BoxSection) -> tuple[float, float, float, float]:
     return box.height, box.width, box.flange, box.web
 
 
-def test_it_weighs_what_its_plates_weigh() -> None:
+def test_mass_equals_the_mass_of_the_plates() -> None:
     """Reference: by hand, the volume of its walls: ∫ A dx = 8 (A_0 + 4 A_m + A_1)/6, and where its
     middle is; series, elements and rigid segments, whose acceleration is felt by all of it.
     """

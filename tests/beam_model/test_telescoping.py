@@ -227,7 +227,7 @@ def driven(history: History, least: float = 0.0) -> Drive:
          "segment that stays, or leave drive out"),
     ],
 )  # fmt: skip
-def test_drives_that_cannot_be(
+def test_bad_drives_are_refused(
     paper_boom: Boom, make: Callable[[Boom], Boom], message: str
 ) -> None:
     """Reference: what cannot be drawn, in one line."""

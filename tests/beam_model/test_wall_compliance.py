@@ -62,7 +62,7 @@ def test_collars_stiffen_by_the_cube_of_the_thickness() -> None:
     assert wall_compliance.wall_compliance(doubled, (pad(),)) == pytest.approx(plain / 8.0)
 
 
-def test_a_diaphragm_holds_the_walls_that_it_joins() -> None:
+def test_diaphragm_prevents_wall_deflection() -> None:
     """Reference: analytic bounds: nothing moves on it, and at the far end it changes nothing."""
     plain = float(wall_compliance.wall_compliance(tube(), (pad(),))[0, 0])
     there, beyond = (
@@ -83,7 +83,7 @@ def test_an_end_is_softer_than_the_middle_of_a_tube() -> None:
     assert 1.2 < end / middle < 4.0
 
 
-def test_a_pad_that_ends_at_the_end_of_its_segment_to_round_off() -> None:
+def test_pad_flush_with_the_segment_end_tolerates_round_off() -> None:
     """Reference: the pad that ends exactly there."""
     exact, rounded = (
         wall_compliance.wall_compliance(tube(), (pad(LENGTH - 0.1, end),))

@@ -72,7 +72,7 @@ def test_links_lead_to_files_and_headings(page: Path) -> None:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_commands_have_options_that_exist(page: Path) -> None:
+def test_commands_in_the_pages_have_known_options(page: Path) -> None:
     """Reference: typer's list of commands and options."""
     commands = typer.main.get_command(cli.app).commands
     text = page.read_text("utf-8").replace("\\\n", " ")

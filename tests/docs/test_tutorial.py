@@ -90,7 +90,7 @@ def test_values_of_the_first_check(tmp_path: Path) -> None:
     assert shown(first_frequency(state), 2, "first natural frequency, joints in contact")
 
 
-def test_the_beam_is_that_of_the_report(run: Runner, lift: str, tmp_path: Path) -> None:
+def test_beam_results_equal_the_page(run: Runner, lift: str, tmp_path: Path) -> None:
     """Reference: the page, to its digits."""
     summary = run(lift, "beam")
     beam = summary.design.models["beam"]
@@ -159,7 +159,7 @@ def test_the_live_page_has_the_numbers_of_its_table(
 
 
 @pytest.mark.slow
-def test_a_coarse_shell_is_near_that_of_the_report(run: Runner, lift: str) -> None:
+def test_coarse_shell_is_close_to_the_page(run: Runner, lift: str) -> None:
     """Reference: the page, whose mesh has a tolerance of 1 %; this one has 5 %."""
     pytest.importorskip("dolfinx", reason="shells need FEniCSx")
     coarse = lift.replace('kind = "shell"', 'kind = "shell"\ncontact_tolerance = 0.05')

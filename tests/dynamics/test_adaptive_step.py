@@ -159,7 +159,7 @@ def test_mean_forces_of_two_steps_do_not_alternate(one_mass: OneMass) -> None:
 @pytest.mark.parametrize(
     ("stiffness", "exponent"), [(1e8, 1.0), (1e10, 1.5), (1e12, 2.0), (1e15, 3.0)]
 )
-def test_a_peak_that_no_step_resolves_is_marked(
+def test_unresolved_peak_is_marked(
     one_mass: OneMass, stiffness: float, exponent: float, speed: float
 ) -> None:
     """Reference: analytic, k pⁿ at ½ m v² = k pⁿ⁺¹/(n + 1), which the step that is told finds: half
@@ -178,7 +178,7 @@ def test_a_peak_that_no_step_resolves_is_marked(
     assert peaks[1] == pytest.approx(force, rel=0.05)
 
 
-def test_what_is_simulated_is_the_motion() -> None:
+def test_adaptive_motion_equals_the_fixed_step_motion() -> None:
     """Reference: other code path."""
     start = {"position": [0.01, 0.0], "velocity": [0.5, -1.0]}
     run = simulate(CHAOTIC, 2.0, 1e-2, **start)
@@ -188,7 +188,7 @@ def test_what_is_simulated_is_the_motion() -> None:
 
 
 @pytest.mark.parametrize("tolerance", [0.0, 1.0, float("nan")])
-def test_refuses_what_is_no_tolerance(tolerance: float) -> None:
+def test_bad_tolerances_are_refused(tolerance: float) -> None:
     message = f"tolerance must be between 0 and 1, got {tolerance}"
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         AdaptiveStep(tolerance)

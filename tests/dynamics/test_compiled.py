@@ -58,7 +58,7 @@ def _rubbing(environment: dict[str, str]) -> str:
 
 
 @pytest.mark.slow
-def test_who_compiles_gets_the_bits_of_those_who_do_not(
+def test_compiled_and_cached_loops_give_equal_bits(
     tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     """Reference: the same motion, in a process that has found all that the first one compiled:

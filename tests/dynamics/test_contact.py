@@ -44,7 +44,7 @@ def test_below_is_as_above_unless_given() -> None:
     np.testing.assert_array_equal(law.force(-y), -law.force(y))
 
 
-def test_segments_that_do_not_touch_feel_nothing() -> None:
+def test_open_contact_has_no_force() -> None:
     y = np.array([-7.0e-3, -6.9e-3, 0.0, 6.9e-3, 7.0e-3])
     assert not LAW.force(y).any()
     assert not LAW.energy(y).any()
@@ -97,7 +97,7 @@ def test_shares_add_up_to_the_whole(law: PowerContact) -> None:
         ({"damping": float("nan")}, "damping must be finite and not negative, got nan s/m"),
     ],
 )
-def test_refuses_what_has_no_meaning(arguments: dict[str, float], message: str) -> None:
+def test_bad_values_are_refused(arguments: dict[str, float], message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         PowerContact(**{"stiffness": 1.0e13, "exponent": 2.0, **arguments})
 

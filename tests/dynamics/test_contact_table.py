@@ -79,7 +79,7 @@ def test_a_mass_on_a_table_swings_on_its_lines(one_mass: Callable[..., GapSystem
         ((1e-3, 2e-3), (2.0, 1.0), "forces must be positive, and must not fall at the end"),
     ],
 )
-def test_refuses_what_has_no_meaning(
+def test_bad_values_are_refused(
     depths: tuple[float, ...], forces: tuple[float, ...], message: str
 ) -> None:
     with pytest.raises(ValueError, match=f"^{message}$"):

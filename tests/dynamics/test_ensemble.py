@@ -75,7 +75,7 @@ def test_all_loads_vary_and_nothing_else() -> None:
 
 
 @pytest.mark.parametrize(("above", "expected"), [(0.002, 0.002002), (0.0, 0.0)])
-def test_plays_that_differ_vary_each_by_its_part(above: float, expected: float) -> None:
+def test_unequal_plays_vary_by_equal_fractions(above: float, expected: float) -> None:
     """Reference: by hand. 1.001 times 2 and 12 mm are 2.002 and 12.012 mm, and nothing stays so."""
     (law,) = CHAOTIC.laws
     sided = law.law.behind(above, 0.012)
@@ -175,7 +175,7 @@ def test_the_same_seed_gives_the_same_on_any_number_of_cores(
     assert not np.array_equal(other["tip"], found[0]["tip"])
 
 
-def test_takes_a_motion_that_has_moved_already_for_member_0() -> None:
+def test_completed_motion_serves_as_member_0() -> None:
     """Chaotic: a last digit that differed would show."""
     motion, way = Motion(CHAOTIC, 20.0, 1e-2), FixedStep(1e-3)
     found = [
@@ -191,7 +191,7 @@ def test_tells_its_progress() -> None:
     assert parts == [1.0 / 3.0, 2.0 / 3.0, 1.0]
 
 
-def test_a_member_that_cannot_be_computed_ends_the_ensemble() -> None:
+def test_failing_member_ends_the_ensemble() -> None:
     tipping = replace(LINEAR, omega2=np.array([-1e6, 31.0]))
     message = "the motion is not finite after 2 s"
     with pytest.raises(NumericsError, match=f"^{message}$"):
@@ -208,15 +208,13 @@ def test_a_member_that_cannot_be_computed_ends_the_ensemble() -> None:
         (8, 1e-9, "clearance", "the clearance is zero, so that no relative change moves it"),
     ],
 )
-def test_refuses_what_is_no_ensemble(
-    members: int, relative: float, vary: Vary, message: str
-) -> None:
+def test_bad_ensembles_are_refused(members: int, relative: float, vary: Vary, message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         integrate_ensemble(Motion(LINEAR, 1.0), members, relative, 1, vary)
 
 
 @pytest.mark.parametrize("part", [0.25, 0.7])
-def test_the_beginning_of_a_run_is_that_of_the_whole_run(part: float) -> None:
+def test_shortened_run_equals_the_start_of_the_whole_run(part: float) -> None:
     """Reference: the whole run."""
     motion = Motion(CHAOTIC, 2.0, 1e-2)
     whole = EnsembleMember(motion, "load", 0.0, FixedStep(1e-3), ("gap", "contact_force"))

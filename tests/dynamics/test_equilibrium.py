@@ -43,14 +43,14 @@ def test_a_free_mass_rests_where_its_stop_carries_the_force(exponent: float) -> 
     assert system.rows[0] @ position == pytest.approx(4.0e-3 + depth, rel=1e-6)
 
 
-def test_a_spring_carries_what_does_not_reach_the_stop() -> None:
+def test_spring_carries_the_load_before_contact() -> None:
     """Reference: analytic. 2 kg · 900 rad²/s² = 1800 N/m, 5 N."""
     system = mass_over_stop(1.0, 900.0)
     assert system.rows[0] @ equilibrium(system, 5.0 * system.rows[0]) == pytest.approx(5.0 / 1800.0)
 
 
 @pytest.mark.parametrize(("weight", "expected"), [(0.0, 1.0e-3), (4.0, 1.0e-3 - 4.0 / 3.0e6)])
-def test_what_shims_press_moves_without_a_load(weight: float, expected: float) -> None:
+def test_shim_preload_displaces_an_unloaded_mass(weight: float, expected: float) -> None:
     """Reference: analytic. A shim 1 mm beyond the play below lifts a mass until it is free."""
     below = PowerContact(3.0e6, 1.0).lower().behind(-1.0e-3)
     above = mass_over_stop(1.0, 0.0)
@@ -59,14 +59,14 @@ def test_what_shims_press_moves_without_a_load(weight: float, expected: float) -
     assert row @ equilibrium(system, -weight * row) == pytest.approx(expected, abs=1e-8)
 
 
-def test_what_nothing_holds_has_no_equilibrium() -> None:
+def test_unsupported_mass_has_no_equilibrium() -> None:
     """Below the mass there is no stop."""
     system = mass_over_stop(1.0, 0.0)
     with pytest.raises(NumericsError, match="no static equilibrium"):
         equilibrium(system, -50.0 * system.rows[0])
 
 
-def test_what_axial_forces_buckle_has_no_equilibrium() -> None:
+def test_buckled_system_has_no_equilibrium() -> None:
     """They take more than its spring gives."""
     free = {"rows": np.zeros((0, 1)), "laws": [], "station_of_row": np.zeros(0, dtype=np.int64)}
     buckled = replace(mass_over_stop(1.0, 900.0), **free, geometric_stiffness=np.array([[901.0]]))

@@ -72,7 +72,7 @@ def test_kinks_are_followed_wherever_they_are(where: str, step: float) -> None:
         assert error < (1e-8 + min(1.0, (omega * step) ** 4 / 2.0)) * np.ptp(expected), omega
 
 
-def test_the_line_that_stands_for_a_history() -> None:
+def test_linear_fit_of_a_history_keeps_its_moments() -> None:
     """Reference: analytic. ∫ and ∫ (t − t_m) of a sine, and of a jump at a quarter of a step."""
     times, w = np.linspace(0.3, 1.1, 5), 2.0 * np.pi * 0.6
     (before, after), h, middle = (times[:-1], times[1:]), 0.2, 0.5 * (times[1:] + times[:-1])
@@ -200,7 +200,7 @@ def test_a_history_of_one_s_own() -> None:
         ),
     ],
 )
-def test_refuses_what_has_no_meaning(
+def test_bad_values_are_refused(
     history: Callable[..., object], arguments: tuple[object, ...], message: str
 ) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):

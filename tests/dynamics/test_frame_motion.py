@@ -86,7 +86,7 @@ def test_accelerations() -> None:
     assert frame.accelerations(time, x, extension) == pytest.approx(np.array(expected), abs=1e-5)
 
 
-def test_weight_that_turns() -> None:
+def test_weight_components_while_luffing() -> None:
     """Reference: analytic, g cos α across and g sin α along the boom, less those at t = 0."""
     frame = FrameMotion(luff=SCurve(50.0, 1.0), angle=20.0, gravity=10.0)
     end = np.array([2.0])

@@ -179,7 +179,7 @@ def test_two_coupled_rows_against_located_events() -> None:
     assert error < run.data.attrs["step_error"] < 1e-3
 
 
-def test_what_sticks_does_not_creep() -> None:
+def test_sticking_places_do_not_creep() -> None:
     """100 000 steps of shaken modes, of which friction holds two places to the last digits."""
     generator = np.random.default_rng(4)
     rows = generator.normal(size=(2, 8))
@@ -200,7 +200,7 @@ def test_what_sticks_does_not_creep() -> None:
     assert float(run.data["friction_loss"][-1]) < 1e-8 * float(run.data["work"][-1])
 
 
-def test_rows_that_say_the_same_share_the_force() -> None:
+def test_dependent_friction_rows_share_the_force() -> None:
     """Reference: other code path. Three rows in a plane, one of them doubled with half the limit,
     move as if each were there once; what can be said of the forces alone is their sum. Up to 9 s,
     where the iteration cycles in one step, which is halved."""
@@ -289,6 +289,6 @@ def test_no_friction_is_no_friction(one_mass: OneMass) -> None:
         ({"normal_force": float("inf")}, "normal_force must be finite, not negative, got inf N"),
     ],
 )
-def test_refuses_what_has_no_meaning(arguments: dict[str, Any], message: str) -> None:
+def test_bad_values_are_refused(arguments: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         replace(DryFriction(0.2, 0), **arguments)

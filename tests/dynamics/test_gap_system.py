@@ -111,7 +111,7 @@ def test_no_rest_with_a_rigid_mode() -> None:
         ),
     ],
 )
-def test_refuses_what_does_not_agree(name: str, value: object, message: str) -> None:
+def test_inconsistent_arrays_are_refused(name: str, value: object, message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         GapSystem(**parts() | {name: value})
 

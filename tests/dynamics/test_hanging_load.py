@@ -122,7 +122,7 @@ def test_pendulum_on_a_support_with_a_constant_acceleration() -> None:
     assert not data["swing_aside"].values.any()
 
 
-def test_load_under_a_boom_that_turns_steadily() -> None:
+def test_load_under_a_boom_at_constant_slewing_speed() -> None:
     """Reference: analytic, the load hangs outwards by ψ̇² R l/(g − ψ̇² l) for small angles.
 
     About this place it swings with √(g/l) ± ψ̇ in the frame of the boom.
@@ -144,7 +144,7 @@ def test_load_under_a_boom_that_turns_steadily() -> None:
         assert np.ptp(swung) > 0.1 * out
 
 
-def test_load_that_swings_while_the_boom_slews_and_luffs() -> None:
+def test_load_swings_during_slewing_and_luffing() -> None:
     """Reference: other code, scipy's DOP853 of tip and load in the turning frame.
 
     There the load has all terms of Coriolis, of Euler, and centrifugal ones. Order 2 in the step.

@@ -83,7 +83,7 @@ def test_stops_when_it_is_known() -> None:
         np.testing.assert_array_equal(found.of_step, again.of_step)
 
 
-def test_what_parts_early_is_not_run_to_the_end() -> None:
+def test_early_divergence_ends_the_run() -> None:
     """Reference: other code, all members over the whole duration."""
     motion, sizes = Motion(CHAOTIC, 20.0, 1e-2), [1e-8, 1e-6]
     way = FixedStep(1e-3)
@@ -208,7 +208,7 @@ def test_tells_its_progress() -> None:
     assert parts[-1] == 1.0
 
 
-def test_refuses_what_no_change_moves() -> None:
+def test_insensitive_systems_are_refused() -> None:
     message = "the velocity is zero, so that no relative change moves it"
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         measure_horizons(Motion(LINEAR, 1.0), [1e-9], "velocity")

@@ -82,6 +82,6 @@ def test_contact_never_pulls(one_mass: OneMass) -> None:
         (0.5, float("inf"), "speed must be finite and positive, got inf m/s"),
     ],
 )
-def test_refuses_what_has_no_meaning(restitution: float, speed: float, message: str) -> None:
+def test_bad_values_are_refused(restitution: float, speed: float, message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         restitution_damping(restitution, speed)

@@ -30,6 +30,6 @@ def test_rests_unless_told() -> None:
         ({"velocity": np.array([0.0, np.nan])}, "velocity must be finite"),
     ],
 )
-def test_refuses_what_is_no_motion(given: dict[str, Any], message: str) -> None:
+def test_bad_motions_are_refused(given: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         Motion(CHAOTIC, **{"duration": 1.0, **given})

@@ -68,19 +68,19 @@ def pressed_along(history: SCurve | PiecewiseLinear) -> GapSystem:
 
 
 @pytest.mark.parametrize("s", [-1.0, -0.3, 0.0, 0.5, 1.7])
-def test_what_is_passed_is_softened(s: float) -> None:
+def test_thrust_softens_the_passed_length(s: float) -> None:
     """Reference: analytic, the integral along the way by Gauss's rule."""
     assert thrust().geometric_stiffness(s) == pytest.approx(softer(s), rel=1e-6, abs=1e-6 * FORCE)
 
 
 @pytest.mark.parametrize("knots", [[-1.0, -0.4, 1.0], [-2.0, 0.0], [0.0, 1.0]])
-def test_what_has_passed_nothing_softens_nothing(knots: list[float]) -> None:
+def test_thrust_without_travel_changes_no_stiffness(knots: list[float]) -> None:
     """Reference: analytic, 0 to the last bit, wherever the knots are."""
     table = RowTable.interpolate(lambda s: np.sin(WAVES * (5.0 + s))[None], knots)
     assert not MovingAxialForce(FORCE, table).geometric_stiffness(0.0).any()
 
 
-def test_only_what_is_passed_is_integrated() -> None:
+def test_only_passed_pieces_are_integrated() -> None:
     """Reference: analytic, of a polynomial whose pieces are many; all pieces of it would take
     0.6 GB."""
     modes, knots = 200, np.linspace(-1.0, 1.0, 2001)

@@ -193,7 +193,7 @@ def test_steps_are_halved_until_their_forces_converge(friction: float) -> None:
     assert (force <= bound * (1.0 + 1e-9)).all()
 
 
-def test_forces_that_never_converge_end_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_diverging_forces_end_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: by hand, the step that is left, and what to do."""
     monkeypatch.setattr(time_step, "_HALVINGS", 0)
     message = (

@@ -57,7 +57,7 @@ def test_a_mode_buckles_where_its_stiffness_vanishes() -> None:
     assert buckling_factor(np.zeros((0, 0)), np.zeros((0, 0))) == float("inf")
 
 
-def test_what_tips_over_meets_its_stop_in_time(tipping: GapSystem) -> None:
+def test_unstable_mass_reaches_its_stop_at_the_analytic_time(tipping: GapSystem) -> None:
     """Reference: analytic. From rest at a, a cosh κt is the clearance at acosh(Δ/a)/κ."""
     start = 1.0e-4
     motion = Motion(tipping, 2.0, 1e-3, position=np.array([start * np.sqrt(MASS)]))
@@ -70,7 +70,7 @@ def test_what_tips_over_meets_its_stop_in_time(tipping: GapSystem) -> None:
     assert np.abs(run.data["tip"].values).max() < 1.1 * CLEARANCE
 
 
-def test_what_tips_over_rests_on_its_stop(tipping: GapSystem) -> None:
+def test_unstable_mass_rests_on_its_stop(tipping: GapSystem) -> None:
     """Reference: analytic, F = k (y − Δ) = P + κ² m y."""
     pushed = replace(tipping, load=np.array([5.0 / np.sqrt(MASS)]))
     rest = (5.0 + STIFFNESS * CLEARANCE) / (STIFFNESS + NEGATIVE)

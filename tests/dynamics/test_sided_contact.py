@@ -50,12 +50,12 @@ def test_parts_are_those_of_its_law() -> None:
         (np.nan, "clearance must be a finite number of m, got nan and nan"),
     ],
 )
-def test_refuses_what_is_no_gap(clearance: float, message: str) -> None:
+def test_bad_gaps_are_refused(clearance: float, message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         POWER.behind(clearance)
 
 
-def test_a_mass_leaves_one_side_of_what_presses_it(one_mass: OneMass) -> None:
+def test_preloaded_mass_leaves_one_contact_side(one_mass: OneMass) -> None:
     """Reference: analytic. √(2 k/m) up to the interference, then √(k/m) about F/k − δ."""
     k, pressed, load = 1.0e4, 2.0e-3, 60.0
     both, one = np.sqrt([2.0 * k, k])

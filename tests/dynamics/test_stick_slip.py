@@ -111,7 +111,7 @@ def test_other_drives_push() -> None:
 
 
 @pytest.mark.parametrize("start", [0.0, 0.1])
-def test_another_drive_that_starts_at_once(start: float) -> None:
+def test_sudden_start_of_another_drive(start: float) -> None:
     """Reference: analytic. A jump to v of another drive gives the impulse m_b v to all that is
     pulled, which swings by m_b v/(m ω)."""
     pulled = replace(ROPE, coupled_drives=((0.4 * MASS, Stroke(2.0, 1.0, start=start)),))
@@ -192,7 +192,7 @@ def test_order_in_the_step() -> None:
     assert max(off[4:]) < max(off[:4]) / 30.0
 
 
-def test_friction_that_changes() -> None:
+def test_variable_friction() -> None:
     """Reference: other code, as above; slips are up to 4 mm. Within an output friction is its mean,
     so that it lets go as late as that leaves open, and the order is 1."""
     counts = np.array([1000, 2200, 14_000])
@@ -200,7 +200,7 @@ def test_friction_that_changes() -> None:
     assert (np.array(off) * counts).max() < 0.1
 
 
-def test_a_drive_that_goes_back_and_forth() -> None:
+def test_reversing_drive() -> None:
     """Reference: analytic. Quasi-static it lags by R/k on the way out and is as far ahead on the
     way in; with nothing between sticking and slipping it neither overshoots nor swings."""
     way = PiecewiseLinear((0.0, 10.0, 20.0), (0.0, 0.5, 0.0))
@@ -222,6 +222,6 @@ def test_a_drive_that_goes_back_and_forth() -> None:
         ({"sticking": 0.5}, "sticking must be finite and at least 1, got 0.5"),
     ],
 )
-def test_what_cannot_be_pulled(changes: dict[str, float], message: str) -> None:
+def test_bad_elastic_drives_are_refused(changes: dict[str, float], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         replace(ROPE, **changes)

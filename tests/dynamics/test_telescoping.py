@@ -122,7 +122,7 @@ def test_a_moving_force_on_a_beam() -> None:
 
 
 @pytest.mark.parametrize("drawn", [lossy, pressed_along])
-def test_what_never_moves_rests_bit_for_bit(drawn: Drawn) -> None:
+def test_constant_travel_equals_no_travel_to_the_bit(drawn: Drawn) -> None:
     """Reference: what was before, the same system without a travel."""
     moving = drawn(PiecewiseLinear([0.0, 1.0], [0.0, 0.0]))
     resting = replace(moving, travels=())
@@ -132,7 +132,7 @@ def test_what_never_moves_rests_bit_for_bit(drawn: Drawn) -> None:
 
 
 @pytest.mark.parametrize("drawn", [lossy, pressed_along])
-def test_a_drive_that_has_not_begun_moves_nothing(drawn: Drawn) -> None:
+def test_drive_has_no_effect_before_its_start(drawn: Drawn) -> None:
     """Reference: other code path, the loop without a drive."""
     later = drawn(SCurve(5.0, 0.4, start=1.0))
     runs = [FixedStep(2e-4)(Motion(s, 0.3, 1e-3)) for s in (later, replace(later, travels=()))]
@@ -208,7 +208,7 @@ def test_histories_of_a_drive(history: History, way: float, speed: float) -> Non
     assert not history(np.array([history.kinks[0]])).any()
 
 
-def test_a_stroke_that_has_ended_stands() -> None:
+def test_completed_stroke_is_constant() -> None:
     """Reference: analytic, to the last bit, at a length and a ramp that round off."""
     stroke = Stroke(-1.3, 0.3, ramp=0.37, start=0.1)
     ways = stroke(np.linspace(stroke.kinks[-1], 20.0, 2000))
@@ -231,7 +231,7 @@ def test_tables_hold_cubics_and_come_near_to_the_rest() -> None:
         assert table_slope(sine, way)[1] == pytest.approx(np.cos(way), abs=1e-5)
 
 
-def test_a_system_that_stands_as_it_is_drawn() -> None:
+def test_system_at_a_fixed_extension() -> None:
     """Reference: analytic, the sines at the place of the rider."""
     there = lossy(SCurve(5.0, 0.4)).at_time(0.4)
     row = np.append(-sines(7.0, 8), 1.0 / np.sqrt(20.0))

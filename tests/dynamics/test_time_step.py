@@ -308,7 +308,7 @@ def test_first_contact_does_not_depend_on_the_step(one_mass: OneMass, step: floa
     assert abs(found - exact) < 10.0 * step**2 / 8.0 / np.sqrt(41.0) + 1e-13
 
 
-def test_first_contact_is_that_of_the_first_row() -> None:
+def test_first_contact_is_the_earliest_of_all_rows() -> None:
     """Reference: analytic. Two rows close within one step; the second in the list does so first."""
     system = replace(
         boom(), laws=[POWER.law.behind(0.0105), POWER.law.behind(0.0102)], rows=np.eye(4)[[0, 0]],
@@ -391,7 +391,7 @@ def test_output_intervals_change_nothing() -> None:
     np.testing.assert_allclose(peaks, np.abs(coarse.data["contact_force_peak"][1:]), rtol=1e-6)
 
 
-def test_complains_of_what_the_ledger_misses() -> None:
+def test_energy_residual_gives_a_warning() -> None:
     """Reference: by hand. 0.3 J of 2 J put in are not there."""
     energies = np.array([np.zeros(7), [1.0, 0.5, 0.2, 2.0, 0.0, 0.0, 0.0]])
     check_energy(energies, bound=0.16)
@@ -403,7 +403,7 @@ def test_complains_of_what_the_ledger_misses() -> None:
         check_energy(energies + np.inf)
 
 
-def test_what_nothing_moves_stays(one_mass: OneMass) -> None:
+def test_unloaded_segments_stay_at_rest(one_mass: OneMass) -> None:
     """Reference: analytic. A boom may have segments without load, whose gaps close at no speed."""
     run = AdaptiveStep()(Motion(one_mass(1.0, PowerContact(1.0e6, 2.0).behind(0.1)), 0.1))
     assert not run.states.any()

@@ -42,7 +42,7 @@ def at(segment: Segment, *places: float) -> list[float]:
     return segment.compression(np.array(places)).tolist()
 
 
-def test_weights_press_what_is_below_them_and_pull_what_hangs_behind_the_support() -> None:
+def test_weights_compress_below_and_pull_behind_the_support() -> None:
     """Reference: analytic. The fly hands its weight over at its tail; the arm is held at 1 m."""
     arm, fly = with_compression(segments(), [JOINT], [], gravity=5.0)
     assert at(fly, 6.5, 10.0, 13.9) == pytest.approx(
@@ -92,7 +92,7 @@ def test_masses_collars_and_diaphragms_weigh_along_the_boom() -> None:
     )
 
 
-def test_of_three_segments_each_carries_all_that_is_beyond_it() -> None:
+def test_each_of_three_segments_carries_the_outboard_forces() -> None:
     """Reference: analytic, the sum of the thrusts outboard; a tension pulls."""
     arm, fly = segments()
     jib = Segment.of_section("jib", 12.0, 20.0, STEEL, INNER)

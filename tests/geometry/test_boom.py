@@ -176,7 +176,7 @@ FAULTS: dict[str, list[Changes]] = {
 @pytest.mark.parametrize(
     ("line", "changes"), [(line, each) for line, several in FAULTS.items() for each in several]
 )
-def test_refuses_what_is_no_boom(paper_boom: Boom, line: str, changes: Changes) -> None:
+def test_bad_booms_are_refused(paper_boom: Boom, line: str, changes: Changes) -> None:
     names = ("outer", "inner", "joint")
     parts = zip((*paper_boom.segments, *paper_boom.joints), names, strict=True)
     *segments, joint = (replace(part, **changes.get(name, {})) for part, name in parts)
@@ -268,7 +268,7 @@ FAULTS_OF_A_BOOM: dict[str, tuple[str, str, Change]] = {
 @pytest.mark.parametrize(
     ("where", "what", "change"), FAULTS_OF_A_BOOM.values(), ids=FAULTS_OF_A_BOOM.keys()
 )
-def test_refuses_what_cannot_be_in_space_or_act(
+def test_bad_loads_and_booms_in_space_are_refused(
     spatial_boom: Boom, where: str, what: str, change: Change
 ) -> None:
     with pytest.raises(BoomError) as caught:
@@ -296,7 +296,7 @@ def test_a_chain_is_held_from_either_end(steel: Material, paper_boom: Boom) -> N
     Boom((outer, inner, last), (joint, second))
 
 
-def test_boxes_that_just_fit_are_taken(paper_boom: Boom) -> None:
+def test_boxes_that_fit_to_round_off_are_accepted(paper_boom: Boom) -> None:
     """The inferred boxes leave the play to round-off, and that is enough."""
     outer, inner = paper_boom.segments
     assert outer.section is not None

@@ -96,7 +96,7 @@ def test_lines_stay_whole(mesh: SegmentMesh) -> None:
             assert {tuple(sorted(edge)) for edge in line.tolist()} <= edges
 
 
-def test_spots_are_what_acts_on_a_segment(paper_boom: Boom) -> None:
+def test_refinement_zones_are_at_loads_supports_and_stiffeners(paper_boom: Boom) -> None:
     """Reference: analytic, by hand, for the paper's outer segment with a collar and a diaphragm:
     supports, stiffeners, the corners at 9 and, moved inwards, at 10 m; pads in their place. Four
     times the tolerance, twice the size.

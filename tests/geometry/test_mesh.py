@@ -254,7 +254,7 @@ def test_gmsh_file_names_every_wall_and_line(tmp_path: Path) -> None:
         )
 
 
-def test_lines_that_share_a_place_are_both_in_the_gmsh_file(tmp_path: Path) -> None:
+def test_coincident_lines_are_both_in_the_gmsh_file(tmp_path: Path) -> None:
     mesh = mesh_segment(BOX, {"tail": 0.0, "station": 1.0, "head": 1.0}, 0.5)
     mesh.write_gmsh(tmp_path / "m.msh")
     text = (tmp_path / "m.msh").read_text()
@@ -312,7 +312,7 @@ def test_the_same_call_gives_the_same_mesh(mesh: SegmentMesh) -> None:
 
 
 @pytest.mark.parametrize("size", [0.0, -0.1, float("nan"), float("inf")])
-def test_refuses_a_size_that_is_none(size: float) -> None:
+def test_bad_mesh_sizes_are_refused(size: float) -> None:
     message = f"mesh size must be a positive number of m, got {size}"
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         mesh_segment(BOX, BREAKS, size)

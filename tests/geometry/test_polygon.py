@@ -261,14 +261,14 @@ def test_sizes_of_the_short_forms() -> None:
         ),
     ],
 )
-def test_refuses_what_is_no_polygon(
+def test_bad_polygons_are_refused(
     corners: Sequence[tuple[float, float]], thicknesses: Sequence[float], message: str
 ) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         closed_polygon(corners, thicknesses)
 
 
-def test_refuses_what_is_no_short_form() -> None:
+def test_bad_short_forms_are_refused() -> None:
     message = "flat must be below the width of 0.4 m, got 0.4"
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         hexagon(0.5, 0.4, 0.4, 0.01, 0.01, 0.01)

@@ -251,7 +251,7 @@ def test_no_outer_box_so_compact(
         ),
     ],
 )
-def test_refuses_what_is_no_box(dimension: str, value: float, message: str) -> None:
+def test_bad_boxes_are_refused(dimension: str, value: float, message: str) -> None:
     plates = {"height": 0.6, "width": 0.4, "flange": 0.04, "web": 0.01, dimension: value}
     with pytest.raises(SectionError, match=f"^{re.escape(message)}$"):
         BoxSection(**plates)

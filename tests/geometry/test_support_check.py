@@ -75,9 +75,7 @@ PASSING = Load(1, "z", -1e5, 19.0, Ramp(1.0)), Load(1, "z", -1e5, 19.0, Released
 
 
 @pytest.mark.parametrize("loads", [(), PASSING], ids=["none", "none that lasts"])
-def test_a_stop_that_no_load_presses_holds_nothing(
-    paper_boom: Boom, loads: tuple[Load, ...]
-) -> None:
+def test_unloaded_stop_gives_no_support(paper_boom: Boom, loads: tuple[Load, ...]) -> None:
     lifted = held(paper_boom, HINGE, stops=(BELOW,), loads=loads)
     with pytest.raises(BoomError) as caught:
         check_contacts_at_rest(lifted)
@@ -213,7 +211,7 @@ FAULTS: Mapping[str, tuple[str, str, list[Support], Mapping[str, Any]]] = {
 @pytest.mark.parametrize(
     ("where", "what", "supports", "others"), FAULTS.values(), ids=FAULTS.keys()
 )
-def test_what_cannot_hold_is_refused(
+def test_insufficient_supports_are_refused(
     paper_boom: Boom, where: str, what: str, supports: list[Support], others: Mapping[str, Any]
 ) -> None:
     with pytest.raises(BoomError) as caught:

@@ -96,7 +96,9 @@ def test_a_force_through_the_centroid_goes_to_the_flanges_by_the_lever() -> None
     assert sum(arms) == pytest.approx(0.0, abs=1e-16)
 
 
-def test_a_boom_refuses_sections_that_bend_sideways(paper_boom: Boom, spatial_boom: Boom) -> None:
+def test_boom_refuses_sections_without_lateral_symmetry(
+    paper_boom: Boom, spatial_boom: Boom
+) -> None:
     crooked = BoxSection(0.45, 0.25, 0.006, 0.006, left_web=0.005)
     message = (
         "segments[1].section: does not mirror itself in y, and would bend sideways under its weight"

@@ -78,7 +78,7 @@ def _in(boom: Boom, outer: Section, inner: Section) -> Boom:
     return replace(boom, segments=(replace(first, section=outer), replace(second, section=inner)))
 
 
-def test_sections_that_touch_have_flats(paper_boom: Boom, spatial_boom: Boom) -> None:
+def test_contact_sections_need_flat_faces(paper_boom: Boom, spatial_boom: Boom) -> None:
     inner = octagon(0.45, 0.25, 0.05, 0.005, 0.005, 0.005)
     outer = octagon(0.50, 0.32, 0.05, 0.006, 0.006, 0.006)
     for boom in (paper_boom, spatial_boom):

@@ -34,7 +34,7 @@ def test_tables_of_python_are_those_of_a_file() -> None:
         pt.load_case(TABLES | {"time": {"duration": -1.0}})
 
 
-def test_check_says_what_the_command_prints(capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_returns_the_output_of_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     """Reference: other code path."""
     assert protractile("check", COARSE) == 0
     printed = capsys.readouterr().out

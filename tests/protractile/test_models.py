@@ -77,7 +77,7 @@ def declared(model: ModelTable, **tables: Any) -> pt.Case:
         pytest.param("BeamElements", {"calibrated_by": 0.4}, marks=pytest.mark.slow),
     ],
 )
-def test_a_model_moves_as_that_of_a_case_file(
+def test_motion_equals_the_motion_of_a_case_file(
     boom: pt.Boom, kind: str, keys: dict[str, Any]
 ) -> None:
     """Reference: other way to say it, to the bit."""
@@ -92,7 +92,7 @@ def test_a_model_moves_as_that_of_a_case_file(
     assert motion.data.attrs["steps"] == results.summary.models[model.name].steps
 
 
-def test_changing_the_play_of_a_joint_changes_what_touches(boom: pt.Boom) -> None:
+def test_play_of_a_joint_changes_the_first_contact(boom: pt.Boom) -> None:
     """Reference: analytic. A free fall across half the play takes the root of it in time."""
     near = replace(boom, joints=[replace(boom.joints[0], play=0.002)])
     touched = [pt.BeamElements(b).simulate(0.1).first_contact for b in (boom, near)]
@@ -107,7 +107,7 @@ def test_a_model_has_its_own_contact(boom: pt.Boom) -> None:
     np.testing.assert_array_equal(one.tip, other.tip)
 
 
-def test_what_presses_or_is_modelled_must_be_given(boom: pt.Boom) -> None:
+def test_missing_law_or_model_is_refused(boom: pt.Boom) -> None:
     loose = replace(boom, joints=[replace(boom.joints[0], contact=None)])
     assert pt.BeamElements(loose, bonded=True).system().laws == []
     with pytest.raises(pt.BoomError, match=r"^joint\[1\].contact: missing; give a contact law, or"):
@@ -116,7 +116,7 @@ def test_what_presses_or_is_modelled_must_be_given(boom: pt.Boom) -> None:
         pt.Rigid().system()
 
 
-def test_a_name_that_is_no_segment(boom: pt.Boom) -> None:
+def test_unknown_segment_name_is_refused(boom: pt.Boom) -> None:
     with pytest.raises(pt.BoomError) as error:
         replace(boom, loads=[pt.Load("jib", "z", -1.0, 14.0, pt.Step())])
     assert str(error.value) == "loads[0].segment: 'jib' is no segment; give 'arm' or 'fly'"
@@ -129,7 +129,7 @@ def test_keys_are_those_of_the_table(boom: pt.Boom) -> None:
         pt.Kantorovich(boom, terms=(4,)).system()
 
 
-def test_a_boom_weighs_as_that_of_a_case_file(boom: pt.Boom) -> None:
+def test_weight_equals_the_weight_of_a_case_file(boom: pt.Boom) -> None:
     """Reference: other way to say it, to the bit."""
     model = pt.BeamElements(pt.with_weight(boom, angle=30.0), element_length=1.0)
     results = pt.run_case(declared(model, gravity={"angle": 30.0}))
@@ -137,7 +137,7 @@ def test_a_boom_weighs_as_that_of_a_case_file(boom: pt.Boom) -> None:
     np.testing.assert_array_equal(model.simulate(0.2).tip, tip)
 
 
-def test_a_motion_starts_and_is_damped_as_that_of_a_case_file(boom: pt.Boom) -> None:
+def test_start_and_damping_equal_a_case_file(boom: pt.Boom) -> None:
     """Reference: other way to say it, to the bit."""
     model = pt.BeamElements(boom, element_length=1.0)
     results = pt.run_case(

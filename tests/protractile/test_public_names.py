@@ -39,7 +39,7 @@ def test_nothing_heavy_comes_with_the_import() -> None:
     assert answer.stdout.strip() == "[]"
 
 
-def test_a_name_that_is_none() -> None:
+def test_unknown_name_is_refused() -> None:
     with pytest.raises(AttributeError, match=r"^module 'protractile' has no attribute 'bom'$"):
         _ = pt.bom
 

@@ -76,7 +76,7 @@ def test_a_point_load_at_rest_bends_as_it_should(tmp_path: Path) -> None:
     assert moved == pytest.approx(np.full(moved.size, -500.0 * 10.0**3 / (3.0 * BENDING)), rel=1e-6)
 
 
-def test_what_rests_is_pressed_from_the_start_and_has_no_peak(tmp_path: Path) -> None:
+def test_boom_at_rest_has_contact_forces_and_no_peak(tmp_path: Path) -> None:
     """Reference: analytic. The lever rule on the stop, a cantilever's end under a uniform load that
     a stiff stop carries with 3/8 of it.
     """
@@ -200,7 +200,7 @@ def test_constant_loads_are_weights_and_forces(tmp_path: Path) -> None:
     np.testing.assert_allclose(plan.motion.system.load, expected, rtol=1e-12)
 
 
-def test_histories_are_what_the_case_says(tmp_path: Path) -> None:
+def test_histories_follow_the_case(tmp_path: Path) -> None:
     (tmp_path / "gust.csv").write_text("0, 0\n0.5, 1\n2, -0.25\n", encoding="utf-8")
     text = "".join(
         f'[[load]]\nsegment = "beam"\nmagnitude = 1.0\n{history}\n'
@@ -290,7 +290,7 @@ def test_histories_are_what_the_case_says(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_says_what_cannot_act(tmp_path: Path, text: str, line: str) -> None:
+def test_bad_actions_are_refused(tmp_path: Path, text: str, line: str) -> None:
     (tmp_path / "words.csv").write_text("time, factor\n0, one\n", encoding="utf-8")
     (tmp_path / "three.csv").write_text("0, 1, 2\n", encoding="utf-8")
     (tmp_path / "back.csv").write_text("0, 1\n0.2, 2\n0.1, 3\n", encoding="utf-8")

@@ -64,7 +64,7 @@ def test_play_adds_its_lever_and_no_moment(answers: DesignResults) -> None:
         np.testing.assert_allclose(one.curves["moment"], other.curves["moment"], atol=0.1)
 
 
-def test_supports_bear_what_the_lever_rule_says(answers: DesignResults) -> None:
+def test_support_reactions_follow_the_lever_rule(answers: DesignResults) -> None:
     """Reference: by hand, 831.6 N at 5 m and 550.7 N at 14 m on 0 and 2 m."""
     at_start, at_two = answers.reactions
     assert at_two.force == pytest.approx(-(831.6 * 5.0 + 550.7 * 14.0) / 2.0)

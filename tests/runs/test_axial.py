@@ -182,7 +182,7 @@ def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | 
          "axial: must be an array of tables, each headed [[axial]], got {'force': 1000.0}"),
     ],
 )  # fmt: skip
-def test_says_what_cannot_press(tmp_path: Path, text: str, line: str) -> None:
+def test_bad_axial_forces_are_refused(tmp_path: Path, text: str, line: str) -> None:
     assert refusal(tmp_path, LIFT + text) == line
 
 

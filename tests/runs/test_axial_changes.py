@@ -61,7 +61,7 @@ def test_frequency_of_a_rotating_cantilever(key: str, speed: float, flapping: fl
     assert abs(np.sqrt(system.omega2.min()) / UNIT - 3.5160) < 1e-3
 
 
-def test_beam_column_that_luffs() -> None:
+def test_luffing_beam_column() -> None:
     """Reference: other code, scipy's LSODA of three modes of a cantilever with a mass at its tip.
 
     The weight along the beam grows to a sixth of the buckling load as the beam rises to 80 degrees.

@@ -50,7 +50,7 @@ def test_the_bonded_boom_lacks_the_play_alone(pair: GapSystem) -> None:
     np.testing.assert_allclose(basis @ bonded.excitations[0].load, [0.5, 0.5], rtol=1e-12)
 
 
-def test_what_axial_forces_soften_stays_softer(pair: GapSystem) -> None:
+def test_bonded_system_keeps_the_softening_by_axial_forces(pair: GapSystem) -> None:
     """Reference: analytic. Of 100 N/m they take 30 N/m, and both swing at √(70/2) rad/s."""
     pressed = replace(pair, geometric_stiffness=np.diag([30.0, 0.0]))
     bonded, _ = bonded_system(pressed, [equilibrium(pressed, pressed.load)])

@@ -37,7 +37,7 @@ def test_a_lift_stands_at_its_angle() -> None:
         assert nearest < 0.11  # half the height of the fly
 
 
-def test_walls_that_differ_are_named() -> None:
+def test_unequal_walls_are_labelled() -> None:
     """Reference: the case files; the lift's last box has walls of one thickness."""
 
     def sizes(name: str) -> list[str]:
@@ -49,7 +49,7 @@ def test_walls_that_differ_are_named() -> None:
     assert sizes("crane")[0] == "940 × 680\nweb 6\nflanges\n8, 10"
 
 
-def test_all_that_a_lift_has_is_said() -> None:
+def test_drawing_of_a_lift_labels_every_part() -> None:
     """Reference: the case file."""
     assert legend(drawn("lift")) == [
         "slide pads",
@@ -62,7 +62,7 @@ def test_all_that_a_lift_has_is_said() -> None:
     ]
 
 
-def test_a_boom_in_space_shows_what_acts_sideways() -> None:
+def test_boom_in_space_shows_lateral_loads() -> None:
     """Reference: the case file; its gust is at most 1 times what its tables say."""
     found = legend(drawn("inspection-arm"))
     assert "sideways 4 mm" in found

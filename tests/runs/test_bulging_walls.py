@@ -17,7 +17,7 @@ from runs.pipeline.static_results import StaticResult, bulge_cautions, positions
 from runs.pipeline.statics import boom_with_play
 
 
-def test_walls_that_bulge_are_a_caution() -> None:
+def test_bulging_walls_give_a_caution() -> None:
     """Reference: by hand, right walls that move by a part of the lateral play; beams close none."""
     case = reading.load(str(CASES / "spatial.toml"))
     boom, model = build_boom(case), next(m for m in case.models if m.name == "timoshenko")
@@ -48,7 +48,7 @@ def test_walls_that_bulge_are_a_caution() -> None:
     ]
 
 
-def test_the_check_tells_plays_that_walls_close() -> None:
+def test_check_names_plays_closed_by_walls() -> None:
     """Reference: other code, the arm's shell at rest with edges of 0.2 m."""
     checked = reading.load_checked(str(CASES / "inspection-arm.toml"))
     boom = boom_with_play(checked.case, checked.boom)

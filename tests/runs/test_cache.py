@@ -44,7 +44,7 @@ def test_an_interrupted_entry_leaves_nothing(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_cannot_be_kept_is_told_by_its_name(tmp_path: Path) -> None:
+def test_unsupported_type_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(NotADirectoryError) as caught:
         Cache(tmp_path / "file").store("a", "text")
@@ -124,7 +124,7 @@ def of_another_entry(entry: Path) -> None:
         lambda entry: Cache(entry.parent).store("a", ["no text"]),
     ],
 )
-def test_what_was_not_kept_there_is_dropped(
+def test_foreign_entry_is_removed(
     tmp_path: Path, caplog: pytest.LogCaptureFixture, become: Callable[[Path], object]
 ) -> None:
     cache = Cache(tmp_path)
@@ -163,7 +163,7 @@ def test_where_it_lies(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     assert Cache.of_user() == Cache(tmp_path)
 
 
-def test_who_has_no_home_has_no_cache(
+def test_no_cache_without_a_home_folder(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """As in a container whose user has a number alone."""
@@ -177,7 +177,7 @@ def test_who_has_no_home_has_no_cache(
     ]
 
 
-def test_threads_wait_for_the_entry_that_another_one_makes(tmp_path: Path) -> None:
+def test_threads_wait_for_an_entry_in_progress(tmp_path: Path) -> None:
     """Reference: by hand. Another entry, made meanwhile, neither waits nor lets them in."""
     cache, order = Cache(tmp_path), list[str]()
     held = Event()

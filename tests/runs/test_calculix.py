@@ -111,7 +111,7 @@ def test_boxes_buckle_in_calculix_as_here(
         assert min(map(float, found)) == pytest.approx(documented, rel=1e-5)
 
 
-def test_what_calculix_would_not_have_is_refused(tmp_path: Path) -> None:
+def test_unsupported_cases_are_refused(tmp_path: Path) -> None:
     case = pt.load_case(pt.CASES / "spatial.toml")
     with pytest.raises(BadInput) as error:
         write(case, "case.toml", MPI.COMM_SELF, tmp_path / "x.inp", None)

@@ -234,9 +234,7 @@ def test_refuses_a_bad_file_with_one_exact_line(
         ("./../nowhere.toml", "file: does not exist; give the path of a case file"),
     ],
 )
-def test_names_a_file_that_cannot_be_read_as_it_was_given(
-    folder: Path, path: str, line: str
-) -> None:
+def test_unreadable_file_is_named_as_given(folder: Path, path: str, line: str) -> None:
     with pytest.raises(BadInput) as refused:
         load(path)
     assert str(refused.value) == f"{path}: {line}"

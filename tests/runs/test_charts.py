@@ -48,7 +48,7 @@ def test_panels_share_their_abscissa_and_fill_the_height() -> None:
     assert [note.text for note in figure.layout.annotations] == ["<b>up</b>", "<b>down</b>"]
 
 
-def test_what_is_left_out_cannot_be_seen() -> None:
+def test_thinned_curves_keep_their_extremes() -> None:
     """Reference (analytic): samples of a noise; every stretch keeps its lowest and its highest."""
     noise = np.random.default_rng(1).standard_normal(50_000)
     kept = extremes(noise, 100)

@@ -86,7 +86,7 @@ def in_a_process(
     )
 
 
-def test_check_prints_what_was_inferred(protractile: Protractile) -> None:
+def test_check_prints_inferred_boxes(protractile: Protractile) -> None:
     """Reference: non-regression, the boxes that :mod:`geometry.section` infers."""
     answer = protractile("check case.toml")
     assert (answer.status, answer.err) == (0, "")
@@ -101,7 +101,7 @@ def test_check_draws_the_boom(protractile: Protractile) -> None:
     assert sorted(contents(Path.cwd())) == ["boom.png", "case.toml"]
 
 
-def test_check_prints_the_ratios_that_modes_get(protractile: Protractile) -> None:
+def test_check_prints_modal_damping_ratios(protractile: Protractile) -> None:
     """Reference: analytic, the ratio asked for, and nothing where no damping is."""
     assert " % at" not in protractile("check case.toml").out
     Path("case.toml").write_text(COARSE + "\n[damping]\nmodal = 0.015\n", encoding="utf-8")
@@ -176,14 +176,14 @@ def test_a_mistake_is_one_line(protractile: Protractile, command: str) -> None:
     assert [path.name for path in Path.cwd().iterdir()] == ["case.toml"]
 
 
-def test_a_number_that_is_none_is_one_line(protractile: Protractile) -> None:
+def test_bad_number_is_one_line(protractile: Protractile) -> None:
     answer = protractile("run case.toml --mesh-size fine")
     assert answer.status == 2
     assert answer.err.startswith("protractile: Invalid value for '--mesh-size': ")
     assert answer.err.count("\n") == 1
 
 
-def test_numerics_that_fail_are_one_line_and_no_results(protractile: Protractile) -> None:
+def test_failing_numerics_are_one_line_and_no_results(protractile: Protractile) -> None:
     edit("duration = 0.6", "duration = 0.6\nstep = 1e-12")
     assert protractile(f"run case.toml {SERIES} --out out --large") == (
         3,
@@ -250,7 +250,7 @@ def test_a_temporary_folder_without_room_is_one_line(
         ("OMPI_COMM_WORLD_RANK", "abc"),
     ],
 )
-def test_what_others_leave_in_the_environment_counts_for_nothing(
+def test_foreign_environment_variables_have_no_effect(
     tmp_path: Path, variable: str, value: str
 ) -> None:
     """A notebook's backend, which is installed where the notebook is, and a rank that is none."""
@@ -284,7 +284,7 @@ def test_a_contact_without_digits_is_one_line(protractile: Protractile) -> None:
     assert err.endswith(" s; make the contact softer\n")
 
 
-def test_a_full_disk_is_one_line_and_leaves_what_was_there(
+def test_full_disk_is_one_line_and_keeps_old_results(
     protractile: Protractile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(self: object, path: Path, **options: object) -> None:
@@ -303,7 +303,7 @@ def test_a_full_disk_is_one_line_and_leaves_what_was_there(
     assert sorted(path.name for path in Path.cwd().iterdir()) == ["case.toml", "out"]
 
 
-def test_a_demand_that_is_not_met_is_said_and_counts(protractile: Protractile) -> None:
+def test_failed_demand_is_printed_and_sets_the_exit_status(protractile: Protractile) -> None:
     edit("[time]", 'demand = ["S1", "S11"]\n\n[time]')
     for command in (f"run case.toml {SERIES} --out out", "report out"):
         status, _, err = protractile(command)

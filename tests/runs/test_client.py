@@ -53,7 +53,7 @@ SLOW = "figure-slow-peaks", "table-horizons", "table-slow-peaks"
         ),
     ],
 )
-def test_what_bears_on_each_statement(case: str, changed: dict[str, list[str]]) -> None:
+def test_evidence_of_each_statement(case: str, changed: dict[str, list[str]]) -> None:
     """Reference: the statements themselves; with friction others are meant."""
     found = evidence(case_file.load(str(CASES / f"{case}.toml")))
     assert {key: [*anchors] for key, anchors in found.items()} == {

@@ -59,7 +59,7 @@ def case_of(csv: str, keys: str, key: str = "load") -> Case:
         ),
     ],
 )
-def test_a_file_s_columns_are_what_they_say(csv: str, keys: str) -> None:
+def test_columns_are_read_in_their_units(csv: str, keys: str) -> None:
     """Reference: analytic, the same pairs in SI units."""
     (load,) = case_of(csv, keys).loads
     assert (load.file, load.columns, load.magnitude) == (None, None, 1.0)
@@ -126,7 +126,7 @@ OF_THREE = "t;F;v\n0;1;2\n1;1;2\n"
         ("t,F\n", "", f"'gust.csv' has fewer than two lines of numbers; {PAIRS}"),
     ],
 )  # fmt: skip
-def test_what_is_no_pair_of_columns_is_refused(csv: str, columns: str, line: str) -> None:
+def test_bad_columns_are_refused(csv: str, columns: str, line: str) -> None:
     keys = f"magnitude = 1.0\ncolumns = {columns}" if columns else "magnitude = 1.0"
     assert complaint(csv, keys) == f"file: {line}"
 
@@ -188,7 +188,7 @@ def test_columns_of_no_file_are_refused() -> None:
         ),
     ],
 )
-def test_what_happens_beyond_a_series_is_said(times: tuple[float, float], note: str | None) -> None:
+def test_end_of_a_series_gives_a_caution(times: tuple[float, float], note: str | None) -> None:
     """The coarse case lasts 0.6 s."""
     case = case_of(f"{times[0]},1\n{times[1]},2\n", "magnitude = 1.0")
     assert case.time.duration == 0.6
@@ -219,6 +219,6 @@ def test_units_are_products_of_powers(
 
 
 @pytest.mark.parametrize("text", ["", "V", "kN/", "m/s^", "m^^2", "2m", "m^-", "N//m", "m^12345"])
-def test_what_is_no_unit_is_refused(text: str) -> None:
+def test_unknown_units_are_refused(text: str) -> None:
     with pytest.raises(ValueError, match="no unit"):
         Unit.of(text)

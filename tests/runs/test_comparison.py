@@ -42,7 +42,7 @@ def test_pointwise_differences_by_hand() -> None:
     assert PointwiseDifferences.from_curves(one, other, TIME, 0.5) == found
 
 
-def test_levels_of_two_models_that_part() -> None:
+def test_divergence_levels_of_two_models() -> None:
     """Reference: analytic. The spread π·1e-4·exp(t) passes 1 % at 3.5 s and 20 % at 6.5 s, or
     within a quarter period of it; one delayed by 50 ms differs by sin(0.05 π) up to there."""
     found = compare(ensemble(growth=1.0), ensemble(delay=0.05, growth=1.0), CUTOFF)
@@ -78,7 +78,7 @@ def test_distance_of_shifted_distributions() -> None:
         assert found.deviation == pytest.approx((1.0, 1.0), abs=0.02)
 
 
-def test_models_that_stay_predictable_have_no_distribution() -> None:
+def test_predictable_models_have_no_distribution() -> None:
     found = compare(ensemble(), ensemble(height=1.1), CUTOFF)
     assert found.pointwise.until == TIME[-1]
     assert np.isnan(found.distributions.since)
@@ -104,7 +104,7 @@ def test_times_must_agree() -> None:
         compare(ensemble(), ensemble().isel(time=slice(5000)), CUTOFF)
 
 
-def test_every_level_says_what_it_decides() -> None:
+def test_every_level_has_a_description() -> None:
     for level in (PointwiseDifferences, PeakDifferences, Distributions):
         assert level.scope.count(".") == 1
         assert "cannot tell" in level.scope

@@ -62,7 +62,7 @@ def test_the_reference_is_the_most_complicated_model(
     assert reference_of(case_of(*models).models) == expected
 
 
-def test_a_model_that_is_late_and_low_is_so_at_each_level() -> None:
+def test_late_and_low_model_differs_at_each_level() -> None:
     """Reference: analytic. Half as high, 50 ms late, members within 1 % until 4 s and then a
     quarter of a period apart: the horizon is at 4 s, peaks differ by what they were made of, and
     the distributions of a cosine and of its half are as far apart as arccos tells.
@@ -120,7 +120,7 @@ def test_with_friction_every_model_is_compared_to_the_end() -> None:
 @pytest.mark.parametrize(
     ("friction", "pressed"), [(0.0, PRESSED), (0.2, ()), (0.2, (0.0, 0.0)), (0.2, (4500.0, 0.0))]
 )
-def test_only_what_forces_press_that_are_given_is_regular(
+def test_friction_under_given_forces_is_regular(
     friction: float, pressed: tuple[float, ...]
 ) -> None:
     """Reference: physics; what contacts press, and what nothing presses, leaves motion chaotic."""
@@ -129,7 +129,7 @@ def test_only_what_forces_press_that_are_given_is_regular(
     assert compare_models(case, data, None, None) is None
 
 
-def test_what_meets_a_stop_is_not_regular() -> None:
+def test_motion_with_stops_is_not_regular() -> None:
     """Reference: physics; what bounces is chaotic, whatever rubs besides."""
     case = case_of(*SERIES, friction=0.2)
     stop = StopTable(segment="inner", x=14.0, play=0.1, stiffness=1e7)

@@ -23,7 +23,7 @@ def motion(**variables: list[float]) -> xr.Dataset:
     return xr.Dataset(found, {"time": TIME})
 
 
-def test_crane_that_slews_with_its_load() -> None:
+def test_slewing_crane_with_load() -> None:
     """Reference: by hand. The boom turns by 15 degrees at a radius of 8.1 m cos 30°."""
     case = load(str(CASES / "slew.toml"))
     boom = build_boom(case)
@@ -39,7 +39,7 @@ def test_crane_that_slews_with_its_load() -> None:
     np.testing.assert_allclose(position.load[-1], (out + 0.1) * along + np.multiply(0.6, aside))
 
 
-def test_crane_that_luffs_and_hoists() -> None:
+def test_luffing_and_hoisting_crane() -> None:
     """Reference: by hand. The tip rises on a circle, the load from 35 m below its first place."""
     case = load(str(CASES / "hoist.toml"))
     luff = LuffTable(travel=10.0, time=5.0)

@@ -76,7 +76,7 @@ def turning(boom: Boom) -> float:
 ARM = (3.0 * 1.9 + 0.3 * 1.8) / np.hypot(1.8, 1.9)
 
 
-def test_the_boom_is_what_the_case_says(case: Case, tmp_path: Path) -> None:
+def test_cylinder_of_the_boom_follows_the_case(case: Case, tmp_path: Path) -> None:
     """As it is written, and as a run writes it again."""
     for boom in (build_boom(case), build_boom(read_case(tmp_path, dumps(case)))):
         assert boom.segments[0].supports == (Support(0.0, "hinged", depth=0.2),)

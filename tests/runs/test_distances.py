@@ -125,7 +125,7 @@ def test_a_sweep_tells_the_distances_of_its_models(against: Plan) -> None:
     assert "the time step changes the tip of kantorovich-5 by" in " ".join(table.split())
 
 
-def test_a_sweep_says_until_when_it_compares_and_what_steps_change(against: Plan) -> None:
+def test_sweep_states_comparison_time_and_step_error(against: Plan) -> None:
     """Reference: analytic, friction is compared to the end; other code, what a single run says."""
     data = output.write(against, run(against), Path("out"))
     assert data["compared_until"].dims == ("joint.play",)
@@ -142,7 +142,7 @@ def test_a_sweep_says_until_when_it_compares_and_what_steps_change(against: Plan
     assert changes.endswith(" % of its range")
 
 
-def test_only_tips_are_compared_no_longer_than_that(against: Plan) -> None:
+def test_tips_are_compared_up_to_the_horizon(against: Plan) -> None:
     """Reference: analytic; what is cut off the tip is cut off nothing else."""
     results = run_case(case_file.select(case_file.load("case.toml"), "", MODELS[:1]))
     whole, part = (Features.of(results, MODELS[0], 1e6, until) for until in (0.9, 0.3))
@@ -237,7 +237,7 @@ def test_chaos_is_compared_until_its_horizon() -> None:
 
 
 @pytest.mark.slow
-def test_a_shell_is_a_reference_that_loses_itself(tmp_path: Path) -> None:
+def test_shell_reference_is_limited_by_its_horizon(tmp_path: Path) -> None:
     """Reference: analytic, no tip can be told beyond the end; a shell is built once more for it."""
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     case = case_file.select(case_file.load(str(COARSE)), "", ["timoshenko", "shell"], 0.5)

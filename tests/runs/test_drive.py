@@ -212,7 +212,7 @@ def test_outputs_of_drives_are_no_one_elses(tmp_path: Path, name: str) -> None:
         load(str(path))
 
 
-def test_play_adds_at_rest_at_the_same_instants_of_a_boom_that_is_driven(tmp_path: Path) -> None:
+def test_static_states_with_and_without_play_have_equal_times(tmp_path: Path) -> None:
     """Reference: by hand; the drive begins as the load's sine is largest, between even times."""
     load_ = '[[load]]\nsegment = "inner"\nx = "head"\nmagnitude = 500.0\nfrequency = 1.2\n'
     path = Path(case_file(tmp_path, "time = 5.0", "start = 0.2083333333333, time = 0.02"))
@@ -250,7 +250,7 @@ def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
     _check_figures(draw(results, tmp_path))
 
 
-def test_a_drive_lifts_what_presses_along(tmp_path: Path) -> None:
+def test_drive_works_against_axial_forces(tmp_path: Path) -> None:
     """Reference: analytic, half of 550.7 kg and a rope of 20 kN over 4 m, beside what bending and
     friction take without them."""
     path = Path(case_file(tmp_path, "duration = 7.0", "duration = 0.3"))
@@ -363,7 +363,7 @@ def test_a_sweep_varies_how_fast_it_is_drawn() -> None:
     assert speeds == pytest.approx([4.0, 2.0, 8.0 / 6.0, 1.0], rel=1e-4)
 
 
-def test_a_check_tells_what_a_drive_does() -> None:
+def test_check_prints_drives() -> None:
     """Reference: the case, and analytic: an S-curve is twice as fast as it is in the mean."""
     case = load(str(CASES / "drawn-out.toml"))
     shown = StringIO()
@@ -374,7 +374,7 @@ def test_a_check_tells_what_a_drive_does() -> None:
     ) in shown.getvalue()
 
 
-def test_the_largest_speed_is_that_of_the_steepest_line(tmp_path: Path) -> None:
+def test_largest_speed_is_the_steepest_slope(tmp_path: Path) -> None:
     """Reference: by hand, 0.1 m in 0.01 s."""
     jerk = "drive = { table = [[0.0, 0.0], [20.0, 1.0], [20.01, 1.1], [40.0, 2.0]] }\n"
     case = load(case_file(tmp_path, DRIVE, jerk))

@@ -167,9 +167,7 @@ def test_dofs_of_a_graded_mesh_are_estimated(name: str, mesh_size: float, tolera
         ((("duration = 0.6", "duration = 60.0\nstep = 1e-8"),), "2.6 GB and 20.1 h"),
     ],
 )
-def test_what_takes_much_is_refused_with_the_number(
-    edits: tuple[tuple[str, str], ...], line: str
-) -> None:
+def test_excessive_memory_or_time_is_refused(edits: tuple[tuple[str, str], ...], line: str) -> None:
     """Reference: non-regression; what a million outputs, dofs and steps take was measured."""
     write(*edits)
     with pytest.raises(BadInput) as refused:
@@ -214,7 +212,7 @@ VARY = ["joint.stiffness=1e13:1.1e13:100"]
 
 
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
-def test_the_cases_that_come_with_the_project_start_unasked(path: Path) -> None:
+def test_shipped_cases_need_no_confirmation(path: Path) -> None:
     refuse_large(run_cost(case_file.load(str(path))), str(path))
 
 

@@ -182,7 +182,7 @@ def test_points_follow_a_law_behind_its_spring() -> None:
     np.testing.assert_allclose(-approaches[pressed], expected, rtol=1e-9)
 
 
-def test_what_opensees_would_not_have_is_refused(tmp_path: Path) -> None:
+def test_unsupported_cases_are_refused(tmp_path: Path) -> None:
     case = case_file.load(str(CASES / "spatial.toml"))
     with pytest.raises(BadInput) as error:
         write(case_file.select(case, "", ["beam-fe"]), "case.toml", None, tmp_path / "x.py", None)

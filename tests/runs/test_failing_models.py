@@ -165,7 +165,7 @@ def test_beams_move_beside_shells_and_fail_for_themselves() -> None:
     assert run._attempt_all((beam, lost), move, alone=True)["beam"] == ("beam", True)
 
 
-def test_who_interrupts_a_shell_waits_for_no_more_than_one_beam() -> None:
+def test_interrupted_shell_waits_for_at_most_one_beam() -> None:
     """Reference: by hand. A beam moves already, another one waits for its turn."""
     names = ("beam", "queued", "shell")
     models = [SimpleNamespace(name=name, needs_shell=name == "shell") for name in names]

@@ -162,7 +162,7 @@ def test_contact_forces_keep_their_impulse(results: Results, drawn: Drawn) -> No
         assert total == pytest.approx(force.sum(), abs=ends + 1.0e-6 * abs(total))
 
 
-def test_what_presses_from_the_start_does_so_in_full(results: Results, drawn: Drawn) -> None:
+def test_constant_contact_force_is_drawn_in_full(results: Results, drawn: Drawn) -> None:
     """Reference: analytic. The running mean of a constant is that constant, at both ends too."""
     pressed = results.trajectories.copy(deep=True)
     pressed["contact_force"][:] = 1000.0
@@ -227,7 +227,7 @@ def test_draws_a_play_free_boom_alone(results: Results, tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("drawn")
-def test_draws_around_what_is_not_finite(results: Results, tmp_path: Path) -> None:
+def test_figures_omit_values_that_are_not_finite(results: Results, tmp_path: Path) -> None:
     broken = results.trajectories.copy(deep=True)
     for variable in broken.data_vars:
         broken[variable][dict(model=1, time=slice(300, None))] = np.nan
@@ -246,9 +246,7 @@ def test_the_title_follows_the_motion_downwards(results: Results, drawn: Drawn) 
     assert "without" not in upwards
 
 
-def test_what_is_pressed_from_the_start_has_no_first_contact(
-    results: Results, drawn: Drawn
-) -> None:
+def test_initial_contact_is_no_first_contact(results: Results, drawn: Drawn) -> None:
     """Reference: a summary in which all touches at 0 s, of a case without statements."""
     models = {
         name: model.model_copy(update={"first_contact": 0.0 if name in WITH_PLAY else None})

@@ -82,7 +82,7 @@ def test_a_folder_is_replaced_as_a_whole(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", ["file", "folder"])
-def test_a_failing_write_leaves_what_was_there(tmp_path: Path, kind: str) -> None:
+def test_failing_write_keeps_the_old_file(tmp_path: Path, kind: str) -> None:
     """An error of the disk names the file as the user knows it."""
     place = tmp_path / "place"
     path = place if kind == "file" else place / "a.png"
@@ -102,7 +102,7 @@ def test_a_failing_write_leaves_what_was_there(tmp_path: Path, kind: str) -> Non
     assert [p.name for p in tmp_path.iterdir()] == ["place"]
 
 
-def test_a_changed_folder_keeps_what_is_not_changed(tmp_path: Path) -> None:
+def test_changed_folder_keeps_other_files(tmp_path: Path) -> None:
     """What the user has put there is not listed, so that it may change."""
     folder = tmp_path / "out"
     with atomic_folder(folder) as part:
@@ -145,7 +145,7 @@ def test_folders_are_exchanged_on_every_disk(
     assert [p.name for p in tmp_path.iterdir()] == ["out"]
 
 
-def test_a_folder_that_was_away_when_its_process_was_killed_comes_back(tmp_path: Path) -> None:
+def test_folder_is_restored_after_a_killed_exchange(tmp_path: Path) -> None:
     """Between two renames, where the disk takes two of them."""
     folder = tmp_path / "out"
     with atomic_folder(folder) as part:
@@ -155,7 +155,7 @@ def test_a_folder_that_was_away_when_its_process_was_killed_comes_back(tmp_path:
         assert contents(folder) == {"earlier": "earlier"}
 
 
-def test_who_changes_a_folder_keeps_others_waiting(tmp_path: Path) -> None:
+def test_folder_changes_exclude_each_other(tmp_path: Path) -> None:
     """Reference: by construction. The other one replaces the folder when it is left alone."""
     folder = tmp_path / "out"
 
@@ -172,7 +172,7 @@ def test_who_changes_a_folder_keeps_others_waiting(tmp_path: Path) -> None:
     assert contents(folder) == {"later": "later"}
 
 
-def test_what_a_killed_process_leaves_goes_and_what_a_live_one_writes_stays(
+def test_leftovers_of_killed_processes_only_are_removed(
     tmp_path: Path,
 ) -> None:
     folder, mine = tmp_path / "out", tmp_path / ".out.mine"

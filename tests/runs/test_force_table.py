@@ -29,7 +29,7 @@ def case_with(folder: Path, law: str) -> Case:
     return read_case(folder, COARSE.replace(LAW, law))
 
 
-def test_a_table_is_the_law_that_it_samples(tmp_path: Path) -> None:
+def test_table_approximates_the_sampled_law(tmp_path: Path) -> None:
     """Reference: analytic, chords of p² lie above it by k (Δp)²/4 at most."""
     case = case_with(tmp_path, f"force_table = {POINTS}\n")
     (law,) = contact_laws(case, case.models[0])
@@ -41,7 +41,7 @@ def test_a_table_is_the_law_that_it_samples(tmp_path: Path) -> None:
     assert read_case(tmp_path, toml.dumps(case)) == case
 
 
-def test_it_moves_as_the_law_that_it_samples(tmp_path: Path) -> None:
+def test_motion_of_a_table_follows_the_sampled_law(tmp_path: Path) -> None:
     """Reference: the power law itself; chords are 60 N off where the contacts press by 10 kN."""
     tips = []
     for law in (LAW, f"force_table = {POINTS}\n"):
@@ -105,7 +105,7 @@ def test_to_the_sides_a_stiffness_makes_a_power_law_beside_a_table() -> None:
          "joint[1].force_file: forces must be positive, and must not fall at the end"),
     ],
 )  # fmt: skip
-def test_what_is_no_law_is_refused(tmp_path: Path, law: str, message: str) -> None:
+def test_bad_tables_are_refused(tmp_path: Path, law: str, message: str) -> None:
     for name, text in (
         ("words", "p, F\n1, a\n"), ("back", "2e-3, 1\n1e-3, 2\n"), ("pulls", "1e-3, 2\n2e-3, -1\n")
     ):  # fmt: skip

@@ -136,5 +136,5 @@ def test_the_case_needs_no_material_where_each_segment_has_its_own(tmp_path: Pat
          "gravity.luffing: unknown key; known ones are acceleration, angle"),
     ],
 )  # fmt: skip
-def test_says_what_cannot_weigh(tmp_path: Path, rest: str, material: str, line: str) -> None:
+def test_bad_gravity_is_refused(tmp_path: Path, rest: str, material: str, line: str) -> None:
     assert refusal(tmp_path, text_of(rest, material)) == line

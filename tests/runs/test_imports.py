@@ -107,11 +107,11 @@ def answer(*arguments: str) -> tuple[str, set[str]]:
 
 
 @pytest.mark.parametrize("option", ["--help", "--version"])
-def test_an_option_imports_no_library_that_computes(option: str) -> None:
+def test_options_import_no_numerical_library(option: str) -> None:
     assert not answer(option)[1] & (OF_RUNS | OF_CHECKS)
 
 
-def test_check_imports_nothing_that_moves_or_draws() -> None:
+def test_check_imports_neither_solvers_nor_figures() -> None:
     out, modules = answer("check", str(CASES / "spatial.toml"))
     assert "shell" in out
     assert not modules & OF_RUNS
@@ -125,7 +125,7 @@ def test_version_is_the_installed_one() -> None:
     assert answer("--version")[0] == f"protractile {installed}\n"
 
 
-def test_who_imports_the_package_is_warned_as_before() -> None:
+def test_importing_the_package_keeps_warnings() -> None:
     """The command alone is silent: a notebook hears what concerns it."""
     program = "import warnings, protractile as pt; pt.load_case; warnings.warn('heard')"
     done = subprocess.run(

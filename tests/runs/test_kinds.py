@@ -40,7 +40,7 @@ def test_rigid_segments_run_beside_the_others(tmp_path: Path) -> None:
     assert summary.first_contact == pytest.approx(np.sqrt(2.0 * 7.0e-3 / 1.0), abs=1e-5)
 
 
-def test_a_joint_s_play_is_that_of_its_contacts(paper_boom: Boom) -> None:
+def test_play_of_a_joint_is_the_play_of_its_contacts(paper_boom: Boom) -> None:
     """Reference: analytic, free fall q/m of the inner segment across the clearance Δ."""
     peaks = []
     for play in (0.014, 0.004):
@@ -52,7 +52,7 @@ def test_a_joint_s_play_is_that_of_its_contacts(paper_boom: Boom) -> None:
     assert peaks[0] > peaks[1] + 4.0e-3
 
 
-def test_rigid_segments_that_cannot_move_are_refused(tmp_path: Path) -> None:
+def test_immovable_rigid_segments_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "case.toml"
     path.write_text(CANTILEVER + RIGID, encoding="utf-8")
     with pytest.raises(BadInput) as error:

@@ -103,7 +103,7 @@ def test_an_ensemble_without_slow_peaks_has_horizons() -> None:
     assert horizons.rows == [("kantorovich-4", "0.80", "> 10", "–", "–")]
 
 
-def test_peaks_that_no_model_has_make_no_table() -> None:
+def test_missing_peaks_make_no_table() -> None:
     none: dict[str, Any] = {k: [] for k in ("time", "time_spread", "height", "height_spread")}
     values = {key: [None, None] for key in ("range", "mean", "deviation")}
     level = LEVELS | {
@@ -119,7 +119,7 @@ def test_peaks_that_no_model_has_make_no_table() -> None:
     assert not any("Slow peaks" in title for title in re.findall("<h3>.*</h3>", page))
 
 
-def test_growth_says_what_limits() -> None:
+def test_growth_names_the_limit() -> None:
     _, growth, _ = predictability_tables(results(ensemble=ENSEMBLE, horizons=MEASURED))
     assert growth.headings[2:4] == ("change 1 × 10⁻¹²\ns", "change 1 × 10⁻⁶\ns")
     assert growth.rows == [
@@ -128,7 +128,7 @@ def test_growth_says_what_limits() -> None:
     ]
 
 
-def test_each_level_says_what_it_decides() -> None:
+def test_comparison_levels_name_class_and_difference() -> None:
     """Reference: the classes that measure, and the numbers by hand, in mm and ms."""
     ensembles = {"kantorovich-4": LEVELS}
     tables = comparison_tables(results({"reference": "shell", "ensembles": ensembles}))
@@ -156,7 +156,7 @@ def test_a_whole_run_is_compared_with_friction() -> None:
     assert table.rows == [("kantorovich-4", "10.00", "5.00", "25.00", "12.50")]
 
 
-def test_steps_are_counted_and_what_they_are_worth_is_said() -> None:
+def test_steps_for_peaks_are_counted_and_rated() -> None:
     plain = step_table(results())
     steps, changes = (
         f"2{part}".replace(" ", "\N{NO-BREAK SPACE}") for part in (" 380 952", " 020")

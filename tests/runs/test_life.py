@@ -30,7 +30,7 @@ def test_a_curve_has_the_points_of_the_code() -> None:
     np.testing.assert_allclose(endurance(sizes, 71e6), expected, rtol=1e-3)
 
 
-def test_a_sine_does_what_its_cycles_do() -> None:
+def test_damage_of_a_sine_equals_the_damage_of_its_cycles() -> None:
     """Reference: by hand. Ten cycles of 100 MPa at category 71 and a factor 1.15: the damage of a
     run 10/2e6 (115/71)³, that of a life 20 000 times as much, the equivalent range 10^⅓ 100 MPa.
     """

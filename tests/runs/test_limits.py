@@ -90,7 +90,7 @@ def test_limits_are_in_the_units_of_the_case() -> None:
         ("tips = 0.9", "limits.tips: unknown key; the nearest known one is tip"),
     ],
 )
-def test_a_limit_that_is_none_is_refused(limits: str, line: str) -> None:
+def test_bad_limit_is_refused(limits: str, line: str) -> None:
     with pytest.raises(BadInput) as refused:
         reading.load(write(limits))
     assert str(refused.value) == f"case.toml: {line}"

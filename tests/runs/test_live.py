@@ -62,7 +62,7 @@ def test_knobs_have_the_unit_of_the_case(tmp_path: Path) -> None:
     assert changed.joints[0].play == 0.0045
 
 
-def test_a_number_that_the_schema_refuses_is_named(draft: Draft) -> None:
+def test_number_outside_the_schema_is_named(draft: Draft) -> None:
     with pytest.raises(BadInput) as caught:
         draft.changed({"joint[1].play": -0.001})
     assert caught.value.key == "joint[1].play"
@@ -73,7 +73,7 @@ def test_a_number_that_the_schema_refuses_is_named(draft: Draft) -> None:
         draft.changed({"joint[1].play": "wide"})  # type: ignore[dict-item]
 
 
-def test_a_number_that_the_boom_refuses_is_named(draft: Draft) -> None:
+def test_number_outside_the_boom_is_named(draft: Draft) -> None:
     with pytest.raises(BadInput) as caught:
         draft.beam(draft.changed({"joint[2].extension": 6.5}))
     assert caught.value.key.startswith("joint[2]")
@@ -171,7 +171,7 @@ def test_the_page_is_there_with_its_token_alone(address: str) -> None:
 
 
 @pytest.mark.parametrize("body", ["", "{", "[]", "7"])
-def test_a_request_that_is_no_table_ends_nothing(address: str, body: str) -> None:
+def test_malformed_request_keeps_the_server_alive(address: str, body: str) -> None:
     assert sent(address, "POST", "beam", body)[0] == 400
     assert sent(address, "GET", "")[0] == 200
 

@@ -89,5 +89,5 @@ def test_they_have_histories_and_are_written_again(tmp_path: Path) -> None:
          "{ tail = 0.2 }, got 'tip'"),
     ],
 )  # fmt: skip
-def test_what_cannot_act_is_refused(tmp_path: Path, load: str, message: str) -> None:
+def test_bad_loads_are_refused(tmp_path: Path, load: str, message: str) -> None:
     assert refusal(tmp_path, CANTILEVER + load + ELEMENTS) == f"load[1].{message}"

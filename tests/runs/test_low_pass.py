@@ -19,7 +19,7 @@ def swing(delay: float = 0.0, height: float = 1.0) -> np.ndarray:
     return height * 0.5 * (1.0 - np.cos(2.0 * np.pi * (TIME - delay)))
 
 
-def test_gain_is_that_of_the_filter_passed_twice() -> None:
+def test_gain_equals_two_filter_passes() -> None:
     """Reference: analytic. 1 / (1 + (f/f_c)⁸) of Butterworth's order 4, squared by two passes."""
     middle = slice(3000, 7000)
     for frequency in (0.5, 1.0, CUTOFF, 2.5, 8.0):
@@ -55,7 +55,7 @@ def test_spreads_over_members() -> None:
     assert found.period_spread < 4e-3
 
 
-def test_counts_peaks_up_to_the_first_that_a_member_has_not() -> None:
+def test_peaks_are_counted_up_to_the_first_missing_peak() -> None:
     lost = swing()
     lost[(TIME > 4.0) & (TIME < 5.0)] = 0.0
     assert SlowPeaks.of(np.array([swing(), lost]), TIME, CUTOFF).time.size == 4
@@ -79,7 +79,7 @@ def test_a_motion_without_peaks_has_no_period() -> None:
         (500, 2.0, "the signal must be longer than the period of the cut-off, 0.5 s, got 0.499 s"),
     ],
 )
-def test_refuses_what_cannot_be_filtered(times: int, cutoff: float, message: str | None) -> None:
+def test_bad_signals_are_refused(times: int, cutoff: float, message: str | None) -> None:
     if message is None:
         assert filter_low_pass(np.ones(times), 1e-3, cutoff) == pytest.approx(1.0)
         return

@@ -112,7 +112,7 @@ def test_a_boom_out_of_proportion_has_no_slow_motion(case: Case) -> None:
     assert slow_cutoff(build_boom(changed), case.time) is None
 
 
-def test_ensembles_say_what_they_are(run: Run) -> None:
+def test_ensemble_data_have_names_and_units(run: Run) -> None:
     """As the trajectories of the same places do."""
     ensembles = run.results.ensembles
     assert ensembles is not None
@@ -270,7 +270,7 @@ def peaks_of(system: GapSystem, cutoff: float, spread: float) -> SlowPeaks:
     )
 
 
-def test_counts_the_fewest_of_the_trials_that_hold(five_terms: tuple[GapSystem, float]) -> None:
+def test_fewest_sufficient_steps_are_counted(five_terms: tuple[GapSystem, float]) -> None:
     """Reference: by hand. Slow peaks scatter by some percent from the second on."""
     system, cutoff = five_terms
     # Beside a dashpot of no strength every step is made on its own.
@@ -289,7 +289,7 @@ def test_counts_the_fewest_of_the_trials_that_hold(five_terms: tuple[GapSystem, 
     assert found.fewest <= steps[0]
 
 
-def test_peaks_that_no_run_has_are_kept_by_none(five_terms: tuple[GapSystem, float]) -> None:
+def test_missing_peaks_are_kept_by_no_step(five_terms: tuple[GapSystem, float]) -> None:
     system, cutoff = five_terms
     peaks = peaks_of(system, cutoff, 0.0)
     peaks = replace(peaks, height=1.05 * peaks.height)

@@ -96,7 +96,7 @@ def test_rigid_segments_swing_on_their_springs(steel: Material) -> None:
     np.testing.assert_allclose([mode.frequency for mode in found], expected, rtol=1e-9)
 
 
-def test_what_nothing_bends_has_modes_of_its_contacts() -> None:
+def test_rigid_segment_has_modes_of_its_contacts() -> None:
     """Reference: analytic. A ball of 1 kg on a spring of 1e6 N/m, with no frequency of its own."""
     law = PowerContact(1e6, 1.0).lower()
     one = np.ones(1)

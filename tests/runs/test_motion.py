@@ -63,7 +63,7 @@ def test_all_motions_of_a_model_take_the_step_of_the_case(
     assert steps == motions * [4.0e-5]
 
 
-def test_what_rests_without_play_is_told_where_it_cannot_move(
+def test_bonded_rest_is_known_without_a_motion(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Reference: the same where it moves."""

@@ -74,7 +74,7 @@ def answers(model: str, folder: Path, case: str = CASE) -> ModelDesignResults:
     return answers_of(read_case(folder, case.format(model=model))).models["one"]
 
 
-def test_a_load_that_comes_suddenly_counts_twice(tmp_path: Path) -> None:
+def test_sudden_load_doubles_the_static_results(tmp_path: Path) -> None:
     """Reference: analytic. A boom of one coordinate swings around its rest from zero: everything
     is twice what it is at rest, at half a period, which the output step meets within 1e-5.
     """
@@ -112,7 +112,7 @@ def test_stress_and_reactions_at_rest_are_those_of_hand(tmp_path: Path) -> None:
     assert found.motion.walls == []
 
 
-def test_what_is_borne_sideways_is_told(tmp_path: Path) -> None:
+def test_lateral_reactions_are_reported(tmp_path: Path) -> None:
     """Reference: by hand. On 6 and 5 m 1000 N/m across and 500 N/m from the side: 11 and 5.5 kN,
     1000 (6 · 3 + 5 · 7.5) N m and half of that at the wall, no torque.
     """

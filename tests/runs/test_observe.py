@@ -114,7 +114,7 @@ def test_segments_in_space_turn_in_both_planes(tmp_path: Path, kind: str) -> Non
     assert rates["roll"] == pytest.approx(0.0, abs=1e-9)
 
 
-def test_a_velocity_is_what_the_deflection_s_slope_is(tmp_path: Path) -> None:
+def test_velocity_is_the_slope_of_the_deflection(tmp_path: Path) -> None:
     """Reference: analytic. Through contacts, the velocity's integral is the way, and the
     acceleration's by steps is the change of the velocity.
     """
@@ -132,7 +132,7 @@ def test_a_velocity_is_what_the_deflection_s_slope_is(tmp_path: Path) -> None:
     assert step * np.cumsum(push) == pytest.approx(rate - rate[0], abs=1e-11)
 
 
-def test_data_say_what_they_are(tmp_path: Path) -> None:
+def test_data_have_names_and_units(tmp_path: Path) -> None:
     """Every variable and coordinate has a long name; stations have a name each."""
     data = turned(tmp_path, "kantorovich-4").trajectories
     assert data.attrs["Conventions"] == "CF-1.8"
@@ -181,5 +181,5 @@ def test_a_segment_s_name_may_have_blanks_and_points(tmp_path: Path) -> None:
          "give the joints lateral_play"),
     ],
 )  # fmt: skip
-def test_says_what_cannot_be_observed(tmp_path: Path, text: str, line: str) -> None:
+def test_bad_observers_are_refused(tmp_path: Path, text: str, line: str) -> None:
     assert refusal(tmp_path, COARSE.replace("[[model]]", f"{text}\n\n[[model]]", 1)) == line

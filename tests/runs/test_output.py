@@ -93,7 +93,7 @@ def test_the_table_is_pandas_s(run: Run, tmp_path: Path) -> None:
     assert (tmp_path / "ours.csv").read_bytes() == (tmp_path / "theirs.csv").read_bytes()
 
 
-def test_a_model_that_nothing_answers_for_keeps_its_motion(
+def test_model_without_design_results_keeps_its_motion(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Reference: its trajectory of before; the files and the report are written all the same."""

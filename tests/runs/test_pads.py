@@ -106,7 +106,7 @@ def results(folder: Path, joint: str) -> Results:
     return run_case(case_with(folder, joint))
 
 
-def test_pressure_is_told_beside_what_pads_bear(tmp_path: Path) -> None:
+def test_pressure_stands_beside_the_pad_strength(tmp_path: Path) -> None:
     """Reference: by hand, half of the station's largest force over 0.01 m², against 20 MPa."""
     found = results(tmp_path, PAD)
     table = pad_table(found)
@@ -123,7 +123,7 @@ def test_pressure_is_told_beside_what_pads_bear(tmp_path: Path) -> None:
     assert [pad.pressure for pad in kept] == told["pressure\nMPa"]
 
 
-def test_the_first_look_has_the_pad_that_presses_most(tmp_path: Path) -> None:
+def test_summary_names_the_governing_pad(tmp_path: Path) -> None:
     """Reference: the table of all pads; a pad that may bear next to nothing stands out."""
     found = results(tmp_path, PAD.replace("2e7", "1e3"))
     table = summary_table(found)
@@ -145,7 +145,7 @@ def test_the_first_look_has_the_pad_that_presses_most(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("shim", [0.0, 2e-5, 1.0e-3])
-def test_at_rest_the_pad_that_bears_most_is_told(tmp_path: Path, shim: float) -> None:
+def test_governing_pad_at_rest_is_named(tmp_path: Path, shim: float) -> None:
     """Reference: another computation, the rows of each pair of pads; 3 and 2 parts of a force."""
     below = [pad_on("below", 0.03, 0.02), pad_on("below", 0.02, 0.02, offset=0.04, shim=shim)]
     above = pad_on("above", 0.05, 0.02)
@@ -257,9 +257,7 @@ def test_shimmed_pads_tell_the_force_of_their_side(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("state", "lifted"), [("equilibrium", 0.001), ("rest", 0.0)])
-def test_shims_lift_a_boom_that_no_load_presses_yet(
-    tmp_path: Path, state: str, lifted: float
-) -> None:
+def test_shims_lift_an_unloaded_boom(tmp_path: Path, state: str, lifted: float) -> None:
     """Reference: by hand. Of 2 mm of play below a shim of 3 mm leaves -1 mm, and nothing bends."""
     pads = several(pad_on("above", 0.05, 0.02), pad_on("below", 0.05, 0.02, shim=0.003))
     case = case_with(tmp_path, pads, play=0.004)

@@ -76,7 +76,7 @@ def test_the_weakest_wall_of_a_segment() -> None:
     assert factor == pytest.approx(5.34 * flange / shear)
 
 
-def test_check_names_walls_that_buckle(tmp_path: Path) -> None:
+def test_check_names_buckling_walls(tmp_path: Path) -> None:
     """Reference: analytic, the bottom flange of a cantilever under a load at its tip."""
     box = BoxSection(height=0.4, width=0.3, flange=0.003, web=0.008)
     unit = np.pi**2 * 2.1e11 / (12.0 * 0.91) * (0.003 / 0.3) ** 2

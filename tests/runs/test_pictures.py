@@ -159,7 +159,7 @@ def picture_of(files: list[Path], name: str) -> Array:
 
 
 @pytest.mark.slow
-def test_pictures_have_the_names_of_what_they_show(pictures: list[Path]) -> None:
+def test_pictures_are_named_after_their_content(pictures: list[Path]) -> None:
     when = ("first-peak", "largest-force", "first-contact")
     expected = [f"{what}-{w}.png" for what in ("boom", "overlap", "stress") for w in when]
     assert [path.name for path in pictures] == [*expected, "motion.gif"]

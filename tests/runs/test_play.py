@@ -67,7 +67,7 @@ def test_motions_are_held_against_those_without_play(answers: DesignResults) -> 
 
 
 @pytest.mark.slow
-def test_play_adds_to_a_shell_what_it_adds_to_beams() -> None:
+def test_play_adds_equal_deflections_to_shells_and_beams() -> None:
     """Reference: by hand, the same lever; what the walls give way is no play. In motion another
     model, elements, whose tip goes as much farther within a fifth.
     """
@@ -82,7 +82,7 @@ def test_play_adds_to_a_shell_what_it_adds_to_beams() -> None:
     assert frequencies[0] == pytest.approx(frequencies[1], rel=0.02)
 
 
-def test_models_agree_within_what_is_said(answers: DesignResults) -> None:
+def test_models_agree_within_the_stated_difference(answers: DesignResults) -> None:
     """Reference: other numbers of the same run, the tips of both models at rest."""
     agreement = [known.line for known in answers.quality_notes if known.what == "agreement"]
     series, beam = (answers.models[name].static[0].tip for name in ("kantorovich-5", "beam-fe"))
@@ -92,7 +92,7 @@ def test_models_agree_within_what_is_said(answers: DesignResults) -> None:
     assert line.startswith(start)
 
 
-def test_chaos_is_told_of_what_is_chaotic_alone() -> None:
+def test_chaos_note_names_chaotic_models_only() -> None:
     """Reference: the ensembles, of which one parts at 3.2 s and the other not at all."""
 
     def ensemble(time: float | None) -> dict[str, object]:

@@ -38,7 +38,9 @@ RUNS = {
         ("S8", "paper", "undecided"),
     ],
 )
-def test_the_first_run_that_decides_is_heard(statement: str, name: str, verdict: Judgement) -> None:
+def test_verdict_comes_from_the_first_decisive_run(
+    statement: str, name: str, verdict: Judgement
+) -> None:
     (found,) = [entry for entry in decisive(RUNS) if entry[1].id == statement]
     assert (found[0], found[1].verdict) == (name, verdict)
 
@@ -60,7 +62,7 @@ def test_a_verdict_shows_number_and_threshold() -> None:
     ]
 
 
-def test_runs_that_are_not_judged_show_no_table() -> None:
+def test_runs_without_verdicts_show_no_table() -> None:
     assert printed(print_verdicts, {"boom": []}) == ""
 
 

@@ -48,13 +48,13 @@ def test_a_full_disk_is_one_line() -> None:
     "line",
     ["check >&-", "check 2>&- >/dev/null", "check | head -n 1", "check | true", "schema | true"],
 )
-def test_whom_nobody_hears_ends_in_peace(line: str) -> None:
+def test_closed_output_pipe_ends_without_an_error(line: str) -> None:
     """The schema is a long text whose reader leaves in the middle."""
     answer = in_a_shell(line)
     assert (answer.returncode, answer.stderr) == (0, "")
 
 
-def test_letters_that_the_terminal_lacks_are_spelled_out() -> None:
+def test_missing_terminal_letters_are_replaced() -> None:
     answer = in_a_shell("check", PYTHONIOENCODING="ascii")
     assert (answer.returncode, answer.stderr) == (0, "")
     assert "The paper's boom, coarse and short" in answer.stdout
@@ -82,7 +82,7 @@ def test_the_middle_goes_and_both_ends_stay() -> None:
     assert shorten("a" * 41, 41) == "a" * 41
 
 
-def test_tells_the_stage_and_what_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_progress_shows_stage_and_remaining_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: by hand. Of 40 % in 12 s, 18 s are left; what follows within five seconds is not
     told, nor what has ended by then. What a stage took that is told of at its end is not known."""
     every = 5.0

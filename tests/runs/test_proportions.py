@@ -47,7 +47,7 @@ def test_an_arm_has_none(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
-def test_cases_that_come_along_have_none(path: Path) -> None:
+def test_shipped_cases_have_no_cautions(path: Path) -> None:
     case = case_file.load(str(path))
     assert proportion_cautions(case, build_boom(case)) == []
 

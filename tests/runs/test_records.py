@@ -58,7 +58,7 @@ def test_an_array_comes_back_with_its_order_in_memory(array: npt.NDArray[Any]) -
         assert found.strides == array.strides
 
 
-def test_numbers_texts_and_what_they_are_in(paper_law: PowerContact) -> None:
+def test_numbers_texts_and_containers_round_trip(paper_law: PowerContact) -> None:
     thing = {
         "numbers": (1, 0.1, -0.0, float("inf"), 10**30, True, None),
         "texts": ["µ", "\n", ""],
@@ -89,7 +89,7 @@ class Stranger(NamedTuple):
 
 
 @pytest.mark.parametrize("thing", [Path("a"), np.array([None]), len, {1}, Stranger(Path("a"))])
-def test_what_is_no_data_is_not_kept(thing: object) -> None:
+def test_objects_other_than_data_are_not_stored(thing: object) -> None:
     with pytest.raises(TypeError, match="cannot be kept: it is no data"):
         write(thing, BytesIO())
 
@@ -110,7 +110,7 @@ def test_what_is_no_data_is_not_kept(thing: object) -> None:
         "5",
     ],
 )
-def test_what_is_no_record_is_refused(text: str) -> None:
+def test_bad_records_are_refused(text: str) -> None:
     with pytest.raises((ValueError, TypeError)):
         read(BytesIO(f"{text}\n".encode()), PowerContact)
 

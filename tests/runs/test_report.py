@@ -152,7 +152,7 @@ def test_is_well_formed(results: Results, figures: list[Figure]) -> None:
     assert found == [len(MODELS), len(MODELS), 2]
 
 
-def test_links_lead_to_what_is_there(page: Page) -> None:
+def test_links_have_targets(page: Page) -> None:
     """Reference: the ids of the page itself; no id twice, no link into nothing."""
     ids = [str(attributes["id"]) for _, attributes in page.tags if "id" in attributes]
     assert len(set(ids)) == len(ids)
@@ -229,7 +229,7 @@ def test_fits_a_telephone_and_paper(page: Page) -> None:
     assert "scroll" in [str(box.get("class")) for box in page.all("div")]
 
 
-def test_says_what_the_case_demands(results: Results, figures: list[Figure]) -> None:
+def test_report_states_the_demands_of_the_case(results: Results, figures: list[Figure]) -> None:
     case = results.case.model_copy(update={"demand": ("S1",)})
     demanding = replace(results, case=case)
     assert Page(report(demanding, figures)).text.count("(demanded)") == 1
@@ -263,7 +263,7 @@ def told(results: Results) -> list[str]:
     return cautions(results.case, results.boom, results.trajectories, results.summary)
 
 
-def test_cautions_against_what_is_no_small_displacement(results: Results) -> None:
+def test_large_displacement_gives_a_caution(results: Results) -> None:
     """A tenth of the boom's 19 m: 1.9 m."""
     assert results.summary.cautions == []
     wild = results.trajectories.copy(deep=True)
@@ -323,7 +323,7 @@ def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
 @pytest.mark.parametrize(
     ("name", "cautioned"), [("crane-telescopes", True), ("crane", False), ("drawn-out", False)]
 )
-def test_cautions_where_axial_forces_leave_what_walls_bear(name: str, cautioned: bool) -> None:
+def test_axial_forces_beyond_the_wall_limit_give_a_caution(name: str, cautioned: bool) -> None:
     """Reference: by hand; of these booms one alone is both pressed along and drawn out."""
     shell = model_summary().model_copy(update={"stress": object()})
     boom = build_boom(case_file.load(str(CASES / f"{name}.toml")))
@@ -333,9 +333,7 @@ def test_cautions_where_axial_forces_leave_what_walls_bear(name: str, cautioned:
     )
 
 
-def test_judges_the_statements_that_the_case_asks_for_alone(
-    results: Results, figures: list[Figure]
-) -> None:
+def test_only_requested_statements_are_judged(results: Results, figures: list[Figure]) -> None:
     other = replace(results, case=results.case.model_copy(update={"statements": ()}))
     one = results.case.model_copy(update={"statements": ("S9",), "demand": ("S1",)})
     assert [verdict.id for verdict in judge(replace(results, case=one))] == ["S1", "S9"]

@@ -67,7 +67,7 @@ def lifted(travel: float, time: float) -> GapSystem:
     return replace(system, travels=[Travel(SCurve(travel, time), table, (("rows", 0),), "")])
 
 
-def test_a_tip_that_stands_swings_by_its_start() -> None:
+def test_fixed_boom_vibrates_with_its_initial_amplitude() -> None:
     """Reference (analytic): 1 N on springs of 1 + 3 N/m, from 0, swings by 1/4 m about 1/4 m."""
     system = replace(lifted(0.0, 1.0), travels=())
     swing, _ = farthest_from_rest(system, simulate(system, 4.0))
@@ -101,13 +101,13 @@ WAVE = PiecewiseLinear(np.arange(0.0, 10.0, 0.1).tolist(), [0.0, 1.0, 1.0, 0.0] 
 
 
 @pytest.mark.parametrize("load", [Sine(5.0), Ramp(0.2), WAVE])
-def test_what_follows_its_loads_does_not_swing(load: History) -> None:
+def test_quasi_static_motion_has_no_residual_vibration(load: History) -> None:
     """Reference (analytic): F/(1 + 3 r²) of springs of 1 and 3 N/m, a row r; no swing at all, where
     the load moves it by 0.5 m at least."""
     assert of_follower(load) < 0.01 * 0.5
 
 
-def test_a_load_that_turns_too_often_has_no_swing() -> None:
+def test_fast_alternating_load_has_no_residual_vibration() -> None:
     """Reference: by hand, 5.5 Hz turn 110 times in 10 s; each takes four rests."""
     with pytest.raises(NumericsError, match=r"^loads turn back 110 times, too often$"):
         of_follower(Sine(5.5))
@@ -129,7 +129,7 @@ def test_levels_are_those_of_booms_without_a_drive(tmp_path: Path) -> None:
         assert level == pytest.approx(np.abs(data["tip"].values - rest).max(), rel=1e-3)
 
 
-def test_what_rests_swings_by_nothing(tmp_path: Path) -> None:
+def test_boom_at_rest_has_no_residual_vibration(tmp_path: Path) -> None:
     """Reference: the boom that starts at rest under loads that stay; drawn out fast it swings."""
     drawn = case(tmp_path, "drive = { travel = 4.0, time = 0.4 }")
     start = drawn.start.model_copy(update={"state": "equilibrium"})
@@ -139,7 +139,7 @@ def test_what_rests_swings_by_nothing(tmp_path: Path) -> None:
     assert swing.tip > 1.0e-3
 
 
-def test_a_drive_that_the_run_does_not_see_the_end_of_has_no_swing(tmp_path: Path) -> None:
+def test_unfinished_drive_has_no_residual_vibration(tmp_path: Path) -> None:
     assert swing_of(case(tmp_path, "drive = { travel = 4.0, time = 0.7 }")) is None
     assert swing_of(case(tmp_path, "")) is None
 
@@ -206,7 +206,7 @@ def test_a_chart_says_how_fast_it_may_be_drawn_out(
     assert [line.get_ydata()[0] for line in levels] == [30.0, 60.0]
 
 
-def test_what_varies_no_speed_has_no_such_chart(tmp_path: Path) -> None:
+def test_sweep_without_speeds_has_no_speed_chart(tmp_path: Path) -> None:
     data = swept().isel(key=[0])
     draw_vibration(data, theme.strokes(["beam"], ()), tmp_path / "swing.png")
     assert not list(tmp_path.iterdir())

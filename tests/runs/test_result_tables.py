@@ -60,7 +60,7 @@ def cells(table: Table | None) -> dict[str, dict[str, str]]:
     return {row[0]: dict(zip(table.headings, row, strict=True)) for row in table.rows}
 
 
-def test_the_first_look_says_what_the_answers_do(results: Results) -> None:
+def test_summary_table_equals_the_design_results(results: Results) -> None:
     """Reference: summary.json, in mm, Hz, s, kN; a swing dies as exp(−2π ζ f t)."""
     own = results.summary.design.models[PLAYED]
     assert own.motion is not None
@@ -82,7 +82,7 @@ def test_the_first_look_says_what_the_answers_do(results: Results) -> None:
     assert "Fatigue damage (Miner)" not in found
 
 
-def test_the_period_is_that_of_the_motion(results: Results) -> None:
+def test_period_is_measured_from_the_motion(results: Results) -> None:
     """Reference (analytic): a tip that moves as 1 − cos; a run without a second peak tells none."""
     assert "Period of the motion (measured), s" not in cells(summary_table(results))
     tip = results.trajectories["tip"]
@@ -111,7 +111,7 @@ def test_play_is_said_in_a_sentence(results: Results) -> None:
     assert rows["static tip deflection, maximum load"]["with play"] == "150 mm"
 
 
-def test_every_table_of_a_rest_says_under_which_loads(results: Results) -> None:
+def test_tables_of_rest_name_their_loads(results: Results) -> None:
     """Reference: by hand, a hinge whose moment is round-off beside a clamp of 5 kN m."""
     bears = [
         Reaction("outer", 0.0, 1e3, 5e3, None),
@@ -137,7 +137,7 @@ def with_stress(results: Results, stress: float) -> Results:
     return answering(results, own={"motion": replace(moved, fibres=[fibre], walls=[wall])})
 
 
-def test_what_nears_the_yield_strength_stands_out(results: Results) -> None:
+def test_stresses_near_the_yield_strength_are_marked(results: Results) -> None:
     """Reference: by hand, 300 and 330 MPa, then 340 and 374 MPa of 355 MPa."""
     fibre, wall = (
         "Bending stress, maximum (utilisation), MPa",
@@ -189,7 +189,7 @@ def test_the_verdict_names_pads_of_unknown_strength(results: Results) -> None:
         assert utilisation_verdict(found).endswith(end)
 
 
-def test_a_fatigue_life_that_is_used_up_exceeds_it(results: Results) -> None:
+def test_exhausted_fatigue_life_exceeds_the_limit(results: Results) -> None:
     """Reference: by hand, a damage of 3.2."""
     life = Life("inner", 10.0, 0.0, 0.2, 4.0, 9e7, 8e7, [9e7], [4.0], 1.6e-4, 3.2)
     told = answering(results, own={"life": [life]})

@@ -38,7 +38,7 @@ def test_distance_of_peaks(delay: float, height: float, expected: float) -> None
     assert apart[1:-1] == pytest.approx(expected, abs=5e-3)
 
 
-def test_peaks_that_a_model_misses_are_infinitely_far() -> None:
+def test_missing_peaks_have_infinite_distance() -> None:
     """All of them, until a period and a half before the end."""
     still = swing()
     still[TIME > 4.0] = 0.0
@@ -48,7 +48,7 @@ def test_peaks_that_a_model_misses_are_infinitely_far() -> None:
     assert (first[~missed] < 4.0).all()
 
 
-def test_a_peak_that_may_come_after_the_end_is_not_missed() -> None:
+def test_peak_near_the_end_is_not_missing() -> None:
     first, apart = peaks_apart(np.array([swing(), swing(0.6)]), TIME, CUTOFF)
     assert np.isfinite(apart).all()
     assert first.size == 9

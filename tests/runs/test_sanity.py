@@ -121,7 +121,7 @@ def written(folder: Path, old: str, new: str) -> str:
          "usual is from 36 up to 160; check the number and its unit"),
     ],
 )  # fmt: skip
-def test_what_no_boom_has_is_refused(
+def test_impossible_numbers_are_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, old: str, new: str, line: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -172,7 +172,7 @@ def test_what_no_boom_has_is_refused(
          "weights turn it down; those that pull down are negative"),
     ],
 )  # fmt: skip
-def test_what_is_hardly_meant_is_told(
+def test_unusual_numbers_give_cautions(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, old: str, new: str, line: str
 ) -> None:
     """Each on its slip alone."""

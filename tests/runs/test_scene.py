@@ -173,7 +173,7 @@ def test_from_above_y_points_up(shell: Scene) -> None:
 @pytest.mark.parametrize(
     ("largest", "scale"), [(0.7, 0.5), (1.0, 1.0), (19.9, 10.0), (20.0, 20.0), (0.031, 0.02)]
 )
-def test_scale_is_round_and_not_above_what_fits(largest: float, scale: float) -> None:
+def test_scale_is_round_and_fits(largest: float, scale: float) -> None:
     assert round_scale(largest) == pytest.approx(scale)
 
 
@@ -240,7 +240,7 @@ def test_sections_stay_plane_and_follow_their_axis(paper_boom: Boom) -> None:
     np.testing.assert_allclose(moved[:, 0], -z * 0.38, atol=0.0026 * np.abs(z).max())
 
 
-def test_bending_stress_is_that_of_the_curvature(paper_boom: Boom) -> None:
+def test_bending_stress_follows_the_curvature(paper_boom: Boom) -> None:
     """Reference (analytic): σ = E κ z at the flanges of the outer box, κ = 0.02 1/m."""
     scene, stress = still(paper_boom, bent(paper_boom))
     highest = scene.half_height(0)
@@ -272,7 +272,7 @@ def test_play_stays_visible_between_beams(paper_boom: Boom) -> None:
     assert outer - inner > 5.0 * paper_boom.joints[0].play
 
 
-def test_what_jumps_is_read_beyond() -> None:
+def test_values_at_jumps_are_read_beyond_the_jump() -> None:
     """Reference: by hand; a place that stands twice stays once."""
     rows = np.array([[0.0], [1.0], [5.0], [0.0]])
     line = Line(np.array([0.0, 1.0, 1.0, 2.0]), {"moment": rows}, {})

@@ -36,7 +36,7 @@ def test_it_is_a_schema() -> None:
 
 
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
-def test_it_accepts_the_cases_that_come_with_the_project(path: Path) -> None:
+def test_schema_accepts_the_shipped_cases(path: Path) -> None:
     """As they are written, and as a run writes them again."""
     assert faults(data(path.read_text(encoding="utf-8"))) == []
     assert faults(data(toml.dumps(load(str(path))))) == []

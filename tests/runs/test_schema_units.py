@@ -188,7 +188,7 @@ def test_a_case_in_millimetres_is_the_same_case(units: str) -> None:
         assert contact_laws(same, model) == contact_laws(expected, other)
 
 
-def test_defaults_stay_what_they_are() -> None:
+def test_defaults_do_not_depend_on_the_units() -> None:
     """Reference: non-regression, the defaults in SI units, which nobody gave in millimetres."""
     assert in_mm().time.output_step == 1.0e-3
     assert in_mm().models[1].model_dump()["element_length"] == 0.5
@@ -210,7 +210,7 @@ def test_files_are_in_the_units_of_the_case_unless_they_say_others() -> None:
         assert gust.magnitude * gust.table[1][1] == pytest.approx(-12.0, rel=1e-15)
 
 
-def test_files_that_say_their_units_need_no_magnitude() -> None:
+def test_files_with_units_need_no_magnitude() -> None:
     """Reference: analytic. -50 N/m is that whatever the units of the case."""
     in_mm()
     text = Path("crane.toml").read_text(encoding="utf-8")
@@ -306,7 +306,7 @@ def test_a_change_in_python_is_in_si_units() -> None:
     assert change(in_mm(), **{"joint.play": 0.02}).joints[0].play == 0.02
 
 
-def test_what_no_number_can_hold_is_refused() -> None:
+def test_numbers_out_of_range_are_refused() -> None:
     text = written('units = "mm-t-s"', IN_MM).replace("7.85e-9", "7.85e299")
     with pytest.raises(BadInput) as refused:
         case_of(text)

@@ -49,7 +49,7 @@ def test_a_bound_is_bracketed(capsys: pytest.CaptureFixture[str]) -> None:
     ]
 
 
-def test_a_beam_on_walls_that_govern_is_a_caution() -> None:
+def test_search_with_governing_walls_gives_a_caution() -> None:
     """Reference: exact words. Pads away from the webs on flanges of 2 mm bend these alone."""
     text = toml_blocks("tutorial.md")[0]
     Path("case.toml").write_text(text, encoding="utf-8")

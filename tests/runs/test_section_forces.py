@@ -71,7 +71,7 @@ def test_a_normal_force_has_both_sides_of_a_jump() -> None:
     np.testing.assert_allclose(found["normal"], [-9e3, -7e3, -2e3, -2e3], rtol=1e-6)
 
 
-def test_the_shear_force_is_that_of_where_axial_forces_have_come_to() -> None:
+def test_shear_force_uses_the_extended_axial_forces() -> None:
     """Reference: by hand. 1 kN at the head of a column that 20 % of Euler's force presses, drawn
     from 2 m out to 5 m; with the axial force of the start it is up to 22 % off.
     """
@@ -108,7 +108,7 @@ def test_a_cylinder_pulls_the_boom_off_its_pin(answers: DesignResults) -> None:
         assert np.interp(x, arm.x, arm.normal) == pytest.approx(normal, rel=2e-3)
 
 
-def test_the_pin_bears_what_goes_along(answers: DesignResults) -> None:
+def test_pin_carries_axial_forces(answers: DesignResults) -> None:
     """Reference: by hand, both parts and together, at rest and as the beam stays there."""
     along, across = 10.0 * ALONG - 0.8 * FORCE, 10.0 * ACROSS - 0.6 * FORCE
     pin, lug = answers.reactions
@@ -126,7 +126,7 @@ def test_the_pin_bears_what_goes_along(answers: DesignResults) -> None:
         assert joint_thrust[what].at_rest == pytest.approx(abs(force), rel=2e-3)
 
 
-def test_the_pin_bears_a_mass_that_sits_on_it(tmp_path: Path) -> None:
+def test_pin_carries_a_mass_at_the_pin(tmp_path: Path) -> None:
     """Reference: by hand, as above with 200 kg at the pin, which turn nothing."""
     text = CASE.replace("[[cylinder]]", "masses = [{ x = 1.0, mass = 200.0 }]\n[[cylinder]]")
     pin, _ = answers_of(read_case(tmp_path, text)).reactions

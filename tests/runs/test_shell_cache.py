@@ -163,7 +163,7 @@ def test_a_damaged_entry_is_made_again(
     assert list(reduce(case, cache).seconds) == ["cache"]
 
 
-def test_what_is_no_shell_is_made_again(
+def test_entry_of_another_type_is_made_again(
     case: Case, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Though its checksum is right."""
@@ -175,7 +175,7 @@ def test_what_is_no_shell_is_made_again(
     assert len(caplog.records) == 1
 
 
-def test_a_cache_that_cannot_be_written_costs_time_and_a_line(
+def test_unwritable_cache_gives_one_line(
     case: Case, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     folder = tmp_path / "cache"

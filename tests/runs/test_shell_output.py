@@ -35,7 +35,7 @@ def output(boom: Boom) -> ShellOutput:
     return ShellOutput.of(boom, "shell", shell, still)
 
 
-def test_stresses_are_kept_beside_all_that_presses() -> None:
+def test_stresses_are_stored_beside_every_contact_and_support() -> None:
     """Reference: the boom. Supports, masses, a lug, stations, a stop inside the overlap, loads."""
     stop = Stop(1, 9.5, 0.04, PowerContact(1.0e9, 1.0).upper())
     cylinder = Cylinder(0, x=4.0, depth=0.25, ground=(1.0, -4.25), stiffness=1.0e7)

@@ -70,7 +70,7 @@ def results(*shells: str) -> Results:
         ("motion.gif", "Boom in motion, first 1 s", "in 5 s"),
     ],
 )
-def test_a_caption_says_what_is_seen(name: str, title: str, seen: str) -> None:
+def test_caption_describes_the_picture(name: str, title: str, seen: str) -> None:
     """Reference: analytic, a tip of 50 mm (1 − cos 2πt)."""
     figure = describe_one(results("shell"), Path(name))
     assert figure.title.startswith(title)
@@ -113,7 +113,7 @@ def test_of_several_shells_the_right_one_is_named() -> None:
     ],
     ids=["no OpenGL", "killed", "hangs"],
 )
-def test_a_drawing_process_that_fails_is_said_and_leaves_nothing(
+def test_failing_picture_process_is_reported(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     work: Callable[[], None],

@@ -71,7 +71,7 @@ def at_rest(folder: Path, text: str) -> tuple[Boom, GapSystem, Array]:
     return boom, system, equilibrium(system, system.load)
 
 
-def test_a_boom_that_its_weight_holds_down_becomes_a_shell(tmp_path: Path) -> None:
+def test_boom_held_by_its_weight_becomes_a_shell(tmp_path: Path) -> None:
     """Reference: analytic. The stop bears M g · 3/5 of a beam of 6 m over a lever of 5 m."""
     boom, system, position = at_rest(tmp_path, RESTING)
     (gap,) = system.rows @ position

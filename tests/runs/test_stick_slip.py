@@ -92,7 +92,7 @@ def test_nothing_sticks_where_nothing_rubs(tmp_path: Path) -> None:
     )
 
 
-def test_a_drive_draws_all_that_is_beyond() -> None:
+def test_drive_moves_all_outboard_masses() -> None:
     """Reference: analytic, masses of the segments beyond each joint of the crane, and of those
     beyond two of them, which another drive moves, too; units of mm, t and s in SI units."""
     crane = load(str(CASES / "crane-telescopes.toml"))
@@ -111,7 +111,7 @@ def test_a_drive_draws_all_that_is_beyond() -> None:
     assert beyond[2] > 350.0
 
 
-def test_a_drive_holds_what_weighs_along(tmp_path: Path) -> None:
+def test_drive_holds_the_axial_weight(tmp_path: Path) -> None:
     """Reference: analytic, m g sin θ of 550.7 kg, which the drive holds before it moves."""
     along = {
         "[[joint]]": "[gravity]\nangle = 30.0\n\n[[joint]]",

@@ -55,7 +55,7 @@ def test_check_prints_them(stiffened: str, capsys: pytest.CaptureFixture[str]) -
 
 
 @pytest.mark.parametrize(("outer", "x", "inner"), [(0, 9.0, "inner"), (1, 15.5, "third")])
-def test_no_plate_closes_a_box_that_another_is_inside(outer: int, x: float, inner: str) -> None:
+def test_diaphragm_inside_an_overlap_is_refused(outer: int, x: float, inner: str) -> None:
     """Also not at the inner one's tail, which a plate would touch."""
     boom = three_segments()
     segments = list(boom.segments)

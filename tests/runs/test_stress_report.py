@@ -61,7 +61,7 @@ def results(stress: dict[str, Any] | None) -> Results:
     return Results(case, data, summary_of({"shell": model_summary(**changes)}))
 
 
-def test_the_figure_says_how_large_and_what_to_trust(tmp_path: Path) -> None:
+def test_stress_figure_states_maximum_and_limits(tmp_path: Path) -> None:
     with matplotlib.rc_context(theme.RC):
         (figure,) = stress_history(FigureContext(results(STRESS), tmp_path))
     assert figure.title == (
@@ -72,7 +72,7 @@ def test_the_figure_says_how_large_and_what_to_trust(tmp_path: Path) -> None:
         image.verify()
 
 
-def test_the_table_says_what_each_wall_carries() -> None:
+def test_stress_table_has_the_force_of_each_wall() -> None:
     table = wall_table(results(STRESS))
     assert table is not None
     assert table.rows == [("shell", "outer", "2", "top", "−12.50", "0.00", "3.06")]

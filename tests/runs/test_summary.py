@@ -23,7 +23,7 @@ def content() -> dict[str, Any]:
     return found
 
 
-def test_keys_and_values_are_those_that_they_were() -> None:
+def test_keys_and_values_are_unchanged() -> None:
     """Reference: what was written before, to the last digit and in its order."""
     text = json.dumps(content(), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     assert str(Summary.load(EARLIER)) == text
@@ -36,7 +36,7 @@ def test_a_summary_comes_back_from_a_cache(tmp_path: Path) -> None:
     assert str(Cache(tmp_path).load("a", Summary)) == str(summary)
 
 
-def test_what_is_no_number_is_null() -> None:
+def test_values_that_are_not_finite_are_null() -> None:
     nan, infinite = float("nan"), float("inf")
     model = model_summary(first_contact=nan, first_peak={"tip": (nan, nan)})
     model.mesh_error = infinite

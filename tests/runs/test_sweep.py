@@ -48,9 +48,7 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[Case]:
         ("0.014:0.004:2", [0.004, 0.014]),
     ],
 )
-def test_values_are_those_that_a_person_would_write(
-    planned: Planned, given: str, values: list[float]
-) -> None:
+def test_values_have_short_decimals(planned: Planned, given: str, values: list[float]) -> None:
     """Reference: the same decimals as Python reads them, so that sweeps share their points."""
     (variation,) = planned(f"joint.play={given}").variations
     assert list(variation.values) == values
@@ -84,7 +82,7 @@ def test_the_play_is_varied_alone(planned: Planned) -> None:
         assert point.case.joints[0].play == point.values[0]
 
 
-def test_what_shapes_a_section_does_so_with_the_case_s_own_play(planned: Planned) -> None:
+def test_sections_are_inferred_with_the_play_of_the_case(planned: Planned) -> None:
     """Reference: the boxes of a case file with the other ratio and the play of 14 mm."""
     text = Path("case.toml").read_text(encoding="utf-8")
     Path("flat.toml").write_text(
@@ -101,7 +99,7 @@ def test_what_shapes_a_section_does_so_with_the_case_s_own_play(planned: Planned
     assert found == [boxes[0], boxes[0], boxes[1], boxes[1]]
 
 
-def test_beams_that_need_no_plates_take_any_play(planned: Planned) -> None:
+def test_beams_without_plates_accept_any_play(planned: Planned) -> None:
     assert len(planned("joint.play=0.01,0.1").points) == 2
 
 
@@ -204,7 +202,7 @@ def test_a_decay_settles_when_the_formula_says() -> None:
     assert settled == pytest.approx(math.log(20.0), abs=2e-3)
 
 
-def test_what_swings_on_does_not_settle_and_what_rests_has() -> None:
+def test_undamped_motion_never_settles_and_rest_has_settled() -> None:
     time = np.linspace(0.0, 20.0, 2001)
     assert settling_time(time, 0.3 + np.cos(time)) is None
     assert settling_time(time, np.full(time.size, 0.3)) == 0.0
@@ -290,7 +288,7 @@ def test_files_hold_the_same_numbers_with_units(planned: Planned) -> None:
             )
 
 
-def test_what_is_done_is_not_done_again(planned: Planned, ran: list[Case]) -> None:
+def test_completed_points_are_not_repeated(planned: Planned, ran: list[Case]) -> None:
     first = run(planned("joint.play=0:0.01:2"))
     finer = run(planned("joint.play=0:0.01:3"))
     again = run(planned("joint.play=0:0.01:3"))
@@ -331,7 +329,7 @@ def test_other_sources_are_other_points(
     assert len(ran) == 4
 
 
-def test_a_model_that_fails_leaves_a_gap(planned: Planned, ran: list[Case]) -> None:
+def test_failing_model_leaves_a_gap(planned: Planned, ran: list[Case]) -> None:
     """So short a step would take days; the model that has its own does not mind."""
     sweeping = planned("model[1].step=1e-12,1e-5")
     outcomes = run(sweeping)
@@ -346,9 +344,7 @@ def test_a_model_that_fails_leaves_a_gap(planned: Planned, ran: list[Case]) -> N
         assert [row["failure"] for row in csv.DictReader(file)] == [failure, "", "", ""]
 
 
-def test_what_is_no_failure_of_the_numerics_ends_the_sweep(
-    planned: Planned, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_other_errors_end_the_sweep(planned: Planned, monkeypatch: pytest.MonkeyPatch) -> None:
     def break_down(case: Case, *others: object) -> Outcome:
         if case.joints[0].play == 0.0:
             return Outcome({}, {"kantorovich-4": "no number is finite"})
@@ -360,7 +356,7 @@ def test_what_is_no_failure_of_the_numerics_ends_the_sweep(
     assert len(list(Path("out/points").iterdir())) == 1
 
 
-def test_quantities_are_those_that_the_models_answer(planned: Planned) -> None:
+def test_quantities_equal_the_results_of_the_models(planned: Planned) -> None:
     """Reference: other numbers of the same run; the mass of the paper's boom by hand."""
     sweeping = planned("joint.play=0.008,0.014")
     (first, _) = run(sweeping)

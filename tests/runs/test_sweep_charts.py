@@ -102,7 +102,7 @@ def test_cells_of_a_map_show_their_values(planned: Planned, sheets: list[Sheet])
     assert shown[1] == sorted(number(force) for i, force in enumerate(forces) if i != 2)
 
 
-def test_what_does_not_change_has_no_panel(planned: Planned, sheets: list[Sheet]) -> None:
+def test_constant_quantity_has_no_panel(planned: Planned, sheets: list[Sheet]) -> None:
     """The mass of a boom whose play is varied; offsets stand at no axis."""
     sweeping = planned("joint.play=0:0.009:4")
     outcomes = [

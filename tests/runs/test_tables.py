@@ -31,7 +31,7 @@ def test_the_terminal_shows_cells_as_they_are() -> None:
 
 
 @pytest.mark.parametrize(("letters", "crowded"), [(ROOMY - 4, False), (ROOMY - 3, True)])
-def test_a_table_that_needs_smaller_letters_is_known(letters: int, crowded: bool) -> None:
+def test_wide_table_is_detected(letters: int, crowded: bool) -> None:
     """Reference: two columns, the longest line of each and two letters between them."""
     first, second = letters // 2, letters - letters // 2
     row = ("x" * first, "\n".join(["y", "y" * second]))

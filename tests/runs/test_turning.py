@@ -85,7 +85,7 @@ def static_tip(case: Case, time: float) -> float:
     return float(system.observers["tip"].row @ equilibrium_at(system, time))
 
 
-def test_arm_that_has_luffed(tmp_path: Path) -> None:
+def test_luffed_arm(tmp_path: Path) -> None:
     """Reference: the arm that is built at the angle to which the other one luffs.
 
     Its weight along the boom bends it by 1.3 % more.
@@ -96,7 +96,7 @@ def test_arm_that_has_luffed(tmp_path: Path) -> None:
     assert static_tip(luffed, 3.0) > 0.8 * static_tip(luffed, 0.0)
 
 
-def test_loads_of_a_segment_that_extends_while_the_boom_turns() -> None:
+def test_inertia_loads_of_an_extending_segment_on_a_turning_boom() -> None:
     """Reference: by hand, −m a of a mass at its current position, minus −m a at the initial one."""
     frame = FrameMotion(slew=SCurve(90.0, 2.0), radius=1.0)
     drive = Drive(SCurve(3.0, 2.0), ("inner", "outer"))
@@ -130,7 +130,7 @@ def test_results_of_slewing_and_luffing(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("bonded", "least", "most"), [(True, 0.0, 0.01), (False, 0.1, 0.5)])
-def test_shaper_that_check_offers(tmp_path: Path, bonded: bool, least: float, most: float) -> None:
+def test_shaper_proposed_by_check(tmp_path: Path, bonded: bool, least: float, most: float) -> None:
     """Reference: the vibration after the same slewing without the shaper.
 
     Without play a thousandth of it remains, with play of 4 mm about a quarter.
@@ -177,7 +177,7 @@ def test_moment_and_work_of_slewing(tmp_path: Path) -> None:
     assert work[-1] == pytest.approx(0.0, abs=2e-3 * work[2000])
 
 
-def test_cylinder_that_luffs() -> None:
+def test_luffing_cylinder() -> None:
     """Reference: by hand, a right angle at the pin between a lug and a ground 3 m and 4 m away."""
     jack = Cylinder(0, 3.0, ground=(0.0, -4.0), stiffness=1.0)
     foot = Support(0.0, "hinged")

@@ -42,7 +42,7 @@ def complaint(file: str) -> str:
         ),
     ],
 )
-def test_what_is_no_file_of_a_sensible_size_is_no_case(
+def test_special_and_oversized_files_are_refused(
     file: str, make: Callable[[str], object], why: str
 ) -> None:
     """A pipe would wait for its writer, a device has no end."""

@@ -148,7 +148,7 @@ def test_few_members_decide_nothing() -> None:
         (0.2, 0.3, 0.0, "contradicted"),  # shifted peaks from the start
     ],
 )
-def test_s3_asks_for_peaks_that_part_after_six_seconds(
+def test_s3_needs_diverging_peaks_after_six_seconds(
     early: float, drift: float, conforming: float, expected: str
 ) -> None:
     """Reference: analytic. Of the period of 1.1 s the last of four models is 3 delays late."""
@@ -285,9 +285,7 @@ def test_s9_compares_contact_laws(case: Case, height: float, expected: str) -> N
         (1900, 3000, "contradicted"),
     ],
 )
-def test_s10_counts_the_steps_that_the_peaks_need(
-    series: int, elements: int, expected: str
-) -> None:
+def test_s10_counts_the_steps_for_the_peaks(series: int, elements: int, expected: str) -> None:
     needed = {"kantorovich-4": 1000, "kantorovich-5": series, "beam-fe": elements}
     summary = {name: {"steps_for_peaks": steps_for_peaks(steps)} for name, steps in needed.items()}
     assert verdict("S10", summary=summary)[:2] == (expected, series)
@@ -331,11 +329,11 @@ RUBS = "This case has no friction; it takes the case with friction."
         ("S11", {}, "This case has 2 segments; it takes the case of three segments."),
     ],
 )
-def test_a_rule_names_what_it_waits_for(key: str, given: dict[str, Any], why: str) -> None:
+def test_rule_names_its_missing_data(key: str, given: dict[str, Any], why: str) -> None:
     assert verdict(key, **given) == ("undecided", None, why)
 
 
-def test_finds_models_by_what_they_are(case: Case) -> None:
+def test_models_are_found_by_their_properties(case: Case) -> None:
     """Reference: the same curves under the names of the paper's case."""
     expected = verdicts(case, curves())
     models = tuple(m.model_copy(update={"name": f"model {i}"}) for i, m in enumerate(case.models))
@@ -364,7 +362,7 @@ def test_compares_series_of_one_base(case: Case) -> None:
         ("beam-fe-bonded", ["S5"]),
     ],
 )
-def test_says_which_model_is_missing(case: Case, model: str, statements: list[str]) -> None:
+def test_missing_model_is_named(case: Case, model: str, statements: list[str]) -> None:
     motion = {name: both for name, both in curves().items() if name != model}
     fewer = case_file.select(case, "", [m.name for m in case.models if m.name != model])
     why = f"The case has no model like {model!r}."
@@ -372,7 +370,7 @@ def test_says_which_model_is_missing(case: Case, model: str, statements: list[st
         assert verdict(statement, motion, case=fewer) == ("undecided", None, why)
 
 
-def test_says_which_motion_is_not_finite(case: Case) -> None:
+def test_motion_that_is_not_finite_is_named(case: Case) -> None:
     motion = curves()
     motion["kantorovich-5"]["tip"][7000] = np.nan
     found = verdicts(case, motion, {"kantorovich-5": {"first_peak": {"tip": [None, None]}}})

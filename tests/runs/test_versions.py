@@ -25,7 +25,7 @@ def test_every_module_counts_wherever_it_lies(tmp_path: Path) -> None:
     assert len(set(found)) == 4
 
 
-def test_what_a_run_leaves_is_no_source(tmp_path: Path) -> None:
+def test_results_are_no_source(tmp_path: Path) -> None:
     (tmp_path / "__init__.py").touch()
     before = sources([tmp_path])
     (tmp_path / "a.txt").touch()

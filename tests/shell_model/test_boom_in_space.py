@@ -108,7 +108,7 @@ def test_a_boom_on_its_side_is_the_same_boom(upright: Boom, law: ContactLaw, off
 
 
 @pytest.mark.slow
-def test_corners_that_roll_together_do_not_part() -> None:
+def test_segments_rolling_together_keep_their_gaps() -> None:
     """Reference: analytic. Turned rigidly by φ about the axis, the free inner segment's pads read
     the lever arms of geometry's pads: φ y of a flange's, −φ z of a web's.
     """
@@ -171,7 +171,7 @@ def test_friction_in_space_takes_energy_and_gives_none_back() -> None:
 
 
 @pytest.mark.slow
-def test_lateral_motion_is_that_of_beams() -> None:
+def test_lateral_motion_follows_beams() -> None:
     """Reference: other code, this project's Timoshenko frame elements in space, under loads along
     y alone: first press at the same time, the tip at the same place until then and about it after.
     """

@@ -52,7 +52,7 @@ def test_the_load_lifts_the_boom_by_its_weight() -> None:
 
 
 @pytest.mark.slow
-def test_the_first_press_is_that_of_the_beam() -> None:
+def test_first_contact_follows_the_beam() -> None:
     """Reference: other code, this project's beams: the first contact of stiff thin beams is at
     0.1195 s; shear and distortion delay it by less than 1 %. Energy is kept.
     """
@@ -64,7 +64,7 @@ def test_the_first_press_is_that_of_the_beam() -> None:
 
 
 @pytest.mark.slow
-def test_fields_add_up_to_what_the_observers_read() -> None:
+def test_fields_agree_with_observers() -> None:
     """The mean of u_z over the tip's vertices follows the tip's observer within distortion."""
     shell = reduced(flat_boom(), 0.25, moments=2)
     assert shell.fields is not None

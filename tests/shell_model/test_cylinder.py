@@ -60,7 +60,7 @@ def at_rest(system: GapSystem) -> dict[str, float]:
 
 
 @pytest.mark.slow
-def test_walls_carry_what_the_cylinder_pushes_along() -> None:
+def test_walls_carry_the_axial_force_of_the_cylinder() -> None:
     """Reference: by hand, its force times the slope of its line, from its lug to the hinge."""
     boom = luffed()
     made = reduce_boom(boom, ShellOptions(0.2, krylov=KrylovOptions(moments=2)), MPI.COMM_SELF)

@@ -73,7 +73,7 @@ def test_a_time_outside_the_run_is_refused(fields: xr.Dataset, tmp_path: Path) -
     assert not list(tmp_path.iterdir())
 
 
-def test_a_series_of_stresses_is_that_of_each_instant(fields: xr.Dataset) -> None:
+def test_stress_series_equals_the_stress_of_each_instant(fields: xr.Dataset) -> None:
     """Reference: the instants, one by one; means of triangles are those of their components."""
     shell = ShellStress.from_fields(fields)
     second = np.array([1])

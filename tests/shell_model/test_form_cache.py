@@ -44,7 +44,7 @@ def compile_form(folder: Path, killed: bool) -> subprocess.CompletedProcess[str]
     )
 
 
-def test_the_next_process_compiles_what_a_killed_one_began(tmp_path: Path) -> None:
+def test_next_process_completes_a_killed_compilation(tmp_path: Path) -> None:
     assert compile_form(tmp_path, True).returncode == -signal.SIGKILL
     assert list((tmp_path / "fenics" / "protractile").glob("*.c"))
     assert compile_form(tmp_path, False).stdout == "3.0\n"

@@ -58,7 +58,7 @@ def test_a_dashpot_resists_the_mean_of_its_stations_contact_rows(line: ContactLi
 
 @pytest.mark.slow
 @pytest.mark.parametrize("line", ["near webs", "surface"])
-def test_dashpots_take_of_the_shell_what_they_take_of_beams(line: ContactLine) -> None:
+def test_dashpots_dissipate_equally_in_shells_and_beams(line: ContactLine) -> None:
     """Reference: other code, this project's Timoshenko elements; 0.2 and 1.4 % apart over 0.4 s, in
     which the segments cross their play and press. Energy is kept.
     """
@@ -119,7 +119,7 @@ def test_readings_add_up_over_the_segments_of_either() -> None:
     assert other + one == both
 
 
-def test_a_stop_reads_the_flange_that_it_meets() -> None:
+def test_stop_reads_the_deflection_of_its_flange() -> None:
     """Reference: analytic. One-sided at 8 m: the row is the deflection there, read from below."""
     stop = Stop(0, 8.0, 0.02, PowerContact(0.0, 1.0, stiffness_below=1.0e8))
     system = reduced(replace(flat_boom(), stops=(stop,)), 0.5).system
@@ -134,7 +134,7 @@ def test_a_stop_reads_the_flange_that_it_meets() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("boom", [flat_boom(), three_segments()], ids=["two", "three"])
-def test_rest_of_the_pressed_boom_is_that_of_beams(boom: Boom) -> None:
+def test_static_state_with_axial_forces_follows_beams(boom: Boom) -> None:
     """Reference: other code, this project's Timoshenko elements with the segments bonded.
 
     They are up to 0.25 % apart, for the corners that take the forces in the overlaps; shear is

@@ -41,7 +41,7 @@ def at_rest(boom: Boom, options: ShellOptions) -> list[tuple[Line, Array]]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("tolerance", [None, 0.02])
-def test_a_shell_bears_what_statics_ask(tolerance: float | None) -> None:
+def test_section_forces_of_a_shell_follow_statics(tolerance: float | None) -> None:
     """Reference: by hand. The inner segment outside the overlap: with s = 19 − x, V = 55.07 s and
     M = −55.07 s²/2, on a uniform mesh and on one that is fine at stations; the second order of the
     bands' lengths is below 3 N m.

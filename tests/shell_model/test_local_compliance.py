@@ -74,7 +74,7 @@ def test_a_bonded_joint_leaves_the_others_their_measure() -> None:
 
 
 @pytest.mark.slow
-def test_what_has_no_other_side_has_none() -> None:
+def test_one_sided_contact_has_no_local_compliance() -> None:
     rest = Stop(1, 19.0, 0.2, PowerContact(0.0, 1.0, stiffness_below=1.0e7))
     boom = replace(flat_boom(), stops=(rest,))
     shell = reduced(boom, 0.8)
@@ -113,7 +113,7 @@ def test_plates_are_nearly_the_beam_of_their_section(boom: Boom) -> None:
 
 
 @pytest.mark.slow
-def test_a_mesh_that_is_fine_where_something_presses_finds_the_same() -> None:
+def test_graded_mesh_equals_a_uniform_mesh() -> None:
     """Reference: other code, a uniform mesh; unit responses are far from contacts."""
     for coarse, fine in zip(stiffness(flat_boom()), stiffness(flat_boom(), 0.01), strict=True):
         assert coarse.bending == pytest.approx(fine.bending, rel=2e-3)

@@ -127,7 +127,7 @@ def test_a_load_in_the_plane_of_bending_excites_two_families(box_shell: Shells) 
         assert [job.symmetry_class for job in jobs] == expected
 
 
-def test_what_a_family_does_not_do_is_held_in_the_mirrors() -> None:
+def test_symmetry_planes_fix_the_antisymmetric_components() -> None:
     """Reference: analytic. Bending along z: u_z is its own image in both, the slope too."""
     assert SymmetryClass(1, -1).fixed_components(1) == [(0, 1), (1, 0), (1, 2)]
     assert SymmetryClass(1, -1).fixed_components(2) == [(0, 0), (0, 1), (1, 2)]
@@ -154,9 +154,7 @@ def _one_diagonal_turned(mesh: SegmentMesh) -> SegmentMesh:
 
 
 @pytest.mark.parametrize(("spoil", "what"), [(_shifted, "mesh"), (_one_diagonal_turned, "shell")])
-def test_refuses_a_mesh_that_is_no_mirror_image(
-    spoil: Callable[[SegmentMesh], SegmentMesh], what: str
-) -> None:
+def test_asymmetric_mesh_is_refused(spoil: Callable[[SegmentMesh], SegmentMesh], what: str) -> None:
     mesh = spoil(mesh_segment(BOX, {"start": 0.0, "end": 10.0}, 0.5))
     segment = box_segment("box", 0.0, 10.0, BOX)
     shell = assemble_segment(MPI.COMM_WORLD, segment, add_thickness(segment, mesh))

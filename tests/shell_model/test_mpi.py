@@ -230,5 +230,5 @@ def test_ranks_share_an_edge_of_three_walls(two_ranks: dict[str, Any]) -> None:
     assert two_ranks["dofs"] == serial == [780, 2220]
 
 
-def test_what_fails_on_one_rank_fails_on_all(two_ranks: dict[str, Any]) -> None:
+def test_failure_on_one_rank_fails_all_ranks(two_ranks: dict[str, Any]) -> None:
     assert two_ranks["told"] == ["the second rank cannot"] * 2

@@ -122,7 +122,7 @@ def test_a_segment_on_its_side_vibrates_along_y_as_upright_along_z(box_shell: Sh
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SECTIONS)
-def test_a_ring_that_is_pressed_unfolds_as_a_frame(name: str) -> None:
+def test_pressed_ring_deforms_as_a_frame(name: str) -> None:
     """Reference: other code, a plane frame of bars. A ring of 20 mm bends as bars do; one of 80 mm
     is 3 % stiffer, since its folds keep it from bending across.
     """
@@ -246,7 +246,9 @@ def test_thicker_flanges_give_way_less() -> None:
     ],
     ids=["hexagon", "octagon", "u", "u-across", "u-surface"],
 )
-def test_all_that_a_segment_may_have(pair: tuple[Section, Section], line: ContactLine) -> None:
+def test_polygon_segment_with_all_attachments(
+    pair: tuple[Section, Section], line: ContactLine
+) -> None:
     """Reference: analytic. Collars, diaphragms, masses, springs, pads and stops are read on any
     outline: the masses of a rigid motion along z are those of all parts.
     """

@@ -37,7 +37,7 @@ def _inputs(shell: SegmentShell) -> np.ndarray:
 
 
 @pytest.mark.slow
-def test_compliance_is_that_of_full_solves_far_from_the_shifts(box_shell: Shells) -> None:
+def test_compliance_equals_full_solves_far_from_the_shifts(box_shell: Shells) -> None:
     """Reference: the full model. Statics, and frequencies the basis was not built at."""
     shell = box_shell(0.25, supports=HELD)
     inputs = _inputs(shell)
@@ -90,7 +90,7 @@ def test_shapes_are_mass_orthonormal(box_shell: Shells) -> None:
     assert np.abs(gram - np.eye(len(gram))).max() < 1.0e-9
 
 
-def test_inputs_that_depend_on_others_cost_nothing(box_shell: Shells) -> None:
+def test_dependent_inputs_add_no_coordinates(box_shell: Shells) -> None:
     """The same space, in any order, with sums, copies and zeros among the inputs."""
     shell = box_shell(0.5, supports=HELD)
     inputs = _inputs(shell)
@@ -102,7 +102,7 @@ def test_inputs_that_depend_on_others_cost_nothing(box_shell: Shells) -> None:
     assert again.omega2 == pytest.approx(once.omega2, rel=1.0e-9)
 
 
-def test_a_segment_that_nothing_acts_on_has_no_motion(box_shell: Shells) -> None:
+def test_segment_without_inputs_has_no_coordinates(box_shell: Shells) -> None:
     shell = box_shell(0.5)
     message = "^nothing acts on a segment, and it has no motion: give it a load$"
     with pytest.raises(NumericsError, match=message):
@@ -160,7 +160,7 @@ def test_no_more_coordinates_than_are_allowed(box_shell: Shells) -> None:
     assert few.compliance_error > 10.0 * more.compliance_error
 
 
-def test_a_tolerance_that_is_not_met_is_said(box_shell: Shells) -> None:
+def test_missed_tolerance_is_reported(box_shell: Shells) -> None:
     shell = box_shell(0.5, supports=HELD)
     message = (
         r"^a segment's reduction errs by \d\.\de-0\d with \d+ coordinates in one of its planes, "
@@ -194,7 +194,7 @@ def test_the_order_of_rows_does_not_show() -> None:
     assert not np.array_equal(left[order] @ right[order], left @ right)
 
 
-def test_what_cancels_is_zero() -> None:
+def test_cancelling_terms_are_zero() -> None:
     """Reference: analytic. A force against its mirror's, but for the last bit of one term."""
     left, right = _terms()
     mirrored = np.concatenate([right, -right])

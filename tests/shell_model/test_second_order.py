@@ -102,14 +102,14 @@ def test_a_reduced_column_bends_as_the_full_one_under_its_axial_force() -> None:
     assert found == pytest.approx(float(row @ moved), rel=1e-5)
 
 
-def test_what_axial_forces_add_to_the_basis_takes_nothing_from_it() -> None:
+def test_basis_for_axial_forces_keeps_its_accuracy() -> None:
     """Reference: other code path, solves of all degrees of freedom at the test frequencies."""
     errors = shell().errors
     assert errors["contact_compliance"] < 1e-6
     assert errors["readings"] < 1e-4
 
 
-def test_a_shell_that_contacts_hold_tips_over_as_a_beam() -> None:
+def test_shell_held_by_contacts_tips_over_as_a_beam() -> None:
     """Reference: analytic, ∫P dx over the inertia about the middle; 1 % for what the walls bend."""
     boom = telescope(THRUST)
     fly = boom.segments[1]
@@ -132,7 +132,7 @@ def test_a_bonded_shell_buckles_where_its_beam_does(lateral: float | None) -> No
     assert shell(lateral).critical_factor == pytest.approx(beam, rel=0.02)
 
 
-def test_a_shell_that_buckles_says_so() -> None:
+def test_buckling_shell_is_refused() -> None:
     with pytest.raises(NumericsError) as caught:
         reduce_boom(column(1.25), OPTIONS, MPI.COMM_SELF)
     assert str(caught.value) == (

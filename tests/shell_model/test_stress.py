@@ -97,7 +97,7 @@ def test_shear_has_the_sign_of_the_way_around() -> None:
 
 
 @pytest.mark.slow
-def test_bending_is_that_of_the_outer_face() -> None:
+def test_bending_stress_is_read_at_the_outer_face() -> None:
     """Reference: analytic. With u_x = κ x z the top has ε = κ h/2 in its middle and κ t/2 more
     on its outer face, the bottom the opposite, which is the same on its own outer face.
     """
@@ -178,7 +178,7 @@ def cantilever() -> ShellStress:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("x", [3.0, 5.0, 7.0])
-def test_away_from_supports_the_stress_is_that_of_a_beam(cantilever: ShellStress, x: float) -> None:
+def test_stress_away_from_supports_follows_the_beam(cantilever: ShellStress, x: float) -> None:
     """Reference: analytic. σ = M z / J with M = q (L - x)² / 2, in the flanges' means and up
     the webs, within 1 % of the largest.
     """
@@ -200,7 +200,7 @@ def test_away_from_supports_the_stress_is_that_of_a_beam(cantilever: ShellStress
 
 
 @pytest.mark.slow
-def test_walls_carry_what_equilibrium_asks(cantilever: ShellStress) -> None:
+def test_wall_forces_are_in_equilibrium(cantilever: ShellStress) -> None:
     """Reference: analytic. M = -q (L - x)² / 2, Q = q (L - x), N = 0; the webs carry the shear."""
     forces = carried_at(cantilever, 4.01)
     assert forces["top"].axial == pytest.approx(-forces["bottom"].axial, rel=1e-3)
@@ -225,7 +225,7 @@ def test_a_row_goes_all_around_where_pads_refine_some_walls() -> None:
 
 
 @pytest.mark.slow
-def test_walls_of_unequal_flanges_carry_what_equilibrium_asks() -> None:
+def test_wall_forces_with_unequal_flanges_are_in_equilibrium() -> None:
     """Reference: analytic. As above, about the centroid; the thicker flange has less stress."""
     forces = carried_at(clamped(UNEQUAL, 0.2), 5.01)
     stresses = [forces[p.name].axial / (p.length * p.thickness) for p in UNEQUAL.plates[::2]]
@@ -234,7 +234,7 @@ def test_walls_of_unequal_flanges_carry_what_equilibrium_asks() -> None:
 
 
 @pytest.mark.slow
-def test_sloping_walls_carry_what_equilibrium_asks() -> None:
+def test_forces_of_sloping_walls_are_in_equilibrium() -> None:
     """Reference: analytic, M = -q (L - x)² / 2, of which walls at 45° carry 70 %."""
     section = octagon(0.5, 0.5, chamfer=0.2, top=0.006, bottom=0.006, web=0.006)
     carried_at(clamped(section, 0.2), 5.01)

@@ -71,7 +71,7 @@ def test_every_support_holds_the_twist(box_shell: Shells) -> None:
         assert compliance(shell, shell.outline(10.0).twist()) == pytest.approx(expected, rel=2.0e-3)
 
 
-def test_supports_leave_the_rigid_motions_that_they_do_not_hold(box_shell: Shells) -> None:
+def test_supports_leave_unheld_rigid_motions_free(box_shell: Shells) -> None:
     """Reference: analytic: slide along x always but for a clamp, and both tilts about one pin."""
     left = {
         (): 6,
@@ -85,7 +85,7 @@ def test_supports_leave_the_rigid_motions_that_they_do_not_hold(box_shell: Shell
         assert box_shell(0.5, supports=supports).rigid_motions().shape[1] == count
 
 
-def test_point_masses_weigh_what_they_weigh_and_do_not_turn(box_shell: Shells) -> None:
+def test_point_masses_have_mass_and_no_rotary_inertia(box_shell: Shells) -> None:
     """Reference: analytic. 70 kg at 2 m and 30 kg at 10 m add 100 kg to each translation,
     70·3² + 30·5² kg·m² to pitch and yaw about the middle, nothing to the roll.
     """

@@ -143,7 +143,7 @@ def test_every_point_has_its_share_of_the_penalty() -> None:
 
 
 @pytest.mark.slow
-def test_a_law_that_never_touches_below_has_no_points_there() -> None:
+def test_one_sided_law_has_no_points_below() -> None:
     law = replace(LAW.law, stiffness_below=0.0).behind(LAW.above)
     assert len(_system(flat_boom(), law=law).laws) == 8
 

@@ -131,7 +131,7 @@ def tapered_boom(pad: PadSize | None, lateral: float | None) -> Boom:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("lateral", [None, 5e-3])
-def test_a_boom_that_tapers_moves_as_its_beam(lateral: float | None) -> None:
+def test_motion_of_a_tapered_boom_follows_its_beam(lateral: float | None) -> None:
     """Reference: other code, Timoshenko elements: first peak of the tip within 2 %."""
     boom = tapered_boom(None, lateral)
     law = [LAW.behind(4e-3)]

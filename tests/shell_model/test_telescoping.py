@@ -74,7 +74,7 @@ def standing(system: GapSystem, way: float) -> GapSystem:
     return system.at_time(float(np.interp(way, travel.history(times), times)))
 
 
-def test_springs_give_way_and_weigh_as_what_they_stand_for() -> None:
+def test_springs_keep_stiffness_and_mass_of_the_residual_modes() -> None:
     """Reference: analytic, two masses on springs behind two rows that turn along the way."""
     omega2 = np.array([squared(900.0), squared(2500.0)])
     shifted = omega2 + squared(SLOW)
@@ -93,7 +93,7 @@ def test_springs_give_way_and_weigh_as_what_they_stand_for() -> None:
 
 
 @pytest.mark.slow
-def test_where_it_stands_it_is_the_shell_that_rests_there() -> None:
+def test_shell_at_an_extension_equals_a_shell_built_there() -> None:
     """Reference: other code, the shell reduced where it rests, with as many rings there."""
     errors = shell(0.0, DRIVE).errors
     assert 1.0e-4 < errors["contact_compliance"] < 0.01
@@ -172,7 +172,7 @@ def moved(system: GapSystem, duration: float) -> Trajectory:
 
 
 @pytest.mark.slow
-def test_without_speed_it_moves_as_the_shell_that_rests() -> None:
+def test_motion_without_speed_equals_the_fixed_shell() -> None:
     """Reference: other code, the shell reduced where it rests, over its first presses."""
     still = replace(shell(0.0, DRIVE).system, travels=())
     runs = [moved(system, 0.5) for system in (still, shell(0.0).system)]
@@ -211,7 +211,7 @@ def told(system: GapSystem) -> Array:
 
 
 @pytest.mark.slow
-def test_a_pressed_one_is_the_shell_that_rests_there() -> None:
+def test_shell_with_axial_forces_equals_a_shell_built_there() -> None:
     """Reference: other code path, the shell with its axial forces that is reduced where it rests;
     and analytic, the ledger of a motion.
     """

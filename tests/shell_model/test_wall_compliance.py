@@ -53,7 +53,9 @@ def with_strips(boom: Boom) -> Boom:
     ],
     ids=["beside the webs", "away from the webs", "under a collar", "under strips"],
 )
-def test_the_estimate_is_that_of_the_shell(pad: PadSize, change: Callable[[Boom], Boom]) -> None:
+def test_estimated_compliance_follows_the_shell(
+    pad: PadSize, change: Callable[[Boom], Boom]
+) -> None:
     """Reference: other code, the shell, whose own error of the local compliance is 1 %."""
     boom = change(short_boom(pad))
     shell = reduced(boom, 0.1, contact_tolerance=0.01)

@@ -87,7 +87,7 @@ def test_the_levels_of_the_command() -> None:
     assert {name for _, names in LEVELS for name in names} == set(SOLVERS)
 
 
-def test_a_solver_that_errs_more_is_named() -> None:
+def test_less_accurate_solver_is_named() -> None:
     """Reference: by hand; a tolerance that errs by ten times itself, and one that always does."""
     assert match_tolerance(lambda tolerance: 10.0 * tolerance, 1e-5) == pytest.approx((1e-6, 1e-5))
     assert match_tolerance(lambda tolerance: 1.0, 0.5) == (None, 1.0)
@@ -115,7 +115,7 @@ def test_every_table_is_complete(folder: Path, data: Any) -> None:
     assert sorted(path.name for path in folder.iterdir()) == ["bench.json", "bench.md"]
 
 
-def test_a_program_that_is_missing_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_program_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(other_programs, "OTHER_CODES", Path("missing"))
     table = other_programs.other_programs(1, 1.0, ["telescoped beams"])
     assert table.rows == []

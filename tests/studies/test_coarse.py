@@ -58,7 +58,7 @@ DIRECT = direct.Sizes(
 
 
 @pytest.mark.slow
-def test_the_tip_is_that_of_the_unreduced_shell() -> None:
+def test_tip_follows_the_unreduced_shell() -> None:
     """Reference: other code, the unreduced shell by the generalised-α method."""
     found = direct.study(silent, DIRECT)
     assert list(found.data) == ["direct-webs", "direct-pads"]

@@ -30,7 +30,7 @@ def test_a_proof_holds_within_its_bar() -> None:
     assert not Proof("strain", 0.02, 0.0, "", "analytic", "rigid motion", 0.01).holds
 
 
-def test_the_page_of_proofs_marks_what_fails() -> None:
+def test_page_of_proofs_marks_failures() -> None:
     study = Study("shells", "Shells", proofs=[proof(0.3030), proof(0.4)])
     lines = convergence.markdown([study]).splitlines()
     rows = [line for line in lines if line.startswith("| roof")]
@@ -95,7 +95,7 @@ class _Here:
     map = staticmethod(map)
 
 
-def test_what_libraries_tell_their_callers_is_not_shown(
+def test_library_warnings_are_hidden(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def survey(*_: object) -> list[object]:

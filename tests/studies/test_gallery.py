@@ -15,7 +15,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 MADE = {*gallery.COPIED, "lift", "mesh", "sections-largest-force", "crane-speeds"}
 
 
-def test_the_page_shows_what_the_script_makes() -> None:
+def test_gallery_page_equals_the_output_of_its_script() -> None:
     page = (DOCS / "gallery.md").read_text(encoding="utf-8")
     shown = re.findall(r"!\[[^]]+\]\(gallery/([a-z-]+)\.png\)\n\n`([^`]+)`", page)
     assert {*re.findall(r"\(gallery/([a-z-]+)\.png\)", page)} >= MADE
@@ -29,7 +29,7 @@ def test_the_page_shows_what_the_script_makes() -> None:
             image.verify()
 
 
-def test_a_run_that_is_missing_is_named(
+def test_missing_run_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(gallery, "RUNS", tmp_path / "out")

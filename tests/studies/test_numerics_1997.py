@@ -70,7 +70,7 @@ def test_peaks_conform_and_part(others: Array, early: float, late: float) -> Non
     assert found.conforms_then_diverges(CUTOFF) == (late > 0.2)
 
 
-def test_peaks_of_what_breaks_out_are_none() -> None:
+def test_diverged_motion_has_no_peaks() -> None:
     lost = sample(swing(), swing(), swing(late=0.4), gained=2.0, since=6.5)
     assert lost.peaks(CUTOFF) == pytest.approx((np.inf, np.nan), nan_ok=True)
     assert not lost.conforms_then_diverges(CUTOFF)
@@ -107,7 +107,7 @@ def test_s7_takes_all_of_its_parts(head: float, stratifies: bool) -> None:
 
 
 @pytest.mark.parametrize(("gained", "breaks"), [(0.9, np.inf), (-2.0, np.inf), (1.1, 6.5)])
-def test_what_gains_more_than_was_put_in_breaks(gained: float, breaks: float) -> None:
+def test_energy_gain_beyond_the_work_is_divergence(gained: float, breaks: float) -> None:
     run = moved(swing(), gained=gained, since=6.5)
     assert run.divergence_time == pytest.approx(breaks, abs=2e-3)
     assert diverges_near_7_s(sample(swing(), gained=gained, since=6.5)) == np.isfinite(breaks)

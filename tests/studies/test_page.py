@@ -108,7 +108,7 @@ def sections() -> dict[str, list[tuple[str, str, str]]]:
     }
 
 
-def test_each_section_is_that_of_a_study_in_its_order() -> None:
+def test_sections_follow_the_order_of_the_studies() -> None:
     for name, title in zip(PROVING, sections(), strict=True):
         module = ROOT / "studies" / name / "tables.py"
         module = module if module.exists() else module.parent.with_suffix(".py")

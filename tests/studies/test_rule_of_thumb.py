@@ -78,7 +78,7 @@ def test_the_first_boom_is_the_paper_s() -> None:
         assert segment.second_moment_of_area == pytest.approx(second, rel=0.01)
 
 
-def test_the_flange_s_frequency_is_that_of_a_strip() -> None:
+def test_flange_frequency_equals_a_strip() -> None:
     """Reference: analytic, Timoshenko: π/2 √(D/ρt)/b² of a plate that rests on two sides."""
     case = boom_case(Proportions())
     width, wall = 0.83 * 0.4945 / 1.634, 4.87e-3

@@ -130,7 +130,7 @@ def test_iterated_impacts_come_near_the_converged_ones() -> None:
     assert found == pytest.approx(FixedStep(1e-4)(motion).states[-1], abs=1e-2)
 
 
-def test_sliding_loses_what_friction_takes() -> None:
+def test_sliding_dissipates_the_work_of_friction() -> None:
     """Reference: analytic, v t − F t²/2 while it slides, and the loss F s."""
     motion = Motion(rubbing(0.5), 1.0, 0.01, velocity=np.ones(1))
     for iterated in (True, False):
@@ -140,7 +140,7 @@ def test_sliding_loses_what_friction_takes() -> None:
         assert run.energy_residual < 1e-9
 
 
-def test_friction_that_would_stop_within_a_step_does_not_settle() -> None:
+def test_friction_stop_within_a_step_does_not_converge() -> None:
     """Reference: by hand: at rest after 1 s, the sign of the speed turns with every guess."""
     run = integrate(Motion(rubbing(1.0), 2.0, 0.03, velocity=np.ones(1)), NEWMARK, True)
     assert not run.unconverged[:33].any()

@@ -236,7 +236,7 @@ def _compliance(model: SolidFamily, row: Array) -> float:
         ),
     ],
 )
-def test_refuses_what_the_solid_does_not_know(change: dict[str, Any], message: str) -> None:
+def test_unsupported_parts_are_refused(change: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=f"^{message}$"):
         assemble_solid(replace(segment(), **change), coarse(), ALONG_Z)
 
@@ -316,7 +316,7 @@ def test_mid_lines_places_and_mirrors_are_planes_and_edges_grow_away_from_places
         ({"places": (1.0, 1.0)}, "a segment needs two distinct places at least, its ends"),
     ],
 )
-def test_refuses_what_cannot_be_meshed(changes: dict[str, Any], message: str) -> None:
+def test_bad_meshes_are_refused(changes: dict[str, Any], message: str) -> None:
     arguments: dict[str, Any] = {
         "places": PLACES,
         "along": (0.1, 0.2),

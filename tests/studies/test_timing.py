@@ -42,7 +42,7 @@ def test_runs_take_turns(clock: Clock) -> None:
     assert [len(taken) for taken in seconds] == [2, 2]
 
 
-def test_what_takes_long_is_not_repeated(clock: Clock) -> None:
+def test_long_runs_are_not_repeated(clock: Clock) -> None:
     """Reference: analytic. Two sleeps pass the budget, or one does."""
     nap = 1.1 * MEASURABLE
     runs = [partial(clock.sleep, nap), partial(clock.sleep, 0.001)]
@@ -50,7 +50,7 @@ def test_what_takes_long_is_not_repeated(clock: Clock) -> None:
     assert [len(taken) for taken in time_in_turns(runs, 3, 0.5 * nap)] == [1, 3]
 
 
-def test_what_takes_little_is_averaged(clock: Clock) -> None:
+def test_short_runs_are_averaged(clock: Clock) -> None:
     """Reference: analytic. Sleeps of 5 and 15 ms by turns: six of them pass 50 ms."""
     naps = itertools.cycle((0.005, 0.015))
     ((taken,),) = time_in_turns([lambda: clock.sleep(next(naps))], 1, 10.0)

@@ -133,7 +133,7 @@ def test_the_method_takes_energy_and_gives_none(loaded: _Loaded) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("exponent", "stiffness"), [(1.0, 1.0e8), (2.0, 1.0e11)])
-def test_an_impact_is_that_of_the_reduced_shell(exponent: float, stiffness: float) -> None:
+def test_impact_follows_the_reduced_shell(exponent: float, stiffness: float) -> None:
     """Reference: other code. A segment swings up against a stop at its tip and back; the reduced
     one has many moments and moves in short steps of exact flow.
     """
@@ -229,7 +229,7 @@ def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
         ),
     ],
 )
-def test_what_it_does_not_take_is_refused(boom: Boom, law: PowerContact, message: str) -> None:
+def test_unsupported_booms_are_refused(boom: Boom, law: PowerContact, message: str) -> None:
     full = assemble_boom(touching(boom, law, law), ShellOptions(2.0), MPI.COMM_SELF)
     with pytest.raises(BoomError, match=message):
         integrate_directly(full, 1.0e-3, 1.0e-3)
@@ -242,7 +242,7 @@ def test_what_it_does_not_take_is_refused(boom: Boom, law: PowerContact, message
         (1.0e-3, 1.1, "^radius must be from 0 to 1, got 1.1$"),
     ],
 )
-def test_a_step_that_has_no_meaning_is_refused(step: float, radius: float, message: str) -> None:
+def test_bad_steps_are_refused(step: float, radius: float, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         GeneralisedAlpha(step, radius)
 
@@ -297,7 +297,7 @@ def test_a_block_on_a_rough_floor_stays_or_slides() -> None:
     assert rows.friction_loss == pytest.approx(10.0 * 8.0e-3, rel=1.0e-12)
 
 
-def test_forces_that_are_no_numbers_are_refused() -> None:
+def test_forces_that_are_not_finite_are_refused() -> None:
     rows = ResistingRows([], [DryFriction(0.5, 0, 20.0)], np.array([[1.0e-3]]), onward=2.0)
     message = "^the forces of contact and friction are not found; halve the step$"
     with pytest.raises(NumericsError, match=message):

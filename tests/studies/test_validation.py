@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize("rows", [validation.released_slider, validation.rubbing_mass])
-def test_friction_is_that_of_code_aster(rows: object) -> None:
+def test_friction_follows_code_aster(rows: object) -> None:
     """Reference: analytic and external, Code_Aster V5.01.100 and 104; steps leave 3e-5."""
     proofs = list(rows())  # type: ignore[operator]
     assert [proof.what for proof in proofs if proof.error > 1.0e-4] == []

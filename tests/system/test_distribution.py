@@ -17,7 +17,7 @@ def read(name: str) -> str:
     return (ROOT / name).read_text(encoding="utf-8")
 
 
-def test_the_wheel_brings_the_names_that_the_readme_says_and_no_tests() -> None:
+def test_wheel_contains_the_packages_of_the_readme_and_no_tests() -> None:
     setuptools = pytest.importorskip("setuptools", reason="setuptools finds what a wheel brings")
     options = PYPROJECT["tool"]["setuptools"]["packages"]["find"]
     assert options.pop("namespaces") is False
@@ -28,7 +28,7 @@ def test_the_wheel_brings_the_names_that_the_readme_says_and_no_tests() -> None:
     assert "tests" not in brought
 
 
-def test_the_version_is_that_of_the_changes_and_of_the_citation() -> None:
+def test_version_equals_changelog_and_citation() -> None:
     version = re.sub(r"\.dev\d+$", "", PYPROJECT["project"]["version"])
     newest = re.search(r"^## \[(.+?)\]", read("CHANGELOG.md"), re.MULTILINE)
     cited = re.search(r"^version: (.+)$", read("CITATION.cff"), re.MULTILINE)

@@ -41,5 +41,5 @@ def test_a_skipped_test_fails_and_says_why(text: str, tmp_path: Path) -> None:
     assert "no tool" in told
 
 
-def test_a_test_that_is_expected_to_fail_may(tmp_path: Path) -> None:
+def test_expected_failure_is_accepted(tmp_path: Path) -> None:
     assert outcome(tmp_path, EXPECTED, "-p", "tests.no_skips")[0] == pytest.ExitCode.OK

@@ -122,9 +122,7 @@ def test_a_mistake_ends_both_ranks_with_one_line(
     assert (answer.returncode, complaints(answer)) == (status, [line])
 
 
-def test_numerics_that_fail_on_one_rank_do_not_keep_the_other(
-    two_ranks: Ranks, tmp_path: Path
-) -> None:
+def test_failing_numerics_on_one_rank_end_both(two_ranks: Ranks, tmp_path: Path) -> None:
     """Rank 0 moves the series while rank 1 waits for it in the shell's assembly."""
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     text = Path(COARSE).read_text(encoding="utf-8")
@@ -139,7 +137,7 @@ def test_numerics_that_fail_on_one_rank_do_not_keep_the_other(
     assert trajectories(tmp_path / "out")["model"].values.tolist() == ["shell"]
 
 
-def test_a_rank_that_fails_alone_ends_both(two_ranks: Ranks) -> None:
+def test_failure_of_one_rank_ends_both(two_ranks: Ranks) -> None:
     pytest.importorskip("mpi4py", reason="ranks need mpi4py")
     answer = two_ranks(LONELY_FAILURE)
     assert answer.returncode == 3

@@ -91,7 +91,7 @@ def tells(stage: str) -> Callable[[subprocess.Popen[str]], bool]:
     return lambda process: stage in (process.stderr.readline() if process.stderr else "")
 
 
-def test_sigterm_ends_a_run_that_has_meshed_a_shell(tmp_path: Path) -> None:
+def test_sigterm_ends_a_run_after_meshing(tmp_path: Path) -> None:
     """Reference: by construction. gmsh resets the handler of SIGTERM."""
     process = command(
         tmp_path, "run", COARSE, "--models", "shell", "--no-cache", "--mesh-size", "0.05"
@@ -123,7 +123,7 @@ def test_a_sweep_ends_with_its_processes(
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["points"]
 
 
-def test_who_presses_twice_does_not_wait_for_ever() -> None:
+def test_second_interrupt_ends_at_once() -> None:
     process = start(ROOT, "-c", AGAIN)
     assert process.communicate(timeout=30) == ("clean\n", "protractile: interrupted\n")
     assert process.returncode == 128 + signal.SIGINT
@@ -141,7 +141,7 @@ with workers(2) as pool:
 """
 
 
-def test_processes_end_with_the_one_that_started_them() -> None:
+def test_processes_end_with_their_parent() -> None:
     """Reference: by construction. Output ends when the last process that could write to it does."""
     process = start(ROOT, "-c", WORKERS)
     assert process.stdout is not None

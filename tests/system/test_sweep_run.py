@@ -111,7 +111,7 @@ def test_a_bad_key_is_one_line_and_no_folder(case: str, capsys: pytest.CaptureFi
     assert [path.name for path in Path.cwd().iterdir()] == ["case.toml"]
 
 
-def test_two_ranks_leave_what_the_cores_do(
+def test_two_ranks_write_the_same_sweep_as_two_cores(
     two_ranks: Callable[..., subprocess.CompletedProcess[str]], swept: Path, case: str
 ) -> None:
     pytest.importorskip("mpi4py", reason="ranks need mpi4py")
