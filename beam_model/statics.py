@@ -42,7 +42,7 @@ class NodeReaction(NamedTuple):
 
 
 class StaticState(NamedTuple):
-    """Static state of a boom under the loads of t = 0.
+    """Static state of a boom.
 
     Args:
         boom: the boom.
@@ -112,6 +112,7 @@ def static_state(
     boom: Boom,
     elements: Elements | None = None,
     walls: float = 1.0,
+    time: float = 0.0,
 ) -> StaticState:
     """Return the static state of a boom of beam elements with wall compliance at pads.
 
@@ -120,6 +121,7 @@ def static_state(
         elements: elements of the boom, if available.
         walls: factor of the compliance of walls under pads, see
             :mod:`beam_model.wall_compliance`; 0 for rigid walls.
+        time: time of the loads in s.
 
     Raises:
         NumericsError: there is no equilibrium.
@@ -129,11 +131,13 @@ def static_state(
     system = with_wall_springs(
         system_without_drives(boom, modes, EACH_SIDE), boom, walls
     ).gather_loads()
-    position = equilibrium_at(system)
+    position = equilibrium_at(system, time)
     reactions = [
         reaction
         for number, component in enumerate(elements.unsupported)
-        for reaction in _reactions(boom, number, component, modes, position[: modes.omega2.size])
+        for reaction in _reactions(
+            boom, number, component, modes, position[: modes.omega2.size], time
+        )
     ]
     return StaticState(boom, system, position, reactions)
 
@@ -187,7 +191,7 @@ def _reaction_places(boom: Boom, number: int) -> set[float]:
 
 
 def _reactions(
-    boom: Boom, number: int, component: Component, modes: BoomModes, position: Array
+    boom: Boom, number: int, component: Component, modes: BoomModes, position: Array, time: float
 ) -> list[NodeReaction]:
     """Return the reactions on a segment at all its possible supports."""
     nodes = component.breaks
@@ -200,7 +204,7 @@ def _reactions(
     for given in boom.loads:
         # The history of a load that ends before t = 0 is not callable.
         if given.segment == number and given.direction == "z" and callable(given.history):
-            load += given.history(np.zeros(1))[0] * given.push(component.member)
+            load += given.history(np.array([time]))[0] * given.push(component.member)
     stiffness = component.stiffness - component.geometric_stiffness
     left = (stiffness @ np.array(bent) - load).reshape(-1, 2)
     return [

@@ -152,7 +152,7 @@ def check_case(declared: CheckedCase) -> Check:
     drives = list(stick_slip_estimates(case, boom))
     lines = [*drive_lines(boom, case.system), *stick_slip_lines(drives, case.system)]
     lines += [*turning_lines(case), *_shaper_lines(preview)]
-    lines += [*_static_lines(case, boom, found)]
+    lines += [*_static_lines(case, boom, found, beam)]
     if boom.compressed:
         for model in case.models:
             lines += buckling_cautions(_beam_name(model), _critical_factor(declared, model))
@@ -471,9 +471,11 @@ def _cylinders(state: StaticState, system: System) -> Table:
     return Table("Cylinders at rest, t = 0", columns)
 
 
-def _static_lines(case: Case, boom: Boom, found: Statics | None) -> Iterator[str]:
+def _static_lines(
+    case: Case, boom: Boom, found: Statics | None, beam: StaticBeam | None
+) -> Iterator[str]:
     """Yield the static tip deflection, the first frequency, the tilts by play, and cautions."""
-    if found is None:
+    if found is None or beam is None:
         yield "No rest under the loads of t = 0 is found."
         return
     state, bonded = found
@@ -495,6 +497,6 @@ def _static_lines(case: Case, boom: Boom, found: Statics | None) -> Iterator[str
             f"{causes} {tilt.inner!r} by {milli(tilt.rotation)} mrad in "
             f"{tilt.outer!r}, which moves the tip by {milli(tilt.tip)} mm."
         )
-    yield from pad_wall_lines(state.boom, state.tip)
+    yield from pad_wall_lines(beam)
     yield from tip_cautions(_BEAMS, state.tip, boom)
     yield from period_cautions(_BEAMS, hertz, case)

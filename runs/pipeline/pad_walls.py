@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
-from beam_model.statics import Elements, static_state
+from beam_model.statics import static_state
 from geometry.boom import Boom, Collar, Joint, Segment
 from geometry.joint import PadSize
+from runs.pipeline.largest_loads import StaticBeam
 from runs.report.formatting import milli
 
 # Remedies are given above this share of the tip deflection, if they reduce the tip deflection to
@@ -19,34 +20,37 @@ LARGE_SHARE, HELPFUL = 0.1, 0.98
 GOVERNING_SHARE = 0.5
 
 
-def pad_wall_lines(boom: Boom, tip: float) -> Iterator[str]:
-    """Yield the share of walls under pads in the tip deflection, and remedies if it is large.
+def pad_wall_lines(beam: StaticBeam) -> Iterator[str]:
+    """Yield the share of walls under pads in the largest static deflection of the tip.
+
+    Remedies follow if the share is large.
 
     Args:
-        boom: boom with the contact laws of the first model with play.
-        tip: static tip deflection in m.
+        beam: static states of the boom with the contact laws of the first model with play.
 
     Raises:
-        NumericsError: the boom has no equilibrium.
+        NumericsError: a boom with remedies has no equilibrium.
     """
+    boom, rest = beam.boom, max(beam.rests, key=lambda one: abs(one.tip))
     padded = [joint for joint in boom.joints if joint.padded]
     if not padded or any(segment.section is None for segment in boom.segments):
         return
-    elements = Elements(boom)
-    share = tip - static_state(boom, elements, walls=0.0).tip
+    tip, time = rest.tip, rest.time
+    share = tip - static_state(boom, walls=0.0, time=time).tip
     part = share / tip if tip else 0.0
     caution = "caution: walls" if part > GOVERNING_SHARE else "Walls"
     yield (
-        f"{caution} bend under pads, which moves the tip by {milli(share)} mm, "
-        f"{100.0 * part:.2g} % of its deflection (estimate from plates)."
+        f"{caution} bend under pads, which moves the tip by {milli(share)} of {milli(tip)} mm, "
+        f"{100.0 * part:.2g} %, under the loads of t = {time:.4g} s (estimate from plates)."
     )
     if part < LARGE_SHARE:
         return
-    remedies = ((static_state(changed).tip, what) for what, changed in _remedies(boom))
-    better = sorted((abs(there), what) for there, what in remedies if there / tip < HELPFUL)
-    listed = "; ".join(f"{what} ({milli(there)} mm)" for there, what in better)
+    remedies = ((static_state(changed, time=time).tip, what) for what, changed in _remedies(boom))
+    better = sorted((there / tip, there, what) for there, what in remedies)
+    better = [one for one in better if one[0] < HELPFUL]
     if better:
-        yield f"Remedies, with the deflection of the tip: {listed}."
+        listed = "; ".join(f"{what} ({milli(there)} mm)" for _, there, what in better)
+        yield f"Remedies, with the deflection of the tip under these loads: {listed}."
 
 
 def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:

@@ -15,10 +15,11 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.units import scale
+from runs.pipeline.largest_loads import StaticBeam
 from runs.pipeline.limits import Limit
 from runs.pipeline.pad_walls import pad_wall_lines
 from runs.pipeline.quantities import QUANTITIES
-from runs.pipeline.statics import statics
+from runs.pipeline.statics import boom_with_play, statics
 from runs.report.tables import Table
 from runs.sweep.points import Plan
 from runs.sweep.run import Outcome
@@ -145,9 +146,9 @@ def print_bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console
 def rigid_wall_cautions(case: Case, name: str) -> list[str]:
     """Return a caution if a model of a case is a beam and walls under pads govern its tip."""
     model = next(one for one in case.models if one.name == name)
-    found = None if model.needs_shell else statics(case, build_boom(case))
-    if found is None:
+    boom = build_boom(case)
+    if model.needs_shell or statics(case, boom) is None:
         return []
-    state = found.with_play
-    cautions = [one for one in pad_wall_lines(state.boom, state.tip) if one.startswith("caution")]
+    beam = StaticBeam.of(case, boom_with_play(case, boom))
+    cautions = [one for one in pad_wall_lines(beam) if one.startswith("caution")]
     return [f"{one} {name} has rigid walls: the bound is unsafe; take a shell" for one in cautions]

@@ -15,7 +15,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.checked_case import CheckedCase
 from runs.case.schema import Case, StopTable
-from runs.check import print_check
+from runs.check import check_case, print_check
 from runs.pipeline.models import build
 from tests.runs.case_texts import read_case
 from tests.runs.summaries import printed
@@ -140,14 +140,28 @@ def test_walls_under_pads_lower_the_tip_as_in_the_shell() -> None:
     lines = told(case_file.load(str(CASES / "lift.toml")))
     (tip,) = (line for line in lines if line.startswith("Static tip deflection"))
     assert float(tip.split(": ")[1].split()[0]) == pytest.approx(-229.12, rel=0.01)
-    (share,) = (line for line in lines if line.startswith("Walls bend under pads"))
+
+
+def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
+    """Reference: the same loads from t = 0 on, without the ramp."""
+    case = case_file.load(str(CASES / "lift.toml"))
+    share, remedies = pad_wall_sentences(case)
     assert share == (
-        "Walls bend under pads, which moves the tip by -32.83 mm, 14 % of its deflection (estimate "
-        "from plates)."
+        "Walls bend under pads, which moves the tip by -60.64 of -378.5 mm, 16 %, under the loads "
+        "of t = 0.1 s (estimate from plates)."
     )
-    (remedy,) = (line for line in lines if line.startswith("Remedies"))
-    assert remedy == (
-        "Remedies, with the deflection of the tip: pads that bear on the corners (195.6 mm); walls "
-        "twice as thick by collars at the pads (206.8 mm); pads half as wide, at twice the "
-        "pressure (211.8 mm)."
+    assert remedies == (
+        "Remedies, with the deflection of the tip under these loads: pads that bear on the corners "
+        "(-317.9 mm); walls twice as thick by collars at the pads (-333 mm); pads half as wide, at "
+        "twice the pressure (-347.8 mm)."
     )
+    (load,) = case.loads
+    sudden = case.model_copy(update={"loads": (load.model_copy(update={"ramp": None}),)})
+    assert pad_wall_sentences(sudden) == [share.replace("0.1 s", "0 s"), remedies]
+
+
+def pad_wall_sentences(case: Case) -> list[str]:
+    """Return the sentences of ``check`` on walls under pads."""
+    lines = check_case(CheckedCase(case)).lines
+    found = [line for line in lines if line.startswith(("Walls bend", "Remedies"))]
+    return [line.replace("−", "-") for line in found]
