@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The boom of Rusiński and Wyciślok (1997), which most tests are about."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Compilation of the time loops that most tests of motions need."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from studies.numerics_1997.schemes import NEWMARK, measured_root

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Two booms whose pin lies 0.35 m below their axis, under axial forces, and statics by hand."""
 
-from __future__ import annotations
-
 from math import cos, hypot, radians, sin
 
 import pytest

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A plugin, ``pytest -p tests.no_skips``: a skipped test fails, where every tool is installed."""
 
-from __future__ import annotations
-
 from collections.abc import Generator
 from typing import TypeVar
 

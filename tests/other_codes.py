@@ -4,8 +4,6 @@
 They stand in an environment of their own: DOLFINx is built against another numpy than they need.
 """
 
-from __future__ import annotations
-
 import subprocess
 from pathlib import Path
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Motions with friction to the last bit, and a record of the worker that compiled their loop."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Segments with the lateral numbers of their boxes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from geometry.boom import Lateral, Segment

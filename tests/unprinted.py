@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """One blank figure per run: layout and printing take longer than the motion of beams."""
 
-from __future__ import annotations
-
 from PIL import Image
 
 # For a process of its own, before it runs a command.

@@ -5,8 +5,6 @@ Nothing of them is shared with the library: statics by Macaulay's brackets, natu
 by the transcendental determinant of Euler-Bernoulli spans.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial

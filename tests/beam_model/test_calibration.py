@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Beams calibrated by the compliances of a shell or of another beam."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A damping ratio is one of the boom's own modes, with its joints pressed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Beam elements: exact statics at any mesh, frequencies of order four, rows that read anywhere."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The paper's boom with the dry friction of (28): no longer chaotic, and repeatable."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Kantorovich series span the paper's spaces, are well conditioned, and converge to the beam."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

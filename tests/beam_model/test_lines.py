@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Section forces along beams, by hand where they are statically determinate."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

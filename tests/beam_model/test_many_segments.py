@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What a further segment adds, section 5.3 of the paper."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 

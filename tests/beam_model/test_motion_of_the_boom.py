@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The paper's boom in motion: its series until they touch, its energy, its units."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Springs for the compliance that a coarse model lacks."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -2,8 +2,6 @@
 """Booms in space: two planes and a twist, pads in the corners, friction of one plane by the
 other."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

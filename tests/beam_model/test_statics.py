@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Support reactions against hand calculations and balance."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Compliance of walls under pads: frames in closed form, stiffeners, a finer mesh."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

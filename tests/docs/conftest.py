@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Pages of the documentation, and the modules that make parts of them."""
 
-from __future__ import annotations
-
 import re
 import sys
 import tomllib

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Natural mistakes in the tutorial's lift are refused or cause a caution."""
 
-from __future__ import annotations
-
 import re
 from io import StringIO
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Fragments, commands and links of the pages hold."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from pathlib import Path

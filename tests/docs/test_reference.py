@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The reference lists every key and every option, and drawings show keys that exist."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A single mass, the smallest gap system."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Small systems, and how another code moves them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

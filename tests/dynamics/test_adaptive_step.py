@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Integrators are values that choose, keep and repeat their steps, and tell what they miss."""
 
-from __future__ import annotations
-
 import pickle
 import re
 from collections.abc import Callable

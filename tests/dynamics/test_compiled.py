@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Time loops compile anywhere, and give the same bits whoever has compiled them."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

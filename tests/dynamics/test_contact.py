@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The contact law gives back exactly the energy it took, on the sides where there is a stop."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

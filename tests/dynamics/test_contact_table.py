@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A contact law by a table: what it says, what it keeps, what it refuses."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

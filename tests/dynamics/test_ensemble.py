@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Members are what a single run of the changed system gives, on any number of cores."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

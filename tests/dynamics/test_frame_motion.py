@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Slewing and luffing: accelerations of the turning frame, motion laws and their derivatives."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np

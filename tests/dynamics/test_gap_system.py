@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A gap system refuses shapes that do not agree, and knows what its matrices say."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from typing import Any

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A load on a rope below the tip: lift-off, hanging, the work of the winch."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

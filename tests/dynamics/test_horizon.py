@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Impacts end the predictability of a motion; a linear system has no horizon."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 import pytest
@@ -57,10 +56,10 @@ class Counted:
         self.runs.append(motion)
         return self.way(motion, progress)
 
-    def like(self, trajectory: Trajectory) -> Counted:
+    def like(self, trajectory: Trajectory) -> Self:
         return replace(self, way=self.way.like(trajectory))
 
-    def finer(self) -> Counted:
+    def finer(self) -> Self:
         return replace(self, way=self.way.finer())
 
 

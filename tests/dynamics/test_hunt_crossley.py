@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Contact damping gives the restitution that it was chosen for, and never pulls."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A ball that falls on the tip of a cantilever, as in the tutorials of Siconos."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The motion of every mode is exact, whatever its damping and the step."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

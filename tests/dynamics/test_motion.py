@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What is to be computed is whole before anything moves."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Axial forces whose place moves: what they soften, as matrices and in the loop."""
 
-from __future__ import annotations
-
 import tracemalloc
 from dataclasses import replace
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The forces of a step satisfy the laws of all rows; a step without such forces is halved."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

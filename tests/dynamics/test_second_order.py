@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Modes softened by axial forces, and unstable motions limited by contact."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A contact may have one play above and another below, and may be pressed in from both sides."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 

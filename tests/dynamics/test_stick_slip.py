@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A mass that a spring draws along against dry friction: cycles, speeds, energy, order."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A trajectory labels what the integrator leaves and measures it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

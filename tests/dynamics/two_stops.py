@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A small system that impacts make chaotic, and the linear one that it is without its stops."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from dynamics.contact import PowerContact

@@ -4,8 +4,6 @@
 It replaces the outputs in the file, as *Run All* of Jupyter does.
 """
 
-from __future__ import annotations
-
 import ast
 import json
 import sys

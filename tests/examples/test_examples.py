@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The examples of a notebook's length give the numbers that they should."""
 
-from __future__ import annotations
-
 import sys
 from importlib import import_module
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The notebook of the examples, run again beside its outputs."""
 
-from __future__ import annotations
-
 import json
 from copy import deepcopy
 from typing import Any

@@ -5,8 +5,6 @@
 command.
 """
 
-from __future__ import annotations
-
 import argparse
 import shlex
 import sys

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Case files with errors in a value, in a key, in a table, in the bytes."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from random import Random

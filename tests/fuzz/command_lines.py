@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Command lines with errors."""
 
-from __future__ import annotations
-
 from random import Random
 
 _WORDS = (

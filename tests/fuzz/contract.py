@@ -5,8 +5,6 @@ Exit status 0, 1, 2 or 3; nothing on stderr but one line, shorter than 300 chara
 where it is not 0, besides progress; 4 GB; 60 s of CPU beyond what was announced.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import resource

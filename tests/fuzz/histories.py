@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Damaged and other files in place of a load history."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A sample of ``make fuzz``, and whether a breach would be seen."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Invalid and extreme values, as a TOML file spells them."""
 
-from __future__ import annotations
-
 from random import Random
 
 NUMBERS = (

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What each segment carries of the forces along the boom, against sums by hand."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Pads: on the axis in the plane, in the corners of the boxes in space."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Parts of a boom check their fields, and give places from the ends of their segments."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Which pads have room on their walls. Reference: sizes by hand."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import pytest

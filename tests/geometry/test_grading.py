@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Graded meshes are closed, exact, mirror images of themselves, and as fine as they are to be."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import replace
 

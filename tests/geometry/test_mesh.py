@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The mesh of a box is closed, exact, symmetric, and has lines where they were asked for."""
 
-from __future__ import annotations
-
 import re
 import resource
 import signal

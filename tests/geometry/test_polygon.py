@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Polygons of plates: their properties, plates, faces and mirrors, and what is no polygon."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 

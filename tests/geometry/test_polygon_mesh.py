@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Meshes of polygons: plates in their places, mirror images to round-off, closed by diaphragms."""
 
-from __future__ import annotations
-
 from collections import Counter
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Box sections have the numbers that integration over their plates gives, and can be inferred."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Polygons beside finite elements over the section, by the program sectionproperties."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from functools import cache

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Shear flow of closed walls: equilibrium, the work that it does, the shear centre."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """How far a drive may draw a segment. Reference: lengths by hand."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

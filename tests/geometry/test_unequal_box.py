@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A box whose walls differ: its centroid, its properties about it, its faces, what it refuses."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

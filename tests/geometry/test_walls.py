@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What room a section leaves to another one, and what fits and touches in a boom."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

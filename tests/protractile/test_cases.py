@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Cases from Python beside the command line."""
 
-from __future__ import annotations
-
 import sys
 import tomllib
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Models of a boom that no case file declares, beside the same ones from a case file."""
 
-from __future__ import annotations
-
 import tomllib
 from dataclasses import replace
 from typing import Any

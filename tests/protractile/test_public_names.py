@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The public names are there, documented, and cost nothing until they are used."""
 
-from __future__ import annotations
-
 import doctest
 import inspect
 import subprocess

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Beams that nothing can calibrate; see ``bad_edits``."""
 
-from __future__ import annotations
-
 from tests.runs.coarse_case import replacing
 
 CALIBRATIONS = [

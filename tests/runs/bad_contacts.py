@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Slips in how segments touch and rub; see ``bad_edits``."""
 
-from __future__ import annotations
-
 from tests.runs.coarse_case import CONTACT, FROM_EXPONENT, adding, replacing
 
 CONTACTS = [

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Slips in a case file: what stands in the coarse case, what replaces it, and the line it earns."""
 
-from __future__ import annotations
-
 from tests.runs.bad_booms import NUMBERS
 from tests.runs.bad_calibrations import CALIBRATIONS
 from tests.runs.bad_contacts import CONTACTS

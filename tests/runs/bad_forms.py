@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Slips in the form of a case file: keys, types, what is missing; see ``bad_edits``."""
 
-from __future__ import annotations
-
 from tests.runs.coarse_case import CONTACT, replacing
 
 BOX = "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.0065 }"

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Slips in collars and diaphragms; see ``bad_edits``."""
 
-from __future__ import annotations
-
 from tests.runs.coarse_case import adding
 
 STIFFENERS = [

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Slips in what holds a boom to the ground; see ``bad_edits``."""
 
-from __future__ import annotations
-
 from tests.runs.coarse_case import replacing
 
 _CYLINDER = (

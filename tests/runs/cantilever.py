@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A cantilever under a uniform load as a case, and its closed forms."""
 
-from __future__ import annotations
-
 YOUNG, MASS, SECOND, LENGTH, LOAD = 2.0e11, 20.0, 1.0e-6, 4.0, 100.0
 
 CANTILEVER = f"""

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What cases of several tests say alike, and how they are read and refused."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The coarse case as its file has it, for tests that change a line of it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from runs import CASES

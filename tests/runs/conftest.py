@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Sweeps that are planned and not run, and the figures that are saved."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What acts on a boom, from the case file to the motion."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The inspection arm with friction: in space, friction rows of pads in the corners are equal."""
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What each model says of the boom at rest."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

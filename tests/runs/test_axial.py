@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Forces along a boom from the case file on: what they are, what they soften, what is refused."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

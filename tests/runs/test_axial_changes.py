@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Axial forces that change with time, of booms that slew and luff."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

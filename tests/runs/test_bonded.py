@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Contacts that press are ties, and those of the ground stay."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

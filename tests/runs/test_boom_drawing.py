@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The drawing of a case's boom: everything that the case names, where it is."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from matplotlib import rc_context

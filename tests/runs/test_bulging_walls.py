@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Lateral play that walls close as they bulge under vertical pads."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What the cache keeps, and that it keeps it whole."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Shells of booms at rest as decks for CalculiX."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import subprocess

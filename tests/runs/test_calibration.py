@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Beams that a shell calibrates, from a case file to a motion."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

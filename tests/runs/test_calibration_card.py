@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The card of a calibrated beam."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

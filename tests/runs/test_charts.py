@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Curves that a page carries: the samples of the files, and few enough of them."""
 
-from __future__ import annotations
-
 import base64
 import gzip
 import json

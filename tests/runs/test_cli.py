@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Every command, and for every mistake of a user one line on stderr and its exit status."""
 
-from __future__ import annotations
-
 import errno
 import json
 import os

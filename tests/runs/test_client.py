@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The paper is one client: what it adds to a report, and that no other module knows it."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

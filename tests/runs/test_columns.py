@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """CSV files as programs write them are read as what they say, or refused in one line."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Load cases and combinations of a case, their statics, and their tables."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from math import cos, hypot, radians, sin
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Combinations by a shell: one reduction for each geometry, patch stresses and buckling."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

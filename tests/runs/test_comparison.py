@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Each level of a comparison finds the difference that was put in, and no other."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Each model is compared with its reference model; the differences equal stored values."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A luffed boom from its case file to its trajectory."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -4,8 +4,6 @@
 Reference of all: analytic, conservation of energy.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

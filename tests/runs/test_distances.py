@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """How far models of a sweep are from its reference, as numbers, tables and charts."""
 
-from __future__ import annotations
-
 import csv
 from dataclasses import replace
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What a run takes is told beforehand, and what takes much is not started unasked."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Booms for other programs."""
 
-from __future__ import annotations
-
 import re
 import sys
 from collections.abc import Callable

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Segments by length, drawn out by their joints: everything on them goes with them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A model that fails costs the others nothing, and what is finished is not computed again."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from threading import Event, current_thread, main_thread

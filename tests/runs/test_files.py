@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A file of a run is whole or not there, whatever interrupts the writing."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Contact laws that a case file gives as tables."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

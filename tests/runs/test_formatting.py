@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Numbers are written for people."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What a boom weighs, and what its segments are made of, from the case file on."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

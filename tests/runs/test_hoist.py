@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Hoisting in a case: statics and results of a hanging load, messages for bad input."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The tables of what can be known hold the summary's numbers, and nothing where it has none."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from typing import Any

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Loads of a case, and statics, stresses and utilisations of the boom under them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Cycles are counted as the standard counts them, and do what its curves say."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

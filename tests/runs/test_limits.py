@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Limits of a case in tables, figures and sweeps, and in the exit status."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The live page without a browser: its knobs, its answers, and requests that it refuses."""
 
-from __future__ import annotations
-
 import json
 import re
 import threading

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Loads on a part of a segment and moments, in every kind of model."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

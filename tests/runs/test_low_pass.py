@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Peaks of a slow motion come out where they are, whatever ripple lies on it."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Ensembles of a run, and how few steps keep the slow motion's peaks."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Modes are named for what moves in them, and found again in other models."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

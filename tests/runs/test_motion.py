@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """By which steps the motions of a model are computed, and what is left where one cannot be."""
 
-from __future__ import annotations
-
 import pytest
 
 from dynamics.failure import NumericsError

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What a model has gone through, beside what it is at rest."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

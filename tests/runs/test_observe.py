@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Segments that start with a velocity and a turn, and what is observed of them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A run's folder: what lies in it is in the report, and columns say whose they are."""
 
-from __future__ import annotations
-
 import csv
 import json
 from dataclasses import replace

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Slide pads as a case gives them: their stiffness, their plays, how hard they are pressed."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Buckling of walls by formulas for long panels."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

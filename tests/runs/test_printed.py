@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Verdicts over several runs, and models, in the terminal."""
 
-from __future__ import annotations
-
 import pytest
 import xarray as xr
 

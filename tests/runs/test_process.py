@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What a command says, on streams of every kind, and how ranks end together."""
 
-from __future__ import annotations
-
 import io
 import os
 import subprocess

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Proofs of combinations: formulas by hand, the table, the exit status and the report."""
 
-from __future__ import annotations
-
 from math import pi, sqrt
 from pathlib import Path
 

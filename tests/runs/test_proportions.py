@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Slips of the unit or of the sign are told, and cases that come with the project have none."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

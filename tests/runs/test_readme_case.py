@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The boom that the README shows is one."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from runs.case import reading as case_file

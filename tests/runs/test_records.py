@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A record is what was written, to the last bit, and nothing else."""
 
-from __future__ import annotations
-
 import pickle
 from io import BytesIO
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """How far the tip swings while a boom is drawn out, and how fast it may be drawn out therefore."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What a designer asks first, as the report says it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import log, pi
 from typing import Any

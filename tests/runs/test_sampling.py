@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Scatter of results under normally distributed numbers of a case."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Slips of a unit or of a sign are told, or refused where no boom can be meant; booms have none."""
 
-from __future__ import annotations
-
 import io
 import re
 from pathlib import Path

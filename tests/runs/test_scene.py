@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A scene places points, shells' and beams' alike, where a picture is to show them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

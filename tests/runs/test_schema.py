@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The JSON Schema that editors check case files against: right about good and bad ones."""
 
-from __future__ import annotations
-
 import copy
 import json
 import tomllib

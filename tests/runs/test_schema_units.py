@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A case in millimetres, tonnes and seconds is the same case; every number says its unit."""
 
-from __future__ import annotations
-
 import io
 import re
 import tomllib

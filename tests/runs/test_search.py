@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Values of a key at a bound, and changes of results by those of each number."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pandas as pd

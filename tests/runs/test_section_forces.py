@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What sections carry along the boom: given axial forces, and what luffing cylinders push."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

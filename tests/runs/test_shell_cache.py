@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A shell from the cache is the one that was computed."""
 
-from __future__ import annotations
-
 import os
 from dataclasses import replace
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What a shell leaves besides its trajectory."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

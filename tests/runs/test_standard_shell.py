@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The shell that many booms share is that of each, whatever its loads."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

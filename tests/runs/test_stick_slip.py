@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Drives of a given stiffness: what a case says of them, slips in it, and what a run tells."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What a case says of collars and diaphragms."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A summary is written as it was read, and says what it cannot be read for."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A sweep is what single runs of its points are, and runs no point twice."""
 
-from __future__ import annotations
-
 import csv
 import math
 from dataclasses import replace

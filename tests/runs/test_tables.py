@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A table of text is the same table in the terminal, in Markdown and in the report."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

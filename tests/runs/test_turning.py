@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Slewing and luffing of a case: loads, results, messages for bad input."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import Path

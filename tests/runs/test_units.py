@@ -6,8 +6,6 @@ a number of its own. Friction makes the motion regular, so that round-off stays 
 the step resolves the contacts.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

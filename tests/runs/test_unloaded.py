@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Booms that nothing loads, that are thrown, or that are let go, from case to report."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

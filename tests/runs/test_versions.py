@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What computed: no change of the sources goes unnoticed."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from runs.folder.versions import packages, program, sources

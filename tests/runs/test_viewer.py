@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A page holds a boom in motion by few numbers of few bits."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

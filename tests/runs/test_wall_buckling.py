@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Buckling of walls from the case to the report."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

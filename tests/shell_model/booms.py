@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Booms for the shell's tests: the paper's in its plane and in space, and one of three segments."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from dynamics.contact import PowerContact

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The shell in space: pads in the corners, lateral motion and twist, friction between planes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

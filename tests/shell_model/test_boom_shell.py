@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The boom of shells as a gap system: contact rows, their weights and sides, observers."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

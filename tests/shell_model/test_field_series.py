@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A time series opens elsewhere, and holds the displacements and stresses of its times."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from xml.etree import ElementTree
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What a killed process has begun to compile does not keep the next one from it."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

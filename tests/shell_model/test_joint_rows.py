@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Friction, stops, loads and ties of the flat shell, and booms of three segments."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Section forces and deflections along segments of shells."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

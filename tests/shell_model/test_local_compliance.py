@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What the walls give way where segments touch, and how far meshes and reductions are off it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 

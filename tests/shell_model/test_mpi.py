@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Several ranks give what one gives."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 from dataclasses import replace

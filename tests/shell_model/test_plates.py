@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What the element must do exactly, plates with known solutions, sections that twist."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

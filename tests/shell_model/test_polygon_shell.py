@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Shells of polygons: folds, inclined walls, stations and stiffeners on them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The reduced segment answers as the full one does, and says how well."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Callable

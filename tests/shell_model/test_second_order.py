@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Shells under axial forces: what walls give way by, and booms reduced as in full."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

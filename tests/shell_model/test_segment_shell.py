@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The shell of one segment behaves as a beam where a beam is right."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

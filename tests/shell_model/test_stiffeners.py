@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Collars and diaphragms: three walls on an edge, with their mass and what they stiffen."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

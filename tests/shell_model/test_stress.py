@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Recovered stresses are those of plates with known strains, and of beams away from contacts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Supports of every kind and point masses, in both planes and in twist, against beams."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Tapered shells agree with tapered beams."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

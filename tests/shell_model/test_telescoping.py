@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Shells that telescope: rows and springs along the way, motion beside that of beams."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Estimated compliance of walls under pads against that of the shell."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

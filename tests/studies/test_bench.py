@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The benchmark compares methods at equal error in complete tables; no time is asserted."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

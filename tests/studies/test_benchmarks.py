@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The study of the shell element on coarse meshes."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

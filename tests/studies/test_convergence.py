@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The report of the studies, and the page of proofs."""
 
-from __future__ import annotations
-
 import io
 import json
 import sys
 import warnings
 from pathlib import Path
+from typing import Self
 
 import pytest
 from rich.console import Console
@@ -87,7 +86,7 @@ class _Here:
 
     def __init__(self, *_: object, **__: object) -> None: ...
 
-    def __enter__(self) -> _Here:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None: ...

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The gallery shows the pictures that its script makes, each with where it comes from."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

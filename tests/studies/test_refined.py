@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Order, limit and index of three grids; closed forms and models of other studies."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

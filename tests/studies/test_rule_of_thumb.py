@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The rule of thumb is the mechanics that it is derived from, and tells a shell's distance."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Scaling is measured in separate processes, with complete tables; no time is asserted."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

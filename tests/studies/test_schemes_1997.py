@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Schemes of the 1990s against their textbook, and contacts by them against a spring."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The shell's error against a solid, on coarse meshes of thick walls."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

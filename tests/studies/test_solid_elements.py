@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The solid of a box is right by formulas, and the shell is right by the solid."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from typing import Any

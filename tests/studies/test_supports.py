@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Booms on hinges, cylinders, springs and dashpots against closed forms."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Wall times are taken in turns, and shown with the digits that they have."""
 
-from __future__ import annotations
-
 import itertools
 from functools import partial
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The unreduced shell moves as its own matrices say, and as the reduced one does."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Cheap rows of the validation, its page, and the template of a measured boom."""
 
-from __future__ import annotations
-
 import csv
 import re
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Two points of the paper's boom on two coarse meshes, and what is told of some motions."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -5,8 +5,6 @@ Its messages are JSON objects that end with a zero byte: requests go to the brow
 descriptor 3, answers and events come from its 4.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import select

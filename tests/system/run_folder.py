@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The command line as a user meets it, and what every run's folder must hold."""
 
-from __future__ import annotations
-
 import csv
 import json
 import tomllib

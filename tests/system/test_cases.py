@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Every case that comes with the project runs and is reported, on coarse meshes and briefly."""
 
-from __future__ import annotations
-
 from html import unescape
 from pathlib import Path
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What an installation brings, and that the files which name a version name the same."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from pathlib import Path

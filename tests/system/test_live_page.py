@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The live page in a real browser: numbers change, results follow, refusals are shown."""
 
-from __future__ import annotations
-
 import re
 import threading
 import tomllib

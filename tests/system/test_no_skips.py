@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A skipped test fails in runs that must not skip tests."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

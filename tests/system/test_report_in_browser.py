@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The report as a reader meets it: in a real browser, as narrow as a telephone."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterator

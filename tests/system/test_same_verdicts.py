@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What is judged does not hang on round-off, which another machine does otherwise."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

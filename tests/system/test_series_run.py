@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Runs of beams alone: every file opens, and a folder that is not whole is refused."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

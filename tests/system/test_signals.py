@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Ctrl-C and SIGTERM end a command in one line, and nothing of it is left."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

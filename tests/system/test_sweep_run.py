@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The sweep as a command: on all cores, on ranks, killed and taken up again."""
 
-from __future__ import annotations
-
 import io
 import os
 import shutil

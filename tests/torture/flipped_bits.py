@@ -6,8 +6,6 @@ comes of it must be what comes without, to the last bit, and a notice must say t
 made again, once.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from logging.handlers import BufferingHandler

@@ -5,8 +5,6 @@ A disk that is full stays full; one that errs does so once. The calls are those 
 all files of a run, a report and a sweep are written.
 """
 
-from __future__ import annotations
-
 import builtins
 import errno
 import io
@@ -14,7 +12,7 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 from unittest.mock import patch
 
 from matplotlib.figure import Figure as Sheet
@@ -98,7 +96,7 @@ class _File:
             if self._written:
                 self._disk.check(None)
 
-    def __enter__(self) -> _File:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *error: object) -> None:

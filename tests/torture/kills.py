@@ -5,8 +5,6 @@ What was there before stays, or all is there that is new. The next run leaves wh
 one leaves, to the last byte, and nothing else beside it.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import signal

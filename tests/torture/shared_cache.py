@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Runs that share a cache which is cold, and runs that write to one folder."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
