@@ -21,16 +21,12 @@ def beam(steel: Material) -> Callable[..., Segment]:
 
     def make(*, supports: Sequence[float | Support] = (), **changes: Any) -> Segment:
         numbers: dict[str, Any] = {
-            "name": "beam",
-            "start": 3.0,
-            "end": 8.0,
-            "material": steel,
+            "name": "beam", "start": 3.0, "end": 8.0, "material": steel,
             "mass_per_length": BOX.mass_per_length(steel.density),
             "second_moment_of_area": BOX.second_moment_of_area,
-            "rotary_inertia": steel.density * BOX.second_moment_of_area,
-            "section": BOX,
+            "rotary_inertia": steel.density * BOX.second_moment_of_area, "section": BOX,
             "supports": tuple(x if isinstance(x, Support) else Support(x) for x in supports),
-        }
+        }  # fmt: skip
         return Segment(**numbers | changes)
 
     return make

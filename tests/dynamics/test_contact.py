@@ -76,25 +76,18 @@ def test_shares_add_up_to_the_whole(law: PowerContact) -> None:
     ("arguments", "message"),
     [
         ({"stiffness": -1.0}, "stiffness must be a number of N/m^n, not negative, got -1.0"),
-        (
-            {"stiffness_below": -1.0},
-            "stiffness_below must be a number of N/m^n, not negative, got -1.0",
-        ),
-        (
-            {"stiffness": float("inf")},
-            "stiffness must be a number of N/m^n, not negative, got inf",
-        ),
+        ({"stiffness_below": -1.0},
+         "stiffness_below must be a number of N/m^n, not negative, got -1.0"),
+        ({"stiffness": float("inf")}, "stiffness must be a number of N/m^n, not negative, got inf"),
         ({"stiffness": 0.0}, "stiffness must be positive on one side at least, got 0.0 on both"),
-        (
-            {"stiffness": 0.0, "stiffness_below": 0.0},
-            "stiffness must be positive on one side at least, got 0.0 on both",
-        ),
+        ({"stiffness": 0.0, "stiffness_below": 0.0},
+         "stiffness must be positive on one side at least, got 0.0 on both"),
         ({"exponent": 0.5}, "exponent must be at least 1, got 0.5"),
         ({"exponent": float("nan")}, "exponent must be at least 1, got nan"),
         ({"damping": -1.0}, "damping must be finite and not negative, got -1.0 s/m"),
         ({"damping": float("nan")}, "damping must be finite and not negative, got nan s/m"),
     ],
-)
+)  # fmt: skip
 def test_bad_values_are_refused(arguments: dict[str, float], message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         PowerContact(**{"stiffness": 1.0e13, "exponent": 2.0, **arguments})

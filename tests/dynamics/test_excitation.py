@@ -168,36 +168,20 @@ def test_a_history_of_one_s_own() -> None:
         (Sine, (-1.0,), "frequency must be finite and positive, got -1.0 Hz"),
         (Sine, (1.0, float("inf")), "phase must be finite, got inf rad"),
         (PiecewiseLinear, ((), ()), "a history needs one value for each time, got 0 for 0"),
-        (
-            PiecewiseLinear,
-            ((0.0, 1.0), (1.0,)),
-            "a history needs one value for each time, got 1 for 2",
-        ),
+        (PiecewiseLinear, ((0.0, 1.0), (1.0,)),
+         "a history needs one value for each time, got 1 for 2"),
         (PiecewiseLinear, ((0.0, 0.0), (1.0, 2.0)), "times must rise"),
         (PiecewiseLinear, ((0.0, 1.0), (1.0, float("nan"))), "times and values must be finite"),
-        (
-            Excitation,
-            (np.ones(1), np.cos),
-            "a history needs kinks, peak and fastest beside its values; give a Step, Ramp, Sine, "
-            "PiecewiseLinear or other History, got ufunc",
-        ),
-        (
-            Excitation,
-            (np.ones(1), Own(kinks=(1.0, 0.5))),
-            "the kinks of a history must be finite and rise",
-        ),
-        (
-            Excitation,
-            (np.ones(1), Own(peak=float("nan"))),
-            "peak of a history must be finite, not negative, got nan",
-        ),
-        (
-            Excitation,
-            (np.ones(1), Own(fastest=-1.0)),
-            "fastest of a history must be finite, not negative, got -1.0",
-        ),
+        (Excitation, (np.ones(1), np.cos), "a history needs kinks, peak and fastest beside its "
+         "values; give a Step, Ramp, Sine, PiecewiseLinear or other History, got ufunc"),
+        (Excitation, (np.ones(1), Own(kinks=(1.0, 0.5))),
+         "the kinks of a history must be finite and rise"),
+        (Excitation, (np.ones(1), Own(peak=float("nan"))),
+         "peak of a history must be finite, not negative, got nan"),
+        (Excitation, (np.ones(1), Own(fastest=-1.0)),
+         "fastest of a history must be finite, not negative, got -1.0"),
     ],
-)
+)  # fmt: skip
 def test_bad_values_are_refused(
     history: Callable[..., object], arguments: tuple[object, ...], message: str
 ) -> None:

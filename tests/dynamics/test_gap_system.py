@@ -85,11 +85,8 @@ def test_no_rest_with_a_rigid_mode() -> None:
         ("damping", np.ones(4), "damping must have the shape (3,), got (4,)"),
         ("dashpots", np.ones((2, 2)), "dashpots must have the shape (2, 3), got (2, 2)"),
         ("dashpots", np.full((1, 3), np.nan), "dashpots must be finite"),
-        (
-            "observers",
-            {"tip": Observer(np.ones(2))},
-            "observer 'tip' must have the shape (3,), got (2,)",
-        ),
+        ("observers", {"tip": Observer(np.ones(2))},
+         "observer 'tip' must have the shape (3,), got (2,)"),
         ("load", np.array([0.0, np.nan, 0.0]), "load must be finite"),
         ("rows", np.full((2, 3), np.inf), "rows must be finite"),
         ("observers", {"tip": Observer(np.full(3, np.nan))}, "observer 'tip' must be finite"),
@@ -97,18 +94,12 @@ def test_no_rest_with_a_rigid_mode() -> None:
         ("station_of_row", np.array([0, 2]), "station_of_row must hold positions in stations"),
         ("friction_rows", np.ones((1, 3)), "friction_rows must have the shape (0, 3), got (1, 3)"),
         ("frictions", [RUB], "friction_rows must have the shape (1, 3), got (0, 3)"),
-        (
-            "excitations",
-            [Excitation(np.ones(2), Step())],
-            "excitation 0 must have the shape (3,), got (2,)",
-        ),
-        (
-            "station_directions",
-            ("z",),
-            "station_directions must be one for each of 2 stations, got 1",
-        ),
+        ("excitations", [Excitation(np.ones(2), Step())],
+         "excitation 0 must have the shape (3,), got (2,)"),
+        ("station_directions", ("z",),
+         "station_directions must be one for each of 2 stations, got 1"),
     ],
-)
+)  # fmt: skip
 def test_inconsistent_arrays_are_refused(name: str, value: object, message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         GapSystem(**parts() | {name: value})

@@ -15,17 +15,11 @@ from dynamics.motion import Motion
 
 # ω² in rad²/s², c in 1/s, load in N/√kg
 MODES = {
-    "undamped": (40.0, 0.0, 3.0),
-    "undamped, slow": (1.0e-6, 0.0, 3.0),
-    "damped": (40.0, 0.7, 3.0),
-    "critically damped": (2.25, 3.0, 3.0),
-    "overdamped": (2.0, 9.0, 3.0),
-    "rigid": (0.0, 0.0, 3.0),
-    "rigid damped": (0.0, 0.7, 3.0),
-    "stiff": (1.0e8, 20.0, 3.0),
-    "tipping over": (-2.25, 0.0, 3.0),
+    "undamped": (40.0, 0.0, 3.0), "undamped, slow": (1.0e-6, 0.0, 3.0), "damped": (40.0, 0.7, 3.0),
+    "critically damped": (2.25, 3.0, 3.0), "overdamped": (2.0, 9.0, 3.0), "rigid": (0.0, 0.0, 3.0),
+    "rigid damped": (0.0, 0.7, 3.0), "stiff": (1.0e8, 20.0, 3.0), "tipping over": (-2.25, 0.0, 3.0),
     "tipping over, damped": (-2.25, 0.7, 3.0),
-}
+}  # fmt: skip
 
 
 def modes() -> GapSystem:

@@ -67,14 +67,10 @@ def rider(
 
     numbers: dict[str, Any] = {
         "omega2": np.append(frequencies(count) ** 2, 0.0),
-        "load": np.append(np.zeros(count), -weight / np.sqrt(mass)),
-        "rows": row(0.0)[None],
-        "laws": [law],
-        "station_of_row": np.array([0]),
-        "stations": [start],
-        "observers": {"tip": Observer(np.append(sines(0.5 * LENGTH, count), 0.0))},
-        **changes,
-    }
+        "load": np.append(np.zeros(count), -weight / np.sqrt(mass)), "rows": row(0.0)[None],
+        "laws": [law], "station_of_row": np.array([0]), "stations": [start],
+        "observers": {"tip": Observer(np.append(sines(0.5 * LENGTH, count), 0.0))}, **changes,
+    }  # fmt: skip
     scales = {"rows": 1.0}
     if numbers.get("frictions"):
         scales["friction_rows"] = 1.0

@@ -43,14 +43,10 @@ ACROSS = np.array([[0.3, 0.6, 0.8, -0.5], [-0.7, 0.4, 0.2, 0.6]])
 def boom(law: ContactLaw = POWER, **changes: Any) -> GapSystem:
     """One rigid and three elastic modes with two contacts."""
     numbers: dict[str, Any] = {
-        "omega2": np.array([0.0, 40.0, 900.0, 2.5e4]),
-        "load": np.array([-8.0, 3.0, 2.0, 1.0]),
-        "rows": ROWS,
-        "laws": [law, law],
-        "station_of_row": np.array([0, 1]),
-        "stations": [0.0, 1.0],
-        "observers": {"tip": Observer(np.array([1.0, 0.7, -0.4, 0.2]))},
-    }
+        "omega2": np.array([0.0, 40.0, 900.0, 2.5e4]), "load": np.array([-8.0, 3.0, 2.0, 1.0]),
+        "rows": ROWS, "laws": [law, law], "station_of_row": np.array([0, 1]),
+        "stations": [0.0, 1.0], "observers": {"tip": Observer(np.array([1.0, 0.7, -0.4, 0.2]))},
+    }  # fmt: skip
     return GapSystem(**numbers | changes)
 
 
@@ -154,16 +150,11 @@ def lossy_press() -> Motion:
 @pytest.mark.parametrize(
     ("motion", "bound"),
     [
-        (pressed(1.0), 1e-5),
-        (pressed(2.0), 1e-4),
-        (lossy_press(), 5e-6),
-        (sliding(), 5e-7),
-        (telescoping(), 3e-4),
-        (driven(), 1e-4),
-        (Motion(two_modes(), 0.6, 0.04), 5e-6),
+        (pressed(1.0), 1e-5), (pressed(2.0), 1e-4), (lossy_press(), 5e-6), (sliding(), 5e-7),
+        (telescoping(), 3e-4), (driven(), 1e-4), (Motion(two_modes(), 0.6, 0.04), 5e-6),
     ],
     ids=["linear", "quadratic", "losses", "sliding", "telescoping", "driven", "one blow"],
-)
+)  # fmt: skip
 def test_second_order_in_the_step(motion: Motion, bound: float) -> None:
     """Reference: other code, scipy's DOP853. Slope 2, and the error at 0.25 ms."""
     errors = errors_in_the_step(motion, runge_kutta(motion), 2e-3 * 0.5 ** np.arange(4))

@@ -34,17 +34,10 @@ def test_variables_dims_and_units(one_mass: Callable[..., GapSystem]) -> None:
     run = AdaptiveStep()(Motion(system, 0.2, output_step=1.0e-2))
     units = {name: variable.attrs.get("units") for name, variable in run.data.variables.items()}
     assert units == {
-        "time": "s",
-        "station": "m",
-        "tip": "m",
-        "stress": "Pa",
-        "contact_force": "N",
-        "contact_force_peak": "N",
-        "friction_force": "N",
-        "direction": None,
-        "gap": "m",
+        "time": "s", "station": "m", "tip": "m", "stress": "Pa", "contact_force": "N",
+        "contact_force_peak": "N", "friction_force": "N", "direction": None, "gap": "m",
         **dict.fromkeys(ENERGIES, "J"),
-    }
+    }  # fmt: skip
     for name in ("contact_force", "contact_force_peak", "friction_force", "gap"):
         assert run.data[name].dims == ("time", "station")
     for name in ("tip", "stress", *ENERGIES):

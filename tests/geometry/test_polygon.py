@@ -219,46 +219,23 @@ def test_sizes_of_the_short_forms() -> None:
     ("corners", "thicknesses", "message"),
     [
         (((0, 0), (1, 0)), (0.1, 0.1), "a closed polygon has three corners at least, got 2"),
-        (
-            ((0, 0), (1, 0), (0, 1)),
-            (0.01, 0.01),
-            "3 corners have as many plates between them, got 2 thicknesses; give one for each "
-            "plate, the last one from the last corner to the first",
-        ),
-        (
-            ((0, 0), (1, np.inf), (0, 1)),
-            (0.01,) * 3,
-            "corners must be numbers of m below 1e+06, got inf",
-        ),
-        (
-            ((0, 0), (1, 0), (0, 1)),
-            (0.01, 0.0, 0.01),
-            "thicknesses must be numbers of m above 0 and below 1e+06, got 0.0",
-        ),
+        (((0, 0), (1, 0), (0, 1)), (0.01, 0.01), "3 corners have as many plates between them, got "
+         "2 thicknesses; give one for each plate, the last one from the last corner to the first"),
+        (((0, 0), (1, np.inf), (0, 1)), (0.01,) * 3,
+         "corners must be numbers of m below 1e+06, got inf"),
+        (((0, 0), (1, 0), (0, 1)), (0.01, 0.0, 0.01),
+         "thicknesses must be numbers of m above 0 and below 1e+06, got 0.0"),
         (((0, 0), (1, 0), (0, 1), (0, 0)), (0.01,) * 4, "corners 4 and 1 are one; give each once"),
-        (
-            ((0, 0), (1, 0), (0.4, 0.4), (0, 1)),
-            (0.01,) * 4,
-            "corner 3 turns inwards; plates go once around, every corner outwards",
-        ),
-        (
-            ((0, 0), (1, 0), (2, 0)),
-            (0.01,) * 3,
-            "corner 1 turns back; plates go once around, every corner outwards",
-        ),
-        (
-            tuple((np.cos(0.8 * np.pi * k), np.sin(0.8 * np.pi * k)) for k in range(5)),
-            (0.01,) * 5,
-            "the plates go around more than once",
-        ),
-        (
-            ((0, 0), (1, 0), (1, 0.1), (0, 0.1)),
-            (0.12, 0.01, 0.12, 0.01),
-            "plate 2 of 0.01 m and its neighbours leave no room in the polygon; they must be "
-            "thinner",
-        ),
+        (((0, 0), (1, 0), (0.4, 0.4), (0, 1)), (0.01,) * 4,
+         "corner 3 turns inwards; plates go once around, every corner outwards"),
+        (((0, 0), (1, 0), (2, 0)), (0.01,) * 3,
+         "corner 1 turns back; plates go once around, every corner outwards"),
+        (tuple((np.cos(0.8 * np.pi * k), np.sin(0.8 * np.pi * k)) for k in range(5)), (0.01,) * 5,
+         "the plates go around more than once"),
+        (((0, 0), (1, 0), (1, 0.1), (0, 0.1)), (0.12, 0.01, 0.12, 0.01),
+         "plate 2 of 0.01 m and its neighbours leave no room in the polygon; they must be thinner"),
     ],
-)
+)  # fmt: skip
 def test_bad_polygons_are_refused(
     corners: Sequence[tuple[float, float]], thicknesses: Sequence[float], message: str
 ) -> None:

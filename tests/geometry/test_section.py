@@ -228,27 +228,15 @@ def test_no_outer_box_so_compact(
         ("width", -0.4, "width must be a positive number of m, got -0.4"),
         ("flange", float("nan"), "flange must be a positive number of m, got nan"),
         ("web", float("inf"), "web must be a positive number of m, got inf"),
-        (
-            "web",
-            0.4,
-            "walls of 0.04 m (flange) and 0.4 m (web) leave no room in a box of 0.6 m x 0.4 m; "
-            "the walls must be thinner",
-        ),
+        ("web", 0.4, "walls of 0.04 m (flange) and 0.4 m (web) leave no room in a box of 0.6 m x "
+         "0.4 m; the walls must be thinner"),
         ("bottom_flange", 0.0, "bottom_flange must be a positive number of m, got 0.0"),
-        (
-            "bottom_flange",
-            1.3,
-            "walls of 0.04 m and 1.3 m (flange) and 0.01 m (web) leave no room in a box of 0.6 m "
-            "x 0.4 m; the walls must be thinner",
-        ),
-        (
-            "flange",
-            0.7,
-            "walls of 0.7 m (flange) and 0.01 m (web) leave no room in a box of 0.6 m x 0.4 m; "
-            "the walls must be thinner",
-        ),
+        ("bottom_flange", 1.3, "walls of 0.04 m and 1.3 m (flange) and 0.01 m (web) leave no room "
+         "in a box of 0.6 m x 0.4 m; the walls must be thinner"),
+        ("flange", 0.7, "walls of 0.7 m (flange) and 0.01 m (web) leave no room in a box of 0.6 m "
+         "x 0.4 m; the walls must be thinner"),
     ],
-)
+)  # fmt: skip
 def test_bad_boxes_are_refused(dimension: str, value: float, message: str) -> None:
     plates = {"height": 0.6, "width": 0.4, "flange": 0.04, "web": 0.01, dimension: value}
     with pytest.raises(SectionError, match=f"^{re.escape(message)}$"):

@@ -144,21 +144,16 @@ def test_in_space_a_boom_is_held_sideways_too(spatial_boom: Boom) -> None:
 
 FAULTS: Mapping[str, tuple[str, str, list[Support], Mapping[str, Any]]] = {
     "lug beside the segment": (
-        "cylinders[0].x",
-        "12 m lies outside 'outer'; it must be between 0 and 10 m",
-        [HINGE],
+        "cylinders[0].x", "12 m lies outside 'outer'; it must be between 0 and 10 m", [HINGE],
         {"cylinders": (replace(ARM, x=12.0),)},
     ),
     "no length": (
-        "cylinders[0].ground",
-        "must be another point than the lug; give x and z in m",
-        [HINGE],
+        "cylinders[0].ground", "must be another point than the lug; give x and z in m", [HINGE],
         {"cylinders": (replace(ARM, ground=(4.0, -0.3)),)},
     ),
     "an output of a cylinder's name": (
         "observations[0].name",
-        "'cylinder_force' is the name of another output already; give it its own",
-        [HINGE],
+        "'cylinder_force' is the name of another output already; give it its own", [HINGE],
         {"cylinders": (ARM,), "observations": (Observation("cylinder_force", 0, 5.0),)},
     ),
     "two side by side in a flat boom": (
@@ -203,7 +198,7 @@ FAULTS: Mapping[str, tuple[str, str, list[Support], Mapping[str, Any]]] = {
         [HINGE, Support(2.0, dashpot=1e3)],
         {},
     ),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(

@@ -117,14 +117,10 @@ PADS = (
         ({"pad": PAD}, "pad.length", LEFT + "0.12 m"),
         ({"contact_length": 0.15}, "contact_length", LEFT + "0.15 m"),
         ({"pads": PADS}, "pads[1].length", LEFT + "0.11 m"),
-        (
-            {"pad": replace(PAD, length=0.08), "stations": (5.38, 6.5)},
-            "pad.length",
-            "the pad at 5.38 m leaves 'base' as 'fly' telescopes by 1.1 m; make it shorter, or "
-            "move the station",
-        ),
+        ({"pad": replace(PAD, length=0.08), "stations": (5.38, 6.5)}, "pad.length", "the pad at "
+         "5.38 m leaves 'base' as 'fly' telescopes by 1.1 m; make it shorter, or move the station"),
     ],
-)
+)  # fmt: skip
 def test_pads_stay_on_both_segments(
     steel: Material, joint: dict[str, Any], key: str, message: str
 ) -> None:

@@ -24,19 +24,11 @@ if TYPE_CHECKING:
     from mpi4py.MPI import Intracomm
 
 _MODEL = {
-    "kind": "kantorovich",
-    "degrees_of_freedom": 4,
-    "modes": 4,
-    "frequencies": [1.0],
-    "step": 4.2e-6,
-    "steps": 2_380_952,
-    "contact_changes": 2020,
-    "first_contact": 0.11856,
-    "first_peak": {"tip": [0.554, 0.16888]},
-    "peak_contact_force": 441_005.9,
-    "energy_residual": 5.6e-5,
-    "seconds": {"build": 0.1, "motion": 0.2},
-}
+    "kind": "kantorovich", "degrees_of_freedom": 4, "modes": 4, "frequencies": [1.0],
+    "step": 4.2e-6, "steps": 2_380_952, "contact_changes": 2020, "first_contact": 0.11856,
+    "first_peak": {"tip": [0.554, 0.16888]}, "peak_contact_force": 441_005.9,
+    "energy_residual": 5.6e-5, "seconds": {"build": 0.1, "motion": 0.2},
+}  # fmt: skip
 
 
 def model_summary(**changes: Any) -> ModelSummary:

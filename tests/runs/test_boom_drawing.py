@@ -50,14 +50,10 @@ def test_unequal_walls_are_labelled() -> None:
 def test_drawing_of_a_lift_labels_every_part() -> None:
     """Reference: the case file."""
     assert legend(drawn("lift")) == [
-        "slide pads",
-        "support",
-        "cylinder, 30 MN/m",
-        "payload, 150 kg",
-        "1.595 kN down, perpendicular to the boom within 0.1 s",
-        "play 3 mm",
+        "slide pads", "support", "cylinder, 30 MN/m", "payload, 150 kg",
+        "1.595 kN down, perpendicular to the boom within 0.1 s", "play 3 mm",
         "self-weight, g = 9.807 m/s²",
-    ]
+    ]  # fmt: skip
 
 
 def test_boom_in_space_shows_lateral_loads() -> None:

@@ -208,16 +208,12 @@ BODY = COARSE[: COARSE.index("[[model]]")]
         ("model = [3]\n" + BODY, "model[1]: must be a table, got 3"),
         ("", "title: missing; it is the heading of the report"),
         (b'title = "a"\nx = "\xff"', "line 2: not UTF-8; save the file in this encoding"),
-        (
-            COARSE.replace("7850.0", "[" * 5000),
-            "file: not TOML: nested too deeply; a case has three levels at most",
-        ),
-        (
-            'x = """',
-            "file: not TOML: Unterminated string (at end of document); see https://toml.io",
-        ),
+        (COARSE.replace("7850.0", "[" * 5000),
+         "file: not TOML: nested too deeply; a case has three levels at most"),
+        ('x = """',
+         "file: not TOML: Unterminated string (at end of document); see https://toml.io"),
     ],
-)
+)  # fmt: skip
 def test_refuses_a_bad_file_with_one_exact_line(
     folder: Path, content: str | bytes, line: str
 ) -> None:
@@ -246,22 +242,15 @@ def test_a_byte_order_mark_is_no_fault(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("models", "mesh_size", "line"),
     [
-        (
-            ["shell", "plate"],
-            None,
-            "--models: 'plate' is not a model of the case; give 'kantorovich-4', 'kantorovich-5', "
-            "'beam-fe', 'timoshenko', 'beam-fe-bonded' or 'shell'",
-        ),
+        (["shell", "plate"], None, "--models: 'plate' is not a model of the case; give "
+         "'kantorovich-4', 'kantorovich-5', 'beam-fe', 'timoshenko', 'beam-fe-bonded' or 'shell'"),
         (None, -1.0, "--mesh-size: must be a finite number of m above 0, got -1"),
         (None, float("nan"), "--mesh-size: must be a finite number of m above 0, got nan"),
-        (
-            None,
-            1e-9,
-            "--mesh-size: 1e-09 m makes more than 2e+07 triangles; it must be at least 0.00176 m",
-        ),
+        (None, 1e-9,
+         "--mesh-size: 1e-09 m makes more than 2e+07 triangles; it must be at least 0.00176 m"),
         (["beam-fe"], 0.5, "--mesh-size: no shell is to be run; leave it out"),
     ],
-)
+)  # fmt: skip
 def test_refuses_a_selection_with_one_exact_line(models: Any, mesh_size: Any, line: str) -> None:
     case = load(str(CASES / "coarse.toml"))
     with pytest.raises(BadInput) as refused:

@@ -135,37 +135,27 @@ MISTAKES = {
     "run": "Missing argument 'CASE.toml'. (protractile --help tells more)",
     "fly case.toml": "No such command 'fly'. (protractile --help tells more)",
     "run nowhere.toml": "nowhere.toml: file: does not exist; give the path of a case file",
-    "run case.toml --models shell,plate": (
-        "case.toml: --models: 'plate' is not a model of the case; give 'kantorovich-4', "
-        "'kantorovich-5', 'beam-fe', 'timoshenko', 'beam-fe-bonded' or 'shell'"
-    ),
-    "run case.toml --mesh-size 0": (
-        "case.toml: --mesh-size: must be a finite number of m above 0, got 0"
-    ),
-    f"run case.toml {SERIES} --mesh-size 0.5": (
-        "case.toml: --mesh-size: no shell is to be run; leave it out"
-    ),
-    f"run case.toml {SERIES} --out case.toml": (
-        "case.toml: --out case.toml: is a file; give a folder"
-    ),
-    f"run case.toml {SERIES} --out case.toml/deeper": (
-        "case.toml: --out case.toml/deeper: cannot be written (Not a directory); give a folder "
-        "that can"
-    ),
-    f"run case.toml {SERIES} --out /proc/nowhere": (
-        "case.toml: --out /proc/nowhere: cannot be written (No such file or directory); give a "
-        "folder that can"
-    ),
-    f"run case.toml {SERIES} --out .": (
-        "case.toml: --out .: holds files that are not a run's; give a new folder or an earlier "
-        "run's"
-    ),
+    "run case.toml --models shell,plate": "case.toml: --models: 'plate' is not a model of the "
+    "case; give 'kantorovich-4', 'kantorovich-5', 'beam-fe', 'timoshenko', 'beam-fe-bonded' or "
+    "'shell'",
+    "run case.toml --mesh-size 0": "case.toml: --mesh-size: must be a finite number of m above 0, "
+    "got 0",
+    f"run case.toml {SERIES} --mesh-size 0.5": "case.toml: --mesh-size: no shell is to be run; "
+    "leave it out",
+    f"run case.toml {SERIES} --out case.toml": "case.toml: --out case.toml: is a file; give a "
+    "folder",
+    f"run case.toml {SERIES} --out case.toml/deeper": "case.toml: --out case.toml/deeper: cannot "
+    "be written (Not a directory); give a folder that can",
+    f"run case.toml {SERIES} --out /proc/nowhere": "case.toml: --out /proc/nowhere: cannot be "
+    "written (No such file or directory); give a folder that can",
+    f"run case.toml {SERIES} --out .": "case.toml: --out .: holds files that are not a run's; give "
+    "a new folder or an earlier run's",
     "check case.toml --picture boom.pdf": "case.toml: --picture boom.pdf: must end in .png",
     "report nowhere": "nowhere: folder: does not exist; give the folder of a run",
     "report .": ".: trajectories.nc: missing; give the folder of a run that has finished",
     "report case.toml": "case.toml: folder: is a file; give the folder of a run",
     "snapshot .": ".: trajectories.nc: missing; give the folder of a run that has finished",
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("command", MISTAKES)

@@ -36,21 +36,15 @@ SLOW = "figure-slow-peaks", "table-horizons", "table-slow-peaks"
     ("case", "changed"),
     [
         ("paper", {}),
-        (
-            "paper-friction",
-            {
-                "S2": [*SLOW],
-                "S3": [*SLOW, "table-peaks-against"],
-                "S7": [TIP, HEAD, "figure-friction", "table-whole"],
-                "S8": ["figure-friction", "figure-energy-residual", "table-steps"],
-            },
-        ),
-        (
-            "three-segments",
-            {"S6": [CLOSE_UP, HEAD, "figure-head-2"], "S11": [TIP, CLOSE_UP]},
-        ),
+        ("paper-friction",
+         {
+             "S2": [*SLOW], "S3": [*SLOW, "table-peaks-against"],
+             "S7": [TIP, HEAD, "figure-friction", "table-whole"],
+             "S8": ["figure-friction", "figure-energy-residual", "table-steps"],
+         }),
+        ("three-segments", {"S6": [CLOSE_UP, HEAD, "figure-head-2"], "S11": [TIP, CLOSE_UP]}),
     ],
-)
+)  # fmt: skip
 def test_evidence_of_each_statement(case: str, changed: dict[str, list[str]]) -> None:
     """Reference: the statements themselves; with friction others are meant."""
     found = evidence(case_file.load(str(CASES / f"{case}.toml")))

@@ -46,17 +46,12 @@ def case_of(csv: str, keys: str, key: str = "load") -> Case:
         ("0 0.5\n0.25 -1500\n", "x = 19.0\nmagnitude = 1.0"),
         ("t  [ms]   F [kN] # of a logger\n  0   0,0005\n250  -1,5\n", "x = 19.0"),
         ("t / s  F / kN\n0 5e-4\n0.25 -1.5\n", "x = 19.0"),
-        (
-            "t F v\ns kN m/s\n0 0.0005 30\n0.25 -1.5 31\n",
-            'x = 19.0\ncolumns = ["t", "F"]',
-        ),
+        ("t F v\ns kN m/s\n0 0.0005 30\n0.25 -1.5 31\n", 'x = 19.0\ncolumns = ["t", "F"]'),
         ("t [s],gust [%]\n0,50\n0.25,-150000\n", "magnitude = 1.0"),
-        (
-            "no,F (N),speed (km/h),t (s)\n1,0.5,30,0\n2,-1500,31,0.25\n",
-            'x = 19.0\ncolumns = ["t", "F (N)"]',
-        ),
+        ("no,F (N),speed (km/h),t (s)\n1,0.5,30,0\n2,-1500,31,0.25\n",
+         'x = 19.0\ncolumns = ["t", "F (N)"]'),
     ],
-)
+)  # fmt: skip
 def test_columns_are_read_in_their_units(csv: str, keys: str) -> None:
     """Reference: analytic, the same pairs in SI units."""
     (load,) = case_of(csv, keys).loads
@@ -174,18 +169,12 @@ def test_columns_of_no_file_are_refused() -> None:
     ("times", "note"),
     [
         ((0.0, 0.6), None),
-        (
-            (0.1, 0.5),
-            "lasts from 0.1 to 0.5 s, the run 0.6 s: its first value, 1, is held before; its last "
-            "value, 2, is held afterwards",
-        ),
-        (
-            (-1.0, 60.0),
-            "lasts from -1 to 60 s, the run 0.6 s: what is before t = 0 is left out; what comes "
-            "after the run is left out",
-        ),
+        ((0.1, 0.5), "lasts from 0.1 to 0.5 s, the run 0.6 s: its first value, 1, is held before; "
+         "its last value, 2, is held afterwards"),
+        ((-1.0, 60.0), "lasts from -1 to 60 s, the run 0.6 s: what is before t = 0 is left out; "
+         "what comes after the run is left out"),
     ],
-)
+)  # fmt: skip
 def test_end_of_a_series_gives_a_caution(times: tuple[float, float], note: str | None) -> None:
     """The coarse case lasts 0.6 s."""
     case = case_of(f"{times[0]},1\n{times[1]},2\n", "magnitude = 1.0")
@@ -197,18 +186,13 @@ def test_end_of_a_series_gives_a_caution(times: tuple[float, float], note: str |
 @pytest.mark.parametrize(
     ("text", "factor", "dimension"),
     [
-        ("N/m^1.5", 1.0, (-0.5, 1.0, -2.0)),
-        ("N/mm^2", 1.0e6, (-1.0, 1.0, -2.0)),
-        ("t/mm^3", 1.0e12, (-3.0, 1.0, 0.0)),
-        ("N s/m²", 1.0, (-1.0, 1.0, -1.0)),
-        ("kN·m", 1.0e3, (2.0, 1.0, -2.0)),
-        ("1/s", 1.0, (0.0, 0.0, -1.0)),
-        ("mm s⁻²", 1.0e-3, (1.0, 0.0, -2.0)),
-        ("m/s**2", 1.0, (1.0, 0.0, -2.0)),
-        ("-", 1.0, (0.0, 0.0, 0.0)),
-        ("μm", 1.0e-6, (1.0, 0.0, 0.0)),
+        ("N/m^1.5", 1.0, (-0.5, 1.0, -2.0)), ("N/mm^2", 1.0e6, (-1.0, 1.0, -2.0)),
+        ("t/mm^3", 1.0e12, (-3.0, 1.0, 0.0)), ("N s/m²", 1.0, (-1.0, 1.0, -1.0)),
+        ("kN·m", 1.0e3, (2.0, 1.0, -2.0)), ("1/s", 1.0, (0.0, 0.0, -1.0)),
+        ("mm s⁻²", 1.0e-3, (1.0, 0.0, -2.0)), ("m/s**2", 1.0, (1.0, 0.0, -2.0)),
+        ("-", 1.0, (0.0, 0.0, 0.0)), ("μm", 1.0e-6, (1.0, 0.0, 0.0)),
     ],
-)
+)  # fmt: skip
 def test_units_are_products_of_powers(
     text: str, factor: float, dimension: tuple[float, float, float]
 ) -> None:

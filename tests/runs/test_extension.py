@@ -104,23 +104,14 @@ PAPER = (
 
 # The same, its numbers worked out by hand: the ends of base, middle and fly are 10, 18 and 25.5 m.
 BY_HAND = (
-    ("length = 10.0", "span = [0.0, 10.0]"),
-    ('["tail", { x = { tail = 2.0 }', "[0.0, { x = 2.0"),
-    ('[{ head = 0.5 }, "head"]', "[9.5, 10.0]"),
-    ("length = 9.5", "span = [8.5, 18.0]"),
-    ("{ head = 0.25 }", "17.75"),
-    ("length = 9.0", "span = [16.5, 25.5]"),
-    ("extension = 8.0\n", ""),
-    ("extension = 7.5\n", ""),
-    ('["tail", { head = 0.1 }]', "[8.5, 9.9]"),
-    ('["tail", "head"]', "[16.5, 18.0]"),
-    ('x = "head"', "x = 25.5"),
-    ("{ head = 4.0 }", "21.5"),
-    ('to = "head"', "to = 25.5"),
-    ("{ tail = 1.0 }", "9.5"),
-    ("{ head = 1.0 }", "24.5"),
-    ('x = "tail"', "x = 16.5"),
-)
+    ("length = 10.0", "span = [0.0, 10.0]"), ('["tail", { x = { tail = 2.0 }', "[0.0, { x = 2.0"),
+    ('[{ head = 0.5 }, "head"]', "[9.5, 10.0]"), ("length = 9.5", "span = [8.5, 18.0]"),
+    ("{ head = 0.25 }", "17.75"), ("length = 9.0", "span = [16.5, 25.5]"),
+    ("extension = 8.0\n", ""), ("extension = 7.5\n", ""),
+    ('["tail", { head = 0.1 }]', "[8.5, 9.9]"), ('["tail", "head"]', "[16.5, 18.0]"),
+    ('x = "head"', "x = 25.5"), ("{ head = 4.0 }", "21.5"), ('to = "head"', "to = 25.5"),
+    ("{ tail = 1.0 }", "9.5"), ("{ head = 1.0 }", "24.5"), ('x = "tail"', "x = 16.5"),
+)  # fmt: skip
 
 
 @pytest.fixture(autouse=True)

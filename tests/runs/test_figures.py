@@ -370,14 +370,10 @@ def test_horizons_are_drawn_where_they_are_measured(results: Results, drawn: Dra
     """Reference: the numbers of the summary."""
     assert drawn(horizons, results) == []
     measured = {
-        "relatives": [1e-12, 1e-6],
-        "shares": [0.01, 0.2],
-        "times": [[1.5, 6.0], [1.0, None]],
-        "of_step": [1.2, None],
-        "rate": [27.6, None],
-        "step_change": None,
+        "relatives": [1e-12, 1e-6], "shares": [0.01, 0.2], "times": [[1.5, 6.0], [1.0, None]],
+        "of_step": [1.2, None], "rate": [27.6, None], "step_change": None,
         "limits": ["step", "physics"],
-    }
+    }  # fmt: skip
     drawn(horizons, changed(results, "beam-fe", horizons=measured))
     (axes,) = drawn.sheets["horizons"].axes
     points = [np.asarray(line.get_xydata()) for line in axes.get_lines() if line.get_xydata().size]

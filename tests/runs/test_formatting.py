@@ -19,19 +19,11 @@ def test_powers_of_ten_are_set_as_such(number: float, digits: int, expected: str
 @pytest.mark.parametrize(
     ("value", "expected"),
     [
-        (None, "–"),
-        (math.nan, "–"),
-        (0.0, "0"),
-        (0.498484, "0.498"),
-        (8.7669, "8.77"),
-        (2000, "2000"),
-        (45485.3, "45500"),
-        (2.41e6, "2.41 × 10⁶"),
-        (6.4836e-15, "6.48 × 10⁻¹⁵"),
-        (-0.00042, "−4.2 × 10⁻⁴"),
-        (-3.5, "−3.5"),
+        (None, "–"), (math.nan, "–"), (0.0, "0"), (0.498484, "0.498"), (8.7669, "8.77"),
+        (2000, "2000"), (45485.3, "45500"), (2.41e6, "2.41 × 10⁶"), (6.4836e-15, "6.48 × 10⁻¹⁵"),
+        (-0.00042, "−4.2 × 10⁻⁴"), (-3.5, "−3.5"),
     ],
-)
+)  # fmt: skip
 def test_numbers_have_so_many_digits(value: float | None, expected: str) -> None:
     assert number(value) == expected
 

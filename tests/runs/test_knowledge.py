@@ -39,40 +39,26 @@ ENSEMBLE = {
     "energy_residual": 1e-4,
     "horizons": {"0.01": 0.802, "0.2": None},
     "slow_peaks": {
-        "time": [0.5469, 1.5906],
-        "time_spread": [0.001, 0.022],
-        "height": [0.1522, 0.14691],
-        "height_spread": [0.00019, 0.0068],
-        "period": 1.0437,
-        "period_spread": 0.021,
+        "time": [0.5469, 1.5906], "time_spread": [0.001, 0.022], "height": [0.1522, 0.14691],
+        "height_spread": [0.00019, 0.0068], "period": 1.0437, "period_spread": 0.021,
     },
-}
+}  # fmt: skip
 LEVELS = {
     "pointwise": {"until": 0.802, "largest": 0.1829, "rms": 0.0793},
     "peaks": {
-        "time": [-0.026, 0.004],
-        "time_spread": [0.001, 0.024],
-        "height": [-0.01542, 0.001],
-        "height_spread": [0.00023, 0.0075],
-        "explained": [False, True],
+        "time": [-0.026, 0.004], "time_spread": [0.001, 0.024], "height": [-0.01542, 0.001],
+        "height_spread": [0.00023, 0.0075], "explained": [False, True],
     },
     "distributions": {
-        "since": 4.643,
-        "range": [0.1681, 0.1757],
-        "mean": [0.0995, 0.0807],
-        "deviation": [0.0478, 0.04],
-        "distance": 0.199,
+        "since": 4.643, "range": [0.1681, 0.1757], "mean": [0.0995, 0.0807],
+        "deviation": [0.0478, 0.04], "distance": 0.199,
     },
-}
+}  # fmt: skip
 MEASURED = {
-    "relatives": [1e-12, 1e-6],
-    "shares": [0.01, 0.2],
-    "times": [[1.5, 6.0], [1.0, None]],
-    "of_step": [1.2, None],
-    "rate": [27.63, None],
-    "step_change": None,
+    "relatives": [1e-12, 1e-6], "shares": [0.01, 0.2], "times": [[1.5, 6.0], [1.0, None]],
+    "of_step": [1.2, None], "rate": [27.63, None], "step_change": None,
     "limits": ["step", "physics"],
-}
+}  # fmt: skip
 
 
 def test_nothing_is_known_of_a_run_without_ensembles() -> None:

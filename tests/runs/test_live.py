@@ -178,18 +178,12 @@ def test_malformed_request_keeps_the_server_alive(address: str, body: str) -> No
     ("request_", "key", "what"),
     [
         ({}, "", "the request is not understood ('tab')"),
-        (
-            {"tab": "1", "number": 1, "values": {"joint[1].play": None}},
-            "joint[1].play",
-            "must be a number of the case, got None",
-        ),
-        (
-            {"tab": "1", "number": 2, "values": {"payload.mass": 0}},
-            "payload.mass",
-            "must be a number greater than 0, got 0",
-        ),
+        ({"tab": "1", "number": 1, "values": {"joint[1].play": None}}, "joint[1].play",
+         "must be a number of the case, got None"),
+        ({"tab": "1", "number": 2, "values": {"payload.mass": 0}}, "payload.mass",
+         "must be a number greater than 0, got 0"),
     ],
-)
+)  # fmt: skip
 def test_a_refusal_names_the_key(
     address: str, request_: dict[str, Any], key: str, what: str
 ) -> None:

@@ -54,13 +54,8 @@ def turned(folder: Path, model: str) -> Results:
 
 @pytest.mark.parametrize(
     "model",
-    [
-        "kantorovich-5",
-        "beam-fe",
-        "timoshenko",
-        pytest.param("shell", marks=pytest.mark.slow),
-    ],
-)
+    ["kantorovich-5", "beam-fe", "timoshenko", pytest.param("shell", marks=pytest.mark.slow)],
+)  # fmt: skip
 def test_a_free_segment_turns_as_a_rigid_body(tmp_path: Path, model: str) -> None:
     """Reference: analytic. Until it touches, x moves by (0.01 + 0.02 (x − 9)) t, and nothing
     accelerates; the first contact is where the head's play of 7 mm is taken, at 0.233 s.
@@ -101,13 +96,9 @@ def test_segments_in_space_turn_in_both_planes(tmp_path: Path, kind: str) -> Non
         name: float(seen.row @ system.initial_impulse) for name, seen in system.observers.items()
     }
     expected = {
-        "tip": 0.03 + 0.004 * 7.0,
-        "tail": 0.03 - 0.004 * 3.0,
-        "tip_lateral": -0.02 + 0.005 * 7.0,
-        "tail_lateral": -0.02 - 0.005 * 3.0,
-        "sideways": -0.02 + 0.005 * 2.0,
-        "slope": 0.004,
-    }
+        "tip": 0.03 + 0.004 * 7.0, "tail": 0.03 - 0.004 * 3.0, "tip_lateral": -0.02 + 0.005 * 7.0,
+        "tail_lateral": -0.02 - 0.005 * 3.0, "sideways": -0.02 + 0.005 * 2.0, "slope": 0.004,
+    }  # fmt: skip
     assert {name: rates[name] for name in expected} == pytest.approx(expected, rel=1e-6)
     assert rates["roll"] == pytest.approx(0.0, abs=1e-9)
 

@@ -81,26 +81,15 @@ def test_motion_without_contact_or_peak_still_has_an_instant(shell: Scene) -> No
 @pytest.mark.parametrize(
     ("probe", "seconds", "message"),
     [
-        (
-            "import os; os.abort()",
-            60.0,
-            "VTK finds no working OpenGL and dies of SIGABRT; install libegl1 and libgl1-mesa-dri "
-            "beside pip's vtk, or give Debian's VTK a display",
-        ),
-        (
-            "import no_such_pyvista",
-            60.0,
-            "pyvista makes no picture: ModuleNotFoundError: No module named 'no_such_pyvista'",
-        ),
+        ("import os; os.abort()", 60.0, "VTK finds no working OpenGL and dies of SIGABRT; install "
+         "libegl1 and libgl1-mesa-dri beside pip's vtk, or give Debian's VTK a display"),
+        ("import no_such_pyvista", 60.0,
+         "pyvista makes no picture: ModuleNotFoundError: No module named 'no_such_pyvista'"),
         ("raise SystemExit(3)", 60.0, "pyvista makes no picture: it does not say why"),
-        (
-            "import time; time.sleep(60.0)",
-            1.0,
-            "VTK makes no picture within 1 s; install libegl1 and libgl1-mesa-dri beside pip's "
-            "vtk, or give Debian's VTK a display",
-        ),
+        ("import time; time.sleep(60.0)", 1.0, "VTK makes no picture within 1 s; install libegl1 "
+         "and libgl1-mesa-dri beside pip's vtk, or give Debian's VTK a display"),
     ],
-)
+)  # fmt: skip
 def test_missing_opengl_is_said(
     monkeypatch: pytest.MonkeyPatch, probe: str, seconds: float, message: str
 ) -> None:

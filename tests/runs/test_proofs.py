@@ -98,14 +98,10 @@ def proofs_of(folder: Path, text: str) -> tuple[dict[tuple[str, str], Proof], Pr
 @pytest.mark.parametrize(
     ("slenderness", "ratio", "reduction"),
     [
-        (0.673, 1.0, 1.0),
-        (1.0, 1.0, 0.78),
-        (2.0, 1.0, 0.445),
-        (1.0, 0.0, 0.835),
-        (2.0, -1.0, 0.4725),
-        (0.874, -1.0, 1.0),
+        (0.673, 1.0, 1.0), (1.0, 1.0, 0.78), (2.0, 1.0, 0.445), (1.0, 0.0, 0.835),
+        (2.0, -1.0, 0.4725), (0.874, -1.0, 1.0),
     ],
-)
+)  # fmt: skip
 def test_winter(slenderness: float, ratio: float, reduction: float) -> None:
     """Reference: analytic, (λ̄ − 0.055(3 + ψ))/λ̄² by hand; 0.673 and 0.874 end its plateaus."""
     assert winter(slenderness, ratio) == pytest.approx(reduction, abs=1e-3)

@@ -34,18 +34,12 @@ def test_a_boom_comes_back(paper_boom: Boom) -> None:
 @pytest.mark.parametrize(
     "array",
     [
-        np.array([0.1, -0.0, np.nan, np.inf, 5e-324]),
-        np.arange(6, dtype=np.float32).reshape(2, 3),
-        np.asfortranarray(np.arange(6.0).reshape(2, 3)),
-        np.arange(24.0).reshape(2, 3, 4)[:, ::2],
-        np.zeros((0, 3)),
-        np.array(1.5),
-        np.array(["bottom", "Größe"]),
-        np.array([True, False]),
-        np.arange(3, dtype=">i4"),
-        np.array([1j]),
+        np.array([0.1, -0.0, np.nan, np.inf, 5e-324]), np.arange(6, dtype=np.float32).reshape(2, 3),
+        np.asfortranarray(np.arange(6.0).reshape(2, 3)), np.arange(24.0).reshape(2, 3, 4)[:, ::2],
+        np.zeros((0, 3)), np.array(1.5), np.array(["bottom", "Größe"]), np.array([True, False]),
+        np.arange(3, dtype=">i4"), np.array([1j]),
     ],
-)
+)  # fmt: skip
 def test_an_array_comes_back_with_its_order_in_memory(array: npt.NDArray[Any]) -> None:
     """Sums over another order would have other round-off."""
     found = again(array, np.ndarray)

@@ -68,24 +68,14 @@ def test_a_run_takes_the_mean() -> None:
     ("text", "samples", "line"),
     [
         (SCATTERED, "48", "--samples: must be a power of 2 above 2, such as 64, got 48"),
-        (
-            CANTILEVER,
-            "64",
-            "--samples: the case has no number with a mean and an sd; give one, for example "
-            "{ mean = 0.003, sd = 0.0005 }",
-        ),
-        (
-            SCATTERED.replace(f"sd = {SD}", "sd = 0"),
-            "64",
-            "segment[1].load: must have a finite mean and an sd above 0, got 100.0 and 0",
-        ),
-        (
-            CANTILEVER.replace(f"= {MASS}", f"= {{ mean = {MASS}, sd = 15.0 }}"),
-            "64",
-            "--samples: a sample is not valid, segment[1].mass_per_length: must be a",
-        ),
+        (CANTILEVER, "64", "--samples: the case has no number with a mean and an sd; give one, for "
+         "example { mean = 0.003, sd = 0.0005 }"),
+        (SCATTERED.replace(f"sd = {SD}", "sd = 0"), "64",
+         "segment[1].load: must have a finite mean and an sd above 0, got 100.0 and 0"),
+        (CANTILEVER.replace(f"= {MASS}", f"= {{ mean = {MASS}, sd = 15.0 }}"), "64",
+         "--samples: a sample is not valid, segment[1].mass_per_length: must be a"),
     ],
-)
+)  # fmt: skip
 def test_bad_samples_are_refused(
     text: str, samples: str, line: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

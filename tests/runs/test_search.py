@@ -69,21 +69,14 @@ def test_search_with_governing_walls_gives_a_caution() -> None:
     ("arguments", "line"),
     [
         ((), f"--vary: missing; {ONE}"),
-        (
-            ("--vary", LENGTHS, "--sensitivity"),
-            f"--vary: does not go with --sensitivity; {ONE}",
-        ),
-        (
-            ("--vary", LENGTHS, "--until", "tip=0.9"),
-            "--until: 'tip=0.9' is not understood; give QUANTITY<NUMBER or QUANTITY>NUMBER",
-        ),
-        (
-            ("--vary", LENGTHS, "--vary", "segment.load=1,2", "--until", "tip<0.9"),
-            "--until: 2 keys vary; give one --vary",
-        ),
+        (("--vary", LENGTHS, "--sensitivity"), f"--vary: does not go with --sensitivity; {ONE}"),
+        (("--vary", LENGTHS, "--until", "tip=0.9"),
+         "--until: 'tip=0.9' is not understood; give QUANTITY<NUMBER or QUANTITY>NUMBER"),
+        (("--vary", LENGTHS, "--vary", "segment.load=1,2", "--until", "tip<0.9"),
+         "--until: 2 keys vary; give one --vary"),
         (("--sensitivity", "--until", "tip<0.9"), "--until: 0 keys vary; give one --vary"),
     ],
-)
+)  # fmt: skip
 def test_a_search_without_an_aim_is_refused(
     arguments: tuple[str, ...], line: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -58,33 +58,19 @@ def boom_of(sections: Sequence[str]) -> Boom:
 @pytest.mark.parametrize(
     ("table", "section"),
     [
-        (
-            "{ shape = 'hexagon', height = 0.6, width = 0.5, flat = 0.3, top = 0.008, "
-            "bottom = 0.007, web = 0.006 }",
-            hexagon(0.6, 0.5, 0.3, 0.008, 0.007, 0.006),
-        ),
-        (
-            "{ shape = 'octagon', height = 0.6, width = 0.5, chamfer = 0.08, top = 0.008, "
-            "bottom = 0.007, web = 0.006 }",
-            octagon(0.6, 0.5, 0.08, 0.008, 0.007, 0.006),
-        ),
-        (
-            "{ shape = 'U', height = 0.6, width = 0.5, radius = 0.1, top = 0.008, bottom = 0.007, "
-            "web = 0.006 }",
-            u_section(0.6, 0.5, 0.1, 3, 0.008, 0.007, 0.006),
-        ),
-        (
-            "{ shape = 'U', height = 0.6, width = 0.5, radius = 0.1, facets = 1, top = 0.008, "
-            "bottom = 0.007, web = 0.006 }",
-            u_section(0.6, 0.5, 0.1, 1, 0.008, 0.007, 0.006),
-        ),
-        (
-            polygon(0.6, 0.5, (0.01, 0.006, 0.008, 0.006)),
-            BoxSection(0.6, 0.5, 0.008, 0.006, bottom_flange=0.01),
-        ),
+        ("{ shape = 'hexagon', height = 0.6, width = 0.5, flat = 0.3, top = 0.008, bottom = 0.007, "
+         "web = 0.006 }", hexagon(0.6, 0.5, 0.3, 0.008, 0.007, 0.006)),
+        ("{ shape = 'octagon', height = 0.6, width = 0.5, chamfer = 0.08, top = 0.008, bottom = "
+         "0.007, web = 0.006 }", octagon(0.6, 0.5, 0.08, 0.008, 0.007, 0.006)),
+        ("{ shape = 'U', height = 0.6, width = 0.5, radius = 0.1, top = 0.008, bottom = 0.007, web "
+         "= 0.006 }", u_section(0.6, 0.5, 0.1, 3, 0.008, 0.007, 0.006)),
+        ("{ shape = 'U', height = 0.6, width = 0.5, radius = 0.1, facets = 1, top = 0.008, bottom "
+         "= 0.007, web = 0.006 }", u_section(0.6, 0.5, 0.1, 1, 0.008, 0.007, 0.006)),
+        (polygon(0.6, 0.5, (0.01, 0.006, 0.008, 0.006)),
+         BoxSection(0.6, 0.5, 0.008, 0.006, bottom_flange=0.01)),
     ],
     ids=["hexagon", "octagon", "U", "U with one facet", "polygon"],
-)
+)  # fmt: skip
 def test_a_table_is_its_section(table: str, section: Section) -> None:
     """Reference: other code, the section made in Python."""
     outer, _ = boom_of([table, BOXES[1]]).segments
@@ -169,21 +155,14 @@ def test_a_segment_tapers_to_its_head() -> None:
 @pytest.mark.parametrize(
     ("head", "own", "message"),
     [
-        (
-            "{ shape = 'octagon', height = 0.5, width = 0.3, chamfer = 0.1, top = 0.01, "
-            "bottom = 0.01, web = 0.01 }",
-            "",
-            "segment[1].head_section: has other shapes than the one at the tail; a segment tapers "
-            "between sections of one kind",
-        ),
-        (
-            "{ height = 0.52, width = 0.45, flange = 0.006, web = 0.006 }",
-            "\ntorsion_constant = 1e-3",
-            "segment[1].torsion_constant: of a segment that tapers it follows from the sections; "
-            "leave it out",
-        ),
+        ("{ shape = 'octagon', height = 0.5, width = 0.3, chamfer = 0.1, top = 0.01, bottom = "
+         "0.01, web = 0.01 }", "", "segment[1].head_section: has other shapes than the one at the "
+         "tail; a segment tapers between sections of one kind"),
+        ("{ height = 0.52, width = 0.45, flange = 0.006, web = 0.006 }",
+         "\ntorsion_constant = 1e-3", "segment[1].torsion_constant: of a segment that tapers it "
+         "follows from the sections; leave it out"),
     ],
-)
+)  # fmt: skip
 def test_no_other_head_is_one(head: str, own: str, message: str) -> None:
     """Reference: the message."""
     with pytest.raises(BadInput) as fault:

@@ -48,26 +48,20 @@ def results(*shells: str) -> Results:
     ("name", "title", "seen"),
     [
         ("boom-first-peak.png", "Boom: first peak of the tip at 0.500 s", "tip at +100.0 mm"),
-        (
-            "boom-largest-force.png",
-            "Boom: largest contact force at 0.250 s",
-            "magnitude of deflection",
-        ),
+        ("boom-largest-force.png", "Boom: largest contact force at 0.250 s",
+         "magnitude of deflection"),
         ("boom-0.25s.png", "Boom: 0.250 s", "tip at +50.0 mm"),
         ("overlap-first-contact.png", "Overlap: first contact at 0.250 s", "cut open"),
         ("overlap-2-1s.png", "Overlap of joint 2: 1.000 s", "Blue: outer segment"),
         ("stress-largest-force.png", "Stress at the overlap: largest", "Von Mises"),
         ("stress-above-2-1s.png", "Stress at the overlap of joint 2, seen from above", "faces"),
-        (
-            "boom-above-first-peak.png",
-            "Boom, seen from above: first peak of the tip at 0.769 s",
-            "+50.0 mm to the side",
-        ),
+        ("boom-above-first-peak.png", "Boom, seen from above: first peak of the tip at 0.769 s",
+         "+50.0 mm to the side"),
         ("overlap-above-1s.png", "Overlap, seen from above: 1.000 s", "Blue: outer"),
         ("boom-largest-deflection.png", "Boom: largest deflection of the tip", "grey: undeformed"),
         ("motion.gif", "Boom in motion, first 1 s", "in 5 s"),
     ],
-)
+)  # fmt: skip
 def test_caption_describes_the_picture(name: str, title: str, seen: str) -> None:
     """Reference: analytic, a tip of 50 mm (1 − cos 2πt)."""
     figure = describe_one(results("shell"), Path(name))

@@ -109,56 +109,32 @@ def test_beams_without_plates_accept_any_play(planned: Planned) -> None:
         (["joint.play=-1,1"], "joint.play: must be a number not less than 0, got -1"),
         (["joint.play"], "joint.play: not understood; give KEY=START:STOP:COUNT or KEY=A,B,..."),
         (["joint..play=1,2"], "joint..play: not understood; give a key such as joint[1].play"),
-        (
-            ["joint.play=0:1"],
-            "joint.play: '0:1' is not understood; give KEY=START:STOP:COUNT or KEY=A,B,...",
-        ),
-        (
-            ["joint.play=0:1:x"],
-            "joint.play: COUNT must be a whole number, got 'x'; give KEY=START:STOP:COUNT or "
-            "KEY=A,B,...",
-        ),
+        (["joint.play=0:1"],
+         "joint.play: '0:1' is not understood; give KEY=START:STOP:COUNT or KEY=A,B,..."),
+        (["joint.play=0:1:x"], "joint.play: COUNT must be a whole number, got 'x'; give "
+         "KEY=START:STOP:COUNT or KEY=A,B,..."),
         (["joint.play=0:1:1"], "joint.play: COUNT must be from 2 to 10000, got 1"),
-        (
-            ["joint.play=0,inf"],
-            "joint.play: must be finite numbers, got 'inf'; give KEY=START:STOP:COUNT or "
-            "KEY=A,B,...",
-        ),
+        (["joint.play=0,inf"],
+         "joint.play: must be finite numbers, got 'inf'; give KEY=START:STOP:COUNT or KEY=A,B,..."),
         (["joint.play=0"], "joint.play: one value varies nothing; give two or more"),
         (["joint.play=1,1"], "joint.play: a value is given twice in '1,1'; give each once"),
-        (
-            ["joint.play=0,0.01", "joint.play=0,0.02"],
-            "joint.play: given twice; give all its values at once",
-        ),
-        (
-            ["joint[2].play=0,0.01"],
-            "joint[2].play: the case has no joint[2], its last one is joint[1]",
-        ),
+        (["joint.play=0,0.01", "joint.play=0,0.02"],
+         "joint.play: given twice; give all its values at once"),
+        (["joint[2].play=0,0.01"],
+         "joint[2].play: the case has no joint[2], its last one is joint[1]"),
         (["load.magnitude=1,2"], "load.magnitude: the case has no load; there is nothing to vary"),
         (["time[1].step=1,2"], "time[1].step: time is not a list; leave out [1]"),
         (["joint.play.x=1,2"], "joint.play.x: joint[1].play is not a table; end the key there"),
-        (
-            ["ensemble.members=2,3"],
-            "ensemble.members: a sweep runs no ensembles; leave it out",
-        ),
+        (["ensemble.members=2,3"], "ensemble.members: a sweep runs no ensembles; leave it out"),
         (["limits.tip=2,3"], "limits.tip: no run depends on it; leave it out"),
-        (
-            ["payload.gravity=1,2"],
-            "payload.gravity=1: payload.mass: missing; it is the mass in kg",
-        ),
-        (
-            ["joint.play=0,0.01", "segment[2].span[2]=8,19"],
-            "joint.play=0 segment[2].span[2]=8: segment[2].span: must run from a smaller to a "
-            "larger x, got [9, 8] m",
-        ),
-        (
-            ["model[3].element_length=0.5,1"],
-            "model[3].element_length: nothing that is run depends on it; leave it out, or run "
-            "the models that do",
-        ),
+        (["payload.gravity=1,2"], "payload.gravity=1: payload.mass: missing; it is the mass in kg"),
+        (["joint.play=0,0.01", "segment[2].span[2]=8,19"], "joint.play=0 segment[2].span[2]=8: "
+         "segment[2].span: must run from a smaller to a larger x, got [9, 8] m"),
+        (["model[3].element_length=0.5,1"], "model[3].element_length: nothing that is run depends "
+         "on it; leave it out, or run the models that do"),
     ],
     ids=lambda value: value if isinstance(value, str) else " ".join(value),
-)
+)  # fmt: skip
 def test_a_mistake_is_said_with_its_option(planned: Planned, texts: list[str], line: str) -> None:
     with pytest.raises(BadInput) as refused:
         planned(*texts)
@@ -235,44 +211,17 @@ def test_files_hold_the_same_numbers_with_units(planned: Planned) -> None:
     assert data["tip_amplitude"].dims == ("joint.play", "model")
     assert data["joint.play"].attrs["units"] == "m"
     assert {q.name: data[q.name].attrs["units"] for q in QUANTITIES} == {
-        "tip_at_rest": "m",
-        "tip": "m",
-        "tip_amplitude": "m",
-        "dynamic_factor": "1",
-        "contact_force": "N",
-        "stress": "Pa",
-        "wall_stress": "Pa",
-        "pad_pressure": "Pa",
-        "damage": "1",
-        "first_frequency": "Hz",
-        "decay_time": "s",
-        "mass": "kg",
-        "settling_time": "s",
-        "first_contact": "s",
-        "residual_vibration": "m",
-        "residual_vibration_initial": "m",
-        "residual_vibration_final": "m",
-        "lift_off": "s",
-        "rope_force": "N",
-        "rope_factor": "1",
-        "rope_factor_by_class": "1",
-        "swing_out": "m",
-        "swing_aside": "m",
-        "winch_power": "W",
-        "winch_work": "J",
-        "slew_moment": "N m",
-        "slew_power": "W",
-        "slew_work": "J",
-        "luff_moment": "N m",
-        "luff_power": "W",
-        "luff_work": "J",
-        "drive_force": "N",
-        "drive_slip": "m",
-        "drive_speed": "m/s",
-        "peak_contact_force": "N",
-        "energy_residual": "1",
-        "step_error": "1",
-    }
+        "tip_at_rest": "m", "tip": "m", "tip_amplitude": "m", "dynamic_factor": "1",
+        "contact_force": "N", "stress": "Pa", "wall_stress": "Pa", "pad_pressure": "Pa",
+        "damage": "1", "first_frequency": "Hz", "decay_time": "s", "mass": "kg",
+        "settling_time": "s", "first_contact": "s", "residual_vibration": "m",
+        "residual_vibration_initial": "m", "residual_vibration_final": "m", "lift_off": "s",
+        "rope_force": "N", "rope_factor": "1", "rope_factor_by_class": "1", "swing_out": "m",
+        "swing_aside": "m", "winch_power": "W", "winch_work": "J", "slew_moment": "N m",
+        "slew_power": "W", "slew_work": "J", "luff_moment": "N m", "luff_power": "W",
+        "luff_work": "J", "drive_force": "N", "drive_slip": "m", "drive_speed": "m/s",
+        "peak_contact_force": "N", "energy_residual": "1", "step_error": "1",
+    }  # fmt: skip
     with open("out/sweep.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert [(row["joint.play"], row["model"]) for row in rows] == [

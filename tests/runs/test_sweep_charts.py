@@ -61,17 +61,13 @@ def charts(sweeping: Plan, *quantities: Sequence[str]) -> None:
     ("texts", "names"),
     [
         (["joint.play=0:0.01:4"], ["sweep-lines.png"]),
-        (
-            ["joint.play=0:0.01:4", "joint.stiffness=1e8,1e9,1e10,1e11"],
-            sorted(f"sweep-{name.replace('_', '-')}.png" for name in CHARTED),
-        ),
-        (
-            ["joint.play=0,0.01", "segment[2].load=20,40,60", "damping.modal=0,0.1"],
-            [f"sweep-lines-{number}.png" for number in range(1, 5)],
-        ),
+        (["joint.play=0:0.01:4", "joint.stiffness=1e8,1e9,1e10,1e11"],
+         sorted(f"sweep-{name.replace('_', '-')}.png" for name in CHARTED)),
+        (["joint.play=0,0.01", "segment[2].load=20,40,60", "damping.modal=0,0.1"],
+         [f"sweep-lines-{number}.png" for number in range(1, 5)]),
     ],
     ids=["one key", "two keys", "three keys"],
-)
+)  # fmt: skip
 def test_charts_fit_the_number_of_keys(
     planned: Planned, texts: list[str], names: list[str]
 ) -> None:

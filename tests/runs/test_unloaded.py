@@ -38,16 +38,12 @@ bonded = true
 ADDED = {
     "nothing": ("", False),
     "at rest": ('[start]\nstate = "equilibrium"\n', False),
-    "a load of nothing": (
-        '[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = 0.0\n',
-        False,
-    ),
+    "a load of nothing": ('[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = 0.0\n', False),
     "thrown": ("[start]\nvelocity = { fly = 0.1 }\n", True),
     "let go": (
-        '[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = -500.0\nreleased = true\n',
-        True,
+        '[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = -500.0\nreleased = true\n', True,
     ),
-}
+}  # fmt: skip
 
 
 @pytest.fixture(autouse=True)

@@ -277,12 +277,8 @@ def test_s9_compares_contact_laws(case: Case, height: float, expected: str) -> N
 
 @pytest.mark.parametrize(
     ("series", "elements", "expected"),
-    [
-        (1900, 9000, "reproduced"),
-        (7000, 9000, "contradicted"),
-        (1900, 3000, "contradicted"),
-    ],
-)
+    [(1900, 9000, "reproduced"), (7000, 9000, "contradicted"), (1900, 3000, "contradicted")],
+)  # fmt: skip
 def test_s10_counts_the_steps_for_the_peaks(series: int, elements: int, expected: str) -> None:
     needed = {"kantorovich-4": 1000, "kantorovich-5": series, "beam-fe": elements}
     summary = {name: {"steps_for_peaks": steps_for_peaks(steps)} for name, steps in needed.items()}

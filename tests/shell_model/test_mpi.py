@@ -46,16 +46,11 @@ if MPI.COMM_WORLD.rank == 0:
 def everything(comm: MPI.Comm) -> dict[str, Any]:
     """Return the results of two ranks, computed in one start."""
     return {
-        "frequencies": frequencies(comm),
-        "spatial": spatial(comm),
-        "rubbing": rubbing(comm),
-        "pressed": compliances(comm),
-        "stresses": stresses(comm),
-        "moved": moved(comm),
-        "buckled": buckled(comm),
-        "dofs": [short_box(comm, size).num_dofs for size in SHORT_SIZES],
+        "frequencies": frequencies(comm), "spatial": spatial(comm), "rubbing": rubbing(comm),
+        "pressed": compliances(comm), "stresses": stresses(comm), "moved": moved(comm),
+        "buckled": buckled(comm), "dofs": [short_box(comm, size).num_dofs for size in SHORT_SIZES],
         "told": failure(comm),
-    }
+    }  # fmt: skip
 
 
 def frequencies(comm: MPI.Comm) -> list[float]:

@@ -94,14 +94,10 @@ def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
     in_plane = np.array([0.0, 0.0, 0.03, 0.0, -0.002, 0.0])
     lifted = 0.03 + 0.002 * 5.0
     rows = (
-        outline.mean_deflection(),
-        outline.wall_deflection("z"),
-        outline.rotation(),
-        outline.distortion(),
-        outline.flange_deflection(1.0, 0.1),
-        outline.flange_deflection(-1.0, 0.5 * BOX.width),
-        outline.twist(),
-    )
+        outline.mean_deflection(), outline.wall_deflection("z"), outline.rotation(),
+        outline.distortion(), outline.flange_deflection(1.0, 0.1),
+        outline.flange_deflection(-1.0, 0.5 * BOX.width), outline.twist(),
+    )  # fmt: skip
     readings = [shell.row(row) @ shell.rigid_motions() @ in_plane for row in rows]
     expected = [lifted, lifted, 0.002, 0.0, lifted, lifted, 0.0]
     assert readings == pytest.approx(expected, abs=1.0e-12)
@@ -109,14 +105,10 @@ def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
     sideways = np.array([0.0, 0.01, 0.0, 0.004, 0.0, 0.003])
     shifted = 0.01 + 0.003 * 5.0
     rows = (
-        outline.mean_deflection("y"),
-        outline.wall_deflection("y"),
-        outline.twist(),
-        outline.mean_deflection(),
-        corners.deflection(at_end, "z", 0.1, -0.3),
-        corners.deflection(at_end, "y", -0.1, 0.3),
-        corners.deflection(within, "y", 0.1, 0.1),
-    )
+        outline.mean_deflection("y"), outline.wall_deflection("y"), outline.twist(),
+        outline.mean_deflection(), corners.deflection(at_end, "z", 0.1, -0.3),
+        corners.deflection(at_end, "y", -0.1, 0.3), corners.deflection(within, "y", 0.1, 0.1),
+    )  # fmt: skip
     readings = [shell.row(row) @ shell.rigid_motions() @ sideways for row in rows]
     within_shifted = 0.01 + 0.003 * 2.3
     expected = [shifted, shifted, 0.004, 0.0, 4.0e-4, shifted - 1.2e-3, within_shifted - 4.0e-4]

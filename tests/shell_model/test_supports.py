@@ -72,13 +72,9 @@ def test_every_support_holds_the_twist(box_shell: Shells) -> None:
 def test_supports_leave_unheld_rigid_motions_free(box_shell: Shells) -> None:
     """Reference: analytic: slide along x always but for a clamp, and both tilts about one pin."""
     left = {
-        (): 6,
-        (Support(0.0),): 3,
-        (Support(0.0, stiffness=10.0),): 3,
-        HELD: 1,
-        (Support(0.0, stiffness=10.0), Support(2.0)): 1,
-        (Support(2.0, "clamped"),): 0,
-    }
+        (): 6, (Support(0.0),): 3, (Support(0.0, stiffness=10.0),): 3, HELD: 1,
+        (Support(0.0, stiffness=10.0), Support(2.0)): 1, (Support(2.0, "clamped"),): 0,
+    }  # fmt: skip
     for supports, count in left.items():
         assert box_shell(0.5, supports=supports).rigid_motions().shape[1] == count
 

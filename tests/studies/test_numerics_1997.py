@@ -53,12 +53,8 @@ def sample(*tips: Array, gained: float = 0.0, since: float = 0.0) -> Sample:
 
 @pytest.mark.parametrize(
     ("others", "early", "late"),
-    [
-        (swing(), 0.0, 0.0),
-        (swing(late=0.15), 0.0, 0.135),
-        (swing(late=0.4), 0.0, 0.36),
-    ],
-)
+    [(swing(), 0.0, 0.0), (swing(late=0.15), 0.0, 0.135), (swing(late=0.4), 0.0, 0.36)],
+)  # fmt: skip
 def test_peaks_conform_and_part(others: Array, early: float, late: float) -> None:
     """Reference: analytic, sines of the same phase, and of one that slips after 6 s by parts of
     a period of 1.1 s. The filter smears a slip.

@@ -66,12 +66,7 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "working_load": {"measure": moved},
     "direct": {"runs_of": run},
     "stress": {"InnerSegmentState.on_mesh": pressed, "InnerSegmentState.reduced": pressed},
-    "stiffeners": {
-        "measure": one,
-        "table": one,
-        "racking_stiffness": one,
-        "ring_flexibility": one,
-    },
+    "stiffeners": {"measure": one, "table": one, "racking_stiffness": one, "ring_flexibility": one},
     "damping": {"PressedBoom.of": swung, "_system": one},
     "histories": {},
     "second_order": {},
@@ -80,12 +75,11 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "design_results": {},
     "combinations": {},
     "supports": {
-        "_MODELS": dict.fromkeys(supports._MODELS, supports._MODELS["elements"]),
-        "decrement": one,
+        "_MODELS": dict.fromkeys(supports._MODELS, supports._MODELS["elements"]), "decrement": one,
     },
     "sections": {"ring_of_shell": one, "beam_peak": one, "shell_peak": one, "tip_of_shell": one},
     "taper": {"MODELS": taper.MODELS | {"shell": replace(taper.MODELS["shear-flexible elements"])}},
-}
+}  # fmt: skip
 # Studies without a proof have no section.
 PROVING = [name for name in STUDIES if name not in ("interpretations", "validation")]
 

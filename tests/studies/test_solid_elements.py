@@ -220,20 +220,14 @@ def _compliance(model: SolidFamily, row: Array) -> float:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (
-            {"masses": (PointMass(1.0, 5.0),)},
-            "'box' as a solid has plain walls and carries no masses",
-        ),
-        (
-            {"collars": (Collar((0.5, 1.0), 0.01),)},
-            "'box' as a solid has plain walls and carries no masses",
-        ),
-        (
-            {"supports": (Support(0.0, stiffness=1.0e6), Support(2.0))},
-            "'box' as a solid takes rigid supports alone",
-        ),
+        ({"masses": (PointMass(1.0, 5.0),)},
+         "'box' as a solid has plain walls and carries no masses"),
+        ({"collars": (Collar((0.5, 1.0), 0.01),)},
+         "'box' as a solid has plain walls and carries no masses"),
+        ({"supports": (Support(0.0, stiffness=1.0e6), Support(2.0))},
+         "'box' as a solid takes rigid supports alone"),
     ],
-)
+)  # fmt: skip
 def test_unsupported_parts_are_refused(change: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=f"^{message}$"):
         assemble_solid(replace(segment(), **change), coarse(), ALONG_Z)
@@ -300,27 +294,19 @@ def test_mid_lines_places_and_mirrors_are_planes_and_edges_grow_away_from_places
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        (
-            {"along": (0.0, 0.1)},
-            "the lengths along x must be positive numbers of m, rising, got (0.0, 0.1)",
-        ),
-        (
-            {"along": (0.2, 0.1)},
-            "the lengths along x must be positive numbers of m, rising, got (0.2, 0.1)",
-        ),
+        ({"along": (0.0, 0.1)},
+         "the lengths along x must be positive numbers of m, rising, got (0.0, 0.1)"),
+        ({"along": (0.2, 0.1)},
+         "the lengths along x must be positive numbers of m, rising, got (0.2, 0.1)"),
         ({"around": 0.0}, "the length around must be a positive number of m, got 0.0"),
         ({"splits": 0}, "an edge must be split into 1 or more, got 0"),
         ({"layers": 3}, "the layers must be an even number from 2 on, got 3"),
         ({"places": (1.0, 1.0)}, "a segment needs two distinct places at least, its ends"),
     ],
-)
+)  # fmt: skip
 def test_bad_meshes_are_refused(changes: dict[str, Any], message: str) -> None:
     arguments: dict[str, Any] = {
-        "places": PLACES,
-        "along": (0.1, 0.2),
-        "around": 0.1,
-        "layers": 2,
-        **changes,
-    }
+        "places": PLACES, "along": (0.1, 0.2), "around": 0.1, "layers": 2, **changes,
+    }  # fmt: skip
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         mesh_quarter(MESHED, **arguments)

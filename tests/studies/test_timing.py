@@ -58,16 +58,11 @@ def test_short_runs_are_averaged(clock: Clock) -> None:
 @pytest.mark.parametrize(
     ("values", "text"),
     [
-        ((0.0151, 0.0156, 0.0165), "0.0156"),
-        ((1.0, 1.24, 1.6), "1.2"),
-        ((120.0, 134.0, 150.0), "130"),
-        ((1.0, 4.0, 9.0), "~4"),
-        ((0.2, 4.0, 90.0), "~4"),
-        ((123.4,), "100"),
-        ((1.0, 1.0), "1"),
-        ((0.0, 0.0), "0"),
+        ((0.0151, 0.0156, 0.0165), "0.0156"), ((1.0, 1.24, 1.6), "1.2"),
+        ((120.0, 134.0, 150.0), "130"), ((1.0, 4.0, 9.0), "~4"), ((0.2, 4.0, 90.0), "~4"),
+        ((123.4,), "100"), ((1.0, 1.0), "1"), ((0.0, 0.0), "0"),
     ],
-)
+)  # fmt: skip
 def test_digits_follow_the_noise(values: tuple[float, ...], text: str) -> None:
     """Reference: half the range by hand; its first digit is the last shown."""
     assert repeated(values) == text

@@ -19,16 +19,10 @@ from typing import Any
 
 SECONDS = 60.0
 FLAGS = (
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-dev-shm-usage",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
+    "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
     "--remote-debugging-pipe",
-)
+)  # fmt: skip
 # Gives the pipes the numbers that the protocol asks for; they may have each other's.
 LAUNCH = """
 import fcntl, os, sys

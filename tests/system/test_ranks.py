@@ -100,19 +100,13 @@ def test_two_ranks_run_beams_once(two_ranks: Ranks, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "status", "line"),
     [
-        (
-            ["run", "nowhere.toml"],
-            2,
-            "protractile: nowhere.toml: file: does not exist; give the path of a case file",
-        ),
-        (
-            ["run", COARSE, "--models", "shell", "--out", "/proc/nowhere"],
-            2,
-            f"protractile: {COARSE}: --out /proc/nowhere: cannot be written (No such file or "
-            "directory); give a folder that can",
-        ),
+        (["run", "nowhere.toml"], 2,
+         "protractile: nowhere.toml: file: does not exist; give the path of a case file"),
+        (["run", COARSE, "--models", "shell", "--out", "/proc/nowhere"], 2,
+         f"protractile: {COARSE}: --out /proc/nowhere: cannot be written (No such file or "
+         "directory); give a folder that can"),
     ],
-)
+)  # fmt: skip
 def test_a_mistake_ends_both_ranks_with_one_line(
     two_ranks: Ranks, arguments: list[str], status: int, line: str
 ) -> None:

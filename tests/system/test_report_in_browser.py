@@ -53,14 +53,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert finished is not None
     finished.evaluate()
     finished.results.summary.models["kantorovich-5"].horizons = {
-        "relatives": [1e-12, 1e-9, 1e-6, 1e-3],
-        "shares": [0.01, 0.2],
-        "times": [[1.5, 1.9], [1.2, None], [0.9, None], [0.6, None]],
-        "of_step": [1.3, None],
-        "rate": [23.0, None],
-        "step_change": None,
-        "limits": ["step", "physics"],
-    }
+        "relatives": [1e-12, 1e-9, 1e-6, 1e-3], "shares": [0.01, 0.2],
+        "times": [[1.5, 1.9], [1.2, None], [0.9, None], [0.6, None]], "of_step": [1.3, None],
+        "rate": [23.0, None], "step_change": None, "limits": ["step", "physics"],
+    }  # fmt: skip
     out = prepare(str(tmp_path_factory.mktemp("run") / "out"), "")
     out.mkdir()
     output.write(finished, judge(finished.results), out)

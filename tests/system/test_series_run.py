@@ -62,16 +62,9 @@ def refusal(capsys: pytest.CaptureFixture[str]) -> Refusal:
 def test_every_file_of_a_series_run_opens(series: Path) -> None:
     check_common_files(series, SERIES)
     assert {name for name in files(series) if not name.startswith("figures/")} == {
-        "case.toml",
-        "trajectories.nc",
-        "trajectories.csv",
-        "summary.json",
-        "verdicts.json",
-        "report.html",
-        "viewer.html",
-        ".manifest",
-        ".drawn-of",
-    }
+        "case.toml", "trajectories.nc", "trajectories.csv", "summary.json", "verdicts.json",
+        "report.html", "viewer.html", ".manifest", ".drawn-of",
+    }  # fmt: skip
 
 
 def test_a_run_reads_back(series: Path) -> None:
