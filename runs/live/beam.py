@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from runs.live.calibrated import build_beam
 from runs.live.knobs import Draft
 from runs.pipeline.design_results import DesignResults, ModelDesignResults
 from runs.pipeline.evaluation import LoadedModel
+from runs.pipeline.limits import check_limits
 from runs.pipeline.model_run import summarise_motion
 from runs.pipeline.models import MotionPlan
 from runs.pipeline.motion_results import MotionResult
@@ -26,23 +28,14 @@ from runs.pipeline.pads import pad_loads
 from runs.pipeline.proportions import proportion_cautions
 from runs.pipeline.results import Results, label
 from runs.pipeline.section_forces import section_forces
-from runs.pipeline.static_results import (
-    StaticResult,
-    extended_positions,
-    instants,
-    positions,
-)
+from runs.pipeline.static_results import extended_positions, instants, positions
 from runs.pipeline.strength import Fibres, FibreStress, largest_stresses
 from runs.pipeline.summary import Summary
-from runs.pipeline.utilisation import utilisations
 from runs.report import theme
 from runs.report.charts import Chart, Curve
-from runs.report.formatting import amount, fixed, number, percent
+from runs.report.formatting import number
 from runs.report.rest_figures import chart_along, rest_lines
-from runs.report.summary_table import governing_pads, pad_text, summary_table, utilisation_verdict
-
-# Type of a table of the page: title and value of each row.
-Rows = list[tuple[str, str]]
+from runs.report.summary_table import summary_table, utilisation_verdict
 
 # Heights of the charts in pixels: of a panel, and of the axis below all of them.
 _PANEL, _BELOW = 150, 60
@@ -79,15 +72,19 @@ def beam_results(
         {"contact_force_peak": (("model", "time", "station"), [forces])},
         coords={"model": [model.name]},
     )
-    still = MotionResult([], [], list(_fibres(loaded, [*found.values()])), [])
-    results = _results(checked, ModelDesignResults(motion=still), pushed)
+    fibres = MotionResult([], [], list(_fibres(loaded, [*found.values()])), [])
+    results = _results(checked, replace(own, motion=fibres), pushed)
     results.summary.pads = list(pad_loads(case, boom, pushed))
-    farthest = own.farthest_static
+    farthest, static = own.farthest_static, summary_table(results)
     assert farthest is not None
+    assert static is not None
+    hertz = ", ".join(number(mode.frequency) for mode in own.modes[1:3])
+    more = [("Second and third natural frequency, Hz", hertz), ("Stiffness of the beam", stiffness)]
+    used = utilisation_verdict(results, model.name)
     yield {
         "stage": "rest",
-        "rows": [*_rows_at_rest(own, results), ("Stiffness of the beam", stiffness)],
-        "utilisation": utilisation_verdict(results, model.name),
+        "rows": [*static.rows, *more],
+        "utilisation": used and f"At rest: {used}",
         "cautions": proportion_cautions(case, boom),
         "boom": boom_figure(case, boom, farthest),
         "forces": _plain(chart_along({"": rest_lines(farthest, "", theme.PALETTE[0])})),
@@ -99,7 +96,7 @@ def beam_results(
         ("preview", FixedStep(case.time.output_step)),
         ("motion", plan.integrator),
     ):
-        trajectory = integrator(plan.motion, lambda _: check_current())
+        trajectory = replace(plan, integrator=integrator).trajectory(lambda _: check_current())
         check_current()
         moved = loaded.with_motion(own, found | extended, trajectory, case, model)
         results = _results(checked, moved, label(boom, {model.name: trajectory}))
@@ -110,9 +107,15 @@ def beam_results(
         results.conclude()
         table = summary_table(results)
         assert table is not None
+        limits = [
+            (f"Limit: {check.limit}", f"{check.limit.shown(value)} {'✓' if check.holds else '✗'}")
+            for check in check_limits(results)
+            for value in check.values.values()
+        ]
         yield {
             "stage": stage,
-            "rows": table.rows,
+            "rows": [*(row for row in table.rows if row not in static.rows), *limits],
+            "notes": table.notes,
             "utilisation": utilisation_verdict(results),
             "cautions": results.summary.cautions,
             "tip": _tip_chart(trajectory),
@@ -134,8 +137,8 @@ def _results(checked: CheckedCase, own: ModelDesignResults, data: xr.Dataset) ->
     results = Results(case, data, Summary(
         title=case.title, case_hash="", versions={}, models={}, failures={}, design=design
     ))  # fmt: skip
-    # The property would build the same boom again.
-    vars(results)["boom"] = checked.boom
+    # The properties would build the same boom again, and find no model before its motion.
+    vars(results).update(boom=checked.boom, main_models=[checked.case.models[0].name])
     return results
 
 
@@ -146,24 +149,6 @@ def _fibres(loaded: LoadedModel, rests: Sequence[Any]) -> Iterator[FibreStress]:
         if (fibres := Fibres.of(segment, line)) is not None:
             curves = section_forces(loaded.boom, index, line, states, times)
             yield largest_stresses(segment, fibres, curves, curves, times)[0]
-
-
-def _rows_at_rest(own: ModelDesignResults, results: Results) -> Rows:
-    rests: Sequence[StaticResult] = own.static
-    rows = [("Tip deflection under the loads of t = 0", f"{fixed(rests[0].tip, 1, TO_MILLI)} mm")]
-    if own.farthest_static is not None and own.farthest_static.tip != rests[0].tip:
-        tip = own.farthest_static.tip
-        rows.append(("Tip deflection, maximum", f"{fixed(tip, 1, TO_MILLI)} mm"))
-    hertz = ", ".join(number(mode.frequency) for mode in own.modes[:3])
-    rows.append(("First frequencies, contacts closed", f"{hertz} Hz"))
-    (model,) = results.case.models
-    if fibre := utilisations(results, model.name).get("outer fibre"):
-        used = "" if fibre.value is None else f", {percent(fibre.value)} of yield"
-        place = f"{fibre.segment}, x = {fibre.x:.4g} m"
-        rows.append(("Bending stress", f"{amount(fibre.load, 'Pa')}{used}\n{place}"))
-    for pad in governing_pads(results).values():
-        rows.append(("Governing pad", pad_text(pad)))
-    return rows
 
 
 def _plain(chart: Chart) -> Any:

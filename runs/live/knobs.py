@@ -42,17 +42,22 @@ _LEAST, _MOST = 0.5, 2.0
 # Shortest pad of the slider, as a fraction of the length in the file.
 _SHORTEST = 0.1
 
-# Keys that designers change first, in this order.
-_FIRST = (
-    r"gravity\.angle",
-    r"payload\.mass",
-    r"load\[\d+\]\.(magnitude|ramp)",
-    r"joint\[\d+\]\.extension",
-    r"joint\[\d+\]\.drive\.(time|speed)",
-    r"joint\[\d+\]\.play",
-    r"joint\[\d+\]\.pad\.(length|offset)",
-    r"segment\[\d+\]\.section\.(flange|web|top|bottom|thickness)",
-)
+# Keys that designers change first, in this order, and their labels.
+_FIRST = {
+    r"gravity\.angle": "Luffing angle",
+    r"payload\.mass": "Payload",
+    r"hoist\.mass": "Hoisted mass",
+    r"(hoist|slew|luff)\.speed": "Speed of {}",
+    r"(hoist|slew|luff)\.time": "Duration of {}",
+    r"load\[(\d+)\]\.magnitude": "Load {}",
+    r"load\[(\d+)\]\.ramp": "Rise time of load {}",
+    r"joint\[\d+\]\.extension": "Extension, {owner}",
+    r"joint\[\d+\]\.drive\.(time|speed)": "Telescoping {}, {owner}",
+    r"joint\[\d+\]\.play": "Play, {owner}",
+    r"joint\[\d+\]\.pad\.(length|offset)": "Pad {}, {owner}",
+    r"segment\[\d+\]\.section\.(flange|web|top|bottom)": "Thickness of {}, {owner}",
+    r"segment\[\d+\]\.section\.thickness": "Thickness, {owner}",
+}
 
 # Tables whose numbers cannot be changed in the page, which has its own beam.
 _WITHOUT = (
@@ -68,6 +73,7 @@ class Knob:
     Args:
         key: key in the case file, ``joint[1].play``, or ``joint.play`` for all joints.
         keys: keys of its numbers.
+        label: label of the slider.
         help: description of the key.
         value: value in the unit.
         unit: unit in the case's system; empty for dimensionless numbers.
@@ -76,6 +82,7 @@ class Knob:
 
     key: str
     keys: Sequence[str]
+    label: str
     help: str
     value: float
     unit: str
@@ -105,6 +112,17 @@ class Draft:
         """
         case = reading.select(reading.load(file), file, members=0)
         return cls(file, hold_plates(case, infer_plates(case)), build_boom(case))
+
+    def _label(self, keys: Sequence[str]) -> str:
+        """Return the label of a knob; the key of a number that has no label."""
+        segments, joints = self.boom.segments, self.boom.joints
+        owners = {f"segment[{i}]": one.name for i, one in enumerate(segments, 1)}
+        owners |= {f"joint[{i}]": segments[one.inner].name for i, one in enumerate(joints, 1)}
+        owner = "all joints" if len(keys) > 1 else owners.get(keys[0].partition(".")[0])
+        for pattern, label in _FIRST.items():
+            if found := re.fullmatch(pattern, keys[0]):
+                return label.format(*found.groups(), owner=owner)
+        return keys[0]
 
     @cached_property
     def _tables(self) -> Tables:
@@ -167,6 +185,7 @@ class Draft:
         return Knob(
             key,
             keys,
+            self._label(keys),
             text,
             in_unit[0],
             system.label(unit) if unit else "",
@@ -199,7 +218,7 @@ class Draft:
             case ("play",) if outer.section is not None and inner.section is not None:
                 return [0.0, room(joint, outer, inner)[0]]
             case ("pad", "length"):
-                return [_SHORTEST * value, float(np.ptp(self.boom.overlap(joint)))]
+                return [_SHORTEST * value, min(high, float(np.ptp(self.boom.overlap(joint))))]
             case ("pad", "offset") if joint.pad is not None:
                 return [0.0, pad_room(joint, joint.pad, self.boom) - joint.pad.width]
         return [low, high]

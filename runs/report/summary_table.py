@@ -32,7 +32,6 @@ def summary_table(results: Results) -> Table | None:
     if not design:
         return None
     own = [design[name] for name in names]
-    tips = [results.trajectories["tip"].sel(model=name).values for name in names]
     hertz = [one.modes[0].frequency if one.modes else None for one in own]
     # Decay by modal damping alone.
     decay_times = [decay_time(results.case.damping.modal, f) for f in hertz]
@@ -41,11 +40,15 @@ def summary_table(results: Results) -> Table | None:
     hardest = governing_pads(results)
     pads = {name: pad_text(pad) for name, pad in hardest.items()}
     stations = [None if hardest else _largest(one, "contact force", at="\nat {} m") for one in own]
-    time = np.asarray(results.trajectories["time"].values, dtype=float)
-    # Direction in which the tip moves most.
-    main = results.trajectories[tip_directions(results.trajectories)[0]]
-    found = [mean_period(time, main.sel(model=name).values) for name in names]
-    periods = [period if np.isfinite(period) else None for period in found]
+    data, tips, periods = results.trajectories, [], []
+    # Static results alone have no motion of the tip.
+    if "tip" in data:
+        tips = [data["tip"].sel(model=name).values for name in names]
+        time = np.asarray(data["time"].values, dtype=float)
+        # Direction in which the tip moves most.
+        main = data[tip_directions(data)[0]]
+        means = (mean_period(time, main.sel(model=name).values) for name in names)
+        periods = [period if np.isfinite(period) else None for period in means]
     damages = [one["detail"].load if "detail" in one else None for one in used]
     at_start, at_most, extended = (
         [max((rest.tip for rest in rests), key=abs, default=None) for rests in several]

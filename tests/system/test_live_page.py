@@ -62,8 +62,8 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
 
 
 def tip(page: Page) -> float:
-    """Return the largest deflection of the tip at rest in mm."""
-    text = page.evaluate(ROW.format("rest", "Tip deflection, maximum"))
+    """Return the static tip deflection under the maximum load in mm."""
+    text = page.evaluate(ROW.format("rest", "Static tip deflection (maximum load)"))
     return float(re.sub(r"[^0-9.−]", "", text).replace("−", "-"))
 
 
@@ -71,7 +71,7 @@ def test_a_slider_changes_numbers_and_pictures(page: Page) -> None:
     """Reference: more payload lowers the tip; its place in the picture follows the number."""
     before, drawn = tip(page), page.evaluate(END)
     moved = page.evaluate(ROW.format("motion", "Maximum dynamic"))
-    page.evaluate(SLIDE.format(300, "payload.mass"))
+    page.evaluate(SLIDE.format(300, "Payload"))
     page.wait_for(ANSWERED)
     assert page.evaluate("document.getElementById('number payload.mass').value") == "300"
     assert tip(page) < before - 20.0
@@ -128,13 +128,15 @@ def test_any_other_number_is_found(page: Page) -> None:
 
 
 def test_pinned_results_stand_beside_new_ones(page: Page) -> None:
-    before = page.evaluate(ROW.format("rest", "Tip deflection, maximum"))
+    before = page.evaluate(ROW.format("rest", "Static tip deflection (maximum load)"))
     page.evaluate("document.getElementById('pin').click()")
     page.evaluate(SET.format(0.005, "joint.play"))
     page.wait_for(ANSWERED)
-    pinned = ROW.format("rest", "Tip deflection, maximum").replace("cells[1]", "cells[2]")
+    pinned = ROW.format("rest", "Static tip deflection (maximum load)").replace(
+        "cells[1]", "cells[2]"
+    )
     assert page.evaluate(pinned) == before
-    assert page.evaluate(ROW.format("rest", "Tip deflection, maximum")) != before
+    assert page.evaluate(ROW.format("rest", "Static tip deflection (maximum load)")) != before
     assert page.evaluate("document.getElementById('tip').data.length") == 2
     page.evaluate("document.getElementById('pin').click()")
     page.evaluate(SET.format(0.003, "joint.play"))
