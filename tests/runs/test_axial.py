@@ -74,12 +74,9 @@ def test_weight_goes_along_as_the_angle_says(tmp_path: Path) -> None:
         ("[[axial]]\nforce = 5e3\n", 5e3),
         ("[[axial]]\nfalls = 4\nmass = 2e3\n", 2e3 * 9.80665 / 4),
         ("[[axial]]\nfalls = 2\n[payload]\nmass = 600.0\ngravity = 5.0\n", 600.0 * 5.0 / 2),
-        (
-            "[[axial]]\nfalls = 2\n[payload]\nmass = 600.0\n[gravity]\n",
-            300.0 * 9.80665,
-        ),
+        ("[[axial]]\nfalls = 2\n[payload]\nmass = 600.0\n[gravity]\n", 300.0 * 9.80665),
     ],
-)
+)  # fmt: skip
 def test_a_rope_presses_the_boom_from_the_tip_to_the_base(
     tmp_path: Path, text: str, force: float
 ) -> None:

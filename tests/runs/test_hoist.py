@@ -149,64 +149,31 @@ def test_load_swings_under_wind() -> None:
 @pytest.mark.parametrize(
     ("before", "after", "message"),
     [
-        (
-            "area = 1.1e-4 # a rope of 16 mm\n",
-            "",
-            "hoist.area: missing; give it, or the stiffness of the rope",
-        ),
-        (
-            "falls = 4\n",
-            "falls = 4\nstiffness = 1e6\n",
-            "hoist.area: stiffness is given; leave one of them out",
-        ),
-        (
-            "travel = 1.2\nspeed = 0.2\nramp = 0.2\nstart = 0.1\n",
-            "",
-            "hoist.travel: missing; it is the length in m by which the winch hoists",
-        ),
-        (
-            "falls = 4\n",
-            "falls = 4\nhanging = true\nslack = 0.1\n",
-            "hoist.slack: the load hangs; leave slack or hanging out",
-        ),
-        (
-            "falls = 4\n",
-            "falls = 4\npendulum = 10.0\n",
-            "hoist.pendulum: the load lies on the ground; give hanging = true",
-        ),
-        (
-            "falls = 4\n",
-            "falls = 4\nhanging = true\ndropped = true\n",
-            "hoist.travel: the load is dropped at t = 0; leave one of them out",
-        ),
-        (
-            "falls = 4\n",
-            "falls = 4\nhanging = true\nwind = [{ force = 100.0 }]\n",
-            "hoist.wind: the load does not swing; give pendulum, its length in m",
-        ),
-        (
-            "falls = 4\n",
-            "falls = 4\nhanging = true\npendulum = 10.0\nwind = [{ force = 100.0 }]\n",
-            "hoist.wind[1].direction: the boom is flat, and nothing moves along 'y'; give the "
-            "joints lateral_play",
-        ),
-        (
-            "falls = 4\n",
-            "falls = 4\nbeta_2 = 0.34\n",
-            "hoist.phi_2_min: missing; the hoisting class has it beside beta_2",
-        ),
-        (
-            "falls = 4\n",
-            "falls = 4\nhanging = true\nphi_2_min = 1.1\nbeta_2 = 0.34\n",
-            "hoist.phi_2_min: the load hangs, and is not lifted; leave it out",
-        ),
-        (
-            "[gravity]\nangle = 60.0\n",
-            "",
-            "hoist.mass: nothing weighs without the table gravity; give it",
-        ),
+        ("area = 1.1e-4 # a rope of 16 mm\n", "",
+         "hoist.area: missing; give it, or the stiffness of the rope"),
+        ("falls = 4\n", "falls = 4\nstiffness = 1e6\n",
+         "hoist.area: stiffness is given; leave one of them out"),
+        ("travel = 1.2\nspeed = 0.2\nramp = 0.2\nstart = 0.1\n", "",
+         "hoist.travel: missing; it is the length in m by which the winch hoists"),
+        ("falls = 4\n", "falls = 4\nhanging = true\nslack = 0.1\n",
+         "hoist.slack: the load hangs; leave slack or hanging out"),
+        ("falls = 4\n", "falls = 4\npendulum = 10.0\n",
+         "hoist.pendulum: the load lies on the ground; give hanging = true"),
+        ("falls = 4\n", "falls = 4\nhanging = true\ndropped = true\n",
+         "hoist.travel: the load is dropped at t = 0; leave one of them out"),
+        ("falls = 4\n", "falls = 4\nhanging = true\nwind = [{ force = 100.0 }]\n",
+         "hoist.wind: the load does not swing; give pendulum, its length in m"),
+        ("falls = 4\n", "falls = 4\nhanging = true\npendulum = 10.0\nwind = [{ force = 100.0 }]\n",
+         "hoist.wind[1].direction: the boom is flat, and nothing moves along 'y'; give the joints "
+         "lateral_play"),
+        ("falls = 4\n", "falls = 4\nbeta_2 = 0.34\n",
+         "hoist.phi_2_min: missing; the hoisting class has it beside beta_2"),
+        ("falls = 4\n", "falls = 4\nhanging = true\nphi_2_min = 1.1\nbeta_2 = 0.34\n",
+         "hoist.phi_2_min: the load hangs, and is not lifted; leave it out"),
+        ("[gravity]\nangle = 60.0\n", "",
+         "hoist.mass: nothing weighs without the table gravity; give it"),
     ],
-)
+)  # fmt: skip
 def test_bad_input(tmp_path: Path, before: str, after: str, message: str) -> None:
     assert before in HOIST
     path = tmp_path / "case.toml"

@@ -95,13 +95,10 @@ def test_objects_other_than_data_are_not_stored(thing: object) -> None:
         '{"record": ["runs.folder.cache", "json"], "parts": {}}',
         '{"record": ["tests.runs.test_records", "Stranger"], "parts": {"path": ""}}',
         '{"record": ["dynamics.contact", "PowerContact"], "parts": {"stiffness": -1.0}}',
-        '{"record": ["dynamics.contact", "restitution_damping"], "parts": {}}',
-        '{"array": [3]}',
-        '{"unknown": []}',
-        "not JSON",
-        "5",
+        '{"record": ["dynamics.contact", "restitution_damping"], "parts": {}}', '{"array": [3]}',
+        '{"unknown": []}', "not JSON", "5",
     ],
-)
+)  # fmt: skip
 def test_bad_records_are_refused(text: str) -> None:
     with pytest.raises((ValueError, TypeError)):
         read(BytesIO(f"{text}\n".encode()), PowerContact)

@@ -63,20 +63,17 @@ def test_it_accepts_places_in_all_their_forms() -> None:
 @pytest.mark.parametrize(
     ("place", "value", "fault"),
     [
-        (("durration",), 1.0, "$"),
-        (("time", "duration"), "0.6", "$.time.duration"),
-        (("time", "duration"), -1.0, "$.time.duration"),
-        (("title",), "two\nlines", "$.title"),
+        (("durration",), 1.0, "$"), (("time", "duration"), "0.6", "$.time.duration"),
+        (("time", "duration"), -1.0, "$.time.duration"), (("title",), "two\nlines", "$.title"),
         (("segment", 0, "supports"), [True], "$.segment[0].supports[0]"),
         (("segment", 0, "supports"), [{"y": 1.0}], "$.segment[0].supports[0]"),
         (("segment", 0, "span"), [0.0], "$.segment[0].span"),
         (("joint", 0, "stations"), [], "$.joint[0].stations"),
         (("joint", 0, "exponent"), 0.5, "$.joint[0].exponent"),
-        (("model", 5, "modes"), 0, "$.model[5]"),
-        (("model", 5, "modes"), "many", "$.model[5]"),
+        (("model", 5, "modes"), 0, "$.model[5]"), (("model", 5, "modes"), "many", "$.model[5]"),
         (("model", 0, "kind"), "plate", "$.model[0]"),
     ],
-)
+)  # fmt: skip
 def test_it_refuses_a_slip(place: tuple[str | int, ...], value: object, fault: str) -> None:
     case = copy.deepcopy(data((CASES / "coarse.toml").read_text(encoding="utf-8")))
     here: Any = case

@@ -47,14 +47,11 @@ def test_values_that_are_not_finite_are_null() -> None:
 @pytest.mark.parametrize(
     ("model", "key", "wrong"),
     [
-        ("shell", "steps", None),
-        ("shell", "kind", 3),
-        ("kantorovich-4", "ensemble", {}),
-        ("beam-fe-bonded", "first_peak", {"tip": [1.0]}),
-        ("shell", "stress", {"von_mises": 1.0}),
+        ("shell", "steps", None), ("shell", "kind", 3), ("kantorovich-4", "ensemble", {}),
+        ("beam-fe-bonded", "first_peak", {"tip": [1.0]}), ("shell", "stress", {"von_mises": 1.0}),
         ("shell", "colour", "red"),
     ],
-)
+)  # fmt: skip
 def test_another_version_s_is_refused(tmp_path: Path, model: str, key: str, wrong: Any) -> None:
     other = content()
     other["models"][model][key] = wrong

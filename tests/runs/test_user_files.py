@@ -33,13 +33,10 @@ def complaint(file: str) -> str:
     [
         ("pipe", os.mkfifo, "not a regular file"),
         ("/dev/zero", lambda path: None, "not a regular file"),
-        (
-            "huge",
-            lambda path: os.truncate(os.open(path, os.O_CREAT | os.O_RDWR), MAX_BYTES + 1),
-            "larger than 16 MB",
-        ),
+        ("huge", lambda path: os.truncate(os.open(path, os.O_CREAT | os.O_RDWR), MAX_BYTES + 1),
+         "larger than 16 MB"),
     ],
-)
+)  # fmt: skip
 def test_special_and_oversized_files_are_refused(
     file: str, make: Callable[[str], object], why: str
 ) -> None:

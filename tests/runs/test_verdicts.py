@@ -311,18 +311,15 @@ RUBS = "This case has no friction; it takes the case with friction."
         ("S2", {"motion": curves(duration=5.0)}, "The run ends at 5 s; it takes 7 s."),
         ("S3", {}, SAMPLE),
         ("S3", {"motion": curves(duration=5.0)}, "The run ends at 5 s; it takes 6 s."),
-        (
-            "S3",
-            {"summary": NO_ENSEMBLE, "tips": stratifying(0.3)},
-            "'kantorovich-5' has no ensemble.",
-        ),
+        ("S3", {"summary": NO_ENSEMBLE, "tips": stratifying(0.3)},
+         "'kantorovich-5' has no ensemble."),
         ("S7", {}, RUBS),
         ("S8", {}, RUBS),
         ("S9", {}, "No two models of the case differ in the contact law alone."),
         ("S10", {}, "'kantorovich-4' has no steps for peaks."),
         ("S11", {}, "This case has 2 segments; it takes the case of three segments."),
     ],
-)
+)  # fmt: skip
 def test_rule_names_its_missing_data(key: str, given: dict[str, Any], why: str) -> None:
     assert verdict(key, **given) == ("undecided", None, why)
 

@@ -197,36 +197,20 @@ def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
 @pytest.mark.parametrize(
     ("boom", "law", "message"),
     [
-        (
-            boom_in_space(),
-            LAW,
-            "the unreduced shell moves in the plane, under constant loads, without bonded joints",
-        ),
-        (
-            three_segments(bonded=True),
-            LAW,
-            "the unreduced shell moves in the plane, under constant loads, without bonded joints",
-        ),
-        (
-            flat_boom(),
-            replace(LAW.law, damping=0.5).behind(LAW.above),
-            "the unreduced shell takes contacts without damping",
-        ),
-        (
-            replace(flat_boom(), joints=(replace(flat_boom().joints[0], dashpot=1.0),)),
-            LAW,
-            "the unreduced shell takes joints without dashpots",
-        ),
-        (
-            replace(
-                flat_boom(),
-                cylinders=(Cylinder(0, 4.0, depth=0.3, ground=(1.0, -2.0), stiffness=1.0e7),),
-            ),
-            LAW,
-            "the unreduced shell takes neither cylinders nor dashpots",
-        ),
+        (boom_in_space(), LAW,
+         "the unreduced shell moves in the plane, under constant loads, without bonded joints"),
+        (three_segments(bonded=True), LAW,
+         "the unreduced shell moves in the plane, under constant loads, without bonded joints"),
+        (flat_boom(), replace(LAW.law, damping=0.5).behind(LAW.above),
+         "the unreduced shell takes contacts without damping"),
+        (replace(flat_boom(), joints=(replace(flat_boom().joints[0], dashpot=1.0),)), LAW,
+         "the unreduced shell takes joints without dashpots"),
+        (replace(
+             flat_boom(),
+             cylinders=(Cylinder(0, 4.0, depth=0.3, ground=(1.0, -2.0), stiffness=1.0e7),),
+         ), LAW, "the unreduced shell takes neither cylinders nor dashpots"),
     ],
-)
+)  # fmt: skip
 def test_unsupported_booms_are_refused(boom: Boom, law: PowerContact, message: str) -> None:
     full = assemble_boom(touching(boom, law, law), ShellOptions(2.0), MPI.COMM_SELF)
     with pytest.raises(BoomError, match=message):
