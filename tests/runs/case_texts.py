@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What cases of several tests say alike, and how they are read and refused."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -52,6 +54,14 @@ def read_case(folder: Path, text: str) -> Case:
     path = folder / "case.toml"
     path.write_text(text, encoding="utf-8")
     return reading.load(str(path))
+
+
+@contextmanager
+def refused(line: str) -> Iterator[None]:
+    """Expect a refusal with this exact line."""
+    with pytest.raises(BadInput) as error:
+        yield
+    assert str(error.value) == line
 
 
 def refusal(folder: Path, text: str) -> str:

@@ -18,6 +18,7 @@ from runs.case.messages import BadInput
 from runs.case.reading import load, select
 from runs.case.schema import Case
 from tests.runs.bad_edits import BAD_EDITS
+from tests.runs.case_texts import refused
 from tests.runs.coarse_case import COARSE
 from tests.touching import contact_laws
 
@@ -33,9 +34,9 @@ def complaint(folder: Path, content: str | bytes) -> str:
     """Return the message with which a case is refused."""
     data = content if isinstance(content, bytes) else content.encode()
     (folder / "case.toml").write_bytes(data)
-    with pytest.raises(BadInput) as refused:
+    with pytest.raises(BadInput) as error:
         load("case.toml")
-    return str(refused.value)
+    return str(error.value)
 
 
 @pytest.mark.parametrize("name", ["paper", "coarse"])
@@ -174,11 +175,10 @@ def test_selection_changes_the_members_of_ensembles() -> None:
 
 @pytest.mark.parametrize("members", [-1, 1, 10_001])
 def test_refuses_ensembles_of_other_sizes(members: int) -> None:
-    with pytest.raises(BadInput) as refused:
-        select(load(str(CASES / "paper.toml")), "paper.toml", members=members)
-    assert str(refused.value) == (
+    with refused(
         f"paper.toml: --members: must be from 2 to 10000, or 0 for no ensembles, got {members}"
-    )
+    ):
+        select(load(str(CASES / "paper.toml")), "paper.toml", members=members)
 
 
 def test_every_key_is_described_and_no_other_is_allowed() -> None:
@@ -229,9 +229,8 @@ def test_refuses_a_bad_file_with_one_exact_line(
     ],
 )
 def test_unreadable_file_is_named_as_given(folder: Path, path: str, line: str) -> None:
-    with pytest.raises(BadInput) as refused:
+    with refused(f"{path}: {line}"):
         load(path)
-    assert str(refused.value) == f"{path}: {line}"
 
 
 def test_a_byte_order_mark_is_no_fault(folder: Path) -> None:
@@ -253,9 +252,8 @@ def test_a_byte_order_mark_is_no_fault(folder: Path) -> None:
 )  # fmt: skip
 def test_refuses_a_selection_with_one_exact_line(models: Any, mesh_size: Any, line: str) -> None:
     case = load(str(CASES / "coarse.toml"))
-    with pytest.raises(BadInput) as refused:
+    with refused(f"coarse.toml: {line}"):
         select(case, "coarse.toml", models, mesh_size)
-    assert str(refused.value) == f"coarse.toml: {line}"
 
 
 @pytest.mark.parametrize(("modes", "chosen"), [("auto", "auto"), ("12", 12)])
@@ -273,6 +271,5 @@ def test_chooses_the_coordinates_of_the_shells(modes: str, chosen: object) -> No
     ],
 )
 def test_refuses_coordinates_with_one_exact_line(models: Any, modes: str, line: str) -> None:
-    with pytest.raises(BadInput) as refused:
+    with refused(f"coarse.toml: {line}"):
         select(load(str(CASES / "coarse.toml")), "coarse.toml", models, modes=modes)
-    assert str(refused.value) == f"coarse.toml: {line}"

@@ -10,6 +10,7 @@ from runs.case.actions import series_notes
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.units import Unit
+from tests.runs.case_texts import refused
 from tests.runs.coarse_case import COARSE
 
 LOAD = '[[load]]\nsegment = "inner"\n{keys}\nfile = "gust.csv"\n\n[[model]]'
@@ -150,19 +151,18 @@ def test_factors_need_a_magnitude_and_columns_are_two() -> None:
 
 def complaint(csv: str, keys: str) -> str:
     """Return the message about the load with which a case is refused."""
-    with pytest.raises(BadInput) as refused:
+    with pytest.raises(BadInput) as error:
         case_of(csv, keys)
-    return str(refused.value).removeprefix("case.toml: load[1].")
+    return str(error.value).removeprefix("case.toml: load[1].")
 
 
 def test_columns_of_no_file_are_refused() -> None:
     text = '[[load]]\nsegment = "inner"\nmagnitude = 1.0\ncolumns = ["t", "F"]\n\n[[model]]'
     Path("case.toml").write_text(COARSE.replace("[[model]]", text, 1), encoding="utf-8")
-    with pytest.raises(BadInput) as refused:
-        reading.load("case.toml")
-    assert str(refused.value) == (
+    with refused(
         "case.toml: load[1].columns: there is no file whose columns these are; leave it out"
-    )
+    ):
+        reading.load("case.toml")
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.kinds import KINDS
 from runs.case.kinds.rigid import Rigid
-from runs.case.messages import BadInput
+from tests.runs.case_texts import refused
 from tests.runs.coarse_case import COARSE
 from tests.runs.test_actions import CANTILEVER
 
@@ -53,9 +53,8 @@ def test_play_of_a_joint_is_the_play_of_its_contacts(paper_boom: Boom) -> None:
 def test_immovable_rigid_segments_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "case.toml"
     path.write_text(CANTILEVER + RIGID, encoding="utf-8")
-    with pytest.raises(BadInput) as error:
-        case_file.load(str(path))
-    assert str(error.value) == (
+    with refused(
         f"{path}: model[1].kind: every segment is held, and no rigid one could move; give another "
         "kind, or elastic supports"
-    )
+    ):
+        case_file.load(str(path))

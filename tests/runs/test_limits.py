@@ -11,7 +11,6 @@ from rich.console import Console
 from protractile.cases import run_case
 from runs import cli
 from runs.case import reading
-from runs.case.messages import BadInput
 from runs.pipeline.limits import Limit, case_limits, check_limits
 from runs.pipeline.quantities import decay_time, measure
 from runs.report.limits import limit_faults, limit_table
@@ -26,6 +25,7 @@ from tests.runs.cantilever import (
     YOUNG,
     static_tip,
 )
+from tests.runs.case_texts import refused
 from tests.runs.sweeping import run
 
 
@@ -89,9 +89,8 @@ def test_limits_are_in_the_units_of_the_case() -> None:
     ],
 )
 def test_bad_limit_is_refused(limits: str, line: str) -> None:
-    with pytest.raises(BadInput) as refused:
+    with refused(f"case.toml: {line}"):
         reading.load(write(limits))
-    assert str(refused.value) == f"case.toml: {line}"
 
 
 @pytest.mark.usefixtures("few_figures")

@@ -17,6 +17,7 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.reading import load
 from runs.pipeline.models import build
+from tests.runs.case_texts import refused
 from tests.runs.coarse_case import COARSE
 
 # The two segments' numbers as beams.
@@ -165,6 +166,5 @@ def test_a_segment_tapers_to_its_head() -> None:
 )  # fmt: skip
 def test_no_other_head_is_one(head: str, own: str, message: str) -> None:
     """Reference: the message."""
-    with pytest.raises(BadInput) as fault:
+    with refused(f"case.toml: {message}"):
         load(_tapering(head, own))
-    assert str(fault.value) == f"case.toml: {message}"

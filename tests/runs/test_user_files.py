@@ -12,6 +12,7 @@ from runs.case.reading import load
 from runs.case.user_files import MAX_BYTES, check_not_working_folder
 from runs.folder.files import MANIFEST
 from runs.pipeline.results import prepare
+from tests.runs.case_texts import refused
 from tests.runs.coarse_case import COARSE
 
 GUST = '[[base]]\nacceleration = 1.0\nfile = "gust.csv"\n\n[[model]]'
@@ -23,9 +24,9 @@ def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def complaint(file: str) -> str:
-    with pytest.raises(BadInput) as refused:
+    with pytest.raises(BadInput) as error:
         load(file)
-    return str(refused.value)
+    return str(error.value)
 
 
 @pytest.mark.parametrize(
@@ -85,9 +86,8 @@ def test_nobody_s_folder_is_replaced_around_them(
     monkeypatch.chdir(folder / inside)
     for other in (folder / "other", tmp_path / "other", tmp_path / "ou"):
         check_not_working_folder(other, "case.toml", "--out other")
-    with pytest.raises(BadInput) as refused:
-        prepare(str(folder), "case.toml")
-    assert str(refused.value) == (
+    with refused(
         f"case.toml: --out {folder}: is where you are, and will be replaced; start from another "
         "folder"
-    )
+    ):
+        prepare(str(folder), "case.toml")
