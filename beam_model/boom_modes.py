@@ -223,9 +223,9 @@ class _CoupledGroup:
     def _member(self, segment: int) -> BeamMember:
         def read(motion: Motion, rule: Rule) -> Array:
             parts = zip(self.parts, self.components, strict=True)
-            own = (segment, motion)
+            member = (segment, motion)
             return np.concatenate(
-                [rule(c) if part == own else np.zeros(len(c.load)) for part, c in parts]
+                [rule(c) if part == member else np.zeros(len(c.load)) for part, c in parts]
             )
 
         return BeamMember(read)

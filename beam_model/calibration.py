@@ -98,13 +98,13 @@ def calibrate(
         probe_responses: probe responses of the segments of the shell.
         segments: function that returns the beams of a boom.
     """
-    found = [
+    stiffnesses = [
         effective_stiffness(segment, probed)
         for segment, probed in zip(boom.segments, probe_responses, strict=True)
     ]
-    stiff = with_stiffnesses(boom, found)
+    stiff = with_stiffnesses(boom, stiffnesses)
     beam = gap_system(stiff, segments(stiff), EACH_SIDE)
-    return Calibration(found, residual_compliance(beam, shell))
+    return Calibration(stiffnesses, residual_compliance(beam, shell))
 
 
 def elastic_compliance(system: GapSystem) -> Array:

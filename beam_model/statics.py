@@ -84,13 +84,13 @@ class Elements:
     def unsupported(self) -> list[Component]:
         """The components along z without supports, with nodes at all possible supports."""
         size, theory = self._kind
-        found = []
+        components = []
         for number, segment in enumerate(self.boom.segments):
             breaks = [*_reaction_places(self.boom, number), *self.boom.stations_of(number)]
             alone = replace(segment, supports=())
             model = finite_element_segment(alone, size, breaks, theory, rotary_inertia=False)
-            found.append(model.components["z"])
-        return found
+            components.append(model.components["z"])
+        return components
 
     @property
     def _kind(self) -> tuple[float, Theory]:

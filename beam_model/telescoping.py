@@ -43,11 +43,11 @@ def moving_axial_forces(
 
     ``members`` are the load vectors and rows of all segments.
     """
-    found = moving_force(boom.segments, boom.joints, joint)
+    axial = moving_force(boom.segments, boom.joints, joint)
     drive = boom.joints[joint].drive
-    if found is None or drive is None:
+    if axial is None or drive is None:
         return []
-    segment, start, direction = found.segment, found.x, found.direction
+    segment, start, direction = axial.segment, axial.x, axial.direction
 
     def rows(extension: float) -> Array:
         x = start + direction * extension
@@ -55,7 +55,7 @@ def moving_axial_forces(
 
     nodes = np.concatenate([models[segment].components[plane].breaks for plane in boom.directions])
     breaks = _between(boom, drive.reach, [direction * (nodes - start)])
-    return [MovingAxialForce(found.force, RowTable.interpolate(rows, breaks))]
+    return [MovingAxialForce(axial.force, RowTable.interpolate(rows, breaks))]
 
 
 def _travel(

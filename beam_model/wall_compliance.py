@@ -110,7 +110,7 @@ def contact_compliance(boom: Boom) -> Array:
     """
     rows = _contact_rows(boom)
     stops = sum(len(stop.sides) for _, stop in boom.numbered_stops)
-    found = np.zeros((len(rows) + stops,) * 2)
+    compliance = np.zeros((len(rows) + stops,) * 2)
     # Vertical and lateral pads at one x belong together: flanges that bend make webs bulge.
     for place in {(pad.number, pad.x) for pad, _ in rows if pad.patch is not None}:
         at = [i for i, (pad, _) in enumerate(rows) if (pad.number, pad.x) == place and pad.patch]
@@ -122,8 +122,8 @@ def contact_compliance(boom: Boom) -> Array:
             segment = replace(segment, load=0.0, lateral=None, compression=NO_COMPRESSION)
             # The sign relates the direction of a row to the outward normal of its area.
             outward = wall_compliance(segment, areas)
-            found[np.ix_(at, at)] += np.outer(sides, sides) * outward
-    return found
+            compliance[np.ix_(at, at)] += np.outer(sides, sides) * outward
+    return compliance
 
 
 def station_compliance(boom: Boom) -> dict[tuple[int, Direction, int], float]:
@@ -137,14 +137,16 @@ def station_compliance(boom: Boom) -> dict[tuple[int, Direction, int], float]:
     for row, (pad, side) in enumerate(_contact_rows(boom)):
         place = pad.number, pad.direction, pad.joint.stations.index(pad.x), side
         sides.setdefault(place, []).append(row)
-    found: dict[tuple[int, Direction, int], float] = {}
+    compliances: dict[tuple[int, Direction, int], float] = {}
     for (number, direction, k, _), rows in sides.items():
-        own = walls[np.ix_(rows, rows)]
+        compliance_matrix = walls[np.ix_(rows, rows)]
         compliance = 0.0
-        if np.diag(own).all():
-            compliance = 1.0 / float(np.linalg.solve(own, np.ones(len(rows))).sum())
-        found[number, direction, k] = max(compliance, found.get((number, direction, k), 0.0))
-    return found
+        if np.diag(compliance_matrix).all():
+            compliance = 1.0 / float(np.linalg.solve(compliance_matrix, np.ones(len(rows))).sum())
+        compliances[number, direction, k] = max(
+            compliance, compliances.get((number, direction, k), 0.0)
+        )
+    return compliances
 
 
 def _contact_rows(boom: Boom) -> list[tuple[Pad, Side]]:

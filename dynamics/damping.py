@@ -95,13 +95,13 @@ def with_modal_damping(system: GapSystem, ratio: float, rest: Array | None = Non
     omega, shapes = (part[..., :count] for part in closed_contact_modes(system, rest))
     if not omega.size:
         return system
-    own = np.where(rigid, 0.5 * omega[0], system.omega)
+    rates_of_modes = np.where(rigid, 0.5 * omega[0], system.omega)
     bent = np.where(rigid[:, None], 0.0, shapes)
-    required = np.diag(omega) - (shapes - bent).T @ (own[:, None] * (shapes - bent))
-    found = bent.T @ (own[:, None] * bent)
-    share = 1.0 / max(1.0, eigh(found, required, eigvals_only=True)[-1])
-    missing, directions = eigh(required - share * found)
-    rates = 2.0 * ratio * np.where(rigid, own, share * own)
+    required = np.diag(omega) - (shapes - bent).T @ (rates_of_modes[:, None] * (shapes - bent))
+    damping = bent.T @ (rates_of_modes[:, None] * bent)
+    share = 1.0 / max(1.0, eigh(damping, required, eigvals_only=True)[-1])
+    missing, directions = eigh(required - share * damping)
+    rates = 2.0 * ratio * np.where(rigid, rates_of_modes, share * rates_of_modes)
     needed = missing > _ROUND_OFF * omega[-1]
     strengths = np.sqrt(2.0 * ratio * missing[needed])
     dashpots = strengths[:, None] * (directions[:, needed].T @ pinv(bent, rtol=_BENT))

@@ -48,13 +48,13 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     """
     pressed = [float(law.force(np.zeros(()))) for law in system.laws]
     # Scale of the force of shims at zero displacement.
-    pushed = load - np.array(pressed) @ system.rows
-    if not pushed.any():
+    unbalanced_load = load - np.array(pressed) @ system.rows
+    if not unbalanced_load.any():
         return np.zeros(system.num_modes)
     laws = contact_terms(system.laws)
     # L Lᵀ, the stiffness with each contact's tangent at the force of the whole load, scales the
     # unknowns, so that all directions have a similar stiffness.
-    whole = max(float(np.linalg.norm(load)), float(np.linalg.norm(pushed)))
+    whole = max(float(np.linalg.norm(load)), float(np.linalg.norm(unbalanced_load)))
     row, k, n = laws["row"], np.abs(laws["stiffness"]), laws["exponent"]
     force, spring = whole * np.sqrt(system.row_masses), np.zeros(len(system.laws))
     np.maximum.at(spring, row, n * k ** (1.0 / n) * force[row] ** (1.0 - 1.0 / n))
@@ -67,7 +67,7 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     if not system.laws:
         return np.asarray(cho_solve((factor, True), load))
     scaled_load = solve_triangular(factor, load, lower=True)
-    scaled_push = solve_triangular(factor, pushed, lower=True)
+    scaled_push = solve_triangular(factor, unbalanced_load, lower=True)
     unit = max(float(np.linalg.norm(scaled_load)), float(np.linalg.norm(scaled_push)))
     scaled_load /= unit
     # In scaled unknowns, the stiffness with springs is the unit matrix. So all iterates are in the

@@ -145,8 +145,8 @@ class FrameAcceleration:
             "y": 0.0,
             "z": np.cos(luffed) - np.cos(start),
         }
-        own = frame.accelerations(time, self.x, self.extension)[component]
-        return np.asarray(own + frame.gravity * weight[self.direction])
+        inertial = frame.accelerations(time, self.x, self.extension)[component]
+        return np.asarray(inertial + frame.gravity * weight[self.direction])
 
 
 class Spin(FrameAcceleration):

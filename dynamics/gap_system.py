@@ -174,8 +174,8 @@ class GapSystem:
     @property
     def stiffness(self) -> Array:
         """The stiffness (num_modes, num_modes) in 1/s²."""
-        own = np.diag(self.omega2)
-        return own - self.geometric_stiffness if self.geometric_stiffness.size else own
+        elastic = np.diag(self.omega2)
+        return elastic - self.geometric_stiffness if self.geometric_stiffness.size else elastic
 
     @property
     def damping_matrix(self) -> Array:

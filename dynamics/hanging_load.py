@@ -153,22 +153,24 @@ class HangingLoad:
             tip: row (num_modes,) of the deflection w.
             x: position of the tip in m.
         """
-        own = self._coordinates(system.observers)
+        dimensions = self._coordinates(system.observers)
         aside = system.observers.get("tip_lateral")
         lateral = np.zeros(tip.shape) if aside is None else aside.row
-        coordinates = np.eye(own, system.num_modes + own, system.num_modes) / np.sqrt(self.mass)
+        coordinates = np.eye(dimensions, system.num_modes + dimensions, system.num_modes) / np.sqrt(
+            self.mass
+        )
 
         wide = system.transform(
-            np.append(system.omega2, np.zeros(own)),
-            np.eye(system.num_modes, system.num_modes + own),
+            np.append(system.omega2, np.zeros(dimensions)),
+            np.eye(system.num_modes, system.num_modes + dimensions),
         )
-        tip, lateral = (np.pad(row, (0, own)) for row in (tip, lateral))
+        tip, lateral = (np.pad(row, (0, dimensions)) for row in (tip, lateral))
 
         def stretches(time: float) -> Array:
             """Return rows (own, num_modes + own) of the tip displacement relative to the load."""
             if self.pendulum is None:
                 return np.asarray(self.cosine * tip[None] - coordinates)
-            return np.asarray(self.pendulum.read(time, tip, lateral)[:own] - coordinates)
+            return np.asarray(self.pendulum.read(time, tip, lateral)[:dimensions] - coordinates)
 
         height, first = coordinates[0], len(system.rows)
         hung = stretches(0.0)
@@ -188,9 +190,9 @@ class HangingLoad:
                 # The rows follow time, up to the end of slewing and luffing.
                 breaks = sorted({0.0, *(time for time in moves if time > 0.0)})
                 clock = PiecewiseLinear((0.0, breaks[-1]), (0.0, breaks[-1]))
-                rows: list[tuple[RowKind, int]] = [("rows", first + k) for k in range(own)]
+                rows: list[tuple[RowKind, int]] = [("rows", first + k) for k in range(dimensions)]
                 table = RowTable.interpolate(stretches, breaks)
-                travels.append(Travel(clock, table, rows, shifts=(0.0,) * own))
+                travels.append(Travel(clock, table, rows, shifts=(0.0,) * dimensions))
             axes: tuple[Literal["z", "x", "y"], ...] = ("z", "x", "y")
             for axis, coordinate in zip(axes, coordinates, strict=False):
                 history = PathAcceleration(swing.frame, axis, swing.x, swing.extension)
@@ -230,17 +232,17 @@ class HangingLoad:
         rows = self._coordinates([str(name) for name in motion.data]) + (
             0 if self.slack is None else 1
         )
-        own = motion.data.sizes["station"] - rows
-        data = motion.data.isel(station=slice(own))
+        num_stations = motion.data.sizes["station"] - rows
+        data = motion.data.isel(station=slice(num_stations))
         for name in ("contact_force", "contact_force_peak"):
-            force = motion.data[name].isel(station=own, drop=True)
+            force = motion.data[name].isel(station=num_stations, drop=True)
             force.attrs["long_name"] = force.attrs["long_name"].replace("contact", "rope")
             force.attrs["weight"] = self.weight
             data[name.replace("contact", "rope")] = force
         if self.pendulum is not None:
             slewed = self.pendulum.frame.slew_angle(motion.time)
             # The gaps of the springs: the position of the tip relative to the load, in fixed axes.
-            gaps = -motion.data["gap"].values.T[own + 1 :]
+            gaps = -motion.data["gap"].values.T[num_stations + 1 :]
             one, other = gaps if len(gaps) == 2 else (gaps[0], np.zeros(slewed.shape))
             swings = {"swing_out": np.cos(slewed) * one + np.sin(slewed) * other}
             if len(gaps) == 2:

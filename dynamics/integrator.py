@@ -177,16 +177,16 @@ class AdaptiveStep:
                 state, coarse = (State(*(array.copy() for array in run.state)) for _ in range(2))
                 run.advance(first, last, substeps, state, part)
                 compared = run.advance(first, last, substeps // 2, coarse)
-                found = error(part, compared, state, coarse)
+                step_error = error(part, compared, state, coarse)
                 limit = allowed * scale
-                if found <= limit or substeps >= most:
+                if step_error <= limit or substeps >= most:
                     break
                 substeps *= 2
             for kept, reached in zip(run.state, state, strict=True):
                 kept[...] = reached
             made.append(substeps)
-            total += found
-            if found < _COARSEN_BELOW * limit:
+            total += step_error
+            if step_error < _COARSEN_BELOW * limit:
                 substeps = max(fewest, substeps // 2)
             if progress is not None:
                 progress(last / outputs)

@@ -24,13 +24,13 @@ def soften_modes(omega2: Array, geometric: Array) -> tuple[Array, Array]:
     of the modes are coefficients of the modes without axial forces.
     """
     # The upper triangle preserves the digits of low modes, see ``natural_modes`` of beams.
-    found, combination = eigh(np.diag(omega2) - geometric, lower=False)
+    softened, combination = eigh(np.diag(omega2) - geometric, lower=False)
     # Translations keep ω = 0 exactly.
     rigid = omega2 == 0.0
     changes = np.abs(np.linalg.eigvalsh(geometric[np.ix_(rigid, rigid)]))
     unchanged = np.count_nonzero(changes <= _ROUND_OFF * changes.max(initial=0.0))
-    found[np.argsort(np.abs(found))[:unchanged]] = 0.0
-    return found, combination
+    softened[np.argsort(np.abs(softened))[:unchanged]] = 0.0
+    return softened, combination
 
 
 def buckling_factor(stiffness: Array, geometric: Array) -> float:

@@ -175,7 +175,7 @@ class Integration:
         load = motion.system.largest_load
         energy_floor = 0.5 * step**2 * float((load * load).sum())
         check_energy(output.energies, energy_floor=energy_floor)
-        found = Trajectory.record(
+        trajectory = Trajectory.record(
             motion.system,
             motion.output_step * np.arange(motion.outputs + 1),
             output,
@@ -191,31 +191,31 @@ class Integration:
             },
             energy_floor,
         )
-        return self._with_drives(found) if motion.system.travels else found
+        return self._with_drives(trajectory) if motion.system.travels else trajectory
 
-    def _with_drives(self, found: Trajectory) -> Trajectory:
+    def _with_drives(self, trajectory: Trajectory) -> Trajectory:
         """Return the trajectory with the results of drives."""
         system, added, stick_slip = self.motion.system, {}, {}
         for travel, work in zip(system.travels, self.output.drives.T, strict=True):
             if travel.suffix is None:
                 continue
-            extension = travel.history(found.time)
+            extension = travel.history(trajectory.time)
             friction = axial_friction(system, travel, self.output.means)
             moved = np.diff(extension, prepend=extension[0])
             resisting = np.sign(moved) * friction
             power = np.diff(work + np.cumsum((resisting + travel.axial_load) * moved), prepend=0.0)
-            power[1:] /= np.diff(found.time)
+            power[1:] /= np.diff(trajectory.time)
             values = extension, resisting, power
             for (name, of), value in zip(DRIVE_VARIABLES.items(), values, strict=True):
                 added[f"{name}{travel.suffix}"] = ("time", value, of)
             if travel.elastic is not None:
-                moved_by = move_segment(travel.elastic, travel.history, found.time, friction)
+                moved_by = move_segment(travel.elastic, travel.history, trajectory.time, friction)
                 stick_slip[f"drive_force{travel.suffix}"] = moved_by.results
                 for name, value in moved_by.series.items():
                     added[f"{name}{travel.suffix}"] = ("time", value, ELASTIC_DRIVE_VARIABLES[name])
-        data = found.data.assign(added)
+        data = trajectory.data.assign(added)
         data.attrs |= {"stick_slip": stick_slip} if stick_slip else {}
-        return Trajectory(data, found.states)
+        return Trajectory(data, trajectory.states)
 
 
 def step_schedule(system: GapSystem, times: Array) -> Schedule:

@@ -296,12 +296,12 @@ def prominent_peaks(values: Array, prominence: float) -> list[int]:
 
     They are the peaks of ``scipy.signal.find_peaks``, whose import takes half a second.
     """
-    found: list[int] = []
+    peaks: list[int] = []
     begin = 0
     while (peak := _first_prominent(values[begin:], prominence)) is not None:
-        found.append(begin + peak)
+        peaks.append(begin + peak)
         begin += peak + 1
-    return found
+    return peaks
 
 
 def _first_prominent(values: Array, prominence: float) -> int | None:

@@ -175,11 +175,11 @@ def moving_force_places(
 ) -> set[float]:
     """Return the x in m of a segment between which axial forces move along it."""
     return {
-        found.x + found.direction * extension
+        moving.x + moving.direction * extension
         for number, joint in enumerate(joints)
         if joint.drive is not None
-        and (found := moving_force(segments, joints, number)) is not None
-        and found.segment == segment
+        and (moving := moving_force(segments, joints, number)) is not None
+        and moving.segment == segment
         for extension in (0.0, *joint.drive.reach)
     }
 
@@ -253,8 +253,8 @@ def lumped_masses(segment: Segment) -> tuple[PointMass, ...]:
     x, length = 0.5 * (ends[1:] + ends[:-1]), segment.length / _LUMPS
     ratio = segment.property_ratio(attrgetter("mass_per_length"), x)
     masses = segment.mass_per_length * length * ratio
-    own = (PointMass(*one) for one in zip(x.tolist(), masses.tolist(), strict=True))
-    return (*own, *segment.all_masses)
+    lumps = (PointMass(*one) for one in zip(x.tolist(), masses.tolist(), strict=True))
+    return (*lumps, *segment.all_masses)
 
 
 def axial_force(
@@ -277,9 +277,9 @@ def axial_force(
     """
     total = np.broadcast_to(segments[number].compression(x), (*time.shape, x.size))
     for position, joint in enumerate(joints):
-        found = moving_force(segments, joints, position)
-        if joint.drive is not None and found is not None and found.segment == number:
-            total = total + found.change(x, joint.drive.history(time))
+        moving = moving_force(segments, joints, position)
+        if joint.drive is not None and moving is not None and moving.segment == number:
+            total = total + moving.change(x, joint.drive.history(time))
     for change in changes:
         if change.compressions:
             total = total + change.history(time)[..., None] * change.compressions[number](x)
@@ -288,26 +288,26 @@ def axial_force(
 
 def _weights(segment: Segment, gravity: float) -> list[tuple[float, float]]:
     """Return (x in m, weight in N) of the point weights of a segment."""
-    found = [(point.x, point.mass * gravity) for point in segment.masses]
+    weights = [(point.x, point.mass * gravity) for point in segment.masses]
     if segment.section is not None:
         plate = segment.material.density * gravity
-        found += [
+        weights += [
             (each.x, plate * segment.section_at(each.x).enclosed_area * each.thickness)
             for each in segment.diaphragms
         ]
-    return found
+    return weights
 
 
 def _distributed_weights(segment: Segment, gravity: float) -> list[tuple[float, float, float]]:
     """Return (start in m, end in m, weight in N/m) of the distributed weights of a segment."""
-    found = list(_plain_weights(segment, gravity))
+    weights = list(_plain_weights(segment, gravity))
     if segment.section is not None:
         doubler = segment.material.density * gravity
-        found += [
+        weights += [
             (*each.span, doubler * segment.mean_width(each) * each.thickness)
             for each in segment.collars
         ]
-    return found
+    return weights
 
 
 def _plain_weights(segment: Segment, gravity: float) -> Iterator[tuple[float, float, float]]:

@@ -163,7 +163,7 @@ class Boom:
 
     def moving_intervals(self, segment: int) -> tuple[float, ...]:
         """Return ascending x in m of a segment between which stations or axial forces move."""
-        found = {
+        places = {
             place[joint.inner == segment]
             for joint in self.joints
             if joint.drive is not None and segment in (joint.outer, joint.inner)
@@ -172,8 +172,8 @@ class Boom:
         }
         if drives := drives_of(self.joints, segment):
             moved = [stop.x for stop in self.stops if stop.segment == segment]
-            found |= {x - extension for x in moved for extension in reach(drives)}
-        return tuple(sorted(found | moving_force_places(self.segments, self.joints, segment)))
+            places |= {x - extension for x in moved for extension in reach(drives)}
+        return tuple(sorted(places | moving_force_places(self.segments, self.joints, segment)))
 
     def stations_of(self, segment: int) -> tuple[float, ...]:
         """Return ascending x in m of the stations, stops, lugs, loads and masses of a segment."""

@@ -190,15 +190,15 @@ def _check_stops(boom: Boom) -> None:
 
 
 def _check_observations(boom: Boom) -> None:
-    own = {*forces(boom), *(place.name for place in boom.end_observations(KINDS))}
+    names = {*forces(boom), *(place.name for place in boom.end_observations(KINDS))}
     for number, place in enumerate(boom.observations):
         where = f"observations[{number}]"
-        if place.name in own:
+        if place.name in names:
             raise BoomError(
                 f"{where}.name",
                 f"{place.name!r} is the name of another output already; give it its own",
             )
-        own.add(place.name)
+        names.add(place.name)
         boom.segments[place.segment].check_place(f"{where}.x", place.x)
         if place.kind.read in SPATIAL_QUANTITIES and not boom.spatial:
             raise BoomError(

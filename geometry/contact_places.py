@@ -195,7 +195,7 @@ def pads(boom: Boom) -> list[Pad]:
 
     The weights of each side of a station sum to one.
     """
-    found: list[Pad] = []
+    pairs: list[Pad] = []
     station = 0
     for direction in boom.directions:
         for number, joint in enumerate(boom.joints):
@@ -243,9 +243,9 @@ def pads(boom: Boom) -> list[Pad]:
                             face=face,
                             carrier=None if joint.drive is None else joint.drive.carriers[k],
                         )
-                        found.append(pad)
+                        pairs.append(pad)
                 station += 1
-    return found
+    return pairs
 
 
 def contact_centres(boom: Boom, joint: Joint) -> dict[float, tuple[float, ...]]:
@@ -316,7 +316,7 @@ class StopPatch:
 
 def stop_patches(boom: Boom) -> list[StopPatch]:
     """Return the contacts of all stops of a boom with sections."""
-    found = []
+    patches = []
     for station, stop in boom.numbered_stops:
         segment = boom.segments[stop.segment]
         assert segment.section is not None
@@ -324,9 +324,9 @@ def stop_patches(boom: Boom) -> list[StopPatch]:
         length = stop.contact_length or min(
             _OF_HEIGHT * segment.section_at(stop.x).size("z"), segment.length
         )
-        found.append(
+        patches.append(
             StopPatch(
                 station, stop, ContactInterval.from_station(segment, stop.x, length), extended
             )
         )
-    return found
+    return patches

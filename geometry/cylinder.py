@@ -163,16 +163,16 @@ def force_name(number: int) -> str:
 
 def forces(boom: Boom) -> dict[str, str]:
     """Return the names of the cylinders' spring forces in results, with descriptions."""
-    found = {}
+    observations = {}
     for number, one in enumerate(boom.cylinders, start=1):
         name = force_name(number)
         where = f"at x = {one.x:g} m of {boom.segments[one.segment].name!r}"
-        found[name] = f"spring force of the cylinder {where}, positive where pressed"
+        observations[name] = f"spring force of the cylinder {where}, positive where pressed"
         if one.spread > 0.0:
-            found[name.replace("force", "force_difference")] = (
+            observations[name.replace("force", "force_difference")] = (
                 f"spring force of the cylinder at positive y {where}, less that of the other"
             )
-    return found
+    return observations
 
 
 def ground_lines(boom: Boom, bodies: Sequence[Body]) -> Iterator[GroundLine]:

@@ -171,11 +171,11 @@ def at(place: float | Distance, tail: float, head: float) -> float:
 def resolve_distances(part: _Part, tail: float, head: float) -> _Part:
     """Return a part whose distances from the ends ``tail`` and ``head`` are replaced by x in m."""
     # Type hints cannot restrict a type variable to dataclasses.
-    found: dict[str, Any] = {}
+    resolved: dict[str, Any] = {}
     for field in fields(part):  # type: ignore[arg-type]
         given = getattr(part, field.name)
         if isinstance(given, Distance):
-            found[field.name] = at(given, tail, head)
+            resolved[field.name] = at(given, tail, head)
         elif isinstance(given, tuple) and any(isinstance(one, Distance) for one in given):
-            found[field.name] = tuple(at(one, tail, head) for one in given)
-    return replace(part, **found) if found else part  # type: ignore[type-var]
+            resolved[field.name] = tuple(at(one, tail, head) for one in given)
+    return replace(part, **resolved) if resolved else part  # type: ignore[type-var]

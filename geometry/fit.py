@@ -79,11 +79,11 @@ def room(
     Both segments have sections. Tapers are linear, so that the ends of the overlap govern.
     """
     first, last = max(outer.start, inner.start + extension), min(outer.end, inner.end + extension)
-    found = [
+    sizes = [
         free_room(outer.section_at(x), inner.section_at(x - extension), joint.play)
         for x in (first, last)
     ]
-    heights, widths = zip(*found, strict=True)
+    heights, widths = zip(*sizes, strict=True)
     return min(heights), min(widths)
 
 

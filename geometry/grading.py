@@ -74,18 +74,18 @@ def _along(
     ends = {x for zone in zones for length in (middle, coarse) for x in zone.reach(length)}
     # Changes of length near a break are omitted, since they would add slender triangles.
     apart = [x for x in ends if min(abs(x - place) for place in breaks.values()) > fine]
-    found: dict[float, float] = {}
+    lengths: dict[float, float] = {}
     for x in sorted([start, *(x for x in apart if start < x < end)]):
-        if found and x - max(found) < fine:
+        if lengths and x - max(lengths) < fine:
             continue
-        found[x] = coarse
-    places = sorted([*found, end])
+        lengths[x] = coarse
+    places = sorted([*lengths, end])
     for x, beyond in pairwise(places):
         here = 0.5 * (x + beyond)
         for length, longer in ((middle, coarse), (fine, middle)):
             if any(low < here < high for low, high in (zone.reach(longer) for zone in zones)):
-                found[x] = length
-    return found
+                lengths[x] = length
+    return lengths
 
 
 def _diagonals_first(mesh: SegmentMesh) -> SegmentMesh:
@@ -154,8 +154,8 @@ def _bisect(mesh: SegmentMesh, cut: Mask) -> SegmentMesh:
 
 def _with_middles(line: Indices, new_of: Mapping[tuple[int, int], int]) -> Indices:
     """Return the edges of a line, with two halves in place of each bisected edge."""
-    found: list[tuple[int, int]] = []
+    halves: list[tuple[int, int]] = []
     for a, b in line.tolist():
         new = new_of.get((min(a, b), max(a, b)))
-        found += [(a, b)] if new is None else [(a, new), (new, b)]
-    return np.array(found, dtype=np.int64)
+        halves += [(a, b)] if new is None else [(a, new), (new, b)]
+    return np.array(halves, dtype=np.int64)

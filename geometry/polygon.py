@@ -115,13 +115,13 @@ class PolygonSection(Section):
     def faces(self) -> tuple[Face, ...]:
         """The faces: the outermost plate of a direction and side, if only one is normal to it."""
         ends = np.array([(plate.start, plate.end) for plate in self.plates])
-        found = []
+        faces = []
         for direction, side in _OUTWARDS:
             outwards = side * ends[:, :, COMPONENT[direction] - 1]
             outermost = np.flatnonzero(outwards.min(axis=1) > outwards.max() - self.near)
             if len(outermost) == 1:
-                found.append(Face.from_plate(self.plates, int(outermost[0]), direction, side))
-        return tuple(found)
+                faces.append(Face.from_plate(self.plates, int(outermost[0]), direction, side))
+        return tuple(faces)
 
     @cached_property
     def mirrors(self) -> tuple[Direction, ...]:
@@ -129,15 +129,15 @@ class PolygonSection(Section):
         corners, thicknesses = self._upwards
         corners = corners - np.array(self.centroid)
         middles = 0.5 * (corners + np.roll(corners, -1, axis=0))
-        found: list[Direction] = []
+        directions: list[Direction] = []
         for axis in COMPONENT:
             places = np.vstack([corners, middles])
             partners = _partners(places, _mirrored(places, axis))
             beside = np.linalg.norm(_mirrored(places, axis)[partners] - places, axis=1)
             alike = thicknesses[partners[len(corners) :] - len(corners)] == thicknesses
             if beside.max() < _SAME * np.abs(corners).max() and alike.all():
-                found.append(axis)
-        return tuple(found)
+                directions.append(axis)
+        return tuple(directions)
 
     def shear_plates(self, direction: Direction) -> tuple[tuple[int, float], ...]:
         """Return the plates that carry a shear force, by the shear flow."""

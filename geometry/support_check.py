@@ -171,9 +171,9 @@ class _RigidBody(Member):
 def _check_depths(boom: Boom) -> None:
     luffed = {cylinder.segment for cylinder in boom.cylinders}
     for number, segment in enumerate(boom.segments):
-        pushed = number in luffed or foot_thrust(boom.segments, boom.joints, number) != 0.0
+        has_thrust = number in luffed or foot_thrust(boom.segments, boom.joints, number) != 0.0
         for k, support in enumerate(segment.supports):
-            if support.depth != 0.0 and not (pushed and support is segment.foot):
+            if support.depth != 0.0 and not (has_thrust and support is segment.foot):
                 raise BoomError(
                     f"segments[{number}].supports[{k}].depth",
                     "of no use: only the first support of a segment has a depth, under a cylinder "

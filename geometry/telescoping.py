@@ -85,8 +85,8 @@ def drives_below(joints: Sequence[Joint], segment: int) -> tuple[int, ...]:
     """Return the indices of joints with a drive between a segment and the ground, from the base."""
     for number, joint in enumerate(joints):
         if joint.inner == segment:
-            own = () if joint.drive is None else (number,)
-            return drives_below(joints, joint.outer) + own
+            drive = () if joint.drive is None else (number,)
+            return drives_below(joints, joint.outer) + drive
     return ()
 
 
@@ -247,8 +247,8 @@ def _check_taper(where: str, boom: Boom, outer: Segment, inner: Segment) -> None
 def _check_order(boom: Boom) -> None:
     """Check that all joints of a segment move it by the same extension."""
     for number, joint in enumerate(boom.joints):
-        own = () if joint.drive is None else (number,)
-        if drives_below(boom.joints, joint.inner) != drives_below(boom.joints, joint.outer) + own:
+        drive = () if joint.drive is None else (number,)
+        if drives_below(boom.joints, joint.inner) != drives_below(boom.joints, joint.outer) + drive:
             inner = boom.segments[joint.inner].name
             raise BoomError(
                 f"joints[{number}].drive",

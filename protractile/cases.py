@@ -63,8 +63,8 @@ def check(case: Case) -> Check:
     A notebook shows its tables, ``print`` its text; ``frames`` are its tables for pandas.
 
     >>> import protractile as pt
-    >>> found = pt.check(pt.load_case(pt.CASES / "paper.toml"))
-    >>> [round(mass) for mass in found.frames["Masses"]["own mass, kg"]]
+    >>> result = pt.check(pt.load_case(pt.CASES / "paper.toml"))
+    >>> [round(mass) for mass in result.frames["Masses"]["own mass, kg"]]
     [832, 551, 1382]
     """
     from runs.check import check_case
@@ -248,8 +248,8 @@ def frequencies(
 
     plan = points.plan(_CASE, _options(vary or {}), models, None, whole=case)
     cases = [point.case for point in plan.points]
-    found = frequencies.measure(cases, _alone(cases[0]), Cache.of_user())
-    return frequencies.gather(plan, found)
+    results = frequencies.measure(cases, _alone(cases[0]), Cache.of_user())
+    return frequencies.gather(plan, results)
 
 
 def _options(vary: Mapping[str, Sequence[float]]) -> list[str]:

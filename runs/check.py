@@ -48,7 +48,7 @@ from runs.pipeline.largest_loads import (
 )
 from runs.pipeline.load_table import load_table
 from runs.pipeline.pad_walls import pad_wall_lines
-from runs.pipeline.panels import PanelBuckling
+from runs.pipeline.panels import panel_cautions, panel_table
 from runs.pipeline.proportions import (
     buckling_cautions,
     period_cautions,
@@ -128,9 +128,9 @@ def print_check(declared: CheckedCase, console: Console) -> None:
 def check_case(declared: CheckedCase) -> Check:
     """Return the tables and sentences that ``check`` prints."""
     case, boom, preview = declared.case, declared.boom, Preview(declared)
-    found = statics(case, boom)
-    shown = boom if found is None else found.with_play.boom
-    beam = None if found is None else StaticBeam.of(case, shown)
+    static = statics(case, boom)
+    shown = boom if static is None else static.with_play.boom
+    beam = None if static is None else StaticBeam.of(case, shown)
     extremes = [] if beam is None else beam.extremes(case.system)
     panels = [] if beam is None else weakest_at_rest(beam)
     tables = [
@@ -140,19 +140,19 @@ def check_case(declared: CheckedCase) -> Check:
         _models(case, boom),
         _masses(boom, case.system),
         load_table(case, boom),
-        axial_forces(boom, found),
+        axial_forces(boom, static),
         *([_buckling(declared)] if boom.compressed else []),
         _damping_ratios(preview),
-        *([_reactions(found.with_play, case.system)] if found else []),
-        *([_cylinders(found.with_play, case.system)] if found else []),
+        *([_reactions(static.with_play, case.system)] if static else []),
+        *([_cylinders(static.with_play, case.system)] if static else []),
         static_table(case, shown, extremes),
-        _panels(panels, case.system),
+        panel_table(panels, case.system),
         *combination_tables(combination_results(case), case),
     ]
     drives = list(stick_slip_estimates(case, boom))
     lines = [*drive_lines(boom, case.system), *stick_slip_lines(drives, case.system)]
     lines += [*turning_lines(case), *_shaper_lines(preview)]
-    lines += [*_static_lines(case, boom, found, beam)]
+    lines += [*_static_lines(case, boom, static, beam)]
     if boom.compressed:
         for model in case.models:
             lines += buckling_cautions(_beam_name(model), _critical_factor(declared, model))
@@ -161,12 +161,7 @@ def check_case(declared: CheckedCase) -> Check:
         *proportion_cautions(case, boom),
         *([] if beam is None else bulge_cautions(_BEAMS, beam.rests[0], shown)),
         *overload_cautions(extremes, boom),
-        *(
-            f"caution: the wall {one.wall!r} of {one.segment!r} buckles at {number(one.factor, 3)} "
-            f"times the loads at rest, at x = {case.system.text(one.x, 'm')} (panel formulas)"
-            for one in panels
-            if one.factor < 1.0
-        ),
+        *panel_cautions(panels, case.system),
         *stick_slip_cautions(drives, case.system),
     ]
     lines.append(f"A run may take {preview_cost(preview)}.")
@@ -238,7 +233,6 @@ def _stiffeners(boom: Boom, system: System) -> Table:
 
 def _joints(case: Case, boom: Boom) -> Table:
     system, m = case.system, case.system.label("m")
-    lengths = f"overlap\n{m}", f"stations\n{m}"
     rows = []
     for joint in boom.joints:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
@@ -246,7 +240,7 @@ def _joints(case: Case, boom: Boom) -> Table:
         if outer.section is not None and inner.section is not None:
             height, width = room(joint, outer, inner)
             free = f"{1e3 * height:.1f} high\n{1e3 * width:.1f} wide"
-        row = (
+        cells = (
             f"{inner.name} in {outer.name}",
             f"{system.of(min(outer.end, inner.end) - max(outer.start, inner.start), 'm'):g}",
             ", ".join(f"{system.of(x, 'm'):g}" for x in joint.stations),
@@ -254,8 +248,9 @@ def _joints(case: Case, boom: Boom) -> Table:
             free,
             _friction(joint),
         )
-        rows.append(row)
-    headings = ("joint", *lengths, "clearance\nmm", "free gap\nmm", "friction")
+        rows.append(cells)
+    sizes = f"overlap\n{m}", f"stations\n{m}", "clearance\nmm", "free gap\nmm"
+    headings = ("joint", *sizes, "friction")
     return Table.of_rows("", "Joints", headings, rows)
 
 
@@ -291,34 +286,34 @@ def _models(case: Case, boom: Boom) -> Table:
 def _masses(boom: Boom, system: System) -> Table:
     """Return the table of masses of each segment with its attachments, and their sum."""
     segments = boom.segments
-    own = [one.mass_per_length * one.length for one in segments]
+    plain_masses = [one.mass_per_length * one.length for one in segments]
     masses = [one.mass for one in segments]
     moments = [
         mass * segment.mass_centre + sum(point.mass * point.x for point in segment.all_masses)
-        for mass, segment in zip(own, segments, strict=True)
+        for mass, segment in zip(plain_masses, segments, strict=True)
     ]
     whole, moment = sum(masses), sum(moments)
     centres = [one / mass for one, mass in zip(moments, masses, strict=True)]
-    attached = [mass - part for mass, part in zip(masses, own, strict=True)]
+    attached = [mass - part for mass, part in zip(masses, plain_masses, strict=True)]
     columns = [
         Column("segment", [*(one.name for one in segments), "all"]),
-        _of(system, "own mass", "kg", [*own, sum(own)]),
-        _of(system, "attached mass", "kg", [*attached, whole - sum(own)]),
+        _of(system, "own mass", "kg", [*plain_masses, sum(plain_masses)]),
+        _of(system, "attached mass", "kg", [*attached, whole - sum(plain_masses)]),
         _of(system, "centre of mass x", "m", [*centres, moment / whole]),
     ]
     return Table("Masses", columns)
 
 
-def axial_forces(boom: Boom, found: Statics | None) -> Table:
+def axial_forces(boom: Boom, static: Statics | None) -> Table:
     """Return the table of each segment's extreme axial force, positive in compression.
 
     Args:
         boom: boom of the case.
-        found: static states, which give the cylinder forces; None without an equilibrium.
+        static: static states, which give the cylinder forces; None without an equilibrium.
     """
     if not boom.compressed and not boom.cylinders:
         return Table("", [])
-    state = found.with_play if found else None
+    state = static.with_play if static else None
     extremes = [_extreme_axial_force(boom, i, state) for i in range(len(boom.segments))]
     columns = [
         Column("segment", [one.name for one in boom.segments]),
@@ -374,21 +369,6 @@ def _buckling(declared: CheckedCase) -> Table:
     return Table("Buckling under the axial forces, joints in contact", columns)
 
 
-def _panels(panels: Sequence[PanelBuckling], system: System) -> Table:
-    """Return the table of the wall of each segment that buckles first by panel formulas."""
-    columns = [
-        Column("segment", [one.segment for one in panels]),
-        Column("wall", [one.wall for one in panels]),
-        Column(f"x\n{system.label('m')}", [f"{system.of(one.x, 'm'):.4g}" for one in panels]),
-        Column("buckling factor", [one.factor for one in panels], ".3g"),
-    ]
-    note = (
-        "Under the largest loads at rest. Long panels on simple supports, stresses in interaction: "
-        "k = 4 in compression, 23.9 in bending, 5.34 in shear; without loads of pads."
-    )
-    return Table("Buckling of walls, estimate", columns, [note])
-
-
 def _damping_ratios(preview: Preview) -> Table:
     """Return the total damping ratios of the first modes of each model, with closed contacts."""
     case, boom = preview.checked.case, preview.checked.boom
@@ -413,14 +393,14 @@ def _ratios(preview: Preview, model: Model, beam: ModelTable) -> list[str]:
             rest = constant_load_equilibrium(
                 motion.system, preview.checked.case.start.at_rest, motion.position
             )
-            found = closed_contact_damping(motion.system, rest)
+            damping = closed_contact_damping(motion.system, rest)
     except NUMERICAL_ERRORS:
         return ["cannot be computed"]
     # Dashpots between open stations contribute only round-off.
-    both = (
-        (hertz, ratio if ratio > _ROUND_OFF else 0.0) for hertz, ratio in zip(*found, strict=True)
-    )
-    return [f"{100.0 * ratio:.3g} % at {hertz:.3g} Hz" for hertz, ratio in both]
+    return [
+        f"{100.0 * ratio if ratio > _ROUND_OFF else 0.0:.3g} % at {hertz:.3g} Hz"
+        for hertz, ratio in zip(*damping, strict=True)
+    ]
 
 
 def _shaper_lines(preview: Preview) -> Iterator[str]:
@@ -472,15 +452,16 @@ def _cylinders(state: StaticState, system: System) -> Table:
 
 
 def _static_lines(
-    case: Case, boom: Boom, found: Statics | None, beam: StaticBeam | None
+    case: Case, boom: Boom, static: Statics | None, beam: StaticBeam | None
 ) -> Iterator[str]:
     """Yield the static tip deflection, the first frequency, the tilts by play, and cautions."""
-    if found is None or beam is None:
+    if static is None or beam is None:
         yield "No rest under the loads of t = 0 is found."
         return
-    state, bonded = found
+    state, bonded = static
     hertz, bonded_hertz = (
-        float(closed_contact_modes(one.system, one.position)[0][0]) / (2.0 * np.pi) for one in found
+        float(closed_contact_modes(one.system, one.position)[0][0]) / (2.0 * np.pi)
+        for one in static
     )
     yield (
         f"Static tip deflection (t = 0) {_BEAMS}: {milli(state.tip)} mm; without "

@@ -357,10 +357,10 @@ def check(case: CaseFile, picture: Picture = None) -> int:
     from runs.case.reading import load_checked
     from runs.check import print_check
 
-    found = load_checked(case)
+    checked = load_checked(case)
     if picture is not None:
-        import_module("runs.report.boom_drawing").save_drawing(found.case, case, picture)
-    print_check(found, Terminal())
+        import_module("runs.report.boom_drawing").save_drawing(checked.case, case, picture)
+    print_check(checked, Terminal())
     return 0
 
 

@@ -132,10 +132,10 @@ class BoomShell:
 
     def fixed_loads(self, number: int) -> Array:
         """Return the load vectors (num_owned, num_loads) of loads and ground lines of a segment."""
-        own = [push for load, push in self.loads if load.segment == number]
-        own += [push for segment, push in self.pin_moments if segment == number]
-        own += [line.push for line in self.lines if line.segment == number]
-        return np.column_stack([self.own_loads[number], *own])
+        loads = [push for load, push in self.loads if load.segment == number]
+        loads += [push for segment, push in self.pin_moments if segment == number]
+        loads += [line.push for line in self.lines if line.segment == number]
+        return np.column_stack([self.own_loads[number], *loads])
 
     def joint_rows(self, number: int) -> Array:
         """Return the rows (num_owned, num_rows) of contacts, friction and bonded joints."""

@@ -105,9 +105,9 @@ def buckling_modes(shell: Shell, forces: Array, count: int) -> BucklingModes:
     solve.getPC().setFactorSolverType("mumps")
     shell.stiffness.setOption(PETSc.Mat.Option.SPD, True)
     solver.solve()
-    found = solver.getConverged()
-    if found < count:
-        raise NumericsError(f"{found} of {count} buckling modes converged; refine the mesh")
+    converged = solver.getConverged()
+    if converged < count:
+        raise NumericsError(f"{converged} of {count} buckling modes converged; refine the mesh")
     inverse = np.array([solver.getEigenvalue(i).real for i in range(count)])
     vector, _ = shell.stiffness.createVecs()
     shapes = np.empty((vector.getLocalSize(), count), order="F")
@@ -193,8 +193,10 @@ class StaticState:
             position: (num_modes,) equilibrium.
             extensions: extension of each joint in m.
         """
-        still = fields.assign(state=(("time", "mode"), position[None]), time=("time", [0.0]))
-        stress = ShellStress.from_fields(still)
+        static_fields = fields.assign(
+            state=(("time", "mode"), position[None]), time=("time", [0.0])
+        )
+        stress = ShellStress.from_fields(static_fields)
         forces = stress.thickness[:, None] * stress.at(0.0).membrane.astype(np.float64)
         near = (system.rows @ position)[:, None] + [-TOUCHING, TOUCHING]
         slopes = [law.slope(gaps).max() for law, gaps in zip(system.laws, near, strict=True)]
@@ -249,7 +251,7 @@ def buckle_segments(
     coarse = _modes_on(boom, meshes, state, options, count, comm)
     halves = replace(state, forces=[np.repeat(one, 4, axis=0) for one in state.forces])
     fine = _modes_on(boom, finer, halves, options, count, comm)
-    found = []
+    results = []
     for mesh, (before, _), (after, shapes) in zip(finer, coarse, fine, strict=True):
         common = min(before.size, after.size)
         before, after = before[:common], after[:common]
@@ -258,8 +260,8 @@ def buckle_segments(
         order = np.argsort(factors)
         after, factors = after[order], factors[order]
         shapes = None if shapes is None else shapes[order]
-        found.append(SegmentBuckling(factors, after / factors - 1.0, mesh, shapes))
-    return found
+        results.append(SegmentBuckling(factors, after / factors - 1.0, mesh, shapes))
+    return results
 
 
 def _modes_on(

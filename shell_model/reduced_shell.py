@@ -188,12 +188,12 @@ def _reduce_segment(
     observed = full.columns(number, [seen.reading for seen in full.observed.values()])
     with stages.stage("reduction", number, len(full.shells)) as progress:
         forces = np.hstack([full.forces(number), *extra_forces])
-        own = reduce_segment(
+        segment = reduce_segment(
             full.symmetries[number], forces, krylov, progress, observed, full.helper
         )
         if at_surface and joined.size:
-            own = without_stiff_modes(full.comm, own, joined)
-    return own
+            segment = without_stiff_modes(full.comm, segment, joined)
+    return segment
 
 
 def _gap_system(full: BoomShell, coordinates: BoomCoordinates, own_loads: Array) -> GapSystem:

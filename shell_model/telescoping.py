@@ -103,7 +103,7 @@ class _SampledRows:
 
 def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]:
     """Sample all rows of a boom at extensions one mesh size (in m) apart."""
-    found = []
+    samples = []
     for group in telescoping_stations(boom):
         pieces = [
             np.linspace(start, end, max(round((end - start) / size), _FEWEST) + 1)
@@ -113,14 +113,18 @@ def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]
         touching = [
             full.touching.rows(group.extensions(extension)) for extension in extensions.tolist()
         ]
-        found.append(_SampledRows(group, moving, extensions, touching))
-    moved = {row for sampled in found for row in sampled.moving}
+        samples.append(_SampledRows(group, moving, extensions, touching))
+    moved = {row for sampled in samples for row in sampled.moving}
     counts = len(full.rows.contacts), len(full.rows.frictions), len(full.rows.dashpots)
     every = [
         (kind, row) for kind, count in zip(ROW_KINDS, counts, strict=True) for row in range(count)
     ]
-    still = [row for row in every if row not in moved]
-    return [*found, _SampledRows(None, still, np.zeros(1), [full.rows])] if still else found
+    fixed_rows = [row for row in every if row not in moved]
+    return (
+        [*samples, _SampledRows(None, fixed_rows, np.zeros(1), [full.rows])]
+        if fixed_rows
+        else samples
+    )
 
 
 class TelescopingShell:
@@ -163,17 +167,17 @@ class TelescopingShell:
 
     def compliance_error(self, contacts: int) -> Array:
         """Return the largest error (num_contacts,) of the compliance at all extensions in m/N."""
-        sigma, found = squared(self._test), np.zeros(contacts)
+        sigma, errors = squared(self._test), np.zeros(contacts)
         for k, sampled in enumerate(self._sampled):
             omega2, pulls = self._springs[k]
             parts = (self._rows[k], self._apart.omega2), (pulls, omega2)
-            own = sum(rows**2 @ (1.0 / (of + sigma)) for rows, of in parts)
+            reduced = sum(rows**2 @ (1.0 / (of + sigma)) for rows, of in parts)
             whole = np.einsum("wjj->wj", self._compliance(k, "tested"))
-            off = np.abs(whole - own).max(axis=0)
+            off = np.abs(whole - reduced).max(axis=0)
             for (kind, row), most in zip(sampled.moving, off.tolist(), strict=True):
                 if kind == "rows":
-                    found[row] = most
-        return found
+                    errors[row] = most
+        return errors
 
     def with_springs(self, system: GapSystem, coordinates: BoomCoordinates) -> GapSystem:
         """Return a gap system in the coordinates of the boom, with springs and travels."""
@@ -276,8 +280,8 @@ class TelescopingShell:
     def _compliance(self, k: int, kind: str) -> Array:
         """Return a response (num_extensions, num_moving, num_moving) of all full segments."""
         first, sampled = sum(one.count for one in self._sampled[:k]), self._sampled[k]
-        own = slice(first, first + sampled.count)
-        whole = np.sum([getattr(one, kind)[own, own] for one in self._responses], axis=0)
+        block = slice(first, first + sampled.count)
+        whole = np.sum([getattr(one, kind)[block, block] for one in self._responses], axis=0)
         size = sampled.extensions.size
         return np.asarray(
             np.einsum("wiwj->wij", whole.reshape(size, len(sampled.moving), size, -1))
@@ -295,10 +299,10 @@ def _moving_axial_forces(
 
     Its rows are zero for the ``behind`` coordinates of springs.
     """
-    found = moving_force(boom.segments, boom.joints, group.joints[0])
-    if found is None or len(group.joints) > 1:
+    axial = moving_force(boom.segments, boom.joints, group.joints[0])
+    if axial is None or len(group.joints) > 1:
         return []
-    shell, lines = full.shells[found.segment], np.zeros(0)
+    shell, lines = full.shells[axial.segment], np.zeros(0)
     if shell.mesh is not None:
         along = shell.mesh.points[shell.mesh.triangles, 0]
         around = lines_around(np.stack([along.min(axis=1), along.max(axis=1)], axis=1))
@@ -306,14 +310,14 @@ def _moving_axial_forces(
         x = np.unique(along)
         lines = x[np.searchsorted(0.5 * (x[1:] + x[:-1]), around)]
     # Extensions at which the force passes mesh lines.
-    extensions = np.sort(found.direction * (full.comm.bcast(lines) - found.x))
+    extensions = np.sort(axial.direction * (full.comm.bcast(lines) - axial.x))
     (low, high), near = group.drives[0].reach, SAME_PLACE * boom.length
     extensions = extensions[(extensions > low - near) & (extensions < high + near)]
     rows = []
     for extension in extensions.tolist():
-        outline = shell.outline(found.x + found.direction * extension)
-        readings = [Reading({found.segment: outline.mean_deflection(d)}) for d in boom.directions]
+        outline = shell.outline(axial.x + axial.direction * extension)
+        readings = [Reading({axial.segment: outline.mean_deflection(d)}) for d in boom.directions]
         rows.append([coordinates.row(reading) for reading in readings])
     beside = np.zeros((len(rows), len(boom.directions), behind))
     table = RowTable.spline(extensions, np.concatenate([np.array(rows), beside], axis=2))
-    return [MovingAxialForce(found.force, table)]
+    return [MovingAxialForce(axial.force, table)]

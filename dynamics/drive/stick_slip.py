@@ -143,10 +143,10 @@ def move_segment(
     lag, speed, _ = recorded.T
     force = np.diff(sums[:, kernel.IMPULSE], prepend=0.0) / output_step + drive.thrust
     moving = np.diff(command(time), prepend=0.0) != 0.0
-    work, pushed, damped, rubbed, _ = sums.T
+    work, load_work, damped, rubbed, _ = sums.T
     stored = 0.5 * drive.mass * speed**2 + 0.5 * drive.stiffness * lag**2
-    most = float((np.abs(work) + np.abs(pushed)).max())
-    missing = float(np.abs(stored + damped + rubbed - work - pushed).max())
+    most = float((np.abs(work) + np.abs(load_work)).max())
+    missing = float(np.abs(stored + damped + rubbed - work - load_work).max())
     results = StickSlip(
         mean=float(np.abs(force[moving]).mean()) if moving.any() else 0.0,
         peak=max(

@@ -52,8 +52,8 @@ class Flow(NamedTuple):
 
 def modal_flow(system: GapSystem, times: Array) -> Flow:
     """Return the coefficients of a system's modes for steps of the lengths ``times`` in s."""
-    found = [_flow_over(system.omega2, system.damping, time) for time in times.tolist()]
-    impulse, gain, ramp, drift, loss = (np.array(part) for part in zip(*found, strict=True))
+    flows = [_flow_over(system.omega2, system.damping, time) for time in times.tolist()]
+    impulse, gain, ramp, drift, loss = (np.array(part) for part in zip(*flows, strict=True))
     omega2, damping = (np.ascontiguousarray(part) for part in (system.omega2, system.damping))
     return Flow(times, omega2, damping, impulse, gain, ramp, drift, loss)
 
@@ -68,8 +68,8 @@ def _flow_over(omega2: Array, c: Array, time: float) -> tuple[Array, Array, Arra
     loss = np.zeros((6, c.size if c.any() else 0))
     general = np.flatnonzero((c > 0.0) | (omega2 < 0.0))
     if general.size:
-        *found, integrals = _damped_flow(omega2[general], c[general], time)
-        for of_all, of_some in zip((impulse, gain, ramp, drift), found, strict=True):
+        *coefficients, integrals = _damped_flow(omega2[general], c[general], time)
+        for of_all, of_some in zip((impulse, gain, ramp, drift), coefficients, strict=True):
             of_all[general] = of_some
         if loss.size:
             loss[:, general] = c[general] * integrals

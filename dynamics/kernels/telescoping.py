@@ -184,18 +184,18 @@ def add_axial_forces(
         total: (num_modes,) modal force, to be changed.
         energies: (num_travels,) reduction of the strain energy in J, to be changed.
     """
-    own, force = np.zeros((2, axial.modes.shape[1]))
+    coordinates, force = np.zeros((2, axial.modes.shape[1]))
     slopes, products = axial.slopes, axial.products
     for t in range(axial.force.size):
         p, u, length = find_piece(extensions, axial.spans[t], axial.knots)
         count = axial.num_modes[t]
         for i in range(count):
-            own[i] = a[axial.modes[t, i]]
+            coordinates[i] = a[axial.modes[t, i]]
         level, turned, bent = 0.0, 0.0, 0.0
         for i in range(count):
-            level += slopes[p, 0, i] * own[i]
-            turned += slopes[p, 1, i] * own[i]
-            bent += slopes[p, 2, i] * own[i]
+            level += slopes[p, 0, i] * coordinates[i]
+            turned += slopes[p, 1, i] * coordinates[i]
+            bent += slopes[p, 2, i] * coordinates[i]
         scale = length * u * axial.force[t]
         of_level = scale * (level + u * (turned / 2.0 + u * bent / 3.0))
         of_turned = scale * u * (level / 2.0 + u * (turned / 3.0 + u * bent / 4.0))
@@ -204,12 +204,12 @@ def add_axial_forces(
             force[i] = of_level * slopes[p, 0, i] + of_turned * slopes[p, 1, i]
             force[i] += of_bent * slopes[p, 2, i]
         for j in range(count):
-            pressed = axial.force[t] * own[j]
+            pressed = axial.force[t] * coordinates[j]
             for i in range(count):
                 force[i] += products[p, j, i] * pressed
         for i in range(count):
             total[axial.modes[t, i]] += share * force[i]
-            energies[axial.spans[t, 0]] += 0.5 * share * own[i] * force[i]
+            energies[axial.spans[t, 0]] += 0.5 * share * coordinates[i] * force[i]
     for r in range(axial.factors.size):
         vector, level = axial.vectors[r], 0.0
         for i in range(a.size):

@@ -113,17 +113,17 @@ class Horizons:
             known, its line decides for all shares, since horizons at large shares are random.
         """
         largest = self.relatives[-1]
-        found: list[Literal["step", "physics", "nothing"]] = []
+        limits: list[Literal["step", "physics", "nothing"]] = []
         for of_step, of_data in zip(self.of_step, self.times[-1], strict=True):
             sooner = of_step < np.nan_to_num(of_data, nan=np.inf)
             known = np.isfinite(self.step_change)
             if np.isnan(of_step) and np.isnan(of_data):
-                found.append("nothing")
+                limits.append("nothing")
             elif self.step_change > largest if known else sooner:
-                found.append("step")
+                limits.append("step")
             else:
-                found.append("physics")
-        return found
+                limits.append("physics")
+        return limits
 
 
 def measure_horizons(
@@ -146,8 +146,8 @@ def measure_horizons(
     partners.
 
     >>> kicked = Motion(ball, duration=1.0, velocity=[3.0])
-    >>> found = measure_horizons(kicked, [1e-9, 1e-6], "velocity", observer="height")
-    >>> found.times.shape
+    >>> horizons = measure_horizons(kicked, [1e-9, 1e-6], "velocity", observer="height")
+    >>> horizons.times.shape
     (2, 2)
 
     Args:
@@ -186,16 +186,16 @@ def measure_horizons(
 
     def measure(groups: Sequence[Sequence[EnsembleMember]], done: float) -> Array:
         """Return the horizons (num_groups, num_shares) in s; ``done`` is the earlier progress."""
-        found = np.full((len(groups), len(shares)), np.nan)
+        of_groups = np.full((len(groups), len(shares)), np.nan)
         for number, part in enumerate(_PARTS):
-            left = [g for g in range(len(groups)) if np.isnan(found[g]).any()]
+            left = [g for g in range(len(groups)) if np.isnan(of_groups[g]).any()]
             requested = [member.shortened(part) for g in left for member in groups[g]]
             runs = iter(run_members(requested, executor, partial(report, done + number * _STAGE)))
             for g in left:
                 tips = [next(runs)[observer].values for _ in groups[g]]
                 near = [np.append(tip, whole[tip.size :]) for tip in tips]
-                found[g] = [horizon(np.array([whole, *near]), time, share) for share in shares]
-        return found
+                of_groups[g] = [horizon(np.array([whole, *near]), time, share) for share in shares]
+        return of_groups
 
     # The run with the finer step is the longest. It starts first so that all cores end together.
     of_step, of_largest = measure([finer, largest], 0.0)

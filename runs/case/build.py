@@ -120,12 +120,12 @@ def check_ensemble_data(case: Case, boom: Boom) -> None:
 
 def _has_lasting_load(boom: Boom) -> bool:
     """Return True if a load acts from t = 0 on."""
-    own = [segment.load for segment in boom.segments]
-    own += [segment.lateral.load for segment in boom.segments if segment.lateral is not None]
+    weights = [segment.load for segment in boom.segments]
+    weights += [segment.lateral.load for segment in boom.segments if segment.lateral is not None]
     lasting = [
         load for load in boom.loads if not isinstance(load.history, ReleasedLoad | InitialImpulse)
     ]
-    return any(own) or any(load.magnitude for load in lasting)
+    return any(weights) or any(load.magnitude for load in lasting)
 
 
 def _check_observations(case: Case) -> None:
@@ -323,15 +323,15 @@ def _check_plates(case: Case, index: int, section: Section) -> None:
     if not any(model.needs_shell for model in case.models):
         return
     density = material_of(case, index).density
-    for key, given, own in (
+    for key, from_keys, of_plates in (
         ("mass_per_length", table.mass_per_length, section.mass_per_length(density)),
         ("second_moment_of_area", table.second_moment_of_area, section.second_moment_of_area),
     ):
-        if given is not None and abs(given / own - 1.0) > SECTION_TOLERANCE:
+        if from_keys is not None and abs(from_keys / of_plates - 1.0) > SECTION_TOLERANCE:
             raise BoomError(
                 f"{where}.{key}",
-                f"{given:g} is not the section's own {own:.6g}, and beams and shell would be "
-                "different booms; leave it out, or change the section",
+                f"{from_keys:g} is not the section's own {of_plates:.6g}, and beams and shell "
+                "would be different booms; leave it out, or change the section",
             )
 
 

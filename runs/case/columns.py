@@ -52,14 +52,14 @@ class Column:
         """
         if self.unit in _ANGLES and unit in _ANGLES:
             return _ANGLES[unit] / _ANGLES[self.unit]
-        own, given = Unit.of(self.unit), Unit.of(unit)
+        expected, actual = Unit.of(self.unit), Unit.of(unit)
         if self.unit in _ANGLES:
             raise ValueError("no unit of an angle")
-        if self.factor and not any(given.dimension):
-            return given.factor
-        if given.dimension != own.dimension:
+        if self.factor and not any(actual.dimension):
+            return actual.factor
+        if actual.dimension != expected.dimension:
             raise ValueError("another quantity")
-        return given.factor / own.factor
+        return actual.factor / expected.factor
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,7 +238,7 @@ def _choose_columns(
 
 def _split_heading(cell: str) -> tuple[str, str | None]:
     """Return the name and the unit of a heading."""
-    found = _HEADING.fullmatch(cell)
-    if found is None:
+    match = _HEADING.fullmatch(cell)
+    if match is None:
         return cell, None
-    return found[1], next(unit for unit in found.groups()[1:] if unit)
+    return match[1], next(unit for unit in match.groups()[1:] if unit)

@@ -116,10 +116,10 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
     ]
     gravity, payload = plain.gravity, plain.payload
     # Factor by which the model already multiplies the weight of the mass at the tip.
-    own = 0.0
+    weight_factor = 0.0
     acceleration = STANDARD_GRAVITY
     if gravity is not None:
-        own, acceleration = dead, gravity.acceleration
+        weight_factor, acceleration = dead, gravity.acceleration
         gravity = gravity.model_copy(update={"acceleration": dead * acceleration})
     elif payload is not None:
         acceleration = STANDARD_GRAVITY if payload.gravity is None else payload.gravity
@@ -127,7 +127,7 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
     masses: list[tuple[Group, float]] = [("payload", table.payload or 0.0)]
     if case.payload is not None:
         masses.append((case.payload.group, case.payload.mass))
-    missing = acceleration * sum((factors[group] - own) * mass for group, mass in masses)
+    missing = acceleration * sum((factors[group] - weight_factor) * mass for group, mass in masses)
     if missing:
         angle = radians(0.0 if gravity is None else gravity.angle)
         last = plain.segments[-1].name
@@ -157,9 +157,9 @@ def _gravity(case: Case, table: LoadCaseTable) -> GravityTable | None:
 def _payload(case: Case, table: LoadCaseTable) -> PayloadTable | None:
     if not table.payload:
         return case.payload
-    own = case.payload or PayloadTable(mass=table.payload)
+    payload = case.payload or PayloadTable(mass=table.payload)
     mass = table.payload + (case.payload.mass if case.payload else 0.0)
-    return own.model_copy(update={"mass": mass})
+    return payload.model_copy(update={"mass": mass})
 
 
 def _joints(case: Case, table: LoadCaseTable) -> tuple[Any, ...]:

@@ -28,11 +28,13 @@ def convert_to_si(case: Case) -> Case:
     laws = [joint.exponent for joint in case.joints]
     models = []
     for model in case.models:
-        own = [] if model.contact is None else [model.contact.exponent_of("stiffness")]
-        models.append(_convert(model, system, next(iter([*own, *laws]), None) or 2.0))
+        contact_exponents = (
+            [] if model.contact is None else [model.contact.exponent_of("stiffness")]
+        )
+        models.append(_convert(model, system, next(iter([*contact_exponents, *laws]), None) or 2.0))
     shown = {"units": "SI", "shown_units": case.shown_units or case.units, "models": tuple(models)}
-    found: Case = _convert(case, system).model_copy(update=shown)
-    return found
+    converted: Case = _convert(case, system).model_copy(update=shown)
+    return converted
 
 
 def _convert(table: Any, system: System, exponent: float = 2.0) -> Any:

@@ -198,8 +198,8 @@ def resolving_times(histories: Sequence[History], duration: float) -> Array:
     >>> 0.01 in resolving_times([pt.Ramp(0.01)], 1000.0)
     True
     """
-    found = [kink for history in histories for kink in history.kinks if 0.0 < kink <= duration]
-    kinks = np.unique(np.array(found))
+    times = [kink for history in histories for kink in history.kinks if 0.0 < kink <= duration]
+    kinks = np.unique(np.array(times))
     swings = max((history.fastest for history in histories), default=0.0) * duration / (2.0 * np.pi)
     number = int(np.clip(np.ceil(_PER_PERIOD * swings) + 1.0, _TIMES, _MOST_TIMES))
     even = np.linspace(0.0, duration, number)

@@ -46,8 +46,8 @@ def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
 
 def with_elastic_drives(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
     """Return the gap system of a model with the data of its elastic drives."""
-    found = elastic_drives(case, boom)
-    suffixes = {group.suffix: found.get(group.joints[0]) for group in telescoping_stations(boom)}
+    drives = elastic_drives(case, boom)
+    suffixes = {group.suffix: drives.get(group.joints[0]) for group in telescoping_stations(boom)}
 
     def with_elasticity(travel: Travel) -> Travel:
         return replace(travel, elastic=None if travel.suffix is None else suffixes[travel.suffix])

@@ -98,7 +98,7 @@ class BadInput(Exception):
         if part not in _PARTS:
             return cls(file, error.where, error.what)
         key = _PARTS[part] + error.where.removeprefix(part)
-        key = re.sub(r"\[(\d+)\]", lambda found: f"[{int(found[1]) + 1}]", key)
+        key = re.sub(r"\[(\d+)\]", lambda match: f"[{int(match[1]) + 1}]", key)
         return cls(file, re.sub(r"\.start$", ".span", key), error.what)
 
 

@@ -94,17 +94,17 @@ def check(case: Case, path: str) -> CheckedCase:
     Raises:
         BadInput: the case is invalid.
     """
-    found = CheckedCase(case)
+    checked = CheckedCase(case)
     try:
         _check_time(case.time)
-        _check_boom(found)
+        _check_boom(checked)
     except BoomError as error:
         raise BadInput.from_boom(path, error) from None
     except ArithmeticError as error:
         raise BadInput(
             path, "segment", f"numbers out of proportion ({error.args[-1]}); give them in SI units"
         ) from None
-    return found
+    return checked
 
 
 def select(
@@ -363,15 +363,15 @@ def _check_time(time: TimeTable) -> None:
         )
 
 
-def _check_boom(found: CheckedCase) -> None:
+def _check_boom(checked: CheckedCase) -> None:
     """Check the boom, the models, and the load cases and combinations."""
-    case, boom = found.case, found.boom
+    case, boom = checked.case, checked.boom
     check_ranges(case, boom)
     check_names("model", [model.name for model in case.models])
     for number, model in enumerate(case.models, start=1):
         where = f"model[{number}]"
         _check_step(f"{where}.step", model.step, case.time)
-        model.check(where, found.model_boom(model))
+        model.check(where, checked.model_boom(model))
     _check_step("time.step", case.time.step, case.time)
     check_ensemble_data(case, boom)
     check_combinations(case)

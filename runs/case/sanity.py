@@ -145,10 +145,10 @@ def _section_ranges(where: str, segment: Segment) -> Iterator[UsualRange]:
         f"{where}.section", what, wall.thickness, "m", wall.length / 1e3, np.inf, 100.0
     )
     if segment.head_section is None:
-        own, given = section.second_moment_of_area, segment.second_moment_of_area
+        of_plates, from_key = section.second_moment_of_area, segment.second_moment_of_area
         where, what = f"{where}.second_moment_of_area", "the second moment of area"
         what = f"{what} beside the plates of {name}"
-        yield UsualRange(where, what, given, "m^4", 0.5 * own, 2.0 * own, 50.0)
+        yield UsualRange(where, what, from_key, "m^4", 0.5 * of_plates, 2.0 * of_plates, 50.0)
 
 
 def _joint_ranges(case: Case, boom: Boom, number: int) -> Iterator[UsualRange]:

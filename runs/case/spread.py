@@ -30,7 +30,7 @@ def take_means(tables: Mapping[str, object], file: str) -> tuple[dict[str, objec
     Raises:
         BadInput: a mean is not a finite number, or a standard deviation is not a number above 0.
     """
-    found: list[Spread] = []
+    spreads: list[Spread] = []
 
     def taken(here: object, steps: tuple[str | int, ...]) -> object:
         if isinstance(here, list):
@@ -44,10 +44,10 @@ def take_means(tables: Mapping[str, object], file: str) -> tuple[dict[str, objec
             key = "".join(f"[{s + 1}]" if isinstance(s, int) else f".{s}" for s in steps)[1:]
             what = f"must have a finite mean and an sd above 0, got {mean!r} and {sd!r}"
             raise BadInput(file, key, what)
-        found.append(Spread(steps, float(mean), float(sd)))
+        spreads.append(Spread(steps, float(mean), float(sd)))
         return mean
 
-    return {key: taken(value, (key,)) for key, value in tables.items()}, found
+    return {key: taken(value, (key,)) for key, value in tables.items()}, spreads
 
 
 def _finite(value: object) -> TypeGuard[float]:

@@ -152,9 +152,9 @@ def turning_changes(
             history = FrameAcceleration(frame, "x", x, extension)
             thrusts = [
                 Thrust(number, mass.x, mass.mass * (1.0 if x is not None else mass.x))
-                for number, own in enumerate(masses)
+                for number, masses_of_segment in enumerate(masses)
                 if moved[number] == drives
-                for mass in own
+                for mass in masses_of_segment
             ]
             if history.peak:
                 pressed = with_compression(segments, joints, thrusts)

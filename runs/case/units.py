@@ -89,7 +89,7 @@ class System:
     def unit(self, si: str) -> str:
         """Return the system's unit in place of an SI unit, for example ``N/mm`` for ``N/m``."""
         symbols = _SYSTEMS[self.name]
-        return re.sub("[A-Za-z]+", lambda found: symbols.get(found[0], found[0]), si)
+        return re.sub("[A-Za-z]+", lambda match: symbols.get(match[0], match[0]), si)
 
     def size(self, si: str) -> Fraction:
         """Return the size in SI units of the system's unit."""

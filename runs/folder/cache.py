@@ -198,11 +198,11 @@ def load_or_compute(
     start = perf_counter()
     name = key(list(content))
     with cache.entry_lock(name) if comm.rank == 0 else nullcontext():
-        found = cache.load(name, ReducedShell) if comm.rank == 0 else None
+        loaded = cache.load(name, ReducedShell) if comm.rank == 0 else None
         # Only the first rank has fields and meshes.
-        shared = comm.bcast(None if found is None else replace(found, fields=None, meshes=[]))
+        shared = comm.bcast(None if loaded is None else replace(loaded, fields=None, meshes=[]))
         if shared is not None:
-            return replace(found or shared, seconds={"cache": perf_counter() - start})
+            return replace(loaded or shared, seconds={"cache": perf_counter() - start})
         reduced = compute()
         if comm.rank == 0:
             cache.try_to_store(name, reduced)

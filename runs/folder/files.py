@@ -37,10 +37,10 @@ def resolve_path(path: Path) -> Path:
         OSError: links form a loop. (:meth:`pathlib.Path.resolve` raises RuntimeError, or nothing
             from Python 3.13 on.)
     """
-    found = Path(os.path.realpath(path))
-    if found.is_symlink():
+    resolved = Path(os.path.realpath(path))
+    if resolved.is_symlink():
         raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path))
-    return found
+    return resolved
 
 
 @contextmanager
@@ -90,14 +90,14 @@ def modified_folder(folder: Path) -> Iterator[Path]:
                     shutil.copy2(source, target, follow_symlinks=False)
         yield part
         listed = _manifest_checksums(folder)
-        own = [
+        names = [
             name
             for name in _files(part)
             if name in listed
             or not (folder / name).is_file()
             or not filecmp.cmp(part / name, folder / name)
         ]
-        _move_to_final_path(part, folder, own)
+        _move_to_final_path(part, folder, names)
 
 
 @contextmanager
@@ -179,7 +179,7 @@ def _remove_left(path: Path) -> None:
             shutil.rmtree(left, ignore_errors=True)
 
 
-def _move_to_final_path(part: Path, folder: Path, own: Iterable[str]) -> None:
+def _move_to_final_path(part: Path, folder: Path, file_names: Iterable[str]) -> None:
     """Write the manifest of a new folder, and move it to its final path.
 
     Args:
@@ -187,7 +187,7 @@ def _move_to_final_path(part: Path, folder: Path, own: Iterable[str]) -> None:
         folder: the final path, at which an old folder may exist.
         own: files for the manifest.
     """
-    lines = [f"{_digest(part / name)}  {name}\n" for name in sorted(own)]
+    lines = [f"{_digest(part / name)}  {name}\n" for name in sorted(file_names)]
     (part / MANIFEST).write_text("".join(lines), "utf-8")
     folder = resolve_path(folder)
     if folder.is_dir():

@@ -82,8 +82,8 @@ def _encode(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
         return {"mapping": entries}
     if (names := _names(type(thing))) is not None:
         # Only fields that are set are written of a pydantic model.
-        own = thing.model_fields_set if isinstance(thing, BaseModel) else names
-        parts = {name: _encode(getattr(thing, name), arrays) for name in names if name in own}
+        present = thing.model_fields_set if isinstance(thing, BaseModel) else names
+        parts = {name: _encode(getattr(thing, name), arrays) for name in names if name in present}
         return {"record": [type(thing).__module__, type(thing).__name__], "parts": parts}
     if isinstance(thing, list | tuple):
         return {type(thing).__name__: [_encode(part, arrays) for part in thing]}
@@ -115,9 +115,13 @@ def _decode(written: Any, file: IO[bytes]) -> Any:
 def _class(module: str, name: str) -> type:
     """Return a class of this program whose objects consist of fields only."""
     if module.partition(".")[0] in {package.name for package in packages()}:
-        found = vars(import_module(module)).get(name)
-        if isinstance(found, type) and found.__module__ == module and _names(found) is not None:
-            return found
+        content = vars(import_module(module)).get(name)
+        if (
+            isinstance(content, type)
+            and content.__module__ == module
+            and _names(content) is not None
+        ):
+            return content
     raise ValueError(f"{module}.{name} is no record")
 
 

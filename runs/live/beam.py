@@ -61,29 +61,29 @@ def beam_results(
     loaded = LoadedModel.of(boom, model, built)
     duration = case.time.duration
     check_current()
-    found = positions(loaded.system, instants(loaded.system, duration))
-    if not found:
+    equilibria = positions(loaded.system, instants(loaded.system, duration))
+    if not equilibria:
         raise NumericsError("the beam finds no rest under the loads of t = 0")
     check_current()
     extended = extended_positions(loaded.system, duration)
-    own = loaded.at_rest(found, extended)
-    forces = [[station.force for station in rest.stations] for rest in own.static]
-    pushed = xr.Dataset(
+    design = loaded.at_rest(equilibria, extended)
+    forces = [[station.force for station in rest.stations] for rest in design.static]
+    station_forces = xr.Dataset(
         {"contact_force_peak": (("model", "time", "station"), [forces])},
         coords={"model": [model.name]},
     )
-    fibres = MotionResult([], [], list(_fibres(loaded, [*found.values()])), [])
-    results = _results(checked, replace(own, motion=fibres), pushed)
-    results.summary.pads = list(pad_loads(case, boom, pushed))
-    farthest, static = own.farthest_static, summary_table(results)
+    fibres = MotionResult([], [], list(_fibres(loaded, [*equilibria.values()])), [])
+    results = _results(checked, replace(design, motion=fibres), station_forces)
+    results.summary.pads = list(pad_loads(case, boom, station_forces))
+    farthest, table = design.farthest_static, summary_table(results)
     assert farthest is not None
-    assert static is not None
-    hertz = ", ".join(number(mode.frequency) for mode in own.modes[1:3])
+    assert table is not None
+    hertz = ", ".join(number(mode.frequency) for mode in design.modes[1:3])
     more = [("Second and third natural frequency, Hz", hertz), ("Stiffness of the beam", stiffness)]
     used = utilisation_verdict(results, model.name)
     yield {
         "stage": "rest",
-        "rows": [*static.rows, *more],
+        "rows": [*table.rows, *more],
         "utilisation": used and f"At rest: {used}",
         "cautions": proportion_cautions(case, boom),
         "boom": boom_figure(case, boom, farthest),
@@ -98,15 +98,15 @@ def beam_results(
     ):
         trajectory = replace(plan, integrator=integrator).trajectory(lambda _: check_current())
         check_current()
-        moved = loaded.with_motion(own, found | extended, trajectory, case, model)
+        moved = loaded.with_motion(design, equilibria | extended, trajectory, case, model)
         results = _results(checked, moved, label(boom, {model.name: trajectory}))
         summary = summarise_motion(
-            model, plan.motion.system, trajectory, built.num_dofs, own.static[0].tip
+            model, plan.motion.system, trajectory, built.num_dofs, design.static[0].tip
         )
         results.summary.models = {model.name: summary}
         results.conclude()
-        table = summary_table(results)
-        assert table is not None
+        whole = summary_table(results)
+        assert whole is not None
         limits = [
             (f"Limit: {check.limit}", f"{check.limit.shown(value)} {'✓' if check.holds else '✗'}")
             for check in check_limits(results)
@@ -114,8 +114,8 @@ def beam_results(
         ]
         yield {
             "stage": stage,
-            "rows": [*(row for row in table.rows if row not in static.rows), *limits],
-            "notes": table.notes,
+            "rows": [*(row for row in whole.rows if row not in table.rows), *limits],
+            "notes": whole.notes,
             "utilisation": utilisation_verdict(results),
             "cautions": results.summary.cautions,
             "tip": _tip_chart(trajectory),
@@ -131,9 +131,11 @@ def _tip_chart(trajectory: Trajectory) -> Any:
     return _plain(Chart(trajectory.time, "tip deflection (mm)", curves))
 
 
-def _results(checked: CheckedCase, own: ModelDesignResults, data: xr.Dataset) -> Results:
+def _results(
+    checked: CheckedCase, results_of_model: ModelDesignResults, data: xr.Dataset
+) -> Results:
     """Return the results of the only model."""
-    case, design = checked.case, DesignResults({checked.case.models[0].name: own})
+    case, design = checked.case, DesignResults({checked.case.models[0].name: results_of_model})
     results = Results(case, data, Summary(
         title=case.title, case_hash="", versions={}, models={}, failures={}, design=design
     ))  # fmt: skip

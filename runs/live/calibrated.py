@@ -69,8 +69,8 @@ def _stored(beam: CalibratedTable, shell: Shell, boom: Boom) -> Calibration | No
     from shell_model.standard import with_plays_and_loads
 
     name, cache = key([*shell.content(boom)]), Cache.of_user()
-    if name not in _LAST and cache is not None and (found := cache.load(name, ReducedShell)):
-        made = with_plays_and_loads(found, boom)
+    if name not in _LAST and cache is not None and (stored := cache.load(name, ReducedShell)):
+        made = with_plays_and_loads(stored, boom)
         _LAST.clear()
         _LAST[name] = calibrate(boom, made.system, made.probe_responses, beam.segments)
     return _LAST.get(name)

@@ -120,8 +120,8 @@ class Draft:
         owners |= {f"joint[{i}]": segments[one.inner].name for i, one in enumerate(joints, 1)}
         owner = "all joints" if len(keys) > 1 else owners.get(keys[0].partition(".")[0])
         for pattern, label in _FIRST.items():
-            if found := re.fullmatch(pattern, keys[0]):
-                return label.format(*found.groups(), owner=owner)
+            if match := re.fullmatch(pattern, keys[0]):
+                return label.format(*match.groups(), owner=owner)
         return keys[0]
 
     @cached_property
@@ -152,7 +152,7 @@ class Draft:
 
     def knobs(self) -> list[Knob]:
         """Return the knobs, most important first; equal numbers of all joints share a knob."""
-        found: dict[str, list[str]] = {}
+        keys_of_knobs: dict[str, list[str]] = {}
         for pattern in _FIRST:
             keys = [key for key in self._numbers if re.fullmatch(pattern, key)]
             groups: dict[str, list[str]] = {}
@@ -160,8 +160,8 @@ class Draft:
                 groups.setdefault(re.sub(r"^joint\[\d+\]", "joint", key), []).append(key)
             for common, several in groups.items():
                 equal = len({self._numbers[key][1] for key in several}) == 1
-                found |= {common: several} if equal else {key: [key] for key in several}
-        return [self._knob(key, several) for key, several in found.items()]
+                keys_of_knobs |= {common: several} if equal else {key: [key] for key in several}
+        return [self._knob(key, several) for key, several in keys_of_knobs.items()]
 
     def knob(self, key: str) -> Knob:
         """Return the knob of a key.
@@ -278,14 +278,14 @@ class Draft:
 def _field(case: Case, place: Place) -> Any:
     """Return the field of a place in its innermost table; None within a plain mapping."""
     here: Any = case
-    found = None
+    field = None
     for step in place.steps:
         if is_table(here):
             name = names_of(type(here))[str(step)]
-            found, here = fields_of(type(here))[name], getattr(here, name)
+            field, here = fields_of(type(here))[name], getattr(here, name)
         else:
             here = here[step]
-    return found
+    return field
 
 
 def _described(case: Case, place: Place) -> str:

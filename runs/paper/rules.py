@@ -140,15 +140,15 @@ def _s3(run: RunQuery) -> Finding:
     models = run.with_play()
     curves = run.members(*models).swapaxes(0, 1)
     cutoff = run.slow_below()
-    found = [peaks_apart(member, run.time, cutoff) for member in curves]
+    distances = [peaks_apart(member, run.time, cutoff) for member in curves]
     early = [
         apart[time <= CONFORMITY].max()
-        for time, apart in found
+        for time, apart in distances
         if time.min(initial=np.inf) <= CONFORMITY
     ]
     late = [
         apart[time > CONFORMITY].max()
-        for time, apart in found
+        for time, apart in distances
         if time.max(initial=0.0) > CONFORMITY
     ]
     if not early:
@@ -157,7 +157,7 @@ def _s3(run: RunQuery) -> Finding:
         raise MissingData(f"No member has a peak after {CONFORMITY:g} s.")
     conform, conform_margin = _share(np.array(early) <= DIVERGENCE)
     stratify, stratify_margin = _share(np.array(late) > DIVERGENCE)
-    divergence = [float(time[apart > DIVERGENCE].min(initial=np.inf)) for time, apart in found]
+    divergence = [float(time[apart > DIVERGENCE].min(initial=np.inf)) for time, apart in distances]
     middle = sorted(divergence)[len(divergence) // 2]
     return Finding(
         _all_of(_above(conform, MOST, conform_margin), _above(stratify, MOST, stratify_margin)),
@@ -292,12 +292,12 @@ def _s8(run: RunQuery) -> Finding:
     model = run.beam_elements()
     run.curve(model)
     run.last_until(INTERVAL)
-    found = run.found(model)
+    summary = run.summary_of(model)
     lasted = float(run.time[-1])
     return Finding(
         _above(INTERVAL, lasted, 1.0e-9 * INTERVAL),
-        f"{model.name!r} moves for {lasted:g} s in {found.steps} steps with an energy residual of "
-        f"{found.energy_residual:.1e}: what ended the paper's run after 4375 steps "
+        f"{model.name!r} moves for {lasted:g} s in {summary.steps} steps with an energy residual "
+        f"of {summary.energy_residual:.1e}: what ended the paper's run after 4375 steps "
         "was its integration.",
         lasted,
         INTERVAL,
@@ -374,7 +374,7 @@ def _s11(run: RunQuery) -> Finding:
     return Finding(
         _above(DIVERGENCE, apart, PEAK_SCATTER),
         f"First tip peaks of {series.name!r} and {elements.name!r} on {count} segments, which take "
-        f"{run.found(series).modes} and {run.found(elements).modes} equations.",
+        f"{run.summary_of(series).modes} and {run.summary_of(elements).modes} equations.",
         100.0 * apart,
         100.0 * DIVERGENCE,
         "%",

@@ -20,7 +20,7 @@ from runs.pipeline.summary import ModelSummary
 # A missing peak counts only if the motion lasts this number of periods after its last peak.
 NEXT_PEAK = 1.5
 
-_Found = TypeVar("_Found")
+_Value = TypeVar("_Value")
 
 
 class MissingData(Exception):
@@ -75,30 +75,30 @@ class RunQuery:
         tips = self.results.ensembles["tip"].sel(model=[model.name for model in models])
         return np.asarray(tips.transpose("model", "member", "time").values, dtype=float)
 
-    def found(self, model: Model) -> ModelSummary:
+    def summary_of(self, model: Model) -> ModelSummary:
         """Return the summary of a model."""
         self.check_ran(model)
         return self.results.summary.models[model.name]
 
     def horizon(self, model: Model, share: float) -> float | None:
         """Return the time in s after which members differ by a share of the range, or None."""
-        return _require(model, "ensemble", self.found(model).ensemble).horizon(share)
+        return _require(model, "ensemble", self.summary_of(model).ensemble).horizon(share)
 
     def first_contact(self, model: Model) -> float:
         """Return the time of the first contact in s."""
-        return _require(model, "first contact", self.found(model).first_contact)
+        return _require(model, "first contact", self.summary_of(model).first_contact)
 
     def peak_time(self, model: Model) -> float:
         """Return the time of the first peak of the tip in s."""
-        return _require(model, "first peak", self.found(model).first_peak["tip"].time)
+        return _require(model, "first peak", self.summary_of(model).first_peak["tip"].time)
 
     def peak_height(self, model: Model) -> float:
         """Return the height of the first peak of the tip in m."""
-        return _require(model, "first peak", self.found(model).first_peak["tip"].height)
+        return _require(model, "first peak", self.summary_of(model).first_peak["tip"].height)
 
     def fewest_steps(self, model: Model) -> int:
         """Return the fewest steps that preserve the first slow peaks."""
-        needed = self.found(model).steps_for_peaks
+        needed = self.summary_of(model).steps_for_peaks
         return _require(model, "steps for peaks", needed.fewest if needed else None)
 
     def slow_below(self) -> float:
@@ -110,10 +110,10 @@ class RunQuery:
 
     def one(self, what: str, fits: Callable[[Model], bool]) -> Model:
         """Return the first model that satisfies a condition, or the one with the name ``what``."""
-        found = sorted(filter(fits, self.case.models), key=lambda model: model.name != what)
-        if not found:
+        models = sorted(filter(fits, self.case.models), key=lambda model: model.name != what)
+        if not models:
             raise MissingData(f"The case has no model like {what!r}.")
-        return found[0]
+        return models[0]
 
     def four_terms(self) -> Model:
         """Return the series with a rigid inner segment."""
@@ -168,7 +168,7 @@ class RunQuery:
             raise MissingData(f"The run ends at {self.time[-1]:g} s; it takes {end:g} s.")
 
 
-def _require(model: Model, what: str, value: _Found | None) -> _Found:
+def _require(model: Model, what: str, value: _Value | None) -> _Value:
     if value is None:
         raise MissingData(f"{model.name!r} has no {what}.")
     return value
@@ -212,11 +212,11 @@ def peaks_apart(curves: Array, time: Array, cutoff: float) -> tuple[Array, Array
         Times (num_peaks,) in s at which the first model has the peak, and distances (num_peaks,);
         peaks that only some models have are included.
     """
-    found = [slow_peaks(curve, time, cutoff) for curve in curves]
-    many = [np.diff(times) for times, _ in found if times.size > 1]
+    peaks = [slow_peaks(curve, time, cutoff) for curve in curves]
+    many = [np.diff(times) for times, _ in peaks if times.size > 1]
     period = float(np.concatenate(many).mean()) if many else np.inf
-    t, h = np.full((2, len(found), max(times.size for times, _ in found)), np.nan)
-    for model, (times, heights) in enumerate(found):
+    t, h = np.full((2, len(peaks), max(times.size for times, _ in peaks)), np.nan)
+    for model, (times, heights) in enumerate(peaks):
         t[model, : times.size], h[model, : times.size] = times, heights
     first = np.nanmin(t, axis=0)
     shared = np.isfinite(t).all(axis=0)

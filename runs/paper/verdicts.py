@@ -155,10 +155,10 @@ def decisive(runs: Mapping[str, Sequence[Verdict]]) -> list[tuple[str, Verdict]]
 
     They are those of the first run that decides the statement, or of the first run.
     """
-    found: dict[str, tuple[str, Verdict]] = {}
+    verdicts_by_id: dict[str, tuple[str, Verdict]] = {}
     for name, verdicts in runs.items():
         for verdict in verdicts:
-            first = found.setdefault(verdict.id, (name, verdict))[1]
+            first = verdicts_by_id.setdefault(verdict.id, (name, verdict))[1]
             if first.verdict == "undecided" != verdict.verdict:
-                found[verdict.id] = name, verdict
-    return [found[statement] for statement in STATEMENTS if statement in found]
+                verdicts_by_id[verdict.id] = name, verdict
+    return [verdicts_by_id[statement] for statement in STATEMENTS if statement in verdicts_by_id]

@@ -52,7 +52,7 @@ def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem,
     grounded = list(system.grounded)
     stays = np.flatnonzero(on_ground)
     moved, place_of = system.transform(omega2, basis), {row: k for k, row in enumerate(stays)}
-    found = replace(
+    bonded = replace(
         moved,
         rows=system.rows[stays] @ basis,
         laws=[system.laws[row] for row in stays],
@@ -69,4 +69,4 @@ def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem,
             for one in moved.travels
         ],
     )
-    return found, basis
+    return bonded, basis

@@ -51,8 +51,8 @@ class CombinationResult:
 
     def largest(self, kind: str) -> StaticExtreme | None:
         """Return the largest result of a kind, a key of the table's columns."""
-        own = [one for one in self.extremes if one.name.partition(", ")[0] == kind]
-        return max(own, key=lambda one: abs(one.largest), default=None)
+        extremes = [one for one in self.extremes if one.name.partition(", ")[0] == kind]
+        return max(extremes, key=lambda one: abs(one.largest), default=None)
 
 
 class CombinationState(NamedTuple):
@@ -85,7 +85,7 @@ def combination_states(case: Case, moving: bool = True) -> list[CombinationState
         case: a checked case.
         moving: True to integrate combinations with ``motion``; False for statics alone.
     """
-    found = []
+    states = []
     for combined in combined_cases(case):
         boom = boom_with_play(combined.case, build_boom(combined.case))
         try:
@@ -98,8 +98,8 @@ def combination_states(case: Case, moving: bool = True) -> list[CombinationState
                     beam = StaticBeam.of(combined.case, boom)
         except NUMERICAL_ERRORS:
             beam = None
-        found.append(CombinationState(combined, beam))
-    return found
+        states.append(CombinationState(combined, beam))
+    return states
 
 
 def combination_results(case: Case) -> list[CombinationResult]:

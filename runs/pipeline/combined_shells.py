@@ -50,7 +50,7 @@ def shell_states(case: Case, model: Shell, context: BuildContext) -> list[Combin
     for number, boom in enumerate(booms):
         places = [segment.ends for segment in boom.segments]
         groups.setdefault(repr((places, boom.cylinders)), []).append(number)
-    found: dict[int, CombinationState] = {}
+    states_by_number: dict[int, CombinationState] = {}
     for numbers in groups.values():
         shared = _shared([booms[number] for number in numbers])
         built = model.build(ModelBoom(shared[0]), context)
@@ -61,8 +61,8 @@ def shell_states(case: Case, model: Shell, context: BuildContext) -> list[Combin
         ]
         if case.buckling is not None:
             states = _buckled(case, shared, states, model, built, context)
-        found |= dict(zip(numbers, states, strict=False))
-    return [found[number] for number in sorted(found)]
+        states_by_number |= dict(zip(numbers, states, strict=False))
+    return [states_by_number[number] for number in sorted(states_by_number)]
 
 
 def _without_drives(boom: Boom) -> Boom:
@@ -87,10 +87,12 @@ def _shared(booms: Sequence[Boom]) -> list[Boom]:
     most = max(booms, key=pressed)
     # A segment may have a load in only one of the booms.
     of_segments = (boom.segments for boom in booms)
-    own = [max(parts, key=lambda one: abs(one.load)) for parts in zip(*of_segments, strict=True)]
+    heaviest = [
+        max(parts, key=lambda one: abs(one.load)) for parts in zip(*of_segments, strict=True)
+    ]
     segments = [
         replace(segment, load=loaded.load, lateral=loaded.lateral)
-        for segment, loaded in zip(most.segments, own, strict=True)
+        for segment, loaded in zip(most.segments, heaviest, strict=True)
     ]
     whole = standard_boom(replace(most, segments=tuple(segments), loads=tuple(unit)))
     return [
@@ -110,13 +112,15 @@ def _shared(booms: Sequence[Boom]) -> list[Boom]:
 
 def _by_kind(boom: Boom) -> dict[str, Load]:
     """Return the loads of a boom at rest by place and direction; equal ones have numbers."""
-    found: dict[str, Load] = {}
+    loads_by_key: dict[str, Load] = {}
     for load in boom.loads:
         if isinstance(load.history, ReleasedLoad | InitialImpulse):
             continue
         kind = repr(replace(load, magnitude=1.0, history=None))
-        found[next(key for k in count() if (key := f"{kind}#{k}") not in found)] = load
-    return found
+        loads_by_key[next(key for k in count() if (key := f"{kind}#{k}") not in loads_by_key)] = (
+            load
+        )
+    return loads_by_key
 
 
 def _state(
@@ -131,22 +135,22 @@ def _state(
     from shell_model.stress.stresses import ShellStress
 
     assert built.shell is not None
-    own = with_plays_and_loads(built.shell, boom)
-    lines = model.lines(boom, replace(built, shell=own))
+    shell = with_plays_and_loads(built.shell, boom)
+    lines = model.lines(boom, replace(built, shell=shell))
     deflections = [dict(line.deflections) for line in lines]
     forces, largest = (
         AxialChange(Step(), [one.compression for one in segments]).geometric_stiffness(deflections)
         for segments in (boom.segments, shared.segments)
     )
-    system = replace(own.system.gather_loads(), geometric_stiffness=forces - largest)
+    system = replace(shell.system.gather_loads(), geometric_stiffness=forces - largest)
     along = with_cylinder_forces(boom, system, lines)
     try:
         with np.errstate(all="ignore"):
             beam = StaticBeam.at_rest(boom, system, along, combined.case.time.duration)
     except NUMERICAL_ERRORS:
         return CombinationState(combined, None)
-    assert own.fields is not None
-    fields = own.fields.assign(
+    assert shell.fields is not None
+    fields = shell.fields.assign(
         state=(("time", "mode"), beam.positions.astype(np.float32)),
         time=("time", [rest.time for rest in beam.rests]),
     )
@@ -182,10 +186,10 @@ def _buckled(
             for k, rest in enumerate(one.beam.rests)
         ]  # fmt: skip
         if factors:
-            _, governing, position = min(factors, key=lambda found: found[0])
-            own = with_plays_and_loads(built.shell, shared[1 + governing])
+            _, governing, position = min(factors, key=lambda entry: entry[0])
+            shell = with_plays_and_loads(built.shell, shared[1 + governing])
             extensions = dict.fromkeys(range(len(shared[0].joints)), 0.0)
-            state = StaticState.from_fields(built.shell.fields, own.system, position, extensions)
+            state = StaticState.from_fields(built.shell.fields, shell.system, position, extensions)
     buckled = buckled_shell(shared[0], model, built, state, case.buckling.modes, context.comm)
     if buckled is not None:
         states[governing] = states[governing]._replace(buckling=buckled.segments)

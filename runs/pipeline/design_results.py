@@ -161,41 +161,41 @@ def play_effects(models: list[Model], design: Mapping[str, ModelDesignResults]) 
         design: design results of the models.
     """
     return [
-        PlayEffect(model.name, [*_static_differences(own), *_motion_differences(own)])
+        PlayEffect(model.name, [*_static_differences(results), *_motion_differences(results)])
         for model in models
         if not model.bonded
-        for own in [design[model.name]]
+        for results in [design[model.name]]
     ]
 
 
-def _static_differences(own: ModelDesignResults) -> Iterator[PlayDifference]:
-    bonded = {rest.time: rest for rest in own.static_bonded}
-    both = [(rest, bonded[rest.time]) for rest in own.static if rest.time in bonded]
+def _static_differences(results: ModelDesignResults) -> Iterator[PlayDifference]:
+    bonded = {rest.time: rest for rest in results.static_bonded}
+    both = [(rest, bonded[rest.time]) for rest in results.static if rest.time in bonded]
     if both:
         rest, other = max(both, key=lambda pair: abs(pair[0].tip))
         yield PlayDifference("deflection at rest", "tip", "m", abs(rest.tip), abs(other.tip))
-    if own.modes and own.modes_bonded:
-        first = own.modes[0]
-        alike = (mode.frequency for mode in own.modes_bonded if mode.motion == first.motion)
+    if results.modes and results.modes_bonded:
+        first = results.modes[0]
+        alike = (mode.frequency for mode in results.modes_bonded if mode.motion == first.motion)
         yield PlayDifference(
             "first frequency", first.motion, "Hz", first.frequency, next(alike, 0.0)
         )
 
 
-def _motion_differences(own: ModelDesignResults) -> Iterator[PlayDifference]:
-    if own.motion is None or own.motion_bonded is None:
+def _motion_differences(results: ModelDesignResults) -> Iterator[PlayDifference]:
+    if results.motion is None or results.motion_bonded is None:
         return
-    others = {(peak.what, peak.where): peak.largest for peak in own.motion_bonded.peaks}
-    for peak in own.motion.peaks:
+    others = {(peak.what, peak.where): peak.largest for peak in results.motion_bonded.peaks}
+    for peak in results.motion.peaks:
         if (named := (peak.what, peak.where)) in others:
             yield PlayDifference(*named, peak.unit, peak.largest, others[named])
-    stresses = {fibre.segment: abs(fibre.stress) for fibre in own.motion_bonded.fibres}
-    for fibre in own.motion.fibres:
+    stresses = {fibre.segment: abs(fibre.stress) for fibre in results.motion_bonded.fibres}
+    for fibre in results.motion.fibres:
         if fibre.segment in stresses:
             here = abs(fibre.stress), stresses[fibre.segment]
             yield PlayDifference("stress", fibre.segment, "Pa", *here)
-    damages = {life.segment: life.life_damage for life in own.life_bonded}
-    for life in own.life:
+    damages = {life.segment: life.life_damage for life in results.life_bonded}
+    for life in results.life:
         other = damages.get(life.segment)
         if life.life_damage is not None and other is not None:
             yield PlayDifference("damage", life.segment, "1", life.life_damage, other)

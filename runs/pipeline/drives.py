@@ -144,9 +144,9 @@ def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
     return most
 
 
-def stick_slip_lines(found: Iterable[StickSlipEstimate], system: System) -> Iterator[str]:
+def stick_slip_lines(estimates: Iterable[StickSlipEstimate], system: System) -> Iterator[str]:
     """Yield a sentence on the stick-slip of each elastic drive."""
-    for one in found:
+    for one in estimates:
         if one.critical_speed == 0.0:
             slips = "does not stick again once it slips"
         elif one.critical_speed == np.inf:
@@ -161,9 +161,9 @@ def stick_slip_lines(found: Iterable[StickSlipEstimate], system: System) -> Iter
         )
 
 
-def stick_slip_cautions(found: Iterable[StickSlipEstimate], system: System) -> Iterator[str]:
+def stick_slip_cautions(estimates: Iterable[StickSlipEstimate], system: System) -> Iterator[str]:
     """Yield a caution for each drive with stick-slip over its whole travel."""
-    for one in found:
+    for one in estimates:
         if one.critical_speed <= one.max_speed:
             continue
         remedy = "has no damping; give it a dashpot"

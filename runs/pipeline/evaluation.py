@@ -61,36 +61,38 @@ class LoadedModel(NamedTuple):
         return cls(shown, system, with_cylinder_forces(shown, system, model.lines(boom, built)))
 
     def at_rest(
-        self, found: Mapping[float, Array], extended: Mapping[float, Array] = MappingProxyType({})
+        self,
+        equilibria: Mapping[float, Array],
+        extended: Mapping[float, Array] = MappingProxyType({}),
     ) -> ModelDesignResults:
         """Return modes and static states at equilibria.
 
         Args:
-            found: equilibria (num_modes,) by time in s.
+            equilibria: equilibria (num_modes,) by time in s.
             extended: equilibria at the largest and smallest extension by time in s.
         """
         static, static_extended = (
             [static_result(*self, time, position) for time, position in positions.items()]
-            for positions in (found, extended)
+            for positions in (equilibria, extended)
         )
-        first = modes(*self, found[0.0]) if found else []
+        first = modes(*self, equilibria[0.0]) if equilibria else []
         return ModelDesignResults(static=static, static_extended=static_extended, modes=first)
 
     def with_motion(
         self,
-        own: ModelDesignResults,
-        found: Mapping[float, Array],
+        results: ModelDesignResults,
+        equilibria: Mapping[float, Array],
         trajectory: Trajectory,
         case: Case,
         model: Model,
     ) -> ModelDesignResults:
         """Return the static results with the results of the motion and the fatigue life."""
-        still = np.array([*found.values()]).reshape(-1, self.system.num_modes)
-        static, jumps = [*own.static, *own.static_extended], not model.smooth
-        motions = MotionAndStatics(self.boom, self.lines, trajectory, still, static, jumps)
+        rest_positions = np.array([*equilibria.values()]).reshape(-1, self.system.num_modes)
+        static, jumps = [*results.static, *results.static_extended], not model.smooth
+        motions = MotionAndStatics(self.boom, self.lines, trajectory, rest_positions, static, jumps)
         motion, varying = evaluate_motion(motions)
         lives = [life(one, case.life) for one in varying] if HAS_RAINFLOW else []
-        return replace(own, motion=motion, life=lives)
+        return replace(results, motion=motion, life=lives)
 
 
 @dataclass(frozen=True)
@@ -118,7 +120,7 @@ class ModelEvaluation:
         return instants(self._played.system, self.case.time.duration)
 
     @cached_property
-    def _found(self) -> dict[float, Array]:
+    def _equilibria(self) -> dict[float, Array]:
         return positions(self._played.system, self._times)
 
     def evaluate(self, trajectory: Trajectory, shell: ShellOutput | None) -> ModelDesignResults:
@@ -129,36 +131,36 @@ class ModelEvaluation:
             shell: fields and stresses of a shell; None for a beam.
         """
         played, case = self._played, self.case
-        system, found = played.system, self._found
+        system, equilibria = played.system, self._equilibria
         extended = extended_positions(system, case.time.duration)
-        own = played.at_rest(found, extended)
-        own = played.with_motion(own, found | extended, trajectory, case, self.model)
-        if shell is not None and own.motion is not None:
+        results = played.at_rest(equilibria, extended)
+        results = played.with_motion(results, equilibria | extended, trajectory, case, self.model)
+        if shell is not None and results.motion is not None:
             walls = wall_stresses(played.boom, shell.stresses)
-            own = replace(own, motion=replace(own.motion, walls=walls))
+            results = replace(results, motion=replace(results.motion, walls=walls))
         if shell is not None and shell.buckling is not None:
-            own = replace(own, buckling=shell.buckling.segments)
-        if case.buckling is not None and (rest := own.farthest_static) is not None:
-            own = replace(own, panels=weakest_panels(played.boom.segments, rest))
+            results = replace(results, buckling=shell.buckling.segments)
+        if case.buckling is not None and (rest := results.farthest_static) is not None:
+            results = replace(results, panels=weakest_panels(played.boom.segments, rest))
         vibration = residual_vibration(system, trajectory, case, self.model)
         rope = hoisting(case, self.boom, trajectory)
         drives = crane_drives(case, self.boom, trajectory.data)
-        return replace(own, residual_vibration=vibration, hoisting=rope, drives=drives)
+        return replace(results, residual_vibration=vibration, hoisting=rope, drives=drives)
 
-    def add_bonded(self, own: ModelDesignResults) -> ModelDesignResults:
+    def add_bonded(self, results: ModelDesignResults) -> ModelDesignResults:
         """Return design results with the results of the same model without play, if it has play."""
         boom, case, model = self.boom, self.case, self.model
         if model.bonded or not boom.joints:
-            return own
+            return results
         try:
-            bonded = _bonded_model(boom, case, model, self._played, self._found)
-            found = positions(bonded.system, self._times)
-            other = bonded.at_rest(found)
+            bonded = _bonded_model(boom, case, model, self._played, self._equilibria)
+            equilibria = positions(bonded.system, self._times)
+            other = bonded.at_rest(equilibria)
         except NUMERICAL_ERRORS:
             # Rigid segments without play, for example, have no degree of freedom.
-            return own
-        own = replace(
-            own,
+            return results
+        results = replace(
+            results,
             static_bonded=[
                 state for state in other.static if _at_initial_extension(boom, state.time)
             ],
@@ -167,27 +169,33 @@ class ModelEvaluation:
         )
         if boom.driven:
             # A boom without play cannot telescope.
-            return own
+            return results
         try:
             motion = MotionPlan.of(bonded.system, case, model).trajectory()
-            other = bonded.with_motion(other, found, motion, case, model)
+            other = bonded.with_motion(other, equilibria, motion, case, model)
         except NUMERICAL_ERRORS:
             # The static results remain valid.
-            return own
-        return replace(own, motion_bonded=other.motion, life_bonded=other.life)
+            return results
+        return replace(results, motion_bonded=other.motion, life_bonded=other.life)
 
 
 def _bonded_model(
-    boom: Boom, case: Case, model: Model, played: LoadedModel, found: Mapping[float, Array]
+    boom: Boom, case: Case, model: Model, played: LoadedModel, equilibria: Mapping[float, Array]
 ) -> LoadedModel:
     """Return the same model without play."""
     without = boom.bonded
-    if (own := model.system_without_play(boom)) is not None:
-        system = complete_system(own[0], case, without, own[1]).gather_loads()
-        return LoadedModel(without, system, with_cylinder_forces(without, system, own[1]))
-    initial = [position for time, position in found.items() if _at_initial_extension(boom, time)]
-    still = played.system.at_time(0.0) if boom.driven else played.system
-    system, basis = bonded_system(still, initial)
+    if (model_without_play := model.system_without_play(boom)) is not None:
+        system = complete_system(
+            model_without_play[0], case, without, model_without_play[1]
+        ).gather_loads()
+        return LoadedModel(
+            without, system, with_cylinder_forces(without, system, model_without_play[1])
+        )
+    initial = [
+        position for time, position in equilibria.items() if _at_initial_extension(boom, time)
+    ]
+    initial_system = played.system.at_time(0.0) if boom.driven else played.system
+    system, basis = bonded_system(initial_system, initial)
     system = with_initial_slack(system, case)
     return LoadedModel(without, system, [line.transform(basis) for line in played.lines])
 
@@ -208,12 +216,12 @@ def evaluate_run(
         summary: summary of the run, without design results.
         models: design results of the models that did not fail.
     """
-    found = statics(case, boom)
+    static = statics(case, boom)
     completed = [model for model in case.models if model.name in models]
     design = DesignResults(
         models=dict(models),
-        reactions=[] if found is None else reactions(found.with_play),
-        reactions_bonded=[] if found is None else reactions(found.bonded),
+        reactions=[] if static is None else reactions(static.with_play),
+        reactions_bonded=[] if static is None else reactions(static.bonded),
         modes=_compare_modes(boom, completed, models),
         play=play_effects(completed, models) if boom.joints else [],
     )
@@ -235,6 +243,6 @@ def _compare_modes(
     others = [m.name for m in with_modes if not m.bonded and m.name != reference]
     if reference is None or not others:
         return None
-    own = models[reference].modes
-    matches = {name: match_modes(boom, own, models[name].modes) for name in others}
+    reference_modes = models[reference].modes
+    matches = {name: match_modes(boom, reference_modes, models[name].modes) for name in others}
     return ModeComparison(reference, matches)

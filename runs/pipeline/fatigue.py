@@ -80,7 +80,7 @@ def detail_damages(case: Case) -> list[tuple[Detail, Damage]]:
     """
     if not (case.spectra and HAS_RAINFLOW):
         return []
-    found: dict[str, tuple[Detail, Damage]] = {}
+    damages: dict[str, tuple[Detail, Damage]] = {}
     tables = {one.name: one for one in case.load_cases}
     named = {(name, one.motion) for one in case.spectra for name in one.load_cases}
     beams: dict[tuple[str, bool], StaticBeam | BeamMotion] = {}
@@ -99,9 +99,9 @@ def detail_damages(case: Case) -> list[tuple[Detail, Damage]]:
         inside = detail.x - boom.segments[detail.segment].start
         stress = {key: _stress(beam, detail.segment, inside) for key, beam in beams.items()}
         damage = _damage(case, detail.category, stress)
-        if detail.name not in found or damage.sum > found[detail.name][1].sum:
-            found[detail.name] = detail, damage
-    return [*found.values()]
+        if detail.name not in damages or damage.sum > damages[detail.name][1].sum:
+            damages[detail.name] = detail, damage
+    return [*damages.values()]
 
 
 def _stress(beam: StaticBeam | BeamMotion, number: int, inside: float) -> Array:
@@ -135,5 +135,5 @@ def _damage(case: Case, category: float, stress: Mapping[tuple[str, bool], Array
             of_fibres.append(float((counts / endurance(raised, MEGA * category)).sum()))
         shares.append(spectrum.repeats * np.array(of_fibres))
     worst = int(np.sum(shares, axis=0).argmax())
-    own = [float(share[worst]) for share in shares]
-    return Damage(sum(own), case.spectra[int(np.argmax(own))].name)
+    damages = [float(share[worst]) for share in shares]
+    return Damage(sum(damages), case.spectra[int(np.argmax(damages))].name)

@@ -91,10 +91,12 @@ class StaticBeam(NamedTuple):
         boom = replace(boom, joints=tuple(replace(joint, drive=None) for joint in boom.joints))
         elements = Elements(boom, _ELEMENTS)
         system = static_state(boom, elements).system
-        own = lines(boom, elements.segments)
+        lines_of_elements = lines(boom, elements.segments)
         # The coordinates of wall springs come after those of the segments.
-        basis = np.eye(own[0].rows["deflection"].shape[1], system.num_modes)
-        along = with_cylinder_forces(boom, system, [line.transform(basis) for line in own])
+        basis = np.eye(lines_of_elements[0].rows["deflection"].shape[1], system.num_modes)
+        along = with_cylinder_forces(
+            boom, system, [line.transform(basis) for line in lines_of_elements]
+        )
         return cls.at_rest(boom, system, along, case.time.duration)
 
     @classmethod
@@ -112,11 +114,11 @@ class StaticBeam(NamedTuple):
         Raises:
             NumericsError: the boom has no equilibrium at t = 0.
         """
-        found = positions(system, instants(system, duration))
-        if not found:
+        equilibria = positions(system, instants(system, duration))
+        if not equilibria:
             raise NumericsError("the boom has no rest under the loads of t = 0")
-        rests = [static_result(boom, system, along, *rest) for rest in found.items()]
-        return cls(boom, along, np.array([*found.values()]), rests)
+        rests = [static_result(boom, system, along, *rest) for rest in equilibria.items()]
+        return cls(boom, along, np.array([*equilibria.values()]), rests)
 
     def extremes(self, system: System) -> list[StaticExtreme]:
         """Return the extremes of tip, stresses, pads, contacts and cylinders.
@@ -135,8 +137,8 @@ class StaticBeam(NamedTuple):
             if (fibres := Fibres.of(segment, line)) is None:
                 continue
             curves = section_forces(boom, number_of, line, self.positions, time)
-            still = {name: values[:1] for name, values in curves.items()}
-            fibre, _ = largest_stresses(segment, fibres, curves, still, time)
+            forces_at_rest = {name: values[:1] for name, values in curves.items()}
+            fibre, _ = largest_stresses(segment, fibres, curves, forces_at_rest, time)
             stress = abs(fibre.stress)
             used = Utilisation("outer fibre", segment.name, fibre.x, stress, fibre.utilisation)
             name = f"stress, {segment.name}"
@@ -203,12 +205,12 @@ class StaticBeam(NamedTuple):
 
 def weakest_at_rest(beam: StaticBeam) -> list[PanelBuckling]:
     """Return the wall of each segment with the lowest buckling factor over all static states."""
-    found: dict[str, PanelBuckling] = {}
+    weakest: dict[str, PanelBuckling] = {}
     for rest in beam.rests:
         for one in weakest_panels(beam.boom.segments, rest):
-            if one.segment not in found or one.factor < found[one.segment].factor:
-                found[one.segment] = one
-    return [*found.values()]
+            if one.segment not in weakest or one.factor < weakest[one.segment].factor:
+                weakest[one.segment] = one
+    return [*weakest.values()]
 
 
 def _static_extreme(

@@ -69,7 +69,7 @@ def case_limits(table: LimitsTable | None) -> list[Limit]:
 def check_limits(results: Results) -> Iterator[LimitCheck]:
     """Yield the limits of the case with the values of the main models of the run."""
     limits = case_limits(results.case.limits)
-    found = {name: measure(results, name) for name in results.main_models if limits}
+    quantities = {name: measure(results, name) for name in results.main_models if limits}
     for limit in limits:
-        numbers = {name: one[limit.quantity.name] for name, one in found.items()}
+        numbers = {name: one[limit.quantity.name] for name, one in quantities.items()}
         yield LimitCheck(limit, {name: one for name, one in numbers.items() if one is not None})

@@ -128,17 +128,17 @@ class SlowPeaks:
             time: (num_times,) in s.
             cutoff: cut-off in Hz.
         """
-        found = [slow_peaks(member, time, cutoff) for member in members]
+        peaks = [slow_peaks(member, time, cutoff) for member in members]
         times, heights = [], []
-        for at in found[0][0]:
-            nearest = [int(np.abs(t - at).argmin()) if t.size else -1 for t, _ in found]
+        for at in peaks[0][0]:
+            nearest = [int(np.abs(t - at).argmin()) if t.size else -1 for t, _ in peaks]
             if -1 in nearest:
                 break
-            matched = np.array([t[i] for (t, _), i in zip(found, nearest, strict=True)])
+            matched = np.array([t[i] for (t, _), i in zip(peaks, nearest, strict=True)])
             if np.abs(matched - at).max() >= 0.5 / cutoff:
                 break
             times.append(matched)
-            heights.append([h[i] for (_, h), i in zip(found, nearest, strict=True)])
+            heights.append([h[i] for (_, h), i in zip(peaks, nearest, strict=True)])
         t = np.array(times).reshape(-1, len(members))
         h = np.array(heights).reshape(-1, len(members))
         periods = np.ptp(t, axis=0) / (len(t) - 1) if len(t) > 1 else np.full(1, np.nan)

@@ -135,7 +135,7 @@ def measure_predictability(
         executor: executor of the runs; None for threads of this process.
         progress: callback that receives the completed fraction.
     """
-    found = measure_horizons(
+    horizons = measure_horizons(
         motion,
         CHANGES,
         vary,
@@ -145,13 +145,13 @@ def measure_predictability(
         unchanged=unchanged,
     )
     return Predictability(
-        relatives=found.relatives.tolist(),
-        shares=found.shares.tolist(),
-        times=found.times.tolist(),
-        of_step=found.of_step.tolist(),
-        rate=[growth.rate for growth in found.growth],
-        step_change=found.step_change,
-        limits=list(found.limits),
+        relatives=horizons.relatives.tolist(),
+        shares=horizons.shares.tolist(),
+        times=horizons.times.tolist(),
+        of_step=horizons.of_step.tolist(),
+        rate=[growth.rate for growth in horizons.growth],
+        step_change=horizons.step_change,
+        limits=list(horizons.limits),
     )
 
 

@@ -94,13 +94,13 @@ def compare_models(
     reference = reference_of(model for model in case.models if model.name in ran)
     if reference is None:
         return None
-    found = Comparisons(reference=reference)
+    comparisons = Comparisons(reference=reference)
     if ensembles is not None and cutoff is not None:
         one, *others = (
             ensembles.sel(model=name).astype(float)
             for name in (reference, *_others(ensembles, reference))
         )
-        found.ensembles = {
+        comparisons.ensembles = {
             str(other["model"].item()): compare(one, other, cutoff) for other in others
         }
     if case.regular:
@@ -117,8 +117,8 @@ def compare_models(
                 largest=[part.largest for part in parts],
                 rms=[part.rms for part in parts],
             )
-        found.whole = whole
-    return found if found.ensembles or found.whole else None
+        comparisons.whole = whole
+    return comparisons if comparisons.ensembles or comparisons.whole else None
 
 
 def _others(data: xr.Dataset, reference: str) -> list[str]:
@@ -182,23 +182,29 @@ def _agreement(design: DesignResults) -> Iterator[str]:
     if design.modes is None:
         return
     reference = design.modes.reference
-    own = design.models[reference]
+    reference_results = design.models[reference]
     for name, matches in design.modes.matches.items():
         other, parts = design.models[name], []
-        if (off := static_deviation(own, other)) is not None:
+        if (off := static_deviation(reference_results, other)) is not None:
             parts.append(f"{_signed_percent(off)} in the static tip deflection")
         if (first := matches[0]) is not None:
             parts.append(f"{_signed_percent(first.off)} in the first frequency")
-        if own.motion is not None and other.motion is not None and own.motion.peaks[0].largest:
-            ratio = other.motion.peaks[0].largest / own.motion.peaks[0].largest
+        if (
+            reference_results.motion is not None
+            and other.motion is not None
+            and reference_results.motion.peaks[0].largest
+        ):
+            ratio = other.motion.peaks[0].largest / reference_results.motion.peaks[0].largest
             parts.append(f"{_signed_percent(ratio - 1.0)} in the maximum tip deflection")
         if parts:
             yield f"{name} differs from {reference} by {join_words(parts)}."
 
 
-def static_deviation(own: ModelDesignResults, other: ModelDesignResults) -> float | None:
+def static_deviation(results: ModelDesignResults, other: ModelDesignResults) -> float | None:
     """Return the relative difference of the static tips under the largest loads, or None."""
-    tips = [max((rest.tip for rest in one.static), key=abs, default=None) for one in (own, other)]
+    tips = [
+        max((rest.tip for rest in one.static), key=abs, default=None) for one in (results, other)
+    ]
     if tips[1] is None or not tips[0]:
         return None
     return tips[1] / tips[0] - 1.0
@@ -242,9 +248,9 @@ def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list
         *stress_cautions(summary, boom),
         *(
             caution
-            for name, own in summary.design.models.items()
-            if own.static
-            for caution in bulge_cautions(f"in {name}", own.static[0], boom)
+            for name, results in summary.design.models.items()
+            if results.static
+            for caution in bulge_cautions(f"in {name}", results.static[0], boom)
         ),
         *_large_displacements(boom, data),
         *swing_cautions(case, data),
@@ -258,14 +264,16 @@ def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
     for name, model in summary.models.items():
         yield from buckling_cautions(name, model.critical_factor)
         yield from tip_cautions(f"in {name}", model.static_tip, boom)
-    found = summary.design.models.items()
-    slowest = min(((mode.frequency, name) for name, one in found for mode in one.modes), default=())
+    designs = summary.design.models.items()
+    slowest = min(
+        ((mode.frequency, name) for name, one in designs for mode in one.modes), default=()
+    )
     if slowest:
         yield from period_cautions(f"in {slowest[1]}", slowest[0], case)
     pendulum = pendulum_frequency(case)
     bending = [
         (mode.frequency, name)
-        for name, one in found
+        for name, one in designs
         for mode in one.modes
         if mode.frequency > _APART * pendulum
     ]

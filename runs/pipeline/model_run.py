@@ -269,17 +269,20 @@ def _beam_stiffness(segment: Segment, stiffness: Stiffness) -> BeamStiffness:
     shear = [plane.prismatic_at(0.5 * sum(plane.ends)).shear_stiffness or 0.0 for plane in planes]
     torsion = None
     if stiffness.torsion is not None and segment.lateral is not None:
-        own = segment.material.shear_modulus * segment.lateral.torsion_constant
-        torsion = stiffness.torsion / own
+        section_torsion = segment.material.shear_modulus * segment.lateral.torsion_constant
+        torsion = stiffness.torsion / section_torsion
     return BeamStiffness(
         segment=segment.name,
         bending=list(stiffness.bending),
         shear=list(stiffness.shear),
         torsion=stiffness.torsion,
         bending_part=[
-            found / plane.bending_stiffness
-            for found, plane in zip(stiffness.bending, planes, strict=True)
+            calibrated / plane.bending_stiffness
+            for calibrated, plane in zip(stiffness.bending, planes, strict=True)
         ],
-        shear_part=[found / own for found, own in zip(stiffness.shear, shear, strict=True)],
+        shear_part=[
+            calibrated / section_torsion
+            for calibrated, section_torsion in zip(stiffness.shear, shear, strict=True)
+        ],
         torsion_part=torsion,
     )

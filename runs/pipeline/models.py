@@ -80,12 +80,12 @@ def axial_travels(system: GapSystem, boom: Boom, lines: Sequence[Line]) -> Itera
     least = min(system.omega2[system.omega2 > 0.0], default=1.0)
     stiffness = np.diag(np.maximum(system.omega2, _LEAST_STIFFNESS * least))
     stiffness += least * (system.rows.T * system.row_masses) @ system.rows
-    still = RowTable(np.array([0.0, 1.0]), np.zeros((1, 4, 0, system.num_modes)))
+    no_rows = RowTable(np.array([0.0, 1.0]), np.zeros((1, 4, 0, system.num_modes)))
     for change in boom.axial_changes if lines else ():
         geometric = change.geometric_stiffness(deflections)
         force = ChangingAxialForce.of(geometric, stiffness, change.history.peak)
         if force.factors.size:
-            yield Travel(change.history, still, (), axial_forces=[force])
+            yield Travel(change.history, no_rows, (), axial_forces=[force])
 
 
 def initial_motion(system: GapSystem, case: Case) -> Motion:
@@ -149,8 +149,8 @@ class MotionPlan:
 
     def trajectory(self, progress: Callable[[float], None] | None = None) -> Trajectory:
         """Return the integrated motion."""
-        found = self.integrator(self.motion, progress)
-        return found if self.load is None else self.load.separate_rope(found)
+        trajectory = self.integrator(self.motion, progress)
+        return trajectory if self.load is None else self.load.separate_rope(trajectory)
 
     def step_error(self, trajectory: Trajectory, progress: Callable[[float], None]) -> float:
         """Return the change of the tip by a doubled fixed step, as a fraction of its range."""

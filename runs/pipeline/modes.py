@@ -106,7 +106,7 @@ def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> 
     omega, shapes = closed_contact_modes(system, rest)
     motions: list[Quantity] = [name for name in _MOTIONS if name in lines[0].rows]
     even = [np.linspace(line.x[0], line.x[-1], _PLACES) for line in lines]
-    found: list[Mode] = []
+    modes_of_boom: list[Mode] = []
     for frequency, shape in zip(omega[:MODES] / (2.0 * np.pi), shapes.T, strict=False):
         curves = [
             {name: np.interp(x, line.x, line.read(shape)[name]) for name in motions}
@@ -122,11 +122,11 @@ def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> 
         motion, whole = max(motions, key=lambda name: energies[name]), sum(energies.values())
         most = np.concatenate([of[motion] for of in curves])
         scale = 1.0 / float(most[np.abs(most).argmax()] or 1.0)
-        found.append(
+        modes_of_boom.append(
             Mode(
                 frequency=float(frequency),
                 motion=_MOTIONS[motion],
-                number=1 + sum(mode.motion == _MOTIONS[motion] for mode in found),
+                number=1 + sum(mode.motion == _MOTIONS[motion] for mode in modes_of_boom),
                 share=energies[motion] / whole if whole else 0.0,
                 shapes=[
                     Shape(
@@ -138,7 +138,7 @@ def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> 
                 ],
             )
         )
-    return found
+    return modes_of_boom
 
 
 def inertia(segment: Segment, motion: Quantity) -> float:
@@ -167,17 +167,17 @@ def match_modes(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) ->
         return [None for _ in reference]
     lengths = np.outer(np.linalg.norm(here, axis=1), np.linalg.norm(there, axis=1))
     alike = (here @ there.T / np.maximum(lengths, np.finfo(float).tiny)) ** 2
-    found: list[Match | None] = []
+    matches: list[Match | None] = []
     left = alike.copy()
     for number, mode in enumerate(reference):
         k = int(left[number].argmax())
         if left[number, k] < MIN_ASSURANCE:
-            found.append(None)
+            matches.append(None)
             continue
         off = other[k].frequency / mode.frequency - 1.0
-        found.append(Match(k + 1, other[k].frequency, off, float(alike[number, k])))
+        matches.append(Match(k + 1, other[k].frequency, off, float(alike[number, k])))
         left[:, k] = -1.0
-    return found
+    return matches
 
 
 def _weighted_shape(boom: Boom, mode: Mode) -> Array:

@@ -132,7 +132,7 @@ def evaluate_motion(motions: MotionAndStatics) -> tuple[MotionResult, list[Stres
     time, rest_times = motions.trajectory.time, np.array([rest.time for rest in motions.rests])
     for number, (segment, line) in enumerate(zip(boom.segments, motions.lines, strict=True)):
         curves = section_forces(boom, number, line, motions.trajectory.states, time)
-        still = section_forces(boom, number, line, motions.positions, rest_times)
+        forces_at_rest = section_forces(boom, number, line, motions.positions, rest_times)
         low, high = (
             {str(name): round_values(limit(one, axis=0)) for name, one in curves.items()}
             for limit in (np.min, np.max)
@@ -142,24 +142,29 @@ def evaluate_motion(motions: MotionAndStatics) -> tuple[MotionResult, list[Stres
             if plane.moment in curves:
                 moments = curves[plane.moment]
                 largest_at = moments[:, np.abs(moments).max(axis=0).argmax()]
-                at_rest = np.abs(still[plane.moment]).max(axis=1)
+                at_rest = np.abs(forces_at_rest[plane.moment]).max(axis=1)
                 name = f"{plane.name}bending moment"
                 peaks.append(_peak(name, segment.name, "N m", time, largest_at, at_rest))
         if "moment" in curves and motions.jumps:
             peaks += _reactions(motions, number)
-        if (found := Fibres.of(segment, line)) is not None:
-            largest, most = largest_stresses(segment, found, curves, still, time)
+        if (fibre_set := Fibres.of(segment, line)) is not None:
+            largest, most = largest_stresses(segment, fibre_set, curves, forces_at_rest, time)
             fibres.append(largest)
             varying.append(most)
     return MotionResult(envelopes, peaks, fibres, walls=[]), varying
 
 
 def _peak(
-    what: str, where: str, unit: str, time: Array, values: Array, still: Sequence[float] | Array
+    what: str,
+    where: str,
+    unit: str,
+    time: Array,
+    values: Array,
+    rest_values: Sequence[float] | Array,
 ) -> Peak:
     """Return the peaks of values (num_times,) in motion and of static values (num_rests,)."""
     step = int(np.abs(values).argmax())
-    at_rest = max((float(abs(value)) for value in still), default=None)
+    at_rest = max((float(abs(value)) for value in rest_values), default=None)
     return Peak(what, where, unit, float(abs(values[step])), float(time[step]), at_rest)
 
 
@@ -169,15 +174,15 @@ def _output_peaks(motions: MotionAndStatics) -> Iterator[Peak]:
     tips = [rest.tip for rest in rests]
     yield _peak("deflection", "tip", "m", time, data["tip"].values, tips)
     if motions.boom.spatial:
-        still = [rest.tip_lateral or 0.0 for rest in rests]
-        yield _peak("lateral deflection", "tip", "m", time, data["tip_lateral"].values, still)
+        rest_values = [rest.tip_lateral or 0.0 for rest in rests]
+        yield _peak("lateral deflection", "tip", "m", time, data["tip_lateral"].values, rest_values)
     for number, name in enumerate(place_names(motions.boom.stations)):
         values = data["contact_force"].values[:, number]
-        still = [rest.stations[number].force for rest in rests]
-        yield _peak("contact force", name, "N", time, values, still)
+        rest_values = [rest.stations[number].force for rest in rests]
+        yield _peak("contact force", name, "N", time, values, rest_values)
     for name in forces(motions.boom):
-        still = [rest.cylinders[name] for rest in rests]
-        yield _peak("cylinder force", name, "N", time, data[name].values, still)
+        rest_values = [rest.cylinders[name] for rest in rests]
+        yield _peak("cylinder force", name, "N", time, data[name].values, rest_values)
     if "rope_force_peak" in data:
         rope = data["rope_force_peak"]
         yield _peak("rope force", "", "N", time, rope.values, [rope.attrs["weight"]])

@@ -59,21 +59,21 @@ def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
     with_play = (model for model in case.models if not model.bonded)
     for model in (model for model in with_play if model.name in data["model"].values):
         seen = model.model_boom(boom).boom
-        station, own = count(), data["contact_force_peak"].sel(model=model.name)
-        ends = np.stack([own.min("time").values, own.max("time").values], axis=1)
+        station, peak_forces = count(), data["contact_force_peak"].sel(model=model.name)
+        ends = np.stack([peak_forces.min("time").values, peak_forces.max("time").values], axis=1)
         for direction in boom.directions:
             for table, joint in zip(case.joints, seen.joints, strict=True):
                 law = joint.law(direction)
                 for x in () if joint.bonded else joint.stations:
-                    pushed = ends[next(station)]
+                    largest_pushes = ends[next(station)]
                     if table.pad is not None:
-                        largest = max(pushed, key=abs)
+                        largest = max(largest_pushes, key=abs)
                         force = abs(float(largest))
                         if not model.needs_shell:
                             force = _larger_side_force(force, law)
                         side = _SIDE_NAMES[direction, 1 if largest > 0.0 else -1]
                         yield _pad_load(model, table, table.pad, x, side, force)
-                    forces = _pair_forces(joint, direction, law, pushed)
+                    forces = _pair_forces(joint, direction, law, largest_pushes)
                     pads = [pad for pad in table.pads if SIDES[pad.side][0] == direction]
                     for pad, force in zip(pads, forces, strict=True):
                         yield _pad_load(model, table, pad, x, pad.side, force)
@@ -97,7 +97,7 @@ def _pad_load(
     )
 
 
-def _pair_forces(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array) -> list[float]:
+def _pair_forces(joint: Joint, direction: Direction, law: ContactLaw, pushes: Array) -> list[float]:
     """Return the largest force in N on each pair of pads.
 
     Args:
@@ -127,13 +127,13 @@ def _pair_forces(joint: Joint, direction: Direction, law: ContactLaw, pushed: Ar
     def excess(approach: float, push: float) -> float:
         return float(force(approach) @ np.equal(sides, np.sign(push))) - push
 
-    found = np.zeros(len(laws))
-    for push in pushed[pushed != 0.0]:
+    largest = np.zeros(len(laws))
+    for push in pushes[pushes != 0.0]:
         reach = 1.0e-3
         while excess(np.sign(push) * reach, push) * push < 0.0:
             reach *= 2.0
-        found = np.maximum(found, np.abs(force(brentq(excess, -reach, reach, args=(push,)))))
-    return [float(most) for most in found]
+        largest = np.maximum(largest, np.abs(force(brentq(excess, -reach, reach, args=(push,)))))
+    return [float(most) for most in largest]
 
 
 def _larger_side_force(both: float, law: ContactLaw) -> float:
@@ -156,18 +156,18 @@ def loaded_pads(
         direction: direction of the forces.
         sides: forces on both sides in N, not negative.
     """
-    found = []
+    loads = []
     for side, force in zip(SIGNS, sides, strict=True) if joint.padded else ():
         # Pairs with thicker shims close first.
         pairs = sorted(joint.pads_of(direction, side), key=lambda pair: -pair[2])
         shares, shims = (np.array([pair[k] for pair in pairs]) for k in (1, 2))
-        own = [pad.stiffness for pad in joint.pads if pad.touches(direction, side)]
-        stiffness = PADS_OF_SIDE * sum(own) or 1.0
+        stiffnesses = [pad.stiffness for pad in joint.pads if pad.touches(direction, side)]
+        stiffness = PADS_OF_SIDE * sum(stiffnesses) or 1.0
         # Each pair that closes reduces the compression of the pairs that closed before.
         ways = (force / stiffness - np.cumsum(shares * shims)) / np.cumsum(shares)
         forces = stiffness * (shares * np.maximum(ways.min() + shims, 0.0)) / PADS_OF_SIDE
-        found += [(pair[0], float(one)) for pair, one in zip(pairs, forces, strict=True)]
-    return [(pad, force) for pad, force in found if pad is not None]
+        loads += [(pair[0], float(one)) for pair, one in zip(pairs, forces, strict=True)]
+    return [(pad, force) for pad, force in loads if pad is not None]
 
 
 def side_force(law: ContactLaw, side: int, gap: float) -> float:

@@ -145,18 +145,18 @@ def prove(case: Case, states: Sequence[CombinationState]) -> Proofs:
     Raises:
         NumericsError: a combination has no equilibrium.
     """
-    found: dict[tuple[str, str], Proof] = {}
+    governing: dict[tuple[str, str], Proof] = {}
     for state in states:
         for one in _proofs(state, case):
-            other = found.setdefault((one.kind, one.part), one)
+            other = governing.setdefault((one.kind, one.part), one)
             if one.utilisation > other.utilisation:
-                found[one.kind, one.part] = one
+                governing[one.kind, one.part] = one
     for detail, damage in detail_damages(case):
         name = detail.name
-        found["fatigue", name] = Proof(
+        governing["fatigue", name] = Proof(
             "fatigue", name, name, detail.x, damage.sum, 1.0, "1", damage.spectrum
         )
-    proofs = sorted(found.values(), key=lambda one: -one.utilisation)
+    proofs = sorted(governing.values(), key=lambda one: -one.utilisation)
     return Proofs(proofs, [*_missing_data_notes(case, states)])
 
 
@@ -342,9 +342,9 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
         yield "No proof: deflection, without limits.tip_at_rest."
 
 
-def proof_table(found: Proofs, case: Case) -> Table:
+def proof_table(result: Proofs, case: Case) -> Table:
     """Return the table of proofs, the governing one first."""
-    proofs, system = found.proofs, case.system
+    proofs, system = result.proofs, case.system
 
     def shown(values: Sequence[float]) -> list[str]:
         pairs = zip(values, proofs, strict=True)
@@ -362,5 +362,5 @@ def proof_table(found: Proofs, case: Case) -> Table:
         Column("combi-\nnation", [one.combination for one in proofs]),
     ]
     kinds = dict.fromkeys(one.kind for one in proofs)
-    notes = [f"{kind}: {FORMULAS[kind]}." for kind in kinds] + found.notes
+    notes = [f"{kind}: {FORMULAS[kind]}." for kind in kinds] + result.notes
     return Table("Proofs", columns, notes, "proofs", ["✗"])

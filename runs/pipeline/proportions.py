@@ -47,8 +47,8 @@ SAME_LOAD, SAME_WEIGHT = 0.01, 0.05
 def proportion_cautions(case: Case, boom: Boom) -> list[str]:
     """Return a caution for each suspicious input."""
     unusual = (one for one in usual_ranges(case, boom) if one.unusual)
-    found = [f"{one.key}: {one.text(case.system)}" for one in unusual]
-    found += [
+    texts = [f"{one.key}: {one.text(case.system)}" for one in unusual]
+    texts += [
         *_sizes(case, boom),
         *_repeated_loads(case, boom),
         *_payload_without_gravity(case, boom),
@@ -58,7 +58,7 @@ def proportion_cautions(case: Case, boom: Boom) -> list[str]:
         *_pads(case, boom),
         *_meshes(case, boom),
     ]
-    return [f"caution: {line}" for line in found]
+    return [f"caution: {line}" for line in texts]
 
 
 def _ineffective_inputs(case: Case) -> Iterator[str]:

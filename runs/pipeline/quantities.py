@@ -70,17 +70,17 @@ def measure(results: Results, model: str) -> Quantities:
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     tip = np.asarray(results.trajectories["tip"].sel(model=model).values, dtype=float)
     summary = results.summary.models[model]
-    own = results.summary.design.models.get(model, ModelDesignResults())
-    declaring = [*(getattr(own, name) for name in records(ModelDesignResults)), summary]
-    moved = own.motion
+    design = results.summary.design.models.get(model, ModelDesignResults())
+    declaring = [*(getattr(design, name) for name in records(ModelDesignResults)), summary]
+    moved = design.motion
     peaks = () if moved is None else moved.peaks
     deflection = next((peak for peak in peaks if peak.what == "deflection"), None)
     contacts = (peak.largest for peak in peaks if peak.what == "contact force")
     fibres = () if moved is None else (abs(fibre.stress) for fibre in moved.fibres)
     walls = () if moved is None else (wall.patch for wall in moved.walls)
     pads = (pad.pressure for pad in results.summary.pads if pad.model == model)
-    frequency = own.modes[0].frequency if own.modes else None
-    damages = (one.life_damage for one in own.life if one.life_damage is not None)
+    frequency = design.modes[0].frequency if design.modes else None
+    damages = (one.life_damage for one in design.life if one.life_damage is not None)
     return {
         "tip_at_rest": None if deflection is None else deflection.at_rest,
         "tip": float(np.abs(tip).max()),

@@ -131,8 +131,8 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
     off = np.zeros(time.size)
     for name in _TIP:
         if name in system.observers:
-            still = np.array(rests) @ system.observers[name].row
-            there = np.interp(np.interp(time, times, passed), passed[steps], still)
+            deflections_at_rest = np.array(rests) @ system.observers[name].row
+            there = np.interp(np.interp(time, times, passed), passed[steps], deflections_at_rest)
             off = np.hypot(off, trajectory.data[name].values - there)
     step = int(off.argmax())
     return float(off[step]), float(time[step])

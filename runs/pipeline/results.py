@@ -178,8 +178,8 @@ class Results:
 
         columns: dict[str, list[Any]] = {"unit": [one.unit for one in QUANTITIES]}
         for name in self.summary.models:
-            found = measure(self, name)
-            columns[name] = [found.get(one.name) for one in QUANTITIES]
+            quantities = measure(self, name)
+            columns[name] = [quantities.get(one.name) for one in QUANTITIES]
         frame = pd.DataFrame(columns, index=[one.name for one in QUANTITIES])
         return frame.dropna(how="all", subset=[*self.summary.models])
 
@@ -202,11 +202,11 @@ class Results:
     @property
     def motions(self) -> dict[str, MotionResult]:
         """The extreme values of the motions of the main models."""
-        own = self.summary.design.models
+        designs = self.summary.design.models
         return {
             name: moved
             for name in self.main_models
-            if name in own and (moved := own[name].motion) is not None
+            if name in designs and (moved := designs[name].motion) is not None
         }
 
 

@@ -65,7 +65,7 @@ class Run:
             NumericsError: a comparison of the models is not finite.
         """
         case, boom, summary = self.results.case, self.results.boom, self.results.summary
-        design = self._evaluate_models(lambda one, own: one.add_bonded(own))
+        design = self._evaluate_models(lambda one, results: one.add_bonded(results))
         summary.design = evaluate_run(boom, case, summary, design)
         self.results.conclude()
         check_finite(summary)
@@ -73,7 +73,7 @@ class Run:
     def evaluate_with_play(self) -> None:
         """Add pad forces and the design results with play alone to the summary."""
         results, summary = self.results, self.results.summary
-        summary.design = DesignResults(models=self._evaluate_models(lambda _, own: own))
+        summary.design = DesignResults(models=self._evaluate_models(lambda _, design: design))
         summary.pads = list(pad_loads(results.case, results.boom, results.trajectories))
         check_finite(summary)
 
@@ -88,20 +88,22 @@ class Run:
         case, boom, summary = self.results.case, self.results.boom, self.results.summary
         design = {}
         for name, ran in self.model_runs.items():
-            own = summary.models[name]
+            model_summary = summary.models[name]
             with ran.stages.stage("design results"), np.errstate(all="ignore"):
                 try:
                     evaluation = ModelEvaluation(boom, case, ran.model, ran.built)
-                    found = evaluation.evaluate(ran.motion.trajectory, ran.shell)
-                    design[name] = complete(evaluation, found)
+                    results = evaluation.evaluate(ran.motion.trajectory, ran.shell)
+                    design[name] = complete(evaluation, results)
                     check_finite(design[name])
                 except NUMERICAL_ERRORS as error:
                     summary.failures[name], design[name] = (
                         failure_reason(error),
                         ModelDesignResults(),
                     )
-            own.seconds = ran.stages.seconds
-            own.wall_time = (own.wall_time or 0.0) + own.seconds["design results"]
+            model_summary.seconds = ran.stages.seconds
+            model_summary.wall_time = (model_summary.wall_time or 0.0) + model_summary.seconds[
+                "design results"
+            ]
         return design
 
 
@@ -126,10 +128,10 @@ def run_case(case: Case, file: str, context: RunContext) -> Run | None:
         # Results are checked for overflow at the end.
         with np.errstate(all="ignore"):
             try:
-                found = run_model(boom, model, case, cutoff, context)
-                if found is not None:
-                    check_finite(found.motion.summary)
-                return found
+                run = run_model(boom, model, case, cutoff, context)
+                if run is not None:
+                    check_finite(run.motion.summary)
+                return run
             except NUMERICAL_ERRORS as error:
                 return error
             except SharedFailure as error:

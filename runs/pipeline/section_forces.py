@@ -45,14 +45,14 @@ def with_cylinder_forces(boom: Boom, system: GapSystem, lines: Sequence[Line]) -
         system: system whose outputs include the cylinder forces.
         lines: lines along the segments.
     """
-    found = list(lines)
+    extended = list(lines)
     for number, cylinder in enumerate(boom.cylinders, start=1):
-        line, foot = found[cylinder.segment], boom.segments[cylinder.segment].foot
+        line, foot = extended[cylinder.segment], boom.segments[cylinder.segment].foot
         x = np.repeat(0.5 * (line.x[::2] + line.x[1::2]), 2) if line.paired else line.x
         pull = np.outer(cylinder.normal_force(x, foot), system.observers[force_name(number)].row)
         normal = line.rows.get("normal", 0.0) + pull
-        found[cylinder.segment] = replace(line, rows={**line.rows, "normal": normal})
-    return found
+        extended[cylinder.segment] = replace(line, rows={**line.rows, "normal": normal})
+    return extended
 
 
 def section_forces(

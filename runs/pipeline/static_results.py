@@ -159,14 +159,14 @@ def extended_instants(system: GapSystem, duration: float) -> list[float]:
     drives = [travel for travel in system.travels if travel.telescopes]
     times, ways = _sample_histories(drives, system, duration)
     _, loads = _sample_histories(system.excitations, system, duration)
-    found: list[int] = []
+    steps_at_ends: list[int] = []
     for way in ways:
         for end in (way.max(), way.min()):
             there = np.flatnonzero(np.abs(way - end) <= _SAME_EXTENSION * abs(end))
             of_loads = loads[:, there]
             steps = [0, *of_loads.argmax(axis=1), *of_loads.argmin(axis=1)]
-            found += there[steps].tolist() if end else []
-    return _distinct_times(times, np.vstack([loads, ways]), found)
+            steps_at_ends += there[steps].tolist() if end else []
+    return _distinct_times(times, np.vstack([loads, ways]), steps_at_ends)
 
 
 def _sample_histories(
@@ -181,10 +181,10 @@ def _sample_histories(
 
 def _distinct_times(times: Array, values: Array, steps: Sequence[int]) -> list[float]:
     """Return the first time in s of each distinct value at the given steps."""
-    found: dict[tuple[float, ...], float] = {}
+    first_times: dict[tuple[float, ...], float] = {}
     for step in steps:
-        found.setdefault(tuple(values[:, step]), float(times[step]))
-    return list(found.values())
+        first_times.setdefault(tuple(values[:, step]), float(times[step]))
+    return list(first_times.values())
 
 
 def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float, Array]:
@@ -196,15 +196,15 @@ def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float,
         system: gap system of a model, whose ``load`` includes all constant loads.
         times: times of :func:`instants`.
     """
-    found: dict[float, Array] = {}
+    equilibria: dict[float, Array] = {}
     for time in times:
         try:
             with np.errstate(all="ignore"):
-                found[time] = equilibrium_at(system, time)
+                equilibria[time] = equilibrium_at(system, time)
         except NUMERICAL_ERRORS:
-            if not found:
+            if not equilibria:
                 return {}
-    return found
+    return equilibria
 
 
 def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]:
@@ -215,12 +215,12 @@ def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]
         duration: duration of the motion in s.
     """
     known = instants(system, duration)
-    found: dict[float, Array] = {}
+    equilibria: dict[float, Array] = {}
     for time in extended_instants(system, duration):
         with suppress(*NUMERICAL_ERRORS), np.errstate(all="ignore"):
             if time not in known:
-                found[time] = equilibrium_at(system, time)
-    return found
+                equilibria[time] = equilibrium_at(system, time)
+    return equilibria
 
 
 def static_result(
@@ -304,13 +304,13 @@ def bulge_cautions(where: str, rest: StaticResult, boom: Boom) -> list[str]:
         boom: the boom, for its plays.
     """
     plays = {x: one.lateral_play or 0.0 for one in boom.joints for x in one.stations}
-    found = [
+    bulges = [
         f"{TO_MILLI * one.closed:.2g} of {TO_MILLI * plays[one.x]:g} mm at x = {one.x:g} m"
         for one in rest.stations
         if one.direction == "y" and one.closed > BULGED * plays[one.x]
     ]
     text = f"caution: {where} walls bulge under vertical pads at rest and close lateral play: "
-    return [f"{text}{', '.join(found)}; beams with rigid walls do not show this"] if found else []
+    return [f"{text}{', '.join(bulges)}; beams with rigid walls do not show this"] if bulges else []
 
 
 def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> Iterator[Tilt]:
@@ -324,8 +324,10 @@ def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> 
     """
     gaps, numbers = system.rows @ position, count()
     for joint in (joint for joint in boom.joints if not joint.bonded):
-        own = [float(gaps[system.station_of_row == next(numbers)].mean()) for _ in joint.stations]
-        if len(own) > 1:
+        mean_gaps = [
+            float(gaps[system.station_of_row == next(numbers)].mean()) for _ in joint.stations
+        ]
+        if len(mean_gaps) > 1:
             before = travel(boom, joint.outer, time)
             extension = travel(boom, joint.inner, time) - before
             on_outer = (
@@ -340,6 +342,6 @@ def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> 
                 for x, at in zip(on_outer, joint.stations, strict=True)
             ]
             tip = boom.tip + travel(boom, len(boom.segments) - 1, time) - before
-            rotation = (own[-1] - own[0]) / (on_outer[-1] - on_outer[0])
+            rotation = (mean_gaps[-1] - mean_gaps[0]) / (on_outer[-1] - on_outer[0])
             inner, outer = (boom.segments[number].name for number in (joint.inner, joint.outer))
-            yield Tilt(inner, outer, rotation, own[0] + rotation * (tip - on_outer[0]))
+            yield Tilt(inner, outer, rotation, mean_gaps[0] + rotation * (tip - on_outer[0]))

@@ -118,17 +118,17 @@ def contact_and_support_reactions(state: StaticState) -> dict[tuple[int, float],
 def _axial_forces(state: StaticState) -> dict[tuple[int, float], float]:
     """Return the axial forces of feet and cylinders in N, by segment and x in m."""
     boom = state.boom
-    found: dict[tuple[int, float], float] = defaultdict(float)
+    forces: dict[tuple[int, float], float] = defaultdict(float)
     for number, segment in enumerate(boom.segments):
         if segment.foot is not None:
-            found[number, segment.foot.x] = foot_thrust(boom.segments, boom.joints, number)
+            forces[number, segment.foot.x] = foot_thrust(boom.segments, boom.joints, number)
     for number, cylinder in enumerate(boom.cylinders, start=1):
         push = cylinder.direction[0] * cylinder_force(state, number)
         foot = boom.segments[cylinder.segment].foot
-        found[cylinder.segment, cylinder.x] += push
+        forces[cylinder.segment, cylinder.x] += push
         if foot is not None:
-            found[cylinder.segment, foot.x] -= push
-    return found
+            forces[cylinder.segment, foot.x] -= push
+    return forces
 
 
 def _depths(state: StaticState) -> dict[tuple[int, float], float]:
@@ -142,10 +142,10 @@ def _depths(state: StaticState) -> dict[tuple[int, float], float]:
         for middles in contact_centres(boom, joint).values()
     ]
     owners = [*inner, *((stop.segment, (stop.x,)) for stop in boom.stops)]
-    found = station_loads(boom, state.system, state.position)
+    loads = station_loads(boom, state.system, state.position)
     return {
         (number, x): one.depth
-        for (number, middles), one in zip(owners, found, strict=True)
+        for (number, middles), one in zip(owners, loads, strict=True)
         if one.direction == "z"
         for x in middles
     }

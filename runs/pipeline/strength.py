@@ -180,8 +180,8 @@ def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
     """
     different = x.tolist() if segment.head_section is not None else [float(x[0])]
     corners = np.array([outer_corners(segment.section_at(place)) for place in different])
-    found = np.broadcast_to(corners, (x.size, *corners.shape[1:]))
-    y, z = np.moveaxis(found, 0, -1)
+    points = np.broadcast_to(corners, (x.size, *corners.shape[1:]))
+    y, z = np.moveaxis(points, 0, -1)
     if spatial:
         return y, z
     _, heights = np.unique(z[:, 0], return_index=True)
@@ -210,7 +210,7 @@ def largest_stresses(
     segment: Segment,
     fibres: Fibres,
     curves: Mapping[Quantity, Array],
-    still: Mapping[Quantity, Array],
+    forces_at_rest: Mapping[Quantity, Array],
     time: Array,
 ) -> tuple[FibreStress, StressHistory]:
     """Return the largest stress of a segment, and the stress history at the fibre that varies most.
@@ -223,7 +223,7 @@ def largest_stresses(
         time: (num_times,) in s.
     """
     largest, where = 0.0, (0, 0, 0)
-    found, at_rest = [], []
+    histories, at_rest = [], []
     for fibre in range(len(fibres.z)):
         stress = fibres.stress(fibre, curves)
         step, place = np.unravel_index(np.abs(stress).argmax(), stress.shape)
@@ -231,8 +231,8 @@ def largest_stresses(
             largest, where = float(stress[step, place]), (fibre, int(step), int(place))
         widest = int(np.ptp(stress, axis=0).argmax())
         at = float(fibres.x[widest]), float(fibres.y[fibre, widest]), float(fibres.z[fibre, widest])
-        found.append(StressHistory(segment.name, at, stress[:, widest].copy()))
-        at_rest.append(np.abs(fibres.stress(fibre, still)).max(initial=0.0))
+        histories.append(StressHistory(segment.name, at, stress[:, widest].copy()))
+        at_rest.append(np.abs(fibres.stress(fibre, forces_at_rest)).max(initial=0.0))
     fibre, at_step, at_place = where
     largest_stress = FibreStress(
         segment=segment.name,
@@ -242,9 +242,9 @@ def largest_stresses(
         stress=largest,
         time=float(time[at_step]),
         utilisation=utilisation(segment, largest),
-        at_rest=float(max(at_rest)) if len(still["moment"]) else None,
+        at_rest=float(max(at_rest)) if len(forces_at_rest["moment"]) else None,
     )
-    return largest_stress, max(found, key=lambda one: float(np.ptp(one.stress)))
+    return largest_stress, max(histories, key=lambda one: float(np.ptp(one.stress)))
 
 
 def utilisation(segment: Segment, stress: float) -> float | None:
@@ -260,14 +260,14 @@ def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
         boom: boom of the shell.
         stresses: stresses of :func:`shell_model.stress.history.stress_near_places`.
     """
-    found = []
+    largest_of_segments = []
     for segment in boom.segments:
         patches = stresses["von_mises_patch"].sel(segment=segment.name).values
         if not np.isfinite(patches).any():
             continue
         step, place = np.unravel_index(np.nanargmax(patches), patches.shape)
         patch = float(patches[step, place])
-        found.append(
+        largest_of_segments.append(
             WallStress(
                 segment=segment.name,
                 x=float(stresses["place"].values[place]),
@@ -277,7 +277,7 @@ def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
                 utilisation=utilisation(segment, patch),
             )
         )
-    return found
+    return largest_of_segments
 
 
 class Ranges(NamedTuple):
@@ -291,8 +291,8 @@ def count_stress_ranges(stress: Sequence[float] | Array) -> Ranges:
     """Return the stress ranges of a stress history in Pa, by rainflow counting."""
     import rainflow
 
-    found = [(size, count) for size, count in rainflow.count_cycles(stress) if size > 0.0]
-    sizes, counts = np.array(found, dtype=float).reshape(-1, 2).T
+    cycles = [(size, count) for size, count in rainflow.count_cycles(stress) if size > 0.0]
+    sizes, counts = np.array(cycles, dtype=float).reshape(-1, 2).T
     return Ranges(sizes, counts)
 
 

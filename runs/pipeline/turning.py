@@ -175,18 +175,18 @@ def crane_drives(case: Case, boom: Boom, data: xr.Dataset) -> CraneDrives | None
 
     Arguments are those of :func:`drive_moments`.
     """
-    found: dict[str, float] = {}
+    results: dict[str, float] = {}
     steps = np.diff(data["time"].values)
     load = hanging_load(case, boom)
     if load is not None and load.hoist is not None:
         # The force is the mean over the interval that ends at the time.
         works = data["rope_force"].values[1:] * np.diff(load.hoist(data["time"].values))
-        found |= {"winch_power": (works / steps).max(), "winch_work": works.sum()}
+        results |= {"winch_power": (works / steps).max(), "winch_work": works.sum()}
     for key, (moment, power) in drive_moments(case, boom, data).items():
-        found[f"{key}_moment"] = moment[np.abs(moment).argmax()]
-        found[f"{key}_power"] = power.max()
-        found[f"{key}_work"] = 0.5 * (power[1:] + power[:-1]) @ steps
-    return CraneDrives(**{key: float(value) for key, value in found.items()}) if found else None
+        results[f"{key}_moment"] = moment[np.abs(moment).argmax()]
+        results[f"{key}_power"] = power.max()
+        results[f"{key}_work"] = 0.5 * (power[1:] + power[:-1]) @ steps
+    return CraneDrives(**{key: float(value) for key, value in results.items()}) if results else None
 
 
 def swing_cautions(case: Case, data: xr.Dataset) -> Iterator[str]:

@@ -47,27 +47,27 @@ class Utilisation(NamedTuple):
 
 def utilisations(results: Results, model: str) -> dict[str, Utilisation]:
     """Return the governing part of each kind, by utilisation, or by load without a strength."""
-    found: dict[str, Utilisation] = {}
+    governing: dict[str, Utilisation] = {}
     for one in _loads(results, model):
-        other = found.setdefault(one.part, one)
+        other = governing.setdefault(one.part, one)
         if (one.value or 0.0, one.load) > (other.value or 0.0, other.load):
-            found[one.part] = one
-    return found
+            governing[one.part] = one
+    return governing
 
 
 def _loads(results: Results, model: str) -> Iterator[Utilisation]:
-    own = results.summary.design.models.get(model)
-    if own is None:
+    results_of_model = results.summary.design.models.get(model)
+    if results_of_model is None:
         return
-    if own.motion is not None:
-        for wall in own.motion.walls:
+    if results_of_model.motion is not None:
+        for wall in results_of_model.motion.walls:
             yield Utilisation("plate", wall.segment, wall.x, wall.patch, wall.utilisation)
-        for fibre in own.motion.fibres:
+        for fibre in results_of_model.motion.fibres:
             stress = abs(fibre.stress)
             yield Utilisation("outer fibre", fibre.segment, fibre.x, stress, fibre.utilisation)
     for pad in results.summary.pads:
         if pad.model == model:
             yield Utilisation("pad", pad.inner, pad.x, pad.pressure, pad.utilisation)
-    for life in own.life:
+    for life in results_of_model.life:
         if (damage := life.life_damage) is not None:
             yield Utilisation("detail", life.segment, life.x, damage, damage)

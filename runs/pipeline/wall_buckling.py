@@ -91,12 +91,12 @@ def buckled_shell(
     state = comm.bcast(state)
     if state is None:
         raise NumericsError("the boom has no static state in which its walls could buckle")
-    found = buckle_segments(boom, meshes, state, model.options(), count, comm)
+    results = buckle_segments(boom, meshes, state, model.options(), count, comm)
     if comm.rank != 0:
         return None
     names = [segment.name for segment in boom.segments]
-    segments = [with_locations(name, one) for name, one in zip(names, found, strict=True)]
-    return BuckledShell(segments, _first_shapes(found))
+    segments = [with_locations(name, one) for name, one in zip(names, results, strict=True)]
+    return BuckledShell(segments, _first_shapes(results))
 
 
 def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | None:
@@ -110,12 +110,12 @@ def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | N
     from shell_model.buckling import StaticState
 
     system, duration = built.system.gather_loads(), case.time.duration
-    found = positions(system, instants(system, duration))
-    found |= extended_positions(system, duration)
-    if not found:
+    equilibria = positions(system, instants(system, duration))
+    equilibria |= extended_positions(system, duration)
+    if not equilibria:
         return None
     tip = system.observers["tip"].row
-    time = max(found, key=lambda time: abs(float(tip @ found[time])))
+    time = max(equilibria, key=lambda time: abs(float(tip @ equilibria[time])))
     ways = [travel(boom, number, time) for number in range(len(boom.segments))]
     extensions = {
         number: ways[joint.inner] - ways[joint.outer] for number, joint in enumerate(boom.joints)
@@ -123,13 +123,13 @@ def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | N
     assert built.shell is not None
     assert built.shell.fields is not None
     return StaticState.from_fields(
-        built.shell.fields, system.at_time(time), found[time], extensions
+        built.shell.fields, system.at_time(time), equilibria[time], extensions
     )
 
 
-def with_locations(name: str, found: SegmentBuckling) -> WallBuckling:
+def with_locations(name: str, buckling: SegmentBuckling) -> WallBuckling:
     """Return the factors of a segment and the location of the largest displacement of each mode."""
-    mesh, shapes = found.mesh, found.shapes
+    mesh, shapes = buckling.mesh, buckling.shapes
     assert mesh is not None
     assert shapes is not None
     walls, places = [], []
@@ -141,14 +141,16 @@ def with_locations(name: str, found: SegmentBuckling) -> WallBuckling:
         wall = int(mesh.walls[(mesh.triangles == point).any(axis=1)].min())
         walls.append(mesh.plates[wall] if wall < len(mesh.plates) else "diaphragm")
         places.append(float(mesh.points[point, 0]))
-    return WallBuckling(name, found.factors.tolist(), found.mesh_errors.tolist(), walls, places)
+    return WallBuckling(
+        name, buckling.factors.tolist(), buckling.mesh_errors.tolist(), walls, places
+    )
 
 
-def _first_shapes(found: Sequence[SegmentBuckling]) -> xr.Dataset | None:
+def _first_shapes(results: Sequence[SegmentBuckling]) -> xr.Dataset | None:
     """Return the first mode of each segment with a factor, as in :class:`BuckledShell`."""
     buckled = [
         (number, one.mesh, one.shapes[0], one.factors[0])
-        for number, one in enumerate(found)
+        for number, one in enumerate(results)
         if one.factors.size and one.mesh is not None and one.shapes is not None
     ]
     if not buckled:
@@ -156,7 +158,7 @@ def _first_shapes(found: Sequence[SegmentBuckling]) -> xr.Dataset | None:
     numbers, meshes, shapes, factors = zip(*buckled, strict=True)
     begins = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])[:-1]
     triangles = [mesh.triangles + begin for mesh, begin in zip(meshes, begins, strict=True)]
-    owner = np.repeat(numbers, [len(own) for own in triangles])
+    owner = np.repeat(numbers, [len(of_segment) for of_segment in triangles])
     at_points, of_triangles = ("buckling_point", "component"), "buckling_triangle"
     return xr.Dataset(
         {

@@ -41,8 +41,10 @@ def render_buckling(
         for segment, factor in zip(
             data["buckled"].values.tolist(), data["buckling_factor"].values.tolist(), strict=True
         ):
-            own = data["buckling_triangles"].values[data["buckling_segment"].values == segment]
-            used, triangles = np.unique(own, return_inverse=True)
+            point_numbers = data["buckling_triangles"].values[
+                data["buckling_segment"].values == segment
+            ]
+            used, triangles = np.unique(point_numbers, return_inverse=True)
             drawn.append(folder / f"buckling-{segment + 1}.png")
             _draw(
                 f"{scene.boom.segments[segment].name}: buckling factor {number(factor)}",

@@ -75,37 +75,40 @@ def deck(
         loads: load (num_owned,) of each segment in N.
         step: lines of the analysis step.
     """
-    *first, reading = np.cumsum([1, *(len(shell.nodes) for shell in shells)]).tolist()
+    *first, spring_nodes = np.cumsum([1, *(len(shell.nodes) for shell in shells)]).tolist()
     meshes = [shell.mesh for shell in shells if shell.mesh is not None]
     *elements, spring = np.cumsum([1, *(len(mesh.triangles) for mesh in meshes)]).tolist()
-    own = [
+    held_rows = [
         SpringRow("support", {n: row}, factor)
         for n, shell in enumerate(shells)
         for row, factor in zip(shell.springs.rows.T, shell.springs.factors, strict=True)
     ]
-    rows = [row for row in (*springs, *own) if any(part.any() for part in row.parts.values())]
+    rows = [row for row in (*springs, *held_rows) if any(part.any() for part in row.parts.values())]
     lines = ["*HEADING", title, "** SI units; x along the boom, z in its plane."]
     for n, shell in enumerate(shells):
         lines += _segment(n + 1, shell, first[n], elements[n])
     lines += ["*NODE, NSET=READINGS"]
-    lines += [f"{reading + i}, 0, 0, 0" for i in range(len(rows))]
+    lines += [f"{spring_nodes + i}, 0, 0, 0" for i in range(len(rows))]
     lines += ["*BOUNDARY", "READINGS, 2, 3"]
     for i, row in enumerate(rows):
-        terms = [(reading + i, 1, -1.0)]
+        terms = [(spring_nodes + i, 1, -1.0)]
         for n, part in row.parts.items():
             terms += _nodal(shells[n], part, first[n])
         lines += [f"** {row.name}", "*EQUATION", str(len(terms))]
         for start in range(0, len(terms), _TERMS):
             some = terms[start : start + _TERMS]
             lines.append(", ".join(f"{node}, {dof}, {weight:.10e}" for node, dof, weight in some))
-        lines += [f"*ELEMENT, TYPE=SPRING1, ELSET=SPRING-{i + 1}", f"{spring + i}, {reading + i}"]
+        lines += [
+            f"*ELEMENT, TYPE=SPRING1, ELSET=SPRING-{i + 1}",
+            f"{spring + i}, {spring_nodes + i}",
+        ]
         lines += [f"*SPRING, ELSET=SPRING-{i + 1}", "1", f"{row.stiffness:.10e}"]
     lines += ["*STEP", step, "*CLOAD"]
     for n, load in enumerate(loads):
         lines += [
             f"{node}, {dof}, {force:.10e}" for node, dof, force in _nodal(shells[n], load, first[n])
         ]
-    lines += [f"{reading + i}, 1, {row.force:.10e}" for i, row in enumerate(rows) if row.force]
+    lines += [f"{spring_nodes + i}, 1, {row.force:.10e}" for i, row in enumerate(rows) if row.force]
     lines += ["*NODE PRINT, NSET=READINGS", "U", "*NODE FILE", "U", "*END STEP"]
     return "\n".join(lines) + "\n"
 
@@ -233,9 +236,9 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
         springs += [SpringRow("held sideways", {n: row}, k) for row, k in sideways(boom, n, shell)]
         if shell.geometric is not None:
             x, rows = dict(lines[n].deflections)["z"]
-            still = np.zeros(shell.free.size)
-            still[shell.node_dofs[:, 2] - shell.owned[0]] = CubicSpline(x, rows @ rest)(
+            axis_deflection = np.zeros(shell.free.size)
+            axis_deflection[shell.node_dofs[:, 2] - shell.owned[0]] = CubicSpline(x, rows @ rest)(
                 shell.nodes[:, 0]
             )
-            loads[n] += times(shell.geometric, still[:, None])[:, 0]
+            loads[n] += times(shell.geometric, axis_deflection[:, None])[:, 0]
     write_atomically(path, deck(f"{case.title}: {model.name}", shells, springs, loads))

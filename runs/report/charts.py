@@ -175,9 +175,9 @@ def extremes(values: Array, stretches: int) -> np.ndarray[Any, np.dtype[np.intp]
     ends = np.linspace(0, values.size, stretches + 1).astype(int)
     known = np.nan_to_num(values)
     kept = {
-        start + int(found(known[start:end]))
+        start + int(extreme(known[start:end]))
         for start, end in pairwise(ends)
-        for found in (np.argmin, np.argmax)
+        for extreme in (np.argmin, np.argmax)
     }
     return np.array(sorted(kept | {0, values.size - 1}))
 

@@ -191,8 +191,8 @@ class FigureContext:
     @property
     def first_peak_window(self) -> float:
         """The end in s of a close-up of the first tip peaks; the end of the run without peaks."""
-        found = (self.summary[name].first_peak[self.tips[0]].time for name in self.models)
-        peaks = [time for time in found if time is not None]
+        times = (self.summary[name].first_peak[self.tips[0]].time for name in self.models)
+        peaks = [time for time in times if time is not None]
         end = float(self.time[-1])
         return min(float(f"{CLOSE_UP * max(peaks):.2g}"), end) if peaks else end
 

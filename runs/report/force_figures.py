@@ -186,7 +186,9 @@ def _stick_slip(run: FigureContext, suffix: str, inner: str) -> Figure:
         "speed (m/s)": _model_results(run, f"extension_speed{suffix}", 1.0),
     }
     records = [
-        of for own in run.summary.values() if (of := own.stick_slip.get(f"drive_force{suffix}"))
+        of
+        for model_summary in run.summary.values()
+        if (of := model_summary.stick_slip.get(f"drive_force{suffix}"))
     ]
     sticks, slip = max(one.sticks for one in records), max(one.slip for one in records)
     caption = (

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 def model_tables(results: Results) -> list[Table]:
     """Return the tables of a run on its models and their numerics."""
-    found = (
+    tables = (
         model_table(results),
         step_table(results),
         lateral_peak_table(results),
@@ -31,7 +31,7 @@ def model_tables(results: Results) -> list[Table]:
         *calibration_tables(results),
         wall_table(results),
     )
-    return [table for table in found if table is not None]
+    return [table for table in tables if table is not None]
 
 
 def model_table(results: Results) -> Table:
@@ -129,9 +129,9 @@ def step_table(results: Results) -> Table:
         "openings and closings."
     ]
     tried = [model.steps_for_peaks for model in models]
-    within = next((found for found in tried if found), None)
+    within = next((steps for steps in tried if steps), None)
     if within is not None:
-        fewest = [found.fewest if found else None for found in tried]
+        fewest = [steps.fewest if steps else None for steps in tried]
         columns.append(Column("enough for slow peaks", fewest, unit="steps"))
         notes.append(
             f"Enough for slow peaks: the fewest steps in trials that preserve the first "
@@ -146,7 +146,7 @@ def step_table(results: Results) -> Table:
 
 def law_table(results: Results) -> Table | None:
     """Return the table of the contact laws of joints in each model, with the first peak."""
-    found = [
+    laws = [
         (model.name, joint, seen.contact)
         for model in results.completed_models
         if not model.bonded
@@ -157,19 +157,19 @@ def law_table(results: Results) -> Table | None:
         )
         if not joint.bonded
     ]
-    if not found:
+    if not laws:
         return None
     models = results.summary.models
-    peaks = [models[name].first_peak["tip"].height for name, _, _ in found]
+    peaks = [models[name].first_peak["tip"].height for name, _, _ in laws]
     columns = (
-        Column("model", [name for name, _, _ in found]),
-        Column("joint", [f"{joint.inner} in {joint.outer}" for _, joint, _ in found]),
-        Column("play", [joint.play for _, joint, _ in found], ".1f", "mm"),
-        Column("law", [str(law) for _, _, law in found], unit="k in N/mⁿ"),
+        Column("model", [name for name, _, _ in laws]),
+        Column("joint", [f"{joint.inner} in {joint.outer}" for _, joint, _ in laws]),
+        Column("play", [joint.play for _, joint, _ in laws], ".1f", "mm"),
+        Column("law", [str(law) for _, _, law in laws], unit="k in N/mⁿ"),
         Column("first tip peak", peaks, ".1f", "mm"),
     )
     notes = ["Force = k · penetrationⁿ, beyond the clearance of its side."]
-    if not all(joint.pad or joint.pads for _, joint, _ in found):
+    if not all(joint.pad or joint.pads for _, joint, _ in laws):
         notes.append(
             "Without slide pads, contact is at the corners of the boxes. Pads beside the "
             "corners, where walls are compliant, can change the first peak by a quarter and "
@@ -296,11 +296,11 @@ def calibration_tables(results: Results) -> list[Table]:
         for name, model in results.summary.models.items()
         if model.calibration is not None
     }
-    found: list[Table] = []
+    tables: list[Table] = []
     for count, (card, models) in enumerate(groupby(cards.items(), lambda one: one[1]), start=1):
         names = ", ".join(name for name, _ in models)
-        found += [_segments(card, names, count), _springs(card, names, count)]
-    return found
+        tables += [_segments(card, names, count), _springs(card, names, count)]
+    return tables
 
 
 def _segments(card: CalibrationCard, names: str, count: int) -> Table:

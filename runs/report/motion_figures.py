@@ -192,8 +192,8 @@ def _accuracy_note(run: FigureContext, place: str) -> str:
         f" Shaded: {low:g} to {high:g} % of the {run.ensembles.sizes['member']} members of each "
         "model's ensemble."
     )
-    sampled = [found for name in run.with_play if (found := run.summary[name].ensemble)]
-    if not any(time is not None for found in sampled for time in found.horizons.values()):
+    sampled = [ensemble for name in run.with_play if (ensemble := run.summary[name].ensemble)]
+    if not any(time is not None for ensemble in sampled for time in ensemble.horizons.values()):
         return f"{band} They do not diverge."
     first, last = (f"{100.0 * share:g} %" for share in SHARES)
     beyond = "" if run.regular else "; a later curve is one of many possible motions"
@@ -205,17 +205,17 @@ def _accuracy_note(run: FigureContext, place: str) -> str:
 
 def slow_peaks(run: FigureContext) -> list[Figure]:
     """Draw the peaks of the slow motion that all members of an ensemble have, with spreads."""
-    found = {
+    peaks_of_models = {
         name: peaks
         for name in run.with_play
         if (ensemble := run.summary[name].ensemble)
         and (peaks := ensemble.slow_peaks)
         and peaks.time.size
     }
-    if not found:
+    if not peaks_of_models:
         return []
     sheet, (axes,) = new_sheet(1, 3.9)
-    for name, peaks in found.items():
+    for name, peaks in peaks_of_models.items():
         stroke = run.strokes[name]
         axes.errorbar(
             peaks.time,
@@ -231,7 +231,7 @@ def slow_peaks(run: FigureContext) -> list[Figure]:
             label=name,
         )
     axes.set(xlabel="time (s)", ylabel="height (mm)", xlim=(0.0, run.time[-1]))
-    counts = [len(peaks.time) for peaks in found.values()]
+    counts = [len(peaks.time) for peaks in peaks_of_models.values()]
     number = f"{min(counts)} to {max(counts)}" if min(counts) < max(counts) else f"{counts[0]}"
     caption = (
         "Peaks of the slow motion of the tip: means of the members of the ensemble, with half "
@@ -243,19 +243,23 @@ def slow_peaks(run: FigureContext) -> list[Figure]:
 
 def horizons(run: FigureContext) -> list[Figure]:
     """Draw the horizons of each model over the relative change of its data."""
-    measured = {name: found for name in run.with_play if (found := run.summary[name].horizons)}
+    measured = {
+        name: horizons_of_model
+        for name in run.with_play
+        if (horizons_of_model := run.summary[name].horizons)
+    }
     if not measured:
         return []
     sheet, (axes,) = new_sheet(1, 3.9)
     shares: dict[float, str] = {}
-    for name, found in measured.items():
+    for name, horizons_of_model in measured.items():
         color = run.strokes[name].color
-        logs = np.log10(found.relatives)
-        times = np.array(found.times, dtype=float)
-        for i, (share, dashes) in enumerate(zip(found.shares, DASHES, strict=False)):
+        logs = np.log10(horizons_of_model.relatives)
+        times = np.array(horizons_of_model.times, dtype=float)
+        for i, (share, dashes) in enumerate(zip(horizons_of_model.shares, DASHES, strict=False)):
             shares[share] = dashes
             axes.plot(logs, times[:, i], color=color, linestyle=dashes, marker="o", markersize=4.5)
-            of_step = found.of_step[i]
+            of_step = horizons_of_model.of_step[i]
             if of_step is not None:
                 axes.plot(logs[0], of_step, "s", color=color, mfc="white", ms=7, mew=1.4, zorder=4)
         axes.plot([], [], color=color, marker="o", markersize=4.5, label=name)

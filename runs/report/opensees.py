@@ -140,10 +140,10 @@ def _check(case: Case, model_boom: ModelBoom) -> None:
 
 def _touching(boom: Boom) -> list[tuple[int, float]]:
     """Return segment and x in m of each contact point."""
-    found = [(stop.segment, stop.x) for _, stop in boom.numbered_stops]
+    places = [(stop.segment, stop.x) for _, stop in boom.numbered_stops]
     for pad in pads(boom):
-        found += [(pad.joint.inner, pad.middle), (pad.joint.outer, pad.middle)]
-    return found
+        places += [(pad.joint.inner, pad.middle), (pad.joint.outer, pad.middle)]
+    return places
 
 
 def _part(
@@ -263,9 +263,9 @@ def _frictions(boom: Boom, parts: Sequence[Part]) -> Iterator[list[object]]:
 def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, object]]:
     """Yield the nodal loads, with their factors at all output times."""
     for number, part in enumerate(parts):
-        own = part.nodal(part.component.load)
-        if own:
-            yield {"segment": number, "nodes": own, "values": None}
+        nodal_loads = part.nodal(part.component.load)
+        if nodal_loads:
+            yield {"segment": number, "nodes": nodal_loads, "values": None}
     count = round(case.time.duration / case.time.output_step) + 2
     times = case.time.output_step * np.arange(count)
     for load in boom.loads:

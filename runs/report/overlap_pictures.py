@@ -379,10 +379,10 @@ def _surface_with_values(points: Array, triangles: Numbers, values: Array) -> An
         triangles: (num_triangles, 3) point numbers.
         values: stresses (num_triangles, 3) at the corners in Pa.
     """
-    own = np.arange(triangles.size, dtype=np.int32).reshape(triangles.shape)
-    found = surface(points[triangles].reshape(-1, 3), own)
-    found["stress"] = TO_MEGA * values.ravel()
-    return found
+    corner_numbers = np.arange(triangles.size, dtype=np.int32).reshape(triangles.shape)
+    mesh = surface(points[triangles].reshape(-1, 3), corner_numbers)
+    mesh["stress"] = TO_MEGA * values.ravel()
+    return mesh
 
 
 def smooth_corners(shell: ShellStress, triangles: Numbers, values: npt.ArrayLike) -> Array:

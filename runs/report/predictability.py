@@ -40,14 +40,16 @@ def predictability_tables(results: Results) -> list[Table]:
     models, ensembles = results.summary.models, results.summary.ensemble
     sampled = {name: model for name, model in models.items() if model.ensemble}
     measured = {name: model.horizons for name, model in models.items() if model.horizons}
-    peaks = {name: found for name, model in sampled.items() if (found := _slow_peaks(model))}
+    peaks = {
+        name: slow_peaks for name, model in sampled.items() if (slow_peaks := _slow_peaks(model))
+    }
     tables = []
     if ensembles is not None and sampled:
         tables.append(_horizon_table(ensembles, sampled, results.case.time.duration))
     if measured:
         tables.append(_growth_table(measured))
     if peaks:
-        columns = _peak_columns({name: _heights(found) for name, found in peaks.items()})
+        columns = _peak_columns({name: _heights(slow_peaks) for name, slow_peaks in peaks.items()})
         note = (
             "Mean of an ensemble's members ± half the distance between its extremes. A column "
             "ends with the last peak that all members have."
@@ -80,7 +82,10 @@ def _horizon_table(
     columns = (
         Column("model", list(sampled)),
         *(horizon_column(models, share, duration) for share in SHARES),
-        Column("common slow peaks", [len(found.time) if found else None for found in peaks]),
+        Column(
+            "common slow peaks",
+            [len(slow_peaks.time) if slow_peaks else None for slow_peaks in peaks],
+        ),
         Column("period", periods, unit="s"),
     )
     notes = [
@@ -97,19 +102,23 @@ def _horizon_table(
 
 
 def _growth_table(measured: Mapping[str, Predictability]) -> Table:
-    rows = [(name, found, i) for name, found in measured.items() for i in range(len(found.shares))]
+    rows = [
+        (name, horizons, i)
+        for name, horizons in measured.items()
+        for i in range(len(horizons.shares))
+    ]
     sizes = next(iter(measured.values())).relatives
-    times = [[found.times[k][i] for _, found, i in rows] for k in range(len(sizes))]
+    times = [[horizons.times[k][i] for _, horizons, i in rows] for k in range(len(sizes))]
     columns = (
         Column("model", [name for name, _, _ in rows]),
-        Column("part of the range", [percent(found.shares[i]) for _, found, i in rows]),
+        Column("part of the range", [percent(horizons.shares[i]) for _, horizons, i in rows]),
         *(
             Column(f"change {scientific(size)}", of_size, *_TIME)
             for size, of_size in zip(sizes, times, strict=True)
         ),
-        Column("finer step", [found.of_step[i] for _, found, i in rows], *_TIME),
-        Column("growth", [found.rate[i] for _, found, i in rows], ".2g", "1/s"),
-        Column("limited by", [LIMITS[found.limits[i]] for _, found, i in rows]),
+        Column("finer step", [horizons.of_step[i] for _, horizons, i in rows], *_TIME),
+        Column("growth", [horizons.rate[i] for _, horizons, i in rows], ".2g", "1/s"),
+        Column("limited by", [LIMITS[horizons.limits[i]] for _, horizons, i in rows]),
     )
     notes = (
         "Time at which runs differ by this fraction of the tip's range, for relative changes of "
@@ -128,19 +137,21 @@ def _peak_columns(peaks: Mapping[str, Sequence[str]]) -> list[Column]:
     return [Column("peak", numbers), *(Column(*column) for column in peaks.items())]
 
 
-def _heights(found: SlowPeaks) -> list[str]:
+def _heights(slow_peaks: SlowPeaks) -> list[str]:
     """Return time and height of each peak as text."""
-    times = map(partial(_spread, decimals=3), found.time, found.time_spread)
-    heights = map(partial(_spread, decimals=2, factor=TO_MILLI), found.height, found.height_spread)
+    times = map(partial(_spread, decimals=3), slow_peaks.time, slow_peaks.time_spread)
+    heights = map(
+        partial(_spread, decimals=2, factor=TO_MILLI), slow_peaks.height, slow_peaks.height_spread
+    )
     return [f"{time} s\n{height} mm" for time, height in zip(times, heights, strict=True)]
 
 
-def _differences(found: PeakDifferences) -> list[str]:
+def _differences(differences: PeakDifferences) -> list[str]:
     """Return the differences of each peak from the reference, in time and height, as text."""
     signed_milli = partial(_spread, factor=TO_MILLI, sign="+")
-    times = map(partial(signed_milli, decimals=0), found.time, found.time_spread)
-    heights = map(partial(signed_milli, decimals=2), found.height, found.height_spread)
-    marks = ("" if explained else " *" for explained in found.explained)
+    times = map(partial(signed_milli, decimals=0), differences.time, differences.time_spread)
+    heights = map(partial(signed_milli, decimals=2), differences.height, differences.height_spread)
+    marks = ("" if explained else " *" for explained in differences.explained)
     rows = zip(times, heights, marks, strict=True)
     return [f"{time} ms\n{height} mm{mark}" for time, height, mark in rows]
 
@@ -152,18 +163,27 @@ def _level_tables(reference: str, levels: Mapping[str, Comparison]) -> list[Tabl
     models = Column("model", list(levels))
     pointwise = (
         models,
-        Column("until", [found.until for found in points], *_TIME),
-        Column("largest difference", [found.largest for found in points], ".2f", "% of the range"),
-        Column("rms", [found.rms for found in points], ".2f", "% of the range"),
+        Column("until", [difference.until for difference in points], *_TIME),
+        Column(
+            "largest difference",
+            [difference.largest for difference in points],
+            ".2f",
+            "% of the range",
+        ),
+        Column("rms", [difference.rms for difference in points], ".2f", "% of the range"),
     )
     peaks = _peak_columns({name: _differences(level.peaks) for name, level in levels.items()})
     distributions = (
         models,
-        Column("from", [found.since for found in spreads], *_TIME),
-        Column("range", [_both(found.range) for found in spreads], unit="mm"),
-        Column("mean", [_both(found.mean) for found in spreads], unit="mm"),
-        Column("standard deviation", [_both(found.deviation) for found in spreads], unit="mm"),
-        Column("Kolmogorov–Smirnov\ndistance", [found.distance for found in spreads], ".3f"),
+        Column("from", [difference.since for difference in spreads], *_TIME),
+        Column("range", [_both(difference.range) for difference in spreads], unit="mm"),
+        Column("mean", [_both(difference.mean) for difference in spreads], unit="mm"),
+        Column(
+            "standard deviation", [_both(difference.deviation) for difference in spreads], unit="mm"
+        ),
+        Column(
+            "Kolmogorov–Smirnov\ndistance", [difference.distance for difference in spreads], ".3f"
+        ),
     )
     later = (
         f"Each model's slow peak less that of {reference}, ± both spreads together. * beyond them "
@@ -193,8 +213,8 @@ def _both(values: Sequence[float]) -> str:
 def _whole_table(reference: str, whole: Mapping[str, WholeRun]) -> Table:
     columns = [Column("model", list(whole))]
     for i, end in enumerate(next(iter(whole.values())).until):
-        largest = [found.largest[i] for found in whole.values()]
-        rms = [found.rms[i] for found in whole.values()]
+        largest = [differences.largest[i] for differences in whole.values()]
+        rms = [differences.rms[i] for differences in whole.values()]
         columns += [
             Column(f"largest difference\nto {end:g} s", largest, ".2f", "%"),
             Column(f"rms\nto {end:g} s", rms, ".2f", "%"),

@@ -53,8 +53,8 @@ class Line(NamedTuple):
 
 def at_rest(run: FigureContext) -> list[Figure]:
     """Draw static deflection and section forces, with and without play."""
-    found = dict(_read_first(run))
-    farthest = {name: own.farthest_static for name, own in found.items()}
+    designs = dict(_read_first(run))
+    farthest = {name: design.farthest_static for name, design in designs.items()}
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     if not rests:
         return []
@@ -64,7 +64,7 @@ def at_rest(run: FigureContext) -> list[Figure]:
         rest
         for name in rests
         if name in run.with_play
-        for rest in found[name].static_bonded
+        for rest in designs[name].static_bonded
         if rest.time == rests[name].time
     ]
     if bonded and not rests.keys() & set(run.bonded):
@@ -84,7 +84,11 @@ def at_rest(run: FigureContext) -> list[Figure]:
 
 def envelopes(run: FigureContext) -> list[Figure]:
     """Draw the envelopes of the section forces in motion."""
-    found = {name: own.motion.envelopes for name, own in _read_first(run) if own.motion is not None}
+    envelopes_of_models = {
+        name: design.motion.envelopes
+        for name, design in _read_first(run)
+        if design.motion is not None
+    }
     lines = {
         name: {
             what: [
@@ -94,7 +98,7 @@ def envelopes(run: FigureContext) -> list[Figure]:
             ]
             for what in _FORCES
         }
-        for name, several in found.items()
+        for name, several in envelopes_of_models.items()
     }
     caption = (
         "Minimum and maximum of the section forces of each segment over the run, at every place."
@@ -105,10 +109,10 @@ def envelopes(run: FigureContext) -> list[Figure]:
 
 def mode_shapes(run: FigureContext) -> list[Figure]:
     """Draw the first modes of the first main model that has modes."""
-    found = [(name, own.modes) for name, own in _read_first(run) if own.modes]
-    if not found:
+    modes_of_models = [(name, design.modes) for name, design in _read_first(run) if design.modes]
+    if not modes_of_models:
         return []
-    name, modes = found[0]
+    name, modes = modes_of_models[0]
     modes = modes[:MODES]
     sheet, panels = new_sheet(len(modes), 0.9 + 1.15 * len(modes))
     for axes, mode in zip(panels, modes, strict=True):

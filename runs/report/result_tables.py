@@ -30,7 +30,7 @@ ROUND_OFF = 1.0e-9
 def result_tables(results: Results) -> list[Table]:
     """Return the tables of design results in the order of the report, without the summary."""
     design = results.summary.design
-    found = [
+    tables = [
         play_table(results),
         *rest_tables(results),
         mode_table(results),
@@ -46,15 +46,15 @@ def result_tables(results: Results) -> list[Table]:
         *combination_tables(design.combinations, results.case),
         design.proofs and proof_table(design.proofs, results.case),
     ]
-    return [table for table in found if table is not None]
+    return [table for table in tables if table is not None]
 
 
 def play_table(results: Results) -> Table | None:
     """Return the table of results with play and with bonded joints."""
-    found = results.play
-    if found is None:
+    effect = results.play
+    if effect is None:
         return None
-    rows = found.numbers
+    rows = effect.numbers
     added = ["negligible" if is_negligible(one) else amount(one.increase, one.unit) for one in rows]
     columns = (
         Column("", [_named(one.what, one.where) for one in rows]),
@@ -64,20 +64,22 @@ def play_table(results: Results) -> Table | None:
         Column("", [None if is_negligible(one) else one.share for one in rows], ".3g", "%"),
     )
     notes = ("Absolute values.",)
-    return Table(f"Effect of play: {found.model}", columns, notes, "play")
+    return Table(f"Effect of play: {effect.model}", columns, notes, "play")
 
 
 def rest_tables(results: Results) -> list[Table]:
     """Return the tables of static tilts by play, contact forces and support reactions."""
-    farthest = {name: own.farthest_static for name, own in results.summary.design.models.items()}
+    farthest = {
+        name: design.farthest_static for name, design in results.summary.design.models.items()
+    }
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     as_extended = extension_note(results.case, rests.values())
-    found = (
+    tables = (
         _tilt_table(rests, as_extended),
         _contact_table(rests, as_extended),
         _reaction_table(results),
     )
-    return [table for table in found if table is not None]
+    return [table for table in tables if table is not None]
 
 
 def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table | None:
@@ -111,16 +113,16 @@ def _contact_table(rests: dict[str, StaticResult], as_extended: str) -> Table | 
 
 def _reaction_table(results: Results) -> Table | None:
     design = results.summary.design
-    found = design.reactions
-    if not found:
+    reactions = design.reactions
+    if not reactions:
         return None
     bonded = {(one.segment, one.x): one.force for one in design.reactions_bonded}
-    beside = [bonded.get((one.segment, one.x)) for one in found]
+    beside = [bonded.get((one.segment, one.x)) for one in reactions]
     columns = (
-        Column("support", [f"{one.segment} at {one.x:g} m" for one in found]),
-        Column("transverse force", [one.force for one in found], ".4g", "kN"),
-        *_unless_none("axial force", [one.along for one in found], ".4g", "kN"),
-        *_unless_none("moment", [one.moment for one in found], ".3g", "kN m"),
+        Column("support", [f"{one.segment} at {one.x:g} m" for one in reactions]),
+        Column("transverse force", [one.force for one in reactions], ".4g", "kN"),
+        *_unless_none("axial force", [one.along for one in reactions], ".4g", "kN"),
+        *_unless_none("moment", [one.moment for one in reactions], ".3g", "kN m"),
         Column("transverse force,\nbonded joints", beside, ".4g", "kN"),
     )
     notes = (
@@ -141,20 +143,21 @@ def _unless_none(title: str, carried: list[float], form: str, unit: str) -> Iter
 def mode_table(results: Results) -> Table | None:
     """Return the table of the first modes with closed contacts, all models side by side."""
     of = {
-        name: {(mode.motion, mode.number): mode.frequency for mode in own.modes}
-        for name, own in results.summary.design.models.items()
-        if own.modes
+        name: {(mode.motion, mode.number): mode.frequency for mode in design.modes}
+        for name, design in results.summary.design.models.items()
+        if design.modes
     }
     if not of:
         return None
     lowest: dict[tuple[str, int], float] = {}
-    for found in of.values():
-        for way, frequency in found.items():
+    for frequencies in of.values():
+        for way, frequency in frequencies.items():
             lowest[way] = min(frequency, lowest.get(way, frequency))
     rows = sorted(lowest, key=lambda way: lowest[way])
     columns = [Column("mode", [f"{way} {count}" for way, count in rows])]
     columns += [
-        Column(name, [found.get(way) for way in rows], ".4g", "Hz") for name, found in of.items()
+        Column(name, [frequencies.get(way) for way in rows], ".4g", "Hz")
+        for name, frequencies in of.items()
     ]
     notes = ("Contacts that are closed in the static state at t = 0 remain closed, others open.",)
     return Table("Modes in the static state at t = 0", columns, notes, "modes")
@@ -163,15 +166,15 @@ def mode_table(results: Results) -> Table | None:
 def peak_table(results: Results) -> Table | None:
     """Return the table of maxima in motion and values at rest, for the leading models."""
     of = {
-        name: {(peak.what, peak.where, peak.unit): peak for peak in own.peaks}
-        for name, own in results.motions.items()
+        name: {(peak.what, peak.where, peak.unit): peak for peak in motion.peaks}
+        for name, motion in results.motions.items()
     }
-    rows = dict.fromkeys(where for found in of.values() for where in found)
+    rows = dict.fromkeys(where for peaks in of.values() for where in peaks)
     if not rows:
         return None
     columns = [Column("maximum", [_named(what, where) for what, where, _ in rows])]
     columns += [
-        Column(name, [_peak_cell(found.get(where)) for where in rows]) for name, found in of.items()
+        Column(name, [_peak_cell(peaks.get(where)) for where in rows]) for name, peaks in of.items()
     ]
     notes = ("Absolute values. In brackets: ratio to the static value under the maximum load.",)
     return Table("Forces and deflections in motion", columns, notes, "peaks")
@@ -280,24 +283,24 @@ def _effort(results: Results, model: str, suffix: str) -> tuple[float, float, fl
 def stick_slip_table(results: Results) -> Table | None:
     """Return the table of stick-slip results; None without elastic drives."""
     rows = [
-        (model, inner, own.stick_slip[name])
+        (model, inner, model_summary.stick_slip[name])
         for suffix, inner in results.case.driven.items()
-        for model, own in results.summary.models.items()
-        if (name := f"drive_force{suffix}") in own.stick_slip
+        for model, model_summary in results.summary.models.items()
+        if (name := f"drive_force{suffix}") in model_summary.stick_slip
     ]
     if not rows:
         return None
-    found = [one for *_, one in rows]
+    motions = [one for *_, one in rows]
     columns = (
         Column("model", [model for model, *_ in rows]),
         Column("drive of", [inner for _, inner, _ in rows]),
-        Column("force:\nmean", [one.mean for one in found], ".3g", "kN"),
-        Column("at most", [one.peak for one in found], ".3g", "kN"),
-        Column("sticks", [one.sticks for one in found], unit="times"),
-        Column("slips by at most", [one.slip for one in found], ".3g", "mm"),
-        Column("lag at the end", [one.behind for one in found], ".3g", "mm"),
-        Column("at most", [one.speed for one in found], ".3g", "m/s"),
-        Column("at most", [one.acceleration for one in found], ".3g", "m/s²"),
+        Column("force:\nmean", [one.mean for one in motions], ".3g", "kN"),
+        Column("at most", [one.peak for one in motions], ".3g", "kN"),
+        Column("sticks", [one.sticks for one in motions], unit="times"),
+        Column("slips by at most", [one.slip for one in motions], ".3g", "mm"),
+        Column("lag at the end", [one.behind for one in motions], ".3g", "mm"),
+        Column("at most", [one.speed for one in motions], ".3g", "m/s"),
+        Column("at most", [one.acceleration for one in motions], ".3g", "m/s²"),
     )
     notes = (
         "Force: against friction, weight and inertia. Sticks: number of stops during telescoping. "
@@ -313,10 +316,16 @@ def record_tables(results: Results) -> Iterator[Table]:
     """Yield a table for each result that has one record per model."""
     design = results.summary.design.models
     for name, kind in records(ModelDesignResults).items():
-        found = {m: getattr(own, name) for m, own in design.items() if getattr(own, name)}
-        if found:
-            columns = metric_columns(kind, list(found.values()))
-            yield Table(kind.title, [Column("model", list(found)), *columns], kind.notes, name)
+        results_of_models = {
+            m: getattr(model_results, name)
+            for m, model_results in design.items()
+            if getattr(model_results, name)
+        }
+        if results_of_models:
+            columns = metric_columns(kind, list(results_of_models.values()))
+            yield Table(
+                kind.title, [Column("model", list(results_of_models)), *columns], kind.notes, name
+            )
 
 
 def pad_table(results: Results) -> Table | None:
@@ -343,9 +352,9 @@ def pad_table(results: Results) -> Table | None:
 def stress_table(results: Results) -> Table | None:
     """Return the table of maximum stresses: outer fibres of all models, plates of shells."""
     rows = []
-    for name, own in results.motions.items():
-        walls = {wall.segment: wall for wall in sorted(own.walls, key=lambda wall: wall.patch)}
-        rows += [(name, fibre, walls.get(fibre.segment)) for fibre in own.fibres]
+    for name, motion in results.motions.items():
+        walls = {wall.segment: wall for wall in sorted(motion.walls, key=lambda wall: wall.patch)}
+        rows += [(name, fibre, walls.get(fibre.segment)) for fibre in motion.fibres]
     if not rows:
         return None
     patches = [wall.patch if wall else None for *_, wall in rows]
@@ -375,13 +384,13 @@ def stress_table(results: Results) -> Table | None:
 def buckling_table(results: Results) -> Table | None:
     """Return buckling factors of the walls of each segment; None unless the case asks for them."""
     rows: list[Sequence[Cell]] = []
-    for name, own in results.summary.design.models.items():
+    for name, model_results in results.summary.design.models.items():
         shells = {
             one.segment: (one.factors[0], one.walls[0], one.x[0], one.mesh_errors[0])
-            for one in own.buckling
+            for one in model_results.buckling
             if one.factors
         }
-        panels = {one.segment: (one.factor, one.wall, one.x) for one in own.panels}
+        panels = {one.segment: (one.factor, one.wall, one.x) for one in model_results.panels}
         rows += [
             (name, segment, *shells.get(segment, (None,) * 4), *panels.get(segment, (None,) * 3))
             for segment in dict.fromkeys([*shells, *panels])
@@ -418,9 +427,9 @@ def life_table(results: Results) -> Table | None:
     models = results.summary.design.models
     rows = [
         (name, life)
-        for name, own in models.items()
+        for name, model_results in models.items()
         if name in results.main_models
-        for life in own.life
+        for life in model_results.life
     ]
     if not rows:
         return None

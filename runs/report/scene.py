@@ -210,7 +210,7 @@ class Scene:
         middles: dict[int, list[float]] = {}
         for pad in pads(self.boom):
             middles.setdefault(pad.station, []).append(pad.middle)
-        found, begin = [], 0
+        overlaps, begin = [], 0
         for direction in self.boom.directions:
             for joint in self.boom.joints:
                 if joint.bonded:
@@ -220,8 +220,10 @@ class Scene:
                 play = joint.play if direction == "z" else joint.lateral_play
                 if direction == self.direction and play is not None:
                     centres = [float(np.mean(middles[station])) for station in stations]
-                    found.append(Overlap(joint.outer, joint.inner, stations, centres, 0.5 * play))
-        return found
+                    overlaps.append(
+                        Overlap(joint.outer, joint.inner, stations, centres, 0.5 * play)
+                    )
+        return overlaps
 
     def displacement(self, t: float) -> Array:
         """Return displacements (num_points, 3) in m at the output time nearest to ``t`` in s."""

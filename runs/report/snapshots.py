@@ -272,10 +272,10 @@ def start_rendering(
             place = Path(easel) / str(number)
             place.mkdir()
             for render in RENDERED:
-                found = pool.submit(
+                future = pool.submit(
                     render_files, render, path, trajectories, results.case, place, times
                 )
-                drawn.append((path.name.removesuffix(FIELDS), found))
+                drawn.append((path.name.removesuffix(FIELDS), future))
 
         def gather() -> list[str]:
             pictures = {

@@ -31,15 +31,17 @@ def summary_table(results: Results) -> Table | None:
     names, design = results.main_models, results.summary.design.models
     if not design:
         return None
-    own = [design[name] for name in names]
-    hertz = [one.modes[0].frequency if one.modes else None for one in own]
+    designs = [design[name] for name in names]
+    hertz = [one.modes[0].frequency if one.modes else None for one in designs]
     # Decay by modal damping alone.
     decay_times = [decay_time(results.case.damping.modal, f) for f in hertz]
     used = [utilisations(results, name) for name in names]
     walls, fibres = ([one.get(part) for one in used] for part in ("plate", "outer fibre"))
     hardest = governing_pads(results)
     pads = {name: pad_text(pad) for name, pad in hardest.items()}
-    stations = [None if hardest else _largest(one, "contact force", at="\nat {} m") for one in own]
+    stations = [
+        None if hardest else _largest(one, "contact force", at="\nat {} m") for one in designs
+    ]
     data, tips, periods = results.trajectories, [], []
     # Static results alone have no motion of the tip.
     if "tip" in data:
@@ -53,11 +55,13 @@ def summary_table(results: Results) -> Table | None:
     at_start, at_most, extended = (
         [max((rest.tip for rest in rests), key=abs, default=None) for rests in several]
         for several in zip(
-            *((one.static[:1], one.static[1:], one.static_extended) for one in own), strict=True
+            *((one.static[:1], one.static[1:], one.static_extended) for one in designs), strict=True
         )
     )
-    aside = [max((s.tip_lateral or 0.0 for s in one.static), key=abs, default=0.0) for one in own]
-    dynamic = [*map(_farthest, own, tips)]
+    aside = [
+        max((s.tip_lateral or 0.0 for s in one.static), key=abs, default=0.0) for one in designs
+    ]
+    dynamic = [*map(_farthest, designs, tips)]
     travel = [farthest(x - x[0]) if x[0] else None for x in tips]
     bending, plates = ([one and _stress(one) for one in several] for several in (fibres, walls))
     rows_of_models = (
@@ -67,19 +71,21 @@ def summary_table(results: Results) -> Table | None:
         Column("Maximum dynamic tip deflection (factor φ)", dynamic, unit="mm"),
         # A motion that starts undeformed is not in static equilibrium at t = 0.
         Column("Tip travel from t = 0", travel, ".1f", "mm"),
-        Column("Residual vibration of the tip", [_vibration(one) for one in own], unit="mm"),
+        Column("Residual vibration of the tip", [_vibration(one) for one in designs], unit="mm"),
         Column("Static lateral tip deflection", [one or None for one in aside], ".1f", "mm"),
-        Column("Lateral tip deflection, maximum", _each(own, "lateral deflection"), unit="mm"),
+        Column("Lateral tip deflection, maximum", _each(designs, "lateral deflection"), unit="mm"),
         Column("First natural frequency", hertz, ".3g", "Hz"),
         Column("Period of the motion (measured)", periods, ".3g", "s"),
         Column("Decay time to 10 %", decay_times, ".2g", "s"),
         Column("Governing pad: force, pressure, utilisation", [pads.get(name) for name in names]),
         Column("Contact force, maximum", stations, unit="kN"),
-        Column("Cylinder force, maximum", _each(own, "cylinder force"), unit="kN"),
-        Column("Foot pin reaction, maximum", _each(own, "reaction, across and along"), unit="kN"),
+        Column("Cylinder force, maximum", _each(designs, "cylinder force"), unit="kN"),
+        Column(
+            "Foot pin reaction, maximum", _each(designs, "reaction, across and along"), unit="kN"
+        ),
         Column("Bending stress, maximum (utilisation)", bending, unit="MPa"),
         Column("Plate stress at pads (patch mean, utilisation)", plates, unit="MPa"),
-        Column("Plate buckling factor, lowest (segment)", [_buckling(one) for one in own]),
+        Column("Plate buckling factor, lowest (segment)", [_buckling(one) for one in designs]),
         Column("Fatigue damage (Miner)", damages, ".3g"),
     )
     rows = {column.heading.replace("\n", ", "): column.text for column in rows_of_models}
@@ -120,11 +126,11 @@ def deviation_note(results: Results) -> str:
 
 def play_effect(results: Results) -> str:
     """Return a sentence on the effect of play in the reference model; empty without play."""
-    found = results.play
-    if found is None:
+    effect = results.play
+    if effect is None:
         return ""
     by_kind: dict[str, list[PlayDifference]] = {}
-    for each in found.numbers:
+    for each in effect.numbers:
         by_kind.setdefault(each.what, []).append(each)
     first = {what: max(several, key=lambda one: one.with_play) for what, several in by_kind.items()}
     kinds = [(_PHRASES[what], one) for what, one in first.items() if what in _PHRASES]
@@ -199,10 +205,10 @@ def _stress(most: Utilisation) -> str:
     return f"{stress}{_used(most.value, 'yield')}\n{most.segment}, x = {most.x:.1f} m"
 
 
-def _buckling(own: ModelDesignResults) -> str | None:
+def _buckling(results: ModelDesignResults) -> str | None:
     """Return a text on the lowest buckling factor of walls, by the shell or by panel formulas."""
-    shells = [(one.factors[0], one.segment) for one in own.buckling if one.factors]
-    panels = [(one.factor, f"{one.segment}, panel formulas") for one in own.panels]
+    shells = [(one.factors[0], one.segment) for one in results.buckling if one.factors]
+    panels = [(one.factor, f"{one.segment}, panel formulas") for one in results.panels]
     lowest = min(shells or panels, default=None)
     return lowest and f"{number(lowest[0])} ({lowest[1]})"
 
@@ -272,35 +278,35 @@ def _span(values: Iterable[float | None]) -> str:
     return f"{' to '.join(map(number, dict.fromkeys((known[0], known[-1]))))} MPa" if known else ""
 
 
-def _farthest(own: ModelDesignResults, tip: Array) -> str:
+def _farthest(results: ModelDesignResults, tip: Array) -> str:
     """Return text with the signed maximum tip deflection, and its ratio to the value at rest."""
-    peak = largest_peak(own, "deflection")
+    peak = largest_peak(results, "deflection")
     return _milli(farthest(tip)) + (times(peak) if peak else "")
 
 
-def _vibration(own: ModelDesignResults) -> str | None:
+def _vibration(results: ModelDesignResults) -> str | None:
     """Return text with the residual vibration, and the vibration at the final extension."""
-    if (found := own.residual_vibration) is None:
+    if (vibration := results.residual_vibration) is None:
         return None
-    static = f"{_milli(found.initial)}, {_milli(found.final)}"
-    return f"{_milli(found.tip)}\n(without telescoping\n{static})"
+    static = f"{_milli(vibration.initial)}, {_milli(vibration.final)}"
+    return f"{_milli(vibration.tip)}\n(without telescoping\n{static})"
 
 
 def _milli(deflection: float | None) -> str:
     return fixed(deflection, 1, TO_MILLI)
 
 
-def _each(own: Sequence[ModelDesignResults], what: str) -> list[str | None]:
-    return [_largest(one, what) for one in own]
+def _each(results: Sequence[ModelDesignResults], what: str) -> list[str | None]:
+    return [_largest(one, what) for one in results]
 
 
-def _largest(own: ModelDesignResults, what: str, at: str = "") -> str | None:
+def _largest(results: ModelDesignResults, what: str, at: str = "") -> str | None:
     """Return text with the maximum of a kind in kN or mm, and its position."""
-    if (peak := largest_peak(own, what)) is None:
+    if (peak := largest_peak(results, what)) is None:
         return None
     return f"{number(SHOWN[peak.unit][1] * peak.largest, 4)}{times(peak)}{at.format(peak.where)}"
 
 
-def largest_peak(own: ModelDesignResults, what: str) -> Peak | None:
-    peaks = [peak for peak in own.motion.peaks if peak.what == what] if own.motion else []
+def largest_peak(results: ModelDesignResults, what: str) -> Peak | None:
+    peaks = [peak for peak in results.motion.peaks if peak.what == what] if results.motion else []
     return max(peaks, key=lambda one: one.largest, default=None)

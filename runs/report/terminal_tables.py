@@ -70,8 +70,8 @@ def print_failures(file: str, results: Results) -> int:
 
 def print_models(results: Results, console: Console) -> None:
     """Print the table of models, notes on accuracy, and cautions."""
-    found = {column.heading: column.text for column in model_table(results).columns}
-    columns = [Column(SHOWN[one], found[one]) for one in found if one in SHOWN]
+    texts = {column.heading: column.text for column in model_table(results).columns}
+    columns = [Column(SHOWN[one], texts[one]) for one in texts if one in SHOWN]
     Table(f"Models: {results.case.title}", columns).show(console)
     skipped = results.summary.snapshots.skipped
     missing = [] if skipped is None else [f"no snapshots: {skipped}"]
@@ -125,12 +125,14 @@ def lateral_table(results: Results) -> Table | None:
     if "tip_lateral" not in results.trajectories:
         return None
     names, moved = [*designs], results.trajectories["tip_lateral"]
-    still = [[state.tip_lateral or 0.0 for state in one.static] for one in designs.values()]
+    static_tips = [[state.tip_lateral or 0.0 for state in one.static] for one in designs.values()]
     dynamic = [farthest(moved.sel(model=name).values) for name in names]
     columns = [
         Column("model", names),
-        Column("static, t = 0", [tips[0] if tips else None for tips in still], ".1f", "mm"),
-        Column("static, max. load", [max(t, key=abs, default=None) for t in still], ".1f", "mm"),
+        Column("static, t = 0", [tips[0] if tips else None for tips in static_tips], ".1f", "mm"),
+        Column(
+            "static, max. load", [max(t, key=abs, default=None) for t in static_tips], ".1f", "mm"
+        ),
         Column("dynamic", dynamic, ".1f", "mm"),
     ]
     return Table("Lateral tip deflection", columns)

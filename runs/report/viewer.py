@@ -75,8 +75,8 @@ class View(NamedTuple):
         stress = scene.stress
         assert stress is not None
         means = [
-            means_around(scene.triangles, stress.areas, found.largest())
-            for found in stress.instants(time.tolist())
+            means_around(scene.triangles, stress.areas, stress_field.largest())
+            for stress_field in stress.instants(time.tolist())
         ]
         return cls(model, scene, time, TO_MEGA * np.array(means), "von Mises stress (MPa)")
 
@@ -129,7 +129,7 @@ def pack_view(view: View, angle: float) -> dict[str, Any]:
     parts, flat = few_shapes(moved.reshape(view.time.size, -1))
     ways = extensions(scene, view.time)
     # The travel of drives along x is not magnified.
-    along = [own[None, :, None] * [1.0, 0.0, 0.0] for own, _ in ways.values()]
+    along = [moves[None, :, None] * [1.0, 0.0, 0.0] for moves, _ in ways.values()]
     parts = np.column_stack([parts, *(way for _, way in ways.values())])
     rotation = Rotation.from_euler("y", -angle, degrees=True).as_matrix().T
     shapes = np.concatenate([flat.reshape(len(flat), -1, 3), *along]) @ rotation
@@ -137,8 +137,10 @@ def pack_view(view: View, angle: float) -> dict[str, Any]:
     lines = symbol_lines(scene, rest, rotation, angle, scale)
     points = rest @ rotation
     places = points + np.tensordot(parts, shapes, axes=1)
-    still = [line.offset + points[line.anchor] * (line.anchor >= 0)[:, None] for line in lines]
-    everything = np.concatenate([places.reshape(-1, 3), *still])
+    fixed_points = [
+        line.offset + points[line.anchor] * (line.anchor >= 0)[:, None] for line in lines
+    ]
+    everything = np.concatenate([places.reshape(-1, 3), *fixed_points])
     return {
         "model": view.model,
         "magnified": scale,
@@ -185,7 +187,7 @@ def symbol_lines(
         angle: angle of the boom in degrees.
         scale: magnification of displacements and play.
     """
-    found: dict[tuple[str, float], list[tuple[Array, Array]]] = {}
+    lines: dict[tuple[str, float], list[tuple[Array, Array]]] = {}
     gap = np.full((1, 3), np.nan)
     for symbol in scene.symbols:
         size = SYMBOL * scene.boom.length * (1.0 if len(symbol.places) == 1 else SMALL)
@@ -201,17 +203,17 @@ def symbol_lines(
                 corners = np.insert(size / FINE * np.asarray(outline), 1, 0.0, axis=1)
                 offset = np.concatenate([corners + (place - fixed) @ rotation, gap])
                 anchor = np.full(len(offset), -1 if symbol.grounded else near)
-                found.setdefault((symbol.color, 3.0), []).append((anchor, offset))
+                lines.setdefault((symbol.color, 3.0), []).append((anchor, offset))
     for cylinder in scene.boom.cylinders:
         edge = scene.edges(cylinder.segment, cylinder.x)[0 if cylinder.direction[1] > 0.0 else 1]
         place, near = scene.at(rest, cylinder.segment, cylinder.x, edge)
         down = np.subtract(cylinder.ground, (cylinder.x, -cylinder.depth))
         ends = np.array([place - rest[near], place + np.insert(down, 1, 0.0)]) @ rotation
         anchor = np.array([near, -1, -1])
-        found.setdefault((theme.INK, 8.0), []).append((anchor, np.concatenate([ends, gap])))
+        lines.setdefault((theme.INK, 8.0), []).append((anchor, np.concatenate([ends, gap])))
     return [
         Lines(*look, *(np.concatenate(parts) for parts in zip(*several, strict=True)))
-        for look, several in found.items()
+        for look, several in lines.items()
     ]
 
 
@@ -276,15 +278,18 @@ def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
     The first array (num_points,) is 1 for points that the drive moves and 0 for others. The second
     is the travel (num_frames,) in m at given times (num_frames,) in s.
     """
-    boom, found = scene.boom, {}
+    boom, travels = scene.boom, {}
     for number, joint in enumerate(boom.joints):
         if joint.drive is None:
             continue
         moves = [number in drives_below(boom.joints, n) for n in range(len(boom.segments))]
         way = scene.motion[f"extension-{number + 1}" if number else "extension"]
-        own = np.array(moves, dtype=float)[scene.owner]
-        found[boom.segments[joint.inner].name] = own, way.sel(time=time, method="nearest").values
-    return found
+        factors = np.array(moves, dtype=float)[scene.owner]
+        travels[boom.segments[joint.inner].name] = (
+            factors,
+            way.sel(time=time, method="nearest").values,
+        )
+    return travels
 
 
 def few_shapes(moved: Array) -> tuple[Array, Array]:

@@ -86,8 +86,10 @@ class Features:
             for name in ("first_peak", "slow_period", "pad_force", "stress")
             if getattr(reference, name)
         } | {"tip": apart}
-        found = {one.name: parts.get(one.name.removesuffix("_off"), np.nan) for one in DISTANCES}
-        return {name: part if np.isfinite(part) else None for name, part in found.items()}
+        distances = {
+            one.name: parts.get(one.name.removesuffix("_off"), np.nan) for one in DISTANCES
+        }
+        return {name: part if np.isfinite(part) else None for name, part in distances.items()}
 
 
 def sustained_force(time: Array, forces: Array) -> float:

@@ -55,7 +55,7 @@ def first_frequencies(
     """
     boom = build_boom(case)
     with_play = model.model_boom(boom)
-    found = np.full((len(JOINTS), MODES), np.nan)
+    frequencies = np.full((len(JOINTS), MODES), np.nan)
     for row, booms in enumerate((with_play, ModelBoom(boom.bonded))):
         if row == 0 and model.bonded:
             continue
@@ -66,8 +66,8 @@ def first_frequencies(
                 omega = closed_contact_modes(system)[0][:MODES]
         except NUMERICAL_ERRORS:
             continue
-        found[row, : omega.size] = omega / (2.0 * np.pi)
-    return found
+        frequencies[row, : omega.size] = omega / (2.0 * np.pi)
+    return frequencies
 
 
 def measure(
@@ -84,19 +84,19 @@ def measure(
         cache: cache of reduced shells.
         progress: callback that receives model, stage and completed fraction.
     """
-    found = []
+    frequencies = []
     for case in cases:
-        found.append([first_frequencies(case, model, comm, cache) for model in case.models])
-        progress(NAME, f"{len(cases)} points", len(found) / len(cases))
-    return np.array(found)
+        frequencies.append([first_frequencies(case, model, comm, cache) for model in case.models])
+        progress(NAME, f"{len(cases)} points", len(frequencies) / len(cases))
+    return np.array(frequencies)
 
 
-def gather(plan: Plan, found: Array) -> xr.Dataset:
+def gather(plan: Plan, frequencies: Array) -> xr.Dataset:
     """Return the first frequencies of all points as a dataset.
 
     Its dimensions are the varied keys in the unit of the case, ``model``, ``joints``, ``mode``.
     """
-    values = found.reshape(*plan.shape, *found.shape[1:])
+    values = frequencies.reshape(*plan.shape, *frequencies.shape[1:])
     attributes = {"units": "Hz", "long_name": "natural frequency"}
     return xr.Dataset(
         {"frequency": ([*plan.coordinates, "joints", "mode"], values, attributes)},

@@ -51,20 +51,20 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
         for name in models
     ]
     shape = *plan.shape, len(models)
-    found: dict[str, Any] = {}
+    variables: dict[str, Any] = {}
     permitted = {limit.quantity.name: {PERMITTED: limit.permitted} for limit in plan.limits}
     for one in quantities:
         values = np.array([row.get(one.name) for row in rows], dtype=float).reshape(shape)
         attributes = {"units": one.unit, "long_name": one.title}
-        found[one.name] = dims, values, attributes | permitted.get(one.name, {})
+        variables[one.name] = dims, values, attributes | permitted.get(one.name, {})
     failed = np.array([row["failed"] for row in rows], dtype=np.int8).reshape(shape)
-    found["failed"] = dims, failed, {"long_name": "the numerics failed"}
+    variables["failed"] = dims, failed, {"long_name": "the numerics failed"}
     if plan.reference is not None:
         ends = np.array([one.until for one in outcomes], dtype=float).reshape(plan.shape)
         until = {"units": "s", "long_name": "tips compared until"}
-        found = {UNTIL: (dims[:-1], ends, until), **found}
+        variables = {UNTIL: (dims[:-1], ends, until), **variables}
     about = {"Conventions": CONVENTIONS, "title": plan.title}
-    return xr.Dataset(found, coords=plan.coordinates, attrs=about)
+    return xr.Dataset(variables, coords=plan.coordinates, attrs=about)
 
 
 def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:

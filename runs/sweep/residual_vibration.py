@@ -49,7 +49,7 @@ def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
     Args:
         data: dataset of :func:`runs.sweep.output.gather`.
     """
-    found = {}
+    curves = {}
     for name in data["model"].values:
         one = data.sel(model=name)
         vibration = one["residual_vibration"].values
@@ -60,8 +60,8 @@ def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
         order = np.argsort(speed)
         ends = {end: one[end].values[known][order] for end in _ENDS}
         levels = {end: level for end, level in ends.items() if np.isfinite(level).any()}
-        found[str(name)] = VibrationCurve(speed[order], vibration[known][order], levels)
-    return found
+        curves[str(name)] = VibrationCurve(speed[order], vibration[known][order], levels)
+    return curves
 
 
 def admissible_speed(curve: VibrationCurve, end: str) -> float | None:
@@ -112,11 +112,11 @@ def draw_vibration(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: 
         strokes: strokes of the models.
         path: path of the PNG file.
     """
-    found = vibration_curves(data)
-    if not found:
+    curves = vibration_curves(data)
+    if not curves:
         return
     sheet, (axes,) = new_sheet(1, 4.6)
-    for name, one in found.items():
+    for name, one in curves.items():
         line: dict[str, Any] = {"color": strokes[name].color, "label": f"{name}, telescoping"}
         axes.plot(one.speed, TO_MILLI * one.vibration, marker="o", markersize=4.0, **line)
         for end, level in one.levels.items():
@@ -127,7 +127,7 @@ def draw_vibration(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: 
     axes.set_ylim(bottom=0.0)
     handles, labels = axes.get_legend_handles_labels()
     sheet.legend(handles, labels, loc="outside lower left", ncols=1)
-    lines = [line for name, one in found.items() for line in describe(name, one)]
+    lines = [line for name, one in curves.items() for line in describe(name, one)]
     sheet.suptitle("Residual vibration over telescoping speed", x=0.02, ha="left", fontsize=12.0,
                    fontweight="bold")  # fmt: skip
     axes.set_title("\n".join(lines), fontsize=8.5, fontweight="normal", wrap=True)

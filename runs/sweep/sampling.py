@@ -110,17 +110,17 @@ def results_of(plan: Plan, outcomes: Sequence[Outcome]) -> dict[str, pd.DataFram
 def scatter(results: pd.DataFrame) -> pd.DataFrame:
     """Return mean, standard deviation and quantiles (columns) of each result that scatters."""
     parts = np.nanquantile(results, QUANTILES, axis=0, method="hazen")
-    found = pd.DataFrame(parts.T, results.columns, QUANTILES)
-    found.insert(0, "mean", results.mean())
-    found.insert(1, "sd", results.std())
-    return found[found["sd"] > NONE * found["mean"].abs()]
+    table = pd.DataFrame(parts.T, results.columns, QUANTILES)
+    table.insert(0, "mean", results.mean())
+    table.insert(1, "sd", results.std())
+    return table[table["sd"] > NONE * table["mean"].abs()]
 
 
 def write(results: dict[str, pd.DataFrame], samples: pd.DataFrame, folder: Path) -> None:
     """Write ``samples.csv``, ``sampling.csv`` and the chart into the folder of a sweep."""
     several = {
-        "sample": {name: pd.concat([samples, found], axis=1) for name, found in results.items()},
-        "result": {name: scatter(found) for name, found in results.items()},
+        "sample": {name: pd.concat([samples, frame], axis=1) for name, frame in results.items()},
+        "result": {name: scatter(frame) for name, frame in results.items()},
     }
     with (
         folder_lock(folder),
@@ -137,10 +137,10 @@ def write(results: dict[str, pd.DataFrame], samples: pd.DataFrame, folder: Path)
 
 def show(results: dict[str, pd.DataFrame], plan: Plan, console: Console) -> None:
     """Print mean, standard deviation and quantiles of the main results of each model."""
-    for model, found in results.items():
+    for model, frame in results.items():
         rows = [
             (f"{one.title} ({one.shown_unit})", *(one.factor * row).tolist())
-            for one, row in _shown(found)
+            for one, row in _shown(frame)
         ]
         forms = {"": ""} | dict.fromkeys(("mean", "sd"), ".4g")
         forms |= {f"{100.0 * part:g} %": ".4g" for part in QUANTILES}
@@ -150,25 +150,25 @@ def show(results: dict[str, pd.DataFrame], plan: Plan, console: Console) -> None
 
 def _shown(results: pd.DataFrame) -> Iterator[tuple[Metric, pd.Series[float]]]:
     """Yield the statistics of the main results that scatter."""
-    found = scatter(results)
+    table = scatter(results)
     for one in QUANTITIES:
-        if one.name in SHOWN and one.name in found.index:
-            yield one, found.loc[one.name]
+        if one.name in SHOWN and one.name in table.index:
+            yield one, table.loc[one.name]
 
 
 def _draw(results: dict[str, pd.DataFrame], path: Path) -> None:
     """Draw the cumulative distribution of each main result."""
-    shown = {one: None for found in results.values() for one, _ in _shown(found)}
+    shown = {one: None for frame in results.values() for one, _ in _shown(frame)}
     strokes = theme.strokes(list(results), [])
     with matplotlib.rc_context(theme.RC):
         sheet, _ = new_sheet(1, 0.9 + 1.7 * max(1, len(shown)))
         sheet.clear()
         panels = sheet.subplots(max(1, len(shown)), 1, squeeze=False)[:, 0]
         for axes, one in zip(panels, shown, strict=False):
-            for model, found in results.items():
-                if one.name in found:
+            for model, frame in results.items():
+                if one.name in frame:
                     axes.ecdf(
-                        one.factor * found[one.name].dropna(),
+                        one.factor * frame[one.name].dropna(),
                         color=strokes[model].color,
                         label=model,
                     )

@@ -38,16 +38,16 @@ def parse_bound(text: str, plan: Plan) -> Limit:
         BadInput: the text is invalid, or the plan has several keys or models.
     """
     known = {one.name: one for one in QUANTITIES}
-    found = _BOUND.fullmatch(text)
+    match = _BOUND.fullmatch(text)
     try:
-        if found is None:
+        if match is None:
             raise ValueError
-        value = float(found[3])
+        value = float(match[3])
     except ValueError:
         what = f"{text!r} is not understood; give QUANTITY<NUMBER or QUANTITY>NUMBER"
         raise BadInput(plan.file, OPTION, what) from None
-    if found[1] not in known:
-        what = f"{found[1]!r} is no quantity of a sweep; give {choices([*known])}"
+    if match[1] not in known:
+        what = f"{match[1]!r} is no quantity of a sweep; give {choices([*known])}"
         raise BadInput(plan.file, OPTION, what)
     for several, what, remedy in (
         (plan.variations, "keys vary", "give one --vary"),
@@ -55,9 +55,9 @@ def parse_bound(text: str, plan: Plan) -> Limit:
     ):
         if len(several) != 1:
             raise BadInput(plan.file, OPTION, f"{len(several)} {what}; {remedy}")
-    quantity = known[found[1]]
+    quantity = known[match[1]]
     si = scale(value, plan.points[0].case.system.size(quantity.unit))
-    return Limit(quantity, si, least=found[2] == ">")
+    return Limit(quantity, si, least=match[2] == ">")
 
 
 def run_until(
@@ -96,25 +96,25 @@ def numbers(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> list[float
     Raises:
         BadInput: a point has no value.
     """
-    found = []
+    values = []
     for point, outcome in zip(plan.points, outcomes, strict=True):
         (model,) = plan.coordinates["model"]
         value = outcome.models.get(model, {}).get(bound.quantity.name)
         if value is None:
             what = f"{model} has no {bound.quantity.title} at {point.label}"
             raise BadInput(plan.file, OPTION, what)
-        found.append(value)
-    return found
+        values.append(value)
+    return values
 
 
 def _bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> tuple[int, int]:
     """Return the indices of the values on both sides of the bound."""
-    found = numbers(plan, outcomes, bound)
-    within = [bound.permits(value) for value in found]
-    changes = [pair for pair in pairwise(range(len(found))) if within[pair[0]] != within[pair[1]]]
+    values = numbers(plan, outcomes, bound)
+    within = [bound.permits(value) for value in values]
+    changes = [pair for pair in pairwise(range(len(values))) if within[pair[0]] != within[pair[1]]]
     if len(changes) == 1:
         return changes[0]
-    key, span = plan.variations[0].key, f"{bound.shown(min(found))} to {bound.shown(max(found))}"
+    key, span = plan.variations[0].key, f"{bound.shown(min(values))} to {bound.shown(max(values))}"
     what = (
         f"{bound.quantity.title} passes it {len(changes)} times over {key}, from {span}; give "
         f"values of {key} around one place where it does"
@@ -124,10 +124,14 @@ def _bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> tuple[int
 
 def print_bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console: Console) -> None:
     """Print the bracket, and a caution if the quantity is not monotonic."""
-    found, key = np.array(numbers(plan, outcomes, bound)), plan.variations[0].key
+    results, key = np.array(numbers(plan, outcomes, bound)), plan.variations[0].key
     quantity, values = bound.quantity, plan.variations[0].values
     rows = [
-        (f"{values[i]:.6g}", quantity.factor * found[i], "✓" if bound.permits(found[i]) else "✗")
+        (
+            f"{values[i]:.6g}",
+            quantity.factor * results[i],
+            "✓" if bound.permits(results[i]) else "✗",
+        )
         for i in _bracket(plan, outcomes, bound)
     ]
     unit = f" ({plan.units[0]})" if plan.units[0] else ""
@@ -136,7 +140,7 @@ def print_bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console
         f"{quantity.title}\n{quantity.shown_unit}": ".5g",
         "satisfied": "",
     }
-    ways = np.sign(np.diff(found))
+    ways = np.sign(np.diff(results))
     note = f"The {quantity.title} is not monotone over {key}: other places may hold, too."
     notes = [note] if (ways > 0.0).any() and (ways < 0.0).any() else []
     notes += rigid_wall_cautions(plan.points[0].case, plan.coordinates["model"][0])

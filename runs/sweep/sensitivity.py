@@ -83,10 +83,10 @@ def changes(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
     """
     (model,) = plan.coordinates["model"]
     names = [one.name for one in QUANTITIES if one.charted]
-    found = pd.DataFrame(
+    results = pd.DataFrame(
         [one.models.get(model, {}) for one in outcomes], columns=names, dtype=float
     )
-    base, below, above = found.iloc[0], found.iloc[1::2], found.iloc[2::2]
+    base, below, above = results.iloc[0], results.iloc[1::2], results.iloc[2::2]
     keys = [point.label.partition("=")[0] for point in plan.points[1::2]]
     parts = (above.to_numpy() - below.to_numpy()) / (2.0 * base.abs().to_numpy())
     table = pd.DataFrame(parts, keys, names).replace([np.inf, -np.inf], np.nan)

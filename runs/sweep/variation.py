@@ -181,31 +181,31 @@ def _places(
     (name, number), rest = path[0], path[1:]
     if not isinstance(here, Mapping):
         raise Unplaced(f"{before.name} is not a table; end the key there")
-    found = here.get(name)
+    value = here.get(name)
     place = Place((*before.steps, name))
-    if found is None:
+    if value is None:
         # The schema decides whether the key is valid.
         yield from _places({}, rest, place)
         return
-    tables = isinstance(found, list) and (not found or isinstance(found[0], Mapping))
-    if tables and not found:
+    tables = isinstance(value, list) and (not value or isinstance(value[0], Mapping))
+    if tables and not value:
         raise Unplaced(f"the case has no {place.name}; there is nothing to vary")
     if isinstance(number, int):
-        if not isinstance(found, list):
+        if not isinstance(value, list):
             raise Unplaced(f"{place.name} is not a list; leave out [{number}]")
-        if not 1 <= number <= len(found):
+        if not 1 <= number <= len(value):
             raise Unplaced(
                 f"the case has no {place.name}[{number}], its last one is "
-                f"{place.name}[{len(found)}]"
+                f"{place.name}[{len(value)}]"
             )
         chosen = [number - 1]
     elif tables and rest:
-        chosen = list(range(len(found)))
+        chosen = list(range(len(value)))
     else:
-        yield from _places(found, rest, place)
+        yield from _places(value, rest, place)
         return
     for i in chosen:
-        yield from _places(found[i], rest, Place((*place.steps, i)))
+        yield from _places(value[i], rest, Place((*place.steps, i)))
 
 
 def _values(text: str) -> tuple[float, ...]:

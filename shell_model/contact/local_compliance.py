@@ -35,14 +35,14 @@ def full_compliance(
     shells: Sequence[SegmentShell], contacts: Sequence[LawRow[Reading, ContactLaw]]
 ) -> Array:
     """Return the compliance (num_contacts, num_contacts) of unreduced shells. Collective."""
-    found = np.zeros((len(contacts), len(contacts)))
+    compliance = np.zeros((len(contacts), len(contacts)))
     for number, shell in enumerate(shells):
         touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
         parts = [shell.row(contacts[i].reading[number]) for i in touching]
         rows = np.array(parts).reshape(-1, shell.free.size).T
         # These symmetry reductions are used only once.
-        found[np.ix_(touching, touching)] += shell_compliance(SymmetryReduction(shell), rows)
-    return found
+        compliance[np.ix_(touching, touching)] += shell_compliance(SymmetryReduction(shell), rows)
+    return compliance
 
 
 def shell_compliance(symmetry: SymmetryReduction, rows: Array, frequency: float = SLOW) -> Array:
@@ -51,13 +51,13 @@ def shell_compliance(symmetry: SymmetryReduction, rows: Array, frequency: float 
     Rows are (num_owned, num_rows). The frequency of the shift is in Hz.
     """
 
-    def answers(_: int, job: Job) -> Array:
+    def compliance_of_class(_: int, job: Job) -> Array:
         solve = ShiftedSolver(job.shell(symmetry.cell), frequency)
-        found = job.forces.T @ solve(job.forces)
+        compliance = job.forces.T @ solve(job.forces)
         solve.destroy()
-        return found
+        return compliance
 
-    return symmetry.sum_classes(rows, np.zeros((rows.shape[1], rows.shape[1])), answers)
+    return symmetry.sum_classes(rows, np.zeros((rows.shape[1], rows.shape[1])), compliance_of_class)
 
 
 def local_compliance(
@@ -69,11 +69,11 @@ def local_compliance(
         whole: compliance (num_rows, num_rows) in m/N.
         laws, station_of_row: contact law and station of each row.
     """
-    found = np.full(len(laws), np.nan)
+    local = np.full(len(laws), np.nan)
     for up, down in _opposite(laws, station_of_row):
         opening = whole[up, up] + whole[down, down] - 2.0 * whole[up, down]
-        found[[up, down]] = 0.5 * opening
-    return found
+        local[[up, down]] = 0.5 * opening
+    return local
 
 
 def extrapolated_error(fine: Array, coarse: Array, order: float) -> Array:
@@ -120,8 +120,8 @@ def probe_segment(boom: Boom, number: int, symmetry: SymmetryReduction) -> Probe
     whole = shell_compliance(
         symmetry, np.array([row for rows in probes.values() for row in rows]).T, PROBE_FREQUENCY
     )
-    found, first = {}, 0
+    responses, first = {}, 0
     for motion, rows in probes.items():
-        own = slice(first, first + len(rows))
-        found[motion], first = whole[own, own], own.stop
-    return ProbeResponses(places, found)
+        block = slice(first, first + len(rows))
+        responses[motion], first = whole[block, block], block.stop
+    return ProbeResponses(places, responses)

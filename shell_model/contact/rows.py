@@ -206,14 +206,14 @@ def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
     ]
     if boom.spatial:
         reads.append(SectionNodes.twist)
-    found: list[Reading] = []
+    constraints: list[Reading] = []
     for joint in boom.joints:
         for x in joint.stations if joint.bonded else ():
             outlines = [shells[number].outline(x) for number in (joint.inner, joint.outer)]
             for read in reads:
                 inner, outer = (read(outline) for outline in outlines)
-                found.append(Reading({joint.inner: inner, joint.outer: -outer}))
-    return found
+                constraints.append(Reading({joint.inner: inner, joint.outer: -outer}))
+    return constraints
 
 
 def _check_line(boom: Boom, line: ContactLine) -> None:

@@ -86,7 +86,7 @@ def surface_points(
 ) -> list[SurfacePoint]:
     """Return the contact points of all joints that are not bonded. Collective."""
     walls = [WallPoints(shell) for shell in shells]
-    found: list[SurfacePoint] = []
+    points: list[SurfacePoint] = []
     first = 0
     for direction in boom.directions:
         for joint in boom.joints:
@@ -95,9 +95,9 @@ def surface_points(
             law = joint.law(direction)
             for side in (1, -1):
                 wall = Wall(direction, side)
-                found += _on_wall(boom, walls, joint, wall, law, options, first)
+                points += _on_wall(boom, walls, joint, wall, law, options, first)
             first += len(joint.stations)
-    return found
+    return points
 
 
 def _on_wall(

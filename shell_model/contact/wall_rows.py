@@ -140,8 +140,8 @@ class WallPoints:
             ValueError: a point is not on the wall.
         """
         cells = self._near(wall, places[:, 0])
-        found = [self._candidate(cells, wall, place, direction) for place in places]
-        on_ranks = self._comm.allgather(found)
+        own_candidates = [self._candidate(cells, wall, place, direction) for place in places]
+        on_ranks = self._comm.allgather(own_candidates)
         rows: list[Row] = []
         for place, candidates in zip(places, zip(*on_ranks, strict=True), strict=True):
             held = [candidate for candidate in candidates if candidate is not None]

@@ -241,9 +241,9 @@ class _Basis:
         lost = np.zeros(parts.shape[1])
         for response in full:
             shifted = self._stiffness + response.sigma * np.eye(self.size)
-            own = np.einsum("ij,ij->j", parts, response.compliance @ parts)
+            compliance = np.einsum("ij,ij->j", parts, response.compliance @ parts)
             reduced = np.einsum("ij,ij->j", gains, np.linalg.solve(shifted, gains))
-            lost = np.maximum(lost, own - reduced)
+            lost = np.maximum(lost, compliance - reduced)
         return lost
 
     def modes(self) -> tuple[Array, Array]:
@@ -296,14 +296,14 @@ class _Basis:
 def _independent(block: Array) -> Array:
     """Return an orthonormal basis of the columns of a block."""
     lengths = np.linalg.norm(block, axis=0)
-    found = np.empty((len(block), 0))
+    basis = np.empty((len(block), 0))
     for column in (block[:, lengths > 0.0] / lengths[lengths > 0.0]).T[:, :, None]:
         for _ in range(2):
-            column = column - found @ (found.T @ column)
+            column = column - basis @ (basis.T @ column)
         left = float(np.linalg.norm(column))
         if left > _DEPENDENT:
-            found = np.hstack([found, column / left])
-    return found
+            basis = np.hstack([basis, column / left])
+    return basis
 
 
 def _find_accurate(shell: Shell, omega2: Array, shapes: Array, solve: ShiftedSolver) -> Mask:

@@ -122,7 +122,7 @@ def cell_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
         if partner is None:
             raise NumericsError(f"a segment's mesh is not its own mirror image in {axis}")
         images = _sorted(partner[mesh.triangles], mesh.thickness)
-        if not all(np.array_equal(own, image) for own, image in zip(ours, images, strict=True)):
+        if not all(np.array_equal(part, image) for part, image in zip(ours, images, strict=True)):
             raise NumericsError(f"a segment's shell is not its own mirror image in {axis}")
     mine = (image_of(mesh.points, mirrors) == 0)[mesh.triangles].all(axis=1)
     if 2 ** len(mirrors) * mine.sum() != mine.size:

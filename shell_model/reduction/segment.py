@@ -83,23 +83,28 @@ def reduce_segment(
     counts = comm.bcast([np.count_nonzero(job.forces.any(axis=0)) for job in jobs])
 
     most = options.most
-    own = [replace(options, most=most and most * count // sum(counts)) for count in counts]
+    class_options = [
+        replace(options, most=most and most * count // sum(counts)) for count in counts
+    ]
     mine = range(comm.rank, len(symmetry_classes), comm.size)
 
     def reduce_here(number: int, job: Job) -> ClassCoordinates:
         done = mine.index(number)
         return _reduce_job(
-            symmetry.cell, job, own[number], lambda part: report((done + part) / len(mine))
+            symmetry.cell,
+            job,
+            class_options[number],
+            lambda part: report((done + part) / len(mine)),
         )
 
     def reduce_there(number: int, job: Job) -> Future[ClassCoordinates]:
         assert helper is not None
-        return helper.submit(_reduce_job, symmetry.cell, job, own[number])
+        return helper.submit(_reduce_job, symmetry.cell, job, class_options[number])
 
-    found = list(share_jobs(comm, jobs, reduce_here, reduce_there if helper else None))
+    results = list(share_jobs(comm, jobs, reduce_here, reduce_there if helper else None))
     parts = [
         comm.bcast(None if one is None else one._replace(shapes=np.empty(0)), root)
-        for root, one in found
+        for root, one in results
     ]
     omega2 = np.concatenate([part.omega2 for part in parts])
     accurate = np.concatenate([part.accurate for part in parts])
@@ -107,7 +112,7 @@ def reduce_segment(
     # The shapes of a class are inserted at once, since a second array of all shapes would be large.
     shapes = np.empty((len(inputs), omega2.size), order="F")
     places = np.split(np.argsort(order), np.cumsum([part.omega2.size for part in parts])[:-1])
-    for symmetry_class, (root, one), columns in zip(symmetry_classes, found, places, strict=True):
+    for symmetry_class, (root, one), columns in zip(symmetry_classes, results, places, strict=True):
         on_cell = None if one is None else one.shapes
         shapes[:, columns] = symmetry.expand(on_cell, symmetry_class, root)
     report(1.0)

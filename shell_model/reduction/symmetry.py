@@ -44,7 +44,7 @@ from shell_model.segment.shell import (
     dirichlet_condition,
 )
 
-_Found = TypeVar("_Found")
+_Result = TypeVar("_Result")
 
 # Components of the displacement, and of the rotation.
 _COMPONENTS = np.arange(6).reshape(2, 3)
@@ -193,9 +193,9 @@ class SymmetryReduction:
             assert cell.plates.nodes
             return cell
 
-        found = run_collectively(self._comm, of_mesh)
-        sent: SymmetryCell = self._comm.bcast(found)
-        self.cell = found or sent
+        cell_of_mesh = run_collectively(self._comm, of_mesh)
+        sent: SymmetryCell = self._comm.bcast(cell_of_mesh)
+        self.cell = cell_of_mesh or sent
         first, _ = shell.owned
         self._row, self._image_of_row, self._component = np.empty(
             (3, shell.free.size), dtype=np.int64
@@ -240,8 +240,8 @@ class SymmetryReduction:
         (num_owned, num_columns) are the forces of jobs.
         """
         jobs = self.jobs(columns, columns[:, :0])
-        for root, found in share_jobs(self._comm, jobs, compute):
-            total += self._comm.bcast(found, root)
+        for root, part in share_jobs(self._comm, jobs, compute):
+            total += self._comm.bcast(part, root)
         return total
 
     def expand(self, shapes: Array | None, symmetry_class: SymmetryClass, root: int) -> Array:
@@ -294,9 +294,9 @@ class SymmetryReduction:
 def share_jobs(
     comm: MPI.Comm,
     jobs: Sequence[Job],
-    compute: Callable[[int, Job], _Found],
+    compute: Callable[[int, Job], _Result],
     submit: Callable[[int, Job], Future[Any]] | None = None,
-) -> Iterator[tuple[int, _Found | None]]:
+) -> Iterator[tuple[int, _Result | None]]:
     """Compute the jobs of rank 0 on all ranks, and yield (rank, result) of each. Collective.
 
     The result is None on other ranks. ``submit`` passes every second job to another process.
@@ -311,35 +311,35 @@ def share_jobs(
         with suppress(BrokenExecutor):
             futures |= {number: submit(number, mine[number]) for number in list(mine)[1::2]}
 
-    def work() -> dict[int, _Found]:
+    def work() -> dict[int, _Result]:
         here = {n: compute(n, job) for n, job in mine.items() if n not in futures}
         there = {
             n: result_or_compute(one, partial(compute, n, mine[n])) for n, one in futures.items()
         }
         return here | there
 
-    found = run_collectively(comm, work)
+    results = run_collectively(comm, work)
     for number, root in enumerate(roots):
-        yield root, found.pop(number, None)
+        yield root, results.pop(number, None)
 
 
-def result_or_compute(future: Future[Any] | None, compute: Callable[[], _Found]) -> _Found:
+def result_or_compute(future: Future[Any] | None, compute: Callable[[], _Result]) -> _Result:
     """Return the result of another process, or compute it here if that process has ended."""
     with suppress(BrokenExecutor):
         if future is not None:
-            found: _Found = future.result()
-            return found
+            result: _Result = future.result()
+            return result
     return compute()
 
 
-def run_collectively(comm: MPI.Comm, work: Callable[[], _Found]) -> _Found:
+def run_collectively(comm: MPI.Comm, work: Callable[[], _Result]) -> _Result:
     """Return the result of ``work``, which must not communicate, on each rank. Collective.
 
     Raises:
         NumericsError: the work of a rank raises this error or needs too much memory; it is raised
             on every rank.
     """
-    results: list[_Found] = []
+    results: list[_Result] = []
     problem = ""
     try:
         results.append(work())

@@ -124,14 +124,14 @@ class SegmentShell(Shell):
         of_cells = self.comm.bcast(None if self.mesh is None else thickness(self.mesh))
         forms = self.plates.forms
         forms.loaded.x.array[:] = compat.cellwise_function(self.space.mesh, of_cells).x.array
-        found: dict[Direction, Array] = {}
+        loads: dict[Direction, Array] = {}
         for direction, component in COMPONENT.items():
             forms.load_direction.value[:] = np.eye(3)[component]
             load = compat.assemble_vector(forms.unit_load)
             largest = self.comm.allreduce(np.abs(load).max(initial=0.0), MPI.MAX)
             load[np.abs(load) < _ROUND_OFF * largest] = 0.0
-            found[direction] = load * self.free
-        return found
+            loads[direction] = load * self.free
+        return loads
 
     def row(self, weights: Row) -> Array:
         """Return this rank's part (num_owned,) of a row."""

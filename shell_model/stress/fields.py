@@ -218,12 +218,14 @@ def _own_stresses(
     every = coordinates.of_rows(np.eye(sum(sizes)))
     every = np.pad(every, ((0, 0), (0, system.num_modes - every.shape[1])))
     variables: dict[str, _Variable] = {}
-    for number, own in enumerate(np.split(every, np.cumsum(sizes)[:-1])):
+    for number, coordinates_of_segment in enumerate(np.split(every, np.cumsum(sizes)[:-1])):
         k, stress = number + 1, modes[number]
-        for force, pushed in _pushed(boom, number, meshes[number]):
-            own = np.concatenate([own, system.observers[force].row[None]])
-            stress = np.concatenate([stress, pushed])
-        variables[f"coordinates_{k}"] = ((f"own_{k}", "mode"), own, {})
+        for force, cylinder_stress in _pushed(boom, number, meshes[number]):
+            coordinates_of_segment = np.concatenate(
+                [coordinates_of_segment, system.observers[force].row[None]]
+            )
+            stress = np.concatenate([stress, cylinder_stress])
+        variables[f"coordinates_{k}"] = ((f"own_{k}", "mode"), coordinates_of_segment, {})
         dims = (f"own_{k}", f"triangle_{k}", "stress")
         variables[f"stress_{k}"] = (dims, stress, {"units": "Pa"})
     return variables

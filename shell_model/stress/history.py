@@ -223,14 +223,14 @@ def _largest(shell: ShellStress, history: xr.Dataset) -> Largest:
     bands = history["von_mises"].values
     stride = max(1, shell.time.size // INSTANTS)
     segments = np.unique(shell.segment)
-    found = [
+    stresses = [
         _search(shell, np.flatnonzero(shell.segment == number), 0, stride) for number in segments
     ]
     if np.isfinite(bands).any():
         step, number, place = np.unravel_index(np.nanargmax(bands), bands.shape)
         band = shell.near(int(number), float(history["place"].values[place]), BAND)
-        found.append(_search(shell, band, int(step), shell.time.size))
-    return max(found)
+        stresses.append(_search(shell, band, int(step), shell.time.size))
+    return max(stresses)
 
 
 def _search(shell: ShellStress, triangles: Indices, first: int, stride: int) -> Largest:
@@ -270,8 +270,8 @@ def _peaks(
     stressed = shell.largest(triangles[np.unique(bounds.argmax(axis=1))], steps).max(axis=1)
     least = np.minimum.reduceat(stressed, begins)[:, None]
     kept = triangles[(bounds >= (1.0 - _ROUND_OFF) * least).any(axis=0)]
-    found = shell.largest(kept, steps)
-    return found.max(axis=1), kept[found.argmax(axis=1)]
+    largest = shell.largest(kept, steps)
+    return largest.max(axis=1), kept[largest.argmax(axis=1)]
 
 
 def _patches(shell: ShellStress, band: Indices) -> Array:

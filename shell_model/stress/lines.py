@@ -25,10 +25,10 @@ _BANDS = 60
 
 def lines(fields: xr.Dataset, boom: Boom) -> list[Line]:
     """Return the rows along each segment, with band boundaries at supports, loads and contacts."""
-    still = fields.assign(
+    unit_states = fields.assign(
         state=(("time", "mode"), np.zeros((1, fields.sizes["mode"]))), time=("time", np.zeros(1))
     )
-    shell = ShellStress.from_fields(still)
+    shell = ShellStress.from_fields(unit_states)
     return [_line(shell, fields, boom, number) for number in range(len(shell.plates))]
 
 
@@ -128,13 +128,13 @@ def _slopes(
 
 def _reaches(corners: Array, part: Indices) -> tuple[Array, Array]:
     """Return the extents (num_parts,) along z and y in m of each wall in each band."""
-    found = []
+    extents = []
     for way in (2, 1):
         low, high = np.full((2, int(part.max()) + 1), [[np.inf], [-np.inf]])
         np.minimum.at(low, part, corners[..., way].min(axis=1))
         np.maximum.at(high, part, corners[..., way].max(axis=1))
-        found.append(high - low)
-    return found[0], found[1]
+        extents.append(high - low)
+    return extents[0], extents[1]
 
 
 def _forces(
@@ -155,25 +155,25 @@ def _forces(
     slope, across, up = shell.outward[triangles].T
     # s, x and the normal n are right-handed.
     s_y, s_z = up, -across
-    own = shell.thickness[triangles] * strength / 6.0
+    bending_moment = shell.thickness[triangles] * strength / 6.0
     within_z, within_y = (
         within(part, reach, strength, place) for reach, place in zip(reaches, (z, y), strict=True)
     )
     weights = (
         {2: s_z * strength, 0: -slope * up * strength},
-        {0: strength * z + within_z, 3: up * own},
+        {0: strength * z + within_z, 3: up * bending_moment},
         {2: s_y * strength, 0: -slope * across * strength},
-        {0: strength * y + within_y, 3: across * own},
+        {0: strength * y + within_y, 3: across * bending_moment},
         {2: strength * (y * s_z - z * s_y)},
     )
     first = int(np.searchsorted(shell.segment, number))
     modes = shell.modes[number][:, triangles - first]
     shape = lengths.size, triangles.size
     columns = np.arange(triangles.size)
-    found = []
+    totals = []
     for of_component in weights:
         total = np.zeros((lengths.size, len(modes)))
         for component, weight in of_component.items():
             total += csr_matrix((weight, (band, columns)), shape) @ modes[:, :, component].T
-        found.append(total)
-    return np.array(found)
+        totals.append(total)
+    return np.array(totals)

@@ -129,7 +129,7 @@ class ShellStress:
         """Return the stresses of the fields of a run, see :mod:`shell_model.stress.fields`."""
         segment, state = fields["segment"].values, fields["state"].values
         numbers = range(1, int(segment.max()) + 2)
-        own = [fields[f"coordinates_{k}"].values for k in numbers]
+        coordinates = [fields[f"coordinates_{k}"].values for k in numbers]
         return cls(
             **_geometry(fields["points"].values, fields["triangles"].values),
             thickness=fields["thickness"].values,
@@ -137,7 +137,7 @@ class ShellStress:
             wall=fields["wall"].values,
             plates=[[str(name) for name in fields[f"plate_{k}"].values] for k in numbers],
             modes=[fields[f"stress_{k}"].values for k in numbers],
-            states=[(state @ combination.T).astype(np.float32) for combination in own],
+            states=[(state @ combination.T).astype(np.float32) for combination in coordinates],
             time=np.asarray(fields["time"].values, dtype=float),
             axial=np.asarray(fields["axial_stress"].values, dtype=np.float32)
             if "axial_stress" in fields
@@ -268,18 +268,18 @@ def triangle_areas(points: Array, triangles: Indices) -> Array:
 def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[str, WallForces]:
     """Return the forces of each wall at t in s, as means over the triangles around x in m."""
     row, step = shell.row(segment, x), int(np.abs(shell.time - t).argmin())
-    ((_, found),) = shell.over_time(row, slice(step, step + 1))
+    ((_, fields),) = shell.over_time(row, slice(step, step + 1))
     length = shell.spans[row, 1].max() - shell.spans[row, 0].min()
     forces = {}
     for number, name in enumerate(shell.plates[segment]):
         mine = shell.wall[row] == number
         part = row[mine]
         width = shell.areas[part] / length
-        membrane, bending = found.membrane[0, mine], found.bending[0, mine]
+        membrane, bending = fields.membrane[0, mine], fields.bending[0, mine]
         strength = shell.thickness[part] * width
         z, sigma = shell.centroids[part, 2], membrane[:, 0]
         _, across, up = shell.outward[part].mean(axis=0).round(12)
-        own = up * (shell.thickness[part] * strength / 6.0) @ bending[:, 0]
+        bending_moment = up * (shell.thickness[part] * strength / 6.0) @ bending[:, 0]
         reach, whole = np.array([abs(across) * width.sum()]), np.zeros(part.size, dtype=np.int64)
         moment = (strength * z + within(whole, reach, strength, z)) @ sigma
         # The coordinate s runs along -z on the right and along -y on the bottom.
@@ -287,7 +287,7 @@ def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[st
         forces[name] = WallForces(
             axial=float(strength @ sigma),
             shear=float(sense * strength @ membrane[:, 2]),
-            moment=float(moment + own),
+            moment=float(moment + bending_moment),
         )
     return forces
 

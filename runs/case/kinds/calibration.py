@@ -136,8 +136,8 @@ class CalibratedTable(BeamTable):
         along = lines(stiff, self.segments(stiff))
         # The coordinates of the springs come after the coordinates of the beam, and do not affect
         # its lines.
-        own = along[0].rows["deflection"].shape[1]
-        basis = np.eye(own, system.num_modes)
+        num_coordinates = along[0].rows["deflection"].shape[1]
+        basis = np.eye(num_coordinates, system.num_modes)
         return BuiltModel(
             system,
             system.num_modes,
@@ -159,14 +159,14 @@ class CalibratedTable(BeamTable):
         """Return the surrogate of the beam without its calibration."""
 
     def surrogate(self, boom: Boom) -> Surrogate:
-        own = self.beam_surrogate(boom)
+        surrogate = self.beam_surrogate(boom)
         if not isinstance(self.calibrated_by, Shell):
-            return own
+            return surrogate
         shell = self.calibrated_by.surrogate(boom)
-        beam = own.beam.model_copy(update={"calibrated_by": None})
+        beam = surrogate.beam.model_copy(update={"calibrated_by": None})
         return Surrogate(
             beam,
-            own.coordinates,
-            own.memory + shell.memory,
-            own.seconds + shell.seconds,
+            surrogate.coordinates,
+            surrogate.memory + shell.memory,
+            surrogate.seconds + shell.seconds,
         )
