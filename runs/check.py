@@ -47,7 +47,7 @@ from runs.pipeline.largest_loads import (
     weakest_at_rest,
 )
 from runs.pipeline.load_table import load_table
-from runs.pipeline.pad_walls import pad_wall_lines
+from runs.pipeline.pad_walls import pad_wall_lines, rigid_wall_note
 from runs.pipeline.panels import panel_cautions, panel_table
 from runs.pipeline.proportions import (
     buckling_cautions,
@@ -431,7 +431,11 @@ def _reactions(state: StaticState, system: System) -> Table:
         Column("contact\npenetration", depths, ".3g", "mm"),
     ]
     title = "Reactions of supports and contacts at rest, t = 0"
-    return Table(title, columns, [beam_note(state.boom)])
+    signs = (
+        "Forces act on the segment. Positive: towards the upper side of the boom, axial forces "
+        "towards the tip, moments that turn the tip upwards."
+    )
+    return Table(title, columns, [signs, beam_note(state.boom)])
 
 
 def _cylinders(state: StaticState, system: System) -> Table:
@@ -463,15 +467,16 @@ def _static_lines(
         float(closed_contact_modes(one.system, one.position)[0][0]) / (2.0 * np.pi)
         for one in static
     )
+    padded = any(joint.padded for joint in state.boom.joints)
+    walls = ", with the compliance of walls under pads" if padded else ""
     yield (
-        f"Static tip deflection (t = 0) {_BEAMS}: {milli(state.tip)} mm; without "
+        f"Static tip deflection (t = 0) {_BEAMS}{walls}: {milli(state.tip)} mm; without "
         f"play {milli(bonded.tip)} mm."
     )
     yield (
         f"First natural frequency, joints in contact, {_BEAMS}: {number(hertz, 4)} Hz; without "
         f"play {number(bonded_hertz, 4)} Hz."
     )
-    padded = any(joint.padded for joint in state.boom.joints)
     causes = "Play and the walls under pads rotate" if padded else "Play rotates"
     for tilt in tilts(state.boom, state.system, state.position):
         yield (
@@ -479,5 +484,6 @@ def _static_lines(
             f"{tilt.outer!r}, which moves the tip by {milli(tilt.tip)} mm."
         )
     yield from pad_wall_lines(beam)
+    yield from filter(None, [rigid_wall_note(case.models, boom)])
     yield from tip_cautions(_BEAMS, state.tip, boom)
     yield from period_cautions(_BEAMS, hertz, case)

@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
 from beam_model.statics import static_state
 from geometry.boom import Boom, Collar, Joint, Segment
 from geometry.joint import PadSize
+from geometry.typography import join_words
+from runs.case.schema import Model
 from runs.pipeline.largest_loads import StaticBeam
 from runs.report.formatting import milli
 
@@ -51,6 +53,17 @@ def pad_wall_lines(beam: StaticBeam) -> Iterator[str]:
     if better:
         listed = "; ".join(f"{what} ({milli(there)} mm)" for _, there, what in better)
         yield f"Remedies, with the deflection of the tip under these loads: {listed}."
+
+
+def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
+    """Return a sentence on the beams with rigid walls under pads; empty without such beams."""
+    names = [model.name for model in models if not (model.bonded or model.needs_shell)]
+    if not names or not any(joint.padded for joint in boom.joints):
+        return ""
+    return (
+        f"Walls under pads are rigid in {join_words(names)}. The estimates of `check`, shells and "
+        "beams that a shell calibrates include their compliance."
+    )
 
 
 def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:

@@ -166,13 +166,13 @@ def _walls(
     )
     forces = [(shear, dict(section.shear_plates("z"))), (aside, dict(section.shear_plates("y")))]
     corners = np.transpose(outer_corners(section))
-    for number, plate in enumerate(section.plates):
-        outer = corners[[number, (number + 1) % len(section.plates)]]
+    for k, plate in enumerate(section.plates):
+        outer = corners[[k, (k + 1) % len(section.plates)]]
         edges, fibres = (
             np.array([mean + slopes[0] * y + slopes[1] * z for y, z in ends])
             for ends in ((plate.start, plate.end), outer)
         )
-        along = sum(np.abs(force * shares.get(number, 0.0)) for force, shares in forces)
+        along = sum(np.abs(force * shares.get(k, 0.0)) for force, shares in forces)
         flow = along / plate.length + np.abs(torque) / (2.0 * section.enclosed_area)
         yield WallStresses(segment, plate, x, edges, fibres, flow / plate.thickness)
 

@@ -13,6 +13,7 @@ from runs.pipeline.design_results import ModelDesignResults, PlayDifference
 from runs.pipeline.low_pass import mean_period
 from runs.pipeline.model_quality import static_deviation
 from runs.pipeline.motion_results import Peak
+from runs.pipeline.pad_walls import rigid_wall_note
 from runs.pipeline.pads import PadLoad
 from runs.pipeline.quantities import decay_time
 from runs.pipeline.results import Results
@@ -233,6 +234,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     )
     yield f"{'; '.join(described)}."
     yield "Tip: deflection across the boom from the unloaded straight boom."
+    yield from filter(None, [rigid_wall_note(models, results.boom)])
     if "Tip travel from t = 0, mm" in rows:
         yield "Tip travel: largest distance of the tip from its position at t = 0."
     if any("×" in cell for cells in rows.values() for cell in cells):

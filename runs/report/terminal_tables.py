@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from rich.console import Console
 
 from runs.client import show
+from runs.pipeline.pad_walls import rigid_wall_note
 from runs.pipeline.results import Results
 from runs.pipeline.utilisation import utilisations
 from runs.process.terminal import Terminal, message, say, shorten
@@ -116,7 +117,9 @@ def result_table(results: Results) -> Table:
         Column("utilis-\nation", [max(one, default=0.0) or None for one in used], ".3g", "%"),
     ]
     columns = [one for one in columns if any(cell is not None for cell in one.cells)]
-    return Table(f"Results: {results.case.title}", columns)
+    models = [model for model in results.completed_models if model.name in names]
+    notes = [*filter(None, [rigid_wall_note(models, results.boom)])]
+    return Table(f"Results: {results.case.title}", columns, notes)
 
 
 def lateral_table(results: Results) -> Table | None:
