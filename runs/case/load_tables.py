@@ -30,8 +30,8 @@ class LoadTable(HistoryTable):
     end: Place | None = Field(None, alias="to")
     """the x in m up to which a load along the segment acts; its end unless given"""
     magnitude: Annotated[Number, In("N/m")] = 1.0
-    """the load in N at x, or in N/m along the segment, or the moment in N m; a factor, 1 unless
-    given, if the heading of its file has such a unit"""
+    """the load across the boom in N at x, or in N/m along the segment, or the moment in N m; a
+    factor, 1 unless given, if the heading of its file has such a unit"""
     moment: Flag = False
     """whether the load is a moment at x, positive where it increases the slope of the segment"""
     released: Flag = False

@@ -49,7 +49,7 @@ _FIRST = {
     r"hoist\.mass": "Hoisted mass",
     r"(hoist|slew|luff)\.speed": "Speed of {}",
     r"(hoist|slew|luff)\.time": "Duration of {}",
-    r"load\[(\d+)\]\.magnitude": "Load {}",
+    r"load\[(\d+)\]\.magnitude": "Load {}, across the boom",
     r"load\[(\d+)\]\.ramp": "Rise time of load {}",
     r"joint\[\d+\]\.extension": "Extension, {owner}",
     r"joint\[\d+\]\.drive\.(time|speed)": "Telescoping {}, {owner}",
@@ -57,6 +57,7 @@ _FIRST = {
     r"joint\[\d+\]\.pad\.(length|offset)": "Pad {}, {owner}",
     r"segment\[\d+\]\.section\.(flange|web|top|bottom)": "Thickness of {}, {owner}",
     r"segment\[\d+\]\.section\.thickness": "Thickness, {owner}",
+    r"limits\.(\w+)": "Limit of {}",
 }
 
 # Tables whose numbers cannot be changed in the page, which has its own beam.
@@ -121,7 +122,8 @@ class Draft:
         owner = "all joints" if len(keys) > 1 else owners.get(keys[0].partition(".")[0])
         for pattern, label in _FIRST.items():
             if match := re.fullmatch(pattern, keys[0]):
-                return label.format(*match.groups(), owner=owner)
+                words = (one.replace("_", " ") for one in match.groups())
+                return label.format(*words, owner=owner)
         return keys[0]
 
     @cached_property

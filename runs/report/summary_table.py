@@ -259,7 +259,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
         pads = [pad for joint in results.case.joints for pad in (joint.pad, *joint.pads) if pad]
         bears = _span(pad.allowable_pressure for pad in pads)
         yield (
-            "Pad: one of a pair, under its largest force during the motion"
+            "Pad: one of a pair, under its largest force during the motion; pressure: its mean"
             f"{bears and f'; %: of the allowable {bears}'}."
         )
     strengths = _span(one.yield_strength for one in results.boom.segments)

@@ -142,8 +142,9 @@ def test_other_units_are_refused(heading: str, column: int, unit: str, wrong: st
 
 def test_factors_need_a_magnitude_and_columns_are_two() -> None:
     assert complaint("t (s);F\n0;1\n1;1\n", "") == (
-        "magnitude: missing; it is the load in N at x, or in N/m along the segment, or the "
-        "moment in N m; a factor, 1 unless given, if the heading of its file has such a unit"
+        "magnitude: missing; it is the load across the boom in N at x, or in N/m along the "
+        "segment, or the moment in N m; a factor, 1 unless given, if the heading of its file has "
+        "such a unit"
     )
     one = 'magnitude = 1.0\ncolumns = ["t"]'
     assert complaint("0;1\n1;1\n", one) == "columns: must be a list of two names, got ['t']"
