@@ -105,11 +105,19 @@ def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
         if axial.force is not None:
             where, what = f"axial[{number}].force", "the size of the force along the boom"
             yield UsualRange(where, what, abs(axial.force), "N", 0.0, 100.0 * weight, 100.0)
+    if case.gravity is not None:
+        where, what = "gravity.acceleration", "the acceleration of gravity"
+        yield UsualRange(where, what, case.gravity.acceleration, "m/s^2", 0.0, 12.0, 50.0)
     what = "the damping ratio"
     yield UsualRange("damping.modal", what, case.damping.modal, "1", 0.0, 0.1, 100.0)
     if (category := case.life.detail_category) is not None:
-        what = "the detail category after EN 1993-1-9, in N/mm^2,"
-        yield UsualRange("life.detail_category", what, category, "1", 36.0, 160.0, 10.0)
+        yield _category_range("life", category, 36.0)
+
+
+def _category_range(where: str, category: float, least: float) -> UsualRange:
+    """Return the range of a detail category; ``least`` is that of steel or of any metal."""
+    what = "the detail category after EN 1993-1-9, in N/mm^2,"
+    return UsualRange(f"{where}.detail_category", what, category, "1", least, 160.0, 10.0)
 
 
 def _material_ranges(case: Case) -> Iterator[UsualRange]:
@@ -155,7 +163,13 @@ def _joint_ranges(case: Case, boom: Boom, number: int) -> Iterator[UsualRange]:
     table, joint, where = case.joints[number], boom.joints[number], f"joint[{number + 1}]"
     inner = boom.segments[joint.inner]
     yield from _contact_ranges(where, table)
+    if joint.detail_category is not None:
+        yield _category_range(where, joint.detail_category, 12.0)
     if not joint.bonded:
+        outer = boom.segments[joint.outer]
+        if outer.section is not None and joint.play:
+            what, most = f"the play of {inner.name!r}", 0.06 * outer.section.size("z")
+            yield UsualRange(f"{where}.play", what, joint.play, "m", 1.0e-4, most, 1.0e3)
         key = "" if table.extension is None else ".extension"
         what, least = f"the overlap of {inner.name!r}", 0.03 * inner.length
         if joint.drive is not None:

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import isclose
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from dynamics.excitation import InitialImpulse, Ramp, Step
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
+from geometry.load import Load
 from runs.case.actions import STANDARD_GRAVITY
 from runs.case.sanity import usual_ranges
 from runs.case.schema import Case
@@ -30,18 +32,29 @@ LARGE_DEFLECTION = 0.05
 # Fractions of the weight of the boom: smaller loads have no effect, larger ones no boom can carry.
 MIN_LOAD, MAX_LOAD = 1.0e-3, 1.0e2
 
+# Fraction of the mass of the boom: no boom is built for a smaller payload.
+MIN_PAYLOAD = 0.02
+
+# Multiple of the weight of a segment: a larger load along it is probably meant at one point.
+MAX_LINE_LOAD = 5.0
+
+# Fraction of the length of the boom: a place closer to the tip counts as the tip.
+NEAR_TIP = 0.02
+
 # Fraction of the weight of the boom: larger upward loads probably have the wrong sign.
 MAX_LIFT = 0.3
 
 # Number of periods of the boom beyond which a run is too long for a design.
 MANY_PERIODS = 1000.0
 
-# Young's modulus in Pa and density in kg/m³ of steel, and the relative differences within which a
-# number counts as the value of steel.
-STEEL, STEEL_WITHIN = (2.1e11, 7850.0), (0.06, 0.1)
+# Young's modulus in Pa and density in kg/m³. A modulus within 6 % reveals the material. The density
+# may be larger, since it may include other masses, but not twice as large.
+MATERIALS = {"steel": (2.1e11, 7850.0), "aluminium": (7.0e10, 2700.0)}
+SAME_MODULUS, LEAST_DENSITY, MOST_DENSITY = 0.06, 0.9, 2.0
 
-# Relative differences up to which two loads, and a force and a weight, count as the same.
-SAME_LOAD, SAME_WEIGHT = 0.01, 0.05
+# Relative differences up to which a force is a weight, with a gravity of 10 m/s², too, and up to
+# which a force in N is a mass in kg.
+SAME_LOAD, SAME_WEIGHT = 0.025, 0.05
 
 
 def proportion_cautions(case: Case, boom: Boom) -> list[str]:
@@ -51,10 +64,12 @@ def proportion_cautions(case: Case, boom: Boom) -> list[str]:
     texts += [
         *_sizes(case, boom),
         *_repeated_loads(case, boom),
+        *_axial_forces(case, boom),
         *_payload_without_gravity(case, boom),
         *_ineffective_inputs(case),
         *_materials(case),
         *_cylinders(case, boom),
+        *_joints(case),
         *_pads(case, boom),
         *_meshes(case, boom),
     ]
@@ -83,6 +98,12 @@ def _ineffective_inputs(case: Case) -> Iterator[str]:
                 f"joint[{number}].normal_forces: they press for a friction, which is 0, and do "
                 "nothing; give friction, usual is 0.05 to 0.3, or leave them out"
             )
+    moves = (case.loads, case.base, case.driven, case.hoist, case.slew, case.luff)
+    if case.gravity is not None and not case.start.at_rest and any(moves):
+        yield (
+            "start.state: the boom starts straight and falls under its weight while other loads "
+            "act; give 'equilibrium' to start at rest under the loads of t = 0"
+        )
     angle = 0.0 if case.gravity is None else case.gravity.angle
     if LEVEL_ANGLE < abs(angle) <= 0.5 * np.pi:
         yield (
@@ -97,26 +118,25 @@ def _ineffective_inputs(case: Case) -> Iterator[str]:
 
 
 def _materials(case: Case) -> Iterator[str]:
-    """Yield a caution for each material with the modulus of steel and another density."""
+    """Yield a caution for each material whose density does not belong to its modulus."""
     tables = {f"segment[{i}].material": one.material for i, one in enumerate(case.segments, 1)}
     for where, table in {"material": case.material, **tables}.items():
         if table is None:
             continue
-        off = [
-            abs(value / steel - 1.0) > within
-            for value, steel, within in zip(
-                (table.youngs_modulus, table.density), STEEL, STEEL_WITHIN, strict=True
-            )
-        ]
-        if off == [False, True] and 0.1 * STEEL[1] < table.density < STEEL[1]:
-            yield (
-                f"{where}.density: {table.density:g} kg/m³ is light for steel, whose Young's "
-                f"modulus is given; steel has {STEEL[1]:g} kg/m³"
-            )
+        for name, (modulus, density) in MATERIALS.items():
+            if not isclose(table.youngs_modulus, modulus, rel_tol=SAME_MODULUS):
+                continue
+            part = table.density / density
+            if 0.1 < part < LEAST_DENSITY or part > MOST_DENSITY:
+                weight = "light" if part < 1.0 else "heavy"
+                yield (
+                    f"{where}.density: {table.density:g} kg/m³ is {weight} for {name}, whose "
+                    f"Young's modulus is given; {name} has {density:g} kg/m³"
+                )
 
 
 def _cylinders(case: Case, boom: Boom) -> Iterator[str]:
-    """Yield a caution for each cylinder that pulls, holds a sliding segment or is superfluous."""
+    """Yield cautions on cylinders that pull, hold a sliding segment, or are at an unusual place."""
     for number, (table, cylinder) in enumerate(
         zip(case.cylinders, boom.cylinders, strict=True), start=1
     ):
@@ -126,6 +146,21 @@ def _cylinders(case: Case, boom: Boom) -> Iterator[str]:
                 f"cylinder[{number}].ground: a height of {height:g} m is above the lug, and the "
                 "cylinder would pull; usual is below, where heights are negative"
             )
+        if cylinder.depth < 0.0:
+            yield (
+                f"cylinder[{number}].depth: {cylinder.depth:g} m puts the lug above the axis of "
+                f"{segment.name!r}; usual is below, where depths are positive"
+            )
+        foot = segment.foot
+        for key, place, name in (
+            ("ground", cylinder.ground[0], "the lower end"),
+            ("x", -np.inf if foot is None else foot.x, "the foot"),
+        ):
+            if place > cylinder.x:
+                yield (
+                    f"cylinder[{number}].{key}: {name} at x = {place:g} m is farther out than the "
+                    f"lug at {cylinder.x:g} m; usual is nearer to the base"
+                )
         if cylinder.segment:
             yield (
                 f"cylinder[{number}].segment: {segment.name!r} slides in another segment; a "
@@ -136,6 +171,19 @@ def _cylinders(case: Case, boom: Boom) -> Iterator[str]:
                 f"cylinder[{number}]: {segment.name!r} has a clamped support, beside which a "
                 "cylinder carries little; a foot is usually hinged"
             )
+
+
+def _joints(case: Case) -> Iterator[str]:
+    """Yield a caution for each joint in an outer segment that holds another segment already."""
+    held: dict[str, str] = {}
+    for number, joint in enumerate(case.joints, start=1):
+        outer, inner = str(joint.outer), str(joint.inner)
+        if outer in held:
+            yield (
+                f"joint[{number}].outer: {outer!r} holds {held[outer]!r} already; usual is one "
+                "segment in another"
+            )
+        held[outer] = inner
 
 
 def _pads(case: Case, boom: Boom) -> Iterator[str]:
@@ -178,9 +226,9 @@ def _sizes(case: Case, boom: Boom) -> Iterator[str]:
     forces = [segment.load * segment.length for segment in boom.segments]
     forces += [load.resultant(boom.segments[load.segment].length) for load in added]
     payload = case.payload
-    if payload is not None and STANDARD_GRAVITY * payload.mass < MIN_LOAD * weight:
+    if payload is not None and STANDARD_GRAVITY * payload.mass < MIN_PAYLOAD * weight:
         yield (
-            f"the payload of {payload.mass:g} kg is less than a thousandth of the boom's "
+            f"the payload of {payload.mass:g} kg is less than a fiftieth of the boom's "
             f"{weight / STANDARD_GRAVITY:.4g} kg; check the units"
         )
     if payload is not None and payload.mass % 5.0:
@@ -197,16 +245,23 @@ def _sizes(case: Case, boom: Boom) -> Iterator[str]:
             f"{weight:.4g} N; check the units"
         )
     for number, load in enumerate(boom.loads[: len(case.loads)], start=1):
-        force = abs(load.resultant(boom.segments[load.segment].length))
-        if 0.0 < force < MIN_LOAD * weight and load in added:
+        segment = boom.segments[load.segment]
+        force = abs(load.resultant(segment.length)) * getattr(load.history, "peak", 1.0)
+        if 0.0 < force < MIN_LOAD * weight:
             yield (
                 f"load[{number}]: {force:.4g} N is less than a thousandth of the boom's weight of "
                 f"{weight:.4g} N; check the units"
             )
+        own = STANDARD_GRAVITY * segment.mass_per_length * segment.length
+        if type(load) is Load and load.x is None and force > MAX_LINE_LOAD * own:
+            yield (
+                f"load[{number}]: {load.magnitude:g} N/m along the whole of {segment.name!r} makes "
+                f"{force:.4g} N, {force / own:.2g} times its weight; a force at one place needs x"
+            )
         outer = next((one.outer for one in boom.joints if one.inner == load.segment), None)
         if outer is not None and load.x is not None and load.x < boom.segments[outer].end:
             yield (
-                f"load[{number}].x: {load.x:g} m on {boom.segments[load.segment].name!r} lies "
+                f"load[{number}].x: {load.x:g} m on {segment.name!r} lies "
                 f"inside {boom.segments[outer].name!r}; usual is the head"
             )
     lift, turn = np.sum(list(_constant_loads(boom)), axis=0)
@@ -245,15 +300,18 @@ def _constant_loads(boom: Boom) -> Iterator[tuple[float, float]]:
 
 def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
     """Yield cautions on loads that repeat a load or a weight, and on masses in place of forces."""
-    for name, tables in (("load", case.loads), ("axial", case.axial)):
+    given = boom.loads[: len(case.loads)]
+    repeatable: tuple[tuple[str, Sequence[Any]], ...] = (("load", given), ("axial", case.axial))
+    for name, tables in repeatable:
         for number, table in enumerate(tables):
             if table in tables[:number]:
                 first = tables.index(table) + 1
                 yield f"{name}[{number + 1}]: is {name}[{first}] once more; leave one of them out"
+    payload, end = case.payload, boom.tip - NEAR_TIP * boom.length
     weighing = (STANDARD_GRAVITY, *([] if case.gravity is None else [case.gravity.across]))
 
     def weighs(force: float, mass: float) -> bool:
-        return any(isclose(-force, g * mass, rel_tol=SAME_LOAD) for g in weighing)
+        return force < 0.0 and any(isclose(-force, g * mass, rel_tol=SAME_LOAD) for g in weighing)
 
     for number, segment in enumerate(boom.segments, start=1):
         if case.gravity is not None and weighs(segment.load, segment.mass_per_length):
@@ -261,12 +319,27 @@ def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
                 f"segment[{number}].load: {segment.load:g} N/m is the weight of {segment.name!r}, "
                 "which the table gravity adds already; leave it out"
             )
-    for number, (table, load) in enumerate(zip(case.loads, boom.loads, strict=False), start=1):
-        at_tip = load.x == boom.tip and load.direction == "z" and not table.moment
-        if case.payload is None or not at_tip:
+    if payload is not None:
+        tip_masses = [one.mass for one in boom.segments[-1].masses if one.x > end]
+        if sum(isclose(mass, payload.mass, rel_tol=SAME_LOAD) for mass in tip_masses) > 1:
+            yield (
+                f"segment[{len(boom.segments)}].masses: the {payload.mass:g} kg of the payload "
+                "are at the tip once more; leave one of them out"
+            )
+    for number, (table, load) in enumerate(zip(case.loads, given, strict=True), start=1):
+        if load.direction == "y" or table.moment or not isinstance(load.history, Step | Ramp):
             continue
-        mass, force, where = case.payload.mass, load.magnitude, f"load[{number}].magnitude"
-        if weighs(force, mass) and isinstance(load.history, Step):
+        segment, where = boom.segments[load.segment], f"load[{number}].magnitude"
+        force = load.resultant(segment.length)
+        if case.gravity is not None and weighs(force, segment.mass_per_length * segment.length):
+            yield (
+                f"{where}: {force:g} N in all is the weight of {segment.name!r}, which the table "
+                "gravity adds already; leave it out"
+            )
+        if payload is None or load.x is None or load.x < end:
+            continue
+        mass, weightless = payload.mass, case.gravity is None and payload.gravity == 0.0
+        if weighs(force, mass) and not weightless:
             yield (
                 f"{where}: {force:g} N at the tip is the weight of the payload, which acts "
                 "already; leave it out"
@@ -275,6 +348,26 @@ def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
             yield (
                 f"{where}: {force:g} N at the tip is a tenth of the weight of the payload of "
                 f"{mass:g} kg; if it is in kg, give {force * STANDARD_GRAVITY:.4g} N"
+            )
+
+
+def _axial_forces(case: Case, boom: Boom) -> Iterator[str]:
+    """Yield cautions on axial forces with an unusual sign or size, and on repeated weights."""
+    weight = STANDARD_GRAVITY * sum(segment.mass for segment in boom.segments)
+    payload = 0.0 if case.payload is None else case.payload.mass
+    along = 0.0 if case.gravity is None else case.gravity.along
+    for number, table in enumerate(case.axial, start=1):
+        if not table.force:
+            continue
+        where = f"axial[{number}].force: {table.force:g} N"
+        if table.force < 0.0:
+            yield f"{where} pulls the boom towards its tip; forces towards the base are positive"
+        elif table.force < MIN_LOAD * weight:
+            yield f"{where} is less than a thousandth of the boom's weight; check the units"
+        elif isclose(table.force, payload * along, rel_tol=SAME_LOAD):
+            yield (
+                f"{where} is the weight of the payload along the boom, which the table gravity "
+                "adds already; leave it out"
             )
 
 

@@ -67,7 +67,7 @@ def test_shipped_cases_have_no_cautions(path: Path) -> None:
          "it is in cm, give 0.04 m"),
         ("mass = 500.0",
          "mass = 0.5",
-         "the payload of 0.5 kg is less than a thousandth of the boom's 972.6 kg; check the "
+         "the payload of 0.5 kg is less than a fiftieth of the boom's 972.6 kg; check the "
          "units"),
         ("load = -470.0",
          "load = -4.7e6",

@@ -157,6 +157,44 @@ def test_impossible_numbers_are_refused(
          "leave it out"),
         (LOAD, f"{LOAD}, {LOAD}",
          "load[2]: is load[1] once more; leave one of them out"),
+        ("-1595.0", "-2942.0",
+         "load[1].magnitude: -2942 N at the tip is the weight of the payload, which acts already; "
+         "leave it out"),
+        ("angle = 45.0", "angle = 45.0, acceleration = 19.62",
+         "gravity.acceleration: the acceleration of gravity is 19.62 m/s², usual is up to 12 m/s²; "
+         "check the number and its unit"),
+        (LOAD, f'{LOAD}, {{ segment = "fly", magnitude = -209.5 }}',
+         "load[2].magnitude: -1257 N in all is the weight of 'fly', which the table gravity adds "
+         "already; leave it out"),
+        ("0.004 }", "0.004 }\nmasses = [{ x = 'head', mass = 300.0 }]",
+         "segment[2].masses: the 300 kg of the payload are at the tip once more; leave one of them "
+         "out"),
+        ('x = "head", magnitude', "magnitude",
+         "load[1]: -1595 N/m along the whole of 'fly' makes 9570 N, 5.4 times its weight; a force "
+         "at one place needs x"),
+        ("[0.7, -1.1]", "[4.1, -1.1]",
+         "cylinder[1].ground: the lower end at x = 4.1 m is farther out than the lug at 2.4 m; "
+         "usual is nearer to the base"),
+        ("supports = [{ x = 0.0", "supports = [{ x = 3.0",
+         "cylinder[1].x: the foot at x = 3 m is farther out than the lug at 2.4 m; usual is nearer "
+         "to the base"),
+        ("depth = 0.25", "depth = -0.25",
+         "cylinder[1].depth: -0.25 m puts the lug above the axis of 'base'; usual is below, where "
+         "depths are positive"),
+        ('state = "equilibrium"', 'state = "rest"',
+         "start.state: the boom starts straight and falls under its weight while other loads act; "
+         "give 'equilibrium' to start at rest under the loads of t = 0"),
+        ("play = 0.003", "play = 0.03",
+         "joint[1].play: the play of 'fly' is 0.03 m, usual is from 0.0001 up to 0.018 m; if it is "
+         "in cm, give 0.0003 m"),
+        ("payload", "axial = [{ force = -100.0 }]\npayload",
+         "axial[1].force: -100 N pulls the boom towards its tip; forces towards the base are "
+         "positive"),
+        ("payload", "axial = [{ force = 1.0 }]\npayload",
+         "axial[1].force: 1 N is less than a thousandth of the boom's weight; check the units"),
+        ("payload", "axial = [{ force = 2080.0 }]\npayload",
+         "axial[1].force: 2080 N is the weight of the payload along the boom, which the table "
+         "gravity adds already; leave it out"),
         ("0.004 }", "0.004 }\nload = -296.3",
          "segment[2].load: -296.3 N/m is the weight of 'fly', which the table gravity adds "
          "already; leave it out"),
@@ -227,6 +265,7 @@ CRANE = (
     f"""
 title = "A crane of 60 m"
 time = {{ duration = 20.0 }}
+start = {{ state = "equilibrium" }}
 gravity = {{ angle = 70.0 }}
 payload = {{ mass = 5000.0 }}
 axial = [{{ falls = 4 }}]
