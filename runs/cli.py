@@ -113,49 +113,52 @@ def run(
 
     effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
     # Imported after the check of the case, so that errors in it appear at once.
-    from runs.client import judge
-    from runs.folder.cache import Cache
-    from runs.folder.files import atomic_folder
-    from runs.pipeline import estimates
-    from runs.pipeline.context import RunContext
-    from runs.pipeline.results import prepare
-    from runs.pipeline.run import run_case
     from runs.process import workers
-    from runs.report import opengl, output
-    from runs.report.terminal_tables import print_failures, print_runs
+    from runs.report import opengl
 
-    if not large:
-        estimates.refuse_large(estimates.run_cost(effective), case)
-    cache = None if no_cache else Cache.of_user()
-    comm = ranks.enter_mpi(effective, case)
-    if comm is None and effective.ensemble is not None:
-        comm = ranks.launched_ranks(case)
-    with ranks.end_all_ranks_on_error(comm):
-        if ending.launched_rank() if comm is None else comm.rank:
-            if comm is not None:
-                run_case(effective, case, RunContext(comm, cache=cache))
-            return 0
-        folder = prepare(out or f"runs/out/{Path(case).stem}", case)
-        with (
-            atomic_folder(folder) as part,
-            progress.display([model.name for model in effective.models]) as report_progress,
-            workers.helper(opengl.silence_stderr) as helper,
-        ):
-            if helper and not no_pictures and any(model.meshed for model in effective.models):
-                # The helper imports the renderer while this process meshes.
-                helper.submit(import_module, "runs.report.snapshots")
-            context = RunContext(comm, report_progress, cache, cache, helper)
-            finished = run_case(effective, case, context)
-            assert finished is not None
-            with output.write_in_two_steps(finished, part, not no_pictures, helper) as write:
-                finished.evaluate()
-                judged = judge(finished.results)
-                report_progress("report", "pictures and figures", 0.0)
-                write(judged)
-            report_progress("report", "pictures and figures", 1.0)
-        print(printable(str(folder / output.REPORT)))
-        status = print_runs({case: finished.results}, {case: judged})
-        return print_failures(case, finished.results) or status
+    with workers.helper(opengl.silence_stderr) as helper:
+        if helper and not ending.launched_rank() and any(m.needs_shell for m in effective.models):
+            # The helper imports FEniCSx while this process imports.
+            helper.submit(import_module, "shell_model.reduced_shell")
+        from runs.client import judge
+        from runs.folder.cache import Cache
+        from runs.folder.files import atomic_folder
+        from runs.pipeline import estimates
+        from runs.pipeline.context import RunContext
+        from runs.pipeline.results import prepare
+        from runs.pipeline.run import run_case
+        from runs.report import output
+        from runs.report.terminal_tables import print_failures, print_runs
+
+        if not large:
+            estimates.refuse_large(estimates.run_cost(effective), case)
+        cache = None if no_cache else Cache.of_user()
+        comm = ranks.enter_mpi(effective, case)
+        if comm is None and effective.ensemble is not None:
+            comm = ranks.launched_ranks(case)
+        with ranks.end_all_ranks_on_error(comm):
+            if ending.launched_rank() if comm is None else comm.rank:
+                if comm is not None:
+                    run_case(effective, case, RunContext(comm, cache=cache))
+                return 0
+            folder = prepare(out or f"runs/out/{Path(case).stem}", case)
+            with (
+                atomic_folder(folder) as part,
+                progress.display([model.name for model in effective.models]) as report_progress,
+            ):
+                renderers = () if no_pictures else ("runs.report.snapshots", "pyvista.plotting")
+                context = RunContext(comm, report_progress, cache, cache, helper, renderers)
+                finished = run_case(effective, case, context)
+                assert finished is not None
+                with output.write_in_two_steps(finished, part, not no_pictures, helper) as write:
+                    finished.evaluate()
+                    judged = judge(finished.results)
+                    report_progress("report", "pictures and figures", 0.0)
+                    write(judged)
+                report_progress("report", "pictures and figures", 1.0)
+    print(printable(str(folder / output.REPORT)))
+    status = print_runs({case: finished.results}, {case: judged})
+    return print_failures(case, finished.results) or status
 
 
 @app.command()

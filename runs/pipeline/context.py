@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -29,6 +30,7 @@ class RunContext:
         cache: cache of reduced shells.
         motions: cache of completed motions.
         helper: second process for shells and pictures if there is only one rank.
+        renderers: modules for pictures, which the helper imports after it has reduced a shell.
     """
 
     comm: MPI.Intracomm | None = None
@@ -36,6 +38,7 @@ class RunContext:
     cache: Cache | None = None
     motions: Cache | None = None
     helper: Executor | None = None
+    renderers: Sequence[str] = ()
 
     @property
     def first_rank(self) -> bool:

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
-from concurrent.futures import Executor
+from concurrent.futures import BrokenExecutor, Executor
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
+from importlib import import_module
 from time import perf_counter
 
 import numpy as np
@@ -108,6 +110,11 @@ def run_model(
                 raise
             raise SharedFailure(failure_reason(error)) from error
         stages.seconds |= built.seconds
+        if helper is not None and model.meshed:
+            for name in context.renderers:
+                # A broken helper is reported when it is to draw.
+                with suppress(BrokenExecutor):
+                    helper.submit(import_module, name)
     buckling = None
     if case.buckling is not None and isinstance(model, Shell):
         assert comm is not None

@@ -30,12 +30,17 @@ class _SignalProofPool(ProcessPoolExecutor):
     """Pool of processes that ignore signals to the process group, such as Ctrl-C."""
 
     def submit(self, work: Callable[..., Any], /, *given: Any, **named: Any) -> Future[Any]:
-        """Submit work. The processes start at the first call."""
+        """Submit work. A process that starts for it inherits the signal mask and the variables."""
         signals = {signal.SIGINT, signal.SIGTERM}
         signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+        outside = {name: os.environ[name] for name in _WORKER_VARIABLES if name in os.environ}
+        os.environ.update(_WORKER_VARIABLES)
         try:
             return super().submit(work, *given, **named)
         finally:
+            for name in _WORKER_VARIABLES:
+                del os.environ[name]
+            os.environ.update(outside)
             signal.pthread_sigmask(signal.SIG_UNBLOCK, signals)
 
 
@@ -47,9 +52,6 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
         count: number of processes; None for one per core.
         prepare: function that each process calls first.
     """
-    # New processes inherit these variables.
-    outside = {name: os.environ[name] for name in _WORKER_VARIABLES if name in os.environ}
-    os.environ.update(_WORKER_VARIABLES)
     pool = _SignalProofPool(count or os.cpu_count(), get_context("spawn"), _start, (prepare,))
     try:
         with when_interrupted(end):
@@ -59,9 +61,6 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
         raise
     finally:
         pool.shutdown(cancel_futures=True)
-        for name in _WORKER_VARIABLES:
-            del os.environ[name]
-        os.environ.update(outside)
 
 
 @contextmanager
