@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Integrators are values that choose, keep and repeat their steps, and tell what they miss."""
+"""Motions with fixed and with adaptive steps."""
 
 import pickle
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -190,3 +191,25 @@ def test_bad_tolerances_are_refused(tolerance: float) -> None:
     message = f"tolerance must be between 0 and 1, got {tolerance}"
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         AdaptiveStep(tolerance)
+
+
+def test_rests_unless_told() -> None:
+    motion = Motion(CHAOTIC, 1.0, 0.3)
+    assert motion.from_rest
+    assert motion.outputs == 3
+    assert not Motion(CHAOTIC, 1.0, velocity=np.ones(2)).from_rest
+    assert Motion(CHAOTIC, 1.0e-3, 1.0).outputs == 1
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"duration": 0.0}, "duration must be finite and positive, got 0.0 s"),
+        ({"output_step": -1.0}, "output_step must be finite and positive, got -1.0 s"),
+        ({"position": np.ones(3)}, "position must have the shape (2,), got (3,)"),
+        ({"velocity": np.array([0.0, np.nan])}, "velocity must be finite"),
+    ],
+)
+def test_bad_motions_are_refused(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        Motion(CHAOTIC, **{"duration": 1.0, **given})

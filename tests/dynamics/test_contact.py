@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The contact law gives back exactly the energy it took, on the sides where there is a stop."""
+"""Contact laws: powers, two sides, Hunt-Crossley damping, tables."""
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
-from dynamics.contact import PowerContact
+from dynamics.contact import PowerContact, contact_limits, restitution_damping
+from dynamics.contact_table import TableContact
+from dynamics.gap_system import GapSystem
+from dynamics.integrator import FixedStep
+from dynamics.motion import Motion
 
 POWER = PowerContact(stiffness=1.0e13, exponent=2.0, stiffness_below=4.0e12)
 LAW = POWER.behind(7.0e-3)
@@ -108,3 +114,204 @@ def test_the_slope_is_known_at_any_force(exponent: float, force: float) -> None:
 def test_a_linear_law_has_its_slope_at_no_force_and_at_any(force: float) -> None:
     """Reference: analytic."""
     assert PowerContact(1.0e9, 1.0).slope_at(force) == pytest.approx(1.0e9)
+
+
+OneMass = Callable[..., GapSystem]
+
+SOFT_ABOVE = PowerContact(1.0e6, 2.0, stiffness_below=2.0e9)
+UNEQUAL = SOFT_ABOVE.behind(4.0e-3, 10.0e-3)
+
+
+def test_each_side_has_its_own_clearance() -> None:
+    """Reference: analytic, 1 mm beyond either: 1e6 · 1e-6 and 2e9 · 1e-6."""
+    y = np.array([-11.0e-3, -9.0e-3, 3.0e-3, 5.0e-3])
+    assert UNEQUAL.force(y) == pytest.approx([-2000.0, 0.0, 0.0, 1.0], rel=1e-9)
+    (limits,) = contact_limits([UNEQUAL])
+    assert (limits["low"], limits["high"]) == (-10.0e-3, 4.0e-3)
+
+
+def test_parts_are_those_of_its_law() -> None:
+    y = np.linspace(-0.02, 0.02, 41)
+    above = UNEQUAL.one_sided(1)
+    assert above is not None
+    assert above.terms == SOFT_ABOVE.upper().behind(4.0e-3, 10.0e-3).terms
+    assert above.one_sided(-1) is None
+    assert SOFT_ABOVE.upper().behind(4.0e-3).one_sided(-1) is None
+    np.testing.assert_allclose(UNEQUAL.shared(0.25).force(y), 0.25 * UNEQUAL.force(y), rtol=1e-12)
+    moved = UNEQUAL.behind(1.0e-3)
+    assert (moved.above, moved.below) == pytest.approx((5.0e-3, 11.0e-3))
+
+
+@pytest.mark.parametrize(
+    ("clearance", "message"),
+    [
+        (
+            -1.0e-3,
+            "a law must be linear behind a negative clearance, got k 1e+06, 2e+09 below, n 2",
+        ),
+        (np.nan, "clearance must be a finite number of m, got nan and nan"),
+    ],
+)
+def test_bad_gaps_are_refused(clearance: float, message: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        SOFT_ABOVE.behind(clearance)
+
+
+def test_preloaded_mass_leaves_one_contact_side(one_mass: OneMass) -> None:
+    """Reference: analytic. √(2 k/m) up to the interference, then √(k/m) about F/k − δ."""
+    k, pressed, load = 1.0e4, 2.0e-3, 60.0
+    both, one = np.sqrt([2.0 * k, k])
+    system = one_mass(1.0, PowerContact(k, 1.0).behind(-pressed), force=load)
+    leaves = np.arccos(1.0 - 2.0 * k * pressed / load) / both
+    speed = load / (2.0 * k) * both * np.sin(both * leaves)
+    middle = load / k - pressed
+    run = FixedStep(1e-6)(Motion(system, 0.03, output_step=1.0e-4))
+    time = run.data["time"].values
+    flight = one * (time - leaves)
+    after = middle + (pressed - middle) * np.cos(flight) + speed / one * np.sin(flight)
+    before = load / (2.0 * k) * (1.0 - np.cos(both * time))
+    exact = np.where(time < leaves, before, after)
+    assert exact.max() > 1.5 * pressed
+    assert exact[-1] > pressed
+    np.testing.assert_allclose(run.data["tip"], exact, atol=1e-6 * exact.max())
+
+
+@pytest.mark.parametrize("restitution", [0.05, 0.3, 0.8, 0.99, 0.99999, 1.0 - 1e-12])
+def test_damping_of_a_restitution(restitution: float) -> None:
+    """Reference: analytic, (e + 1) v = ln[(1 + d v)/(1 − d e v)]/d, and d = 3(1 − e)/(2 v) close to
+    e = 1 (Hunt and Crossley 1975)."""
+    speed = 1.7
+    damping = restitution_damping(restitution, speed)
+    x = damping * speed
+    assert 0.0 < x < 1.0 / restitution
+    left, right = (1.0 + restitution) * x, np.log1p(x) - np.log1p(-restitution * x)
+    assert left == pytest.approx(right, rel=1e-9 if restitution > 0.1 else 1e-6)
+    if restitution > 0.999:
+        assert x == pytest.approx(1.5 * (1.0 - restitution), rel=1.1 * (1.0 - restitution) + 1e-4)
+
+
+def test_a_full_rebound_needs_no_damping_and_speed_divides_it() -> None:
+    assert restitution_damping(1.0, 3.0) == 0.0
+    assert restitution_damping(0.6, 2.0) == pytest.approx(restitution_damping(0.6, 1.0) / 2.0)
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
+@pytest.mark.parametrize("restitution", [0.3, 0.8])
+def test_a_mass_rebounds_as_it_should(
+    one_mass: OneMass, exponent: float, restitution: float
+) -> None:
+    """Reference: analytic, the same e for every exponent. The error falls with the step."""
+    mass, speed = 3.0, 2.0
+    damping = restitution_damping(restitution, speed)
+    stiffness = {1.0: 1.0e6, 1.5: 1.0e8, 2.0: 1.0e9}[exponent]
+    stop = PowerContact(stiffness, exponent, damping=damping).upper().behind(0.01)
+    errors = []
+    motion = Motion(one_mass(mass, stop), 0.05, 1.0e-3, velocity=np.array([speed * np.sqrt(mass)]))
+    for step in (4.0e-5, 1.0e-5):
+        run = FixedStep(step)(motion)
+        assert run.data.attrs["contact_changes"] == 2
+        after = float(np.diff(run.data["tip"].values)[-1]) / -1.0e-3
+        errors.append(abs(after / speed - restitution))
+        lost = 0.5 * mass * speed**2 * (1.0 - restitution**2)
+        assert float(run.data["contact_loss"][-1]) == pytest.approx(lost, rel=2e-3)
+        assert float(run.data["contact_force"].min()) >= 0.0
+    assert errors[0] < 1e-3
+    assert errors[1] < errors[0] / 8.0
+
+
+def test_contact_never_pulls(one_mass: OneMass) -> None:
+    """A load tears a mass off a stop faster than 1/d: the contact lets go, and what it still
+    stored is lost."""
+    stop = PowerContact(stiffness=1.0e4, exponent=1.0, damping=5.0).upper()
+    system = one_mass(1.0, stop, force=-2.0e3)
+    run = FixedStep(1e-5)(Motion(system, 0.05, output_step=1e-4, position=np.array([0.1])))
+    force = run.data["contact_force"].values
+    assert force.min() >= 0.0
+    tip = run.data["tip"].values
+    assert (force[1:, 0][(tip[1:] > 0.01) & (tip[1:] < 0.09)] == 0.0).any()
+    assert float(run.data["contact_loss"][-1]) > 0.5 * 0.5 * 1.0e4 * 0.1**2
+
+
+@pytest.mark.parametrize(
+    ("restitution", "speed", "message"),
+    [
+        (0.0, 1.0, "restitution must be above 0 and at most 1, got 0.0"),
+        (1.1, 1.0, "restitution must be above 0 and at most 1, got 1.1"),
+        (0.5, 0.0, "speed must be finite and positive, got 0.0 m/s"),
+        (0.5, float("inf"), "speed must be finite and positive, got inf m/s"),
+    ],
+)
+def test_bad_restitutions_are_refused(restitution: float, speed: float, message: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        restitution_damping(restitution, speed)
+
+
+# Softer after the first millimetre, then stiff: a pad that gives way and bottoms out.
+DEPTHS, FORCES = (1.0e-3, 3.0e-3, 4.0e-3), (2.0e3, 3.0e3, 9.0e3)
+TABLE = TableContact(DEPTHS, FORCES).behind(7.0e-3)
+
+
+def test_the_force_is_the_table_and_its_last_line() -> None:
+    """Reference: analytic, linear interpolation and, beyond, 6e6 N/m."""
+    depth = np.linspace(0.0, 4.0e-3, 33)
+    expected = np.interp(depth, (0.0, *DEPTHS), (0.0, *FORCES))
+    np.testing.assert_allclose(TABLE.force(7.0e-3 + depth), expected, atol=1e-8)
+    np.testing.assert_allclose(TABLE.force(-7.0e-3 - depth), -expected, atol=1e-8)
+    assert TABLE.force(np.array(12.0e-3)) == pytest.approx(9.0e3 + 6.0e6 * 1.0e-3, rel=1e-12)
+
+
+def test_the_energy_is_the_area_under_the_table() -> None:
+    """Reference: analytic, trapezoids."""
+
+    expected = trapezoid((0.0, *FORCES), (0.0, *DEPTHS))
+    assert TABLE.energy(np.array([-11.0e-3, 11.0e-3])) == pytest.approx([expected] * 2, rel=1e-12)
+
+
+def test_parts_are_tables_again() -> None:
+    y = np.linspace(-12.0e-3, 12.0e-3, 25)
+    above, below = TABLE.one_sided(1), TABLE.one_sided(-1)
+    assert above is not None
+    assert below is not None
+    assert above.one_sided(-1) is None
+    np.testing.assert_allclose(above.force(y) + below.force(y), TABLE.force(y), atol=1e-8)
+    np.testing.assert_allclose(TABLE.shared(0.25).force(y), 0.25 * TABLE.force(y), atol=1e-8)
+    np.testing.assert_allclose(TABLE.behind(7.0e-3).force(y + 7.0e-3), above.force(y), atol=1e-8)
+
+
+def test_one_line_is_a_linear_stop() -> None:
+    """Reference: other code, the linear law; stiffnesses for the step among it."""
+    table, power = (
+        TableContact((1.0e-3,), (2.0e3,)).behind(5.0e-3),
+        PowerContact(2.0e6, 1.0).behind(5.0e-3),
+    )
+    y = np.linspace(-9.0e-3, 9.0e-3, 19)
+    np.testing.assert_allclose(table.force(y), power.force(y), rtol=1e-14)
+    assert table.slope_at(3.0) == pytest.approx(power.slope_at(3.0), rel=1e-12)
+
+
+def test_a_mass_on_a_table_swings_on_its_lines(one_mass: Callable[..., GapSystem]) -> None:
+    """Reference: analytic, ½ m v² is the area under the table, at the end of the stiff line."""
+    motion = Motion(one_mass(100.0, TABLE), 0.5, 1e-2, velocity=np.array([4.0]))
+    run = FixedStep(1e-5)(motion)
+    deepest = float(run.data["contact_force_peak"].max())
+    left = 0.5 * 4.0**2 - trapezoid((0.0, *FORCES[:2]), (0.0, *DEPTHS[:2]))
+    assert deepest == pytest.approx(np.sqrt(3.0e3**2 + 2.0 * 6.0e6 * left), rel=1e-5)
+    assert 3.0e3 < deepest < 9.0e3
+
+
+@pytest.mark.parametrize(
+    ("depths", "forces", "message"),
+    [
+        ((), (), "a table needs one force for each depth, and one at least"),
+        ((1e-3,), (1.0, 2.0), "a table needs one force for each depth, and one at least"),
+        ((1e-3, 1e-3), (1.0, 2.0), "depths must be finite and rise from above 0"),
+        ((0.0,), (1.0,), "depths must be finite and rise from above 0"),
+        ((1e-3,), (-1.0,), "forces must be positive, and must not fall at the end"),
+        ((1e-3, 2e-3), (2.0, 1.0), "forces must be positive, and must not fall at the end"),
+    ],
+)
+def test_bad_tables_are_refused(
+    depths: tuple[float, ...], forces: tuple[float, ...], message: str
+) -> None:
+    with pytest.raises(ValueError, match=f"^{message}$"):
+        TableContact(depths, forces)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The time step: its energy, order and symmetry, known contact problems, other codes."""
+"""The time step against closed forms of impacts and free motion."""
 
 import re
 from collections.abc import Callable
@@ -21,6 +21,7 @@ from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
+from studies.reference_models.impacting_beam import ELEMENTS, HEIGHT, falling, moreau_jean
 from tests.dynamics.reference import (
     end_of,
     errors_in_the_step,
@@ -426,3 +427,25 @@ def test_shims_touch_from_the_start() -> None:
     assert [run.first_contact for run in runs] == [0.0, 0.0]
     changes = [run.data.attrs["contact_changes"] for run in runs]
     assert changes[0] == changes[1] > 4
+
+
+def test_a_ball_rides_on_a_cantilever() -> None:
+    """Reference: other code, the scheme and the data of Siconos' ImpactingEulerBernouilliBeam, in
+    steps of 20 µs. A stiff contact with much damping stands for the restitution 0; both chatter,
+    and so does the time at which the ball leaves, after 50 ms."""
+    stop = PowerContact(1.0e7, 1.0, damping=5.0).lower().behind(HEIGHT)
+    run = FixedStep(1e-4)(falling(ELEMENTS, stop, 0.06))
+    expected = moreau_jean(2e-5)[::50] - [HEIGHT, 0.0]
+    found = np.column_stack([run.data["ball"], run.data["tip"]])
+    assert np.abs(found - expected).max() < 0.03 * np.ptp(expected[:, 1])
+    assert run.data.attrs["contact_changes"] > 10
+
+
+def test_blows_of_a_coarse_cantilever() -> None:
+    """Reference: other code, scipy's DOP853 with the same contact, through its blows."""
+    motion = falling(2, PowerContact(1.0e6, 1.0).lower().behind(HEIGHT), 0.03)
+    expected = runge_kutta(motion, 2e-5)
+    errors = errors_in_the_step(motion, expected, 4e-5 * 0.5 ** np.arange(4))
+    assert FixedStep(5e-6)(motion).data.attrs["contact_changes"] >= 6
+    assert slopes(errors)[1:] == pytest.approx(2.0, abs=0.2)
+    assert errors[-1] < 2e-5

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The mesh of a box is closed, exact, symmetric, and has lines where they were asked for."""
+"""Meshes of segments: uniform, graded, of polygons."""
 
 import re
 import resource
@@ -16,17 +16,22 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial import cKDTree
 
 from geometry.arrays import Array, Indices
-from geometry.boom import Collar, Diaphragm
+from geometry.boom import Boom, Collar, Diaphragm, PadSize
+from geometry.contact_places import pads
+from geometry.grading import graded_mesh
 from geometry.mesh import (
     SegmentMesh,
     collar_breaks,
     diaphragm_breaks,
     mesh_segment,
 )
-from geometry.plating import add_thickness
-from geometry.section import BoxSection
+from geometry.plating import add_thickness, plain_thickness
+from geometry.refinement import RefinementZone, refinement_zones
+from geometry.section import COMPONENT, BoxSection, Section
+from tests.geometry.test_polygon import ALL, regular
 from tests.shell_model.booms import box_segment
 
 WALLS = ("bottom", "right", "top", "left")
@@ -340,3 +345,158 @@ def test_meshing_keeps_signal_handlers() -> None:
         assert _signals("SigIgn") & pipe
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+SECTIONS = ALL | {"regular": regular(6, 0.25, 0.006)}
+PLATE_BREAKS = {"start": 0.0, "plate": 1.0, "end": 2.0}
+
+
+def meshes(section: Section) -> list[SegmentMesh]:
+    """Even, and graded towards the diaphragm."""
+    zone = RefinementZone((1.0, 0.0, -1.0), (1.0, 1.0, 1.0), 0.03, 0.5)
+    return [
+        mesh_segment(section, PLATE_BREAKS, 0.06, closed=("plate",)),
+        graded_mesh(section, PLATE_BREAKS, 0.2, [zone], closed=("plate",)),
+    ]
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_each_plate_has_its_place_area_and_thickness(name: str) -> None:
+    """Reference: analytic. The diaphragm fills the outline, and shares its edges with the walls."""
+    section = SECTIONS[name]
+    for mesh in meshes(section):
+        found, thickness = areas(mesh), plain_thickness(section, mesh)
+        for number, plate in enumerate(section.plates):
+            mine = mesh.walls == number
+            places = mesh.points[mesh.triangles[mine]].reshape(-1, 3)[:, 1:]
+            assert plate.distance(places).max() < 1e-12
+            assert found[mine].sum() == pytest.approx(2.0 * plate.length, rel=1e-12)
+            assert (thickness[mine] == plate.thickness).all()
+        assert found[~mesh.on_walls].sum() == pytest.approx(section.enclosed_area, rel=1e-12)
+        assert found.min() > 1e-3 * found.mean()
+        edges = np.sort(np.stack([mesh.triangles, np.roll(mesh.triangles, 1, axis=1)], axis=2))
+        shared = Counter(map(tuple, edges.reshape(-1, 2).tolist()))
+        ends = [edge for edge, count in shared.items() if count == 1]
+        assert set(mesh.points[np.unique(ends), 0]) == {0.0, 2.0}
+        welded = np.unique([edge for edge, count in shared.items() if count == 3])
+        assert mesh.points[welded, 0] == pytest.approx(np.ones(welded.size))
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_polygon_meshes_are_symmetric(name: str) -> None:
+    """Reference: symmetry. Corners and triangles, in each mirror of the section."""
+    section = SECTIONS[name]
+    for mesh in meshes(section):
+        for axis in section.mirrors:
+            mirror = np.ones(3)
+            mirror[COMPONENT[axis]] = -1.0
+            distance, image = cKDTree(mesh.points).query(mesh.points * mirror)
+            assert distance.max() < 1e-12
+            across = np.abs(mesh.points[:, COMPONENT[axis]])
+            assert across[across < 1e-9].max() == 0.0
+            assert set(map(tuple, np.sort(image[mesh.triangles], axis=1).tolist())) == set(
+                map(tuple, np.sort(mesh.triangles, axis=1).tolist())
+            )
+
+
+GRADED = BoxSection(height=0.4, width=0.3, flange=0.006, web=0.005)
+GRADED_BREAKS = {"start": 0.0, "middle": 2.0, "end": 5.0}
+CORNER = RefinementZone((2.0, 0.15, 0.2), (2.1, 0.15, 0.2), 0.02, 0.5)
+PAD = RefinementZone((4.9, 0.05, 0.2), (5.0, 0.11, 0.2), 0.015, 0.3)
+
+
+@pytest.fixture(scope="module", name="graded")
+def _mesh() -> SegmentMesh:
+    return graded_mesh(GRADED, GRADED_BREAKS, 0.1, [CORNER, PAD], closed=("middle",))
+
+
+def _longest(mesh: SegmentMesh) -> Array:
+    corners = mesh.points[mesh.triangles]
+    return np.asarray(np.linalg.norm(np.roll(corners, 1, axis=1) - corners, axis=2).max(axis=1))
+
+
+def test_graded_mesh_is_conforming_and_complete(graded: SegmentMesh) -> None:
+    """Reference: analytic. Two triangles at every edge, one at the ends, three at the diaphragm;
+    areas of walls and plate.
+    """
+    edges = Counter(
+        tuple(sorted((t[i], t[i - 1]))) for t in graded.triangles.tolist() for i in range(3)
+    )
+    at = {edge: graded.points[list(edge), 0] for edge in edges}
+    for edge, count in edges.items():
+        on_end = np.isin(at[edge], (0.0, 5.0)).all()
+        around = np.isclose(np.abs(graded.points[list(edge), 1]), 0.15).all()
+        around |= np.isclose(np.abs(graded.points[list(edge), 2]), 0.2).all()
+        at_plate = (at[edge] == 2.0).all() and around
+        assert count == (1 if on_end else 3 if at_plate else 2)
+    found = areas(graded)
+    assert found[graded.on_walls].sum() == pytest.approx(2.0 * 0.7 * 5.0, rel=1.0e-12)
+    assert found[~graded.on_walls].sum() == pytest.approx(0.3 * 0.4, rel=1.0e-12)
+
+
+@pytest.mark.parametrize("axis", [1, 2], ids=["y", "z"])
+def test_graded_mesh_is_symmetric(graded: SegmentMesh, axis: int) -> None:
+    places = {tuple(p): i for i, p in enumerate(np.round(graded.points, 9) + 0.0)}
+    mirrored = np.round(graded.points, 9)
+    mirrored[:, axis] *= -1.0
+    image = np.array([places[tuple(p)] for p in mirrored + 0.0])
+    triangles = {tuple(t) for t in np.sort(graded.triangles, axis=1).tolist()}
+    assert {tuple(t) for t in np.sort(image[graded.triangles], axis=1).tolist()} == triangles
+
+
+def test_graded_mesh_is_fine_in_zones_and_coarse_elsewhere(graded: SegmentMesh) -> None:
+    """Reference: analytic. No triangle is larger than its nearest spot allows; those a metre away
+    are rectangles' halves of 0.05 m across, and of 0.2 m along the boom as nearly as whole numbers
+    let them be.
+    """
+    places = np.column_stack([graded.points[:, 0], np.abs(graded.points[:, 1:])])
+    allowed = np.minimum(CORNER.edge_length(places), PAD.edge_length(places))
+    sides = _longest(graded) / np.sqrt(2.0)
+    assert (sides < 1.000001 * allowed[graded.triangles].min(axis=1)).all()
+    x = graded.points[graded.triangles, 0].mean(axis=1)
+    far = (x > 0.1) & (x < 0.9) & (np.abs(graded.points[graded.triangles, 1]).max(axis=1) < 0.15)
+    assert _longest(graded)[far] == pytest.approx(np.hypot(0.2, 0.05), rel=0.05)
+    uniform = mesh_segment(GRADED, GRADED_BREAKS, 0.015, closed=("middle",))
+    assert len(graded.triangles) < 0.15 * len(uniform.triangles)
+
+
+def test_lines_of_a_graded_mesh_are_complete(graded: SegmentMesh) -> None:
+    edges = {tuple(sorted((t[i], t[i - 1]))) for t in graded.triangles.tolist() for i in range(3)}
+    for name, x in GRADED_BREAKS.items():
+        for wall in graded.plates:
+            line = graded.lines[f"{name}:{wall}"]
+            ends = graded.points[line]
+            side = GRADED.width if wall in ("bottom", "top") else GRADED.height
+            lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+            assert lengths.sum() == pytest.approx(side, rel=1.0e-12)
+            assert (ends[:, :, 0] == x).all()
+            assert {tuple(sorted(edge)) for edge in line.tolist()} <= edges
+
+
+def test_refinement_zones_are_at_loads_supports_and_stiffeners(paper_boom: Boom) -> None:
+    """Reference: analytic, by hand, for the paper's outer segment with a collar and a diaphragm:
+    supports, stiffeners, the corners at 9 and, moved inwards, at 10 m; pads in their place. Four
+    times the tolerance, twice the size.
+    """
+    outer, inner = paper_boom.segments
+    assert outer.section is not None
+    assert inner.section is not None
+    b, h = 0.5 * outer.section.width, 0.5 * outer.section.height
+    stiff = replace(outer, collars=(Collar((8.0, 8.5), 0.01),), diaphragms=(Diaphragm(5.0, 0.01),))
+    boom = replace(paper_boom, segments=(stiff, inner))
+    found = refinement_zones(boom, 0, 0.01, "near webs", [], pads(boom))
+    assert [zone.low[0] for zone in found[:-2]] == [0.0, 2.0, 8.0, 8.5, 5.0]
+    assert all(zone.low[1:] == (0.0, 0.0) and zone.high[1:] == (b, h) for zone in found[:-2])
+    for zone, start in zip(found[-2:], (8.95, 9.9), strict=True):
+        assert zone.low == pytest.approx((start, b, h))
+        assert zone.high == pytest.approx((start + 0.1, b, h))
+        assert zone.size == pytest.approx(0.02)
+    loose = refinement_zones(boom, 0, 0.04, "near webs", [], pads(boom))
+    assert [zone.size for zone in loose] == pytest.approx([2.0 * zone.size for zone in found])
+    (joint,) = boom.joints
+    padded = replace(boom, joints=(replace(joint, pad=PadSize(0.1, 0.06)),))
+    near = 0.5 * inner.section.width
+    of_pads = refinement_zones(padded, 0, 0.01, "near webs", [], pads(padded))[-2:]
+    for zone, start in zip(of_pads, (9.0, 9.9), strict=True):
+        assert zone.low == pytest.approx((start, near - 0.06, h))
+        assert zone.high == pytest.approx((start + 0.1, near, h))

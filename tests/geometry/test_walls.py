@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What room a section leaves to another one, and what fits and touches in a boom."""
+"""Plates of a section, their clearances and contact faces, and the fit of pads."""
 
 import re
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from dynamics.contact import PowerContact
-from geometry.boom import Boom, BoomError, Stop
+from geometry.boom import Boom, BoomError, Joint, Material, Segment, SlidePad, Stop, Support
+from geometry.joint import PadSide
 from geometry.polygon import PolygonSection
 from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import BoxSection, Section
@@ -137,3 +139,27 @@ def test_a_box_is_inferred_in_boxes_alone(name: str) -> None:
     )
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         infer_inner_section(0.007, 2.2e-4, ALL[name], 0.007)
+
+
+BASE = BoxSection(height=0.56, width=0.26, flange=0.008, web=0.006)
+FLY = BoxSection(height=0.50, width=0.20, flange=0.006, web=0.005)
+# In m.
+WIDTHS: Mapping[PadSide, float] = {"above": 0.05, "below": 0.05, "left": 0.15, "right": 0.15}
+
+
+def padded(steel: Material, widths: Mapping[PadSide, float]) -> Boom:
+    """Return a boom in space with a pad on each side of its fly."""
+    held = (Support(0.0, "clamped"),)
+    base = Segment.of_section("base", 0.0, 6.0, steel, BASE, supports=held)
+    fly = Segment.of_section("fly", 5.0, 11.0, steel, FLY)
+    pads = tuple(SlidePad(0.1, width, side=side, thickness=0.02) for side, width in widths.items())
+    return Boom((base, fly), (Joint(0, 1, (5.0, 6.0), play=0.01, lateral_play=0.01, pads=pads),))
+
+
+def test_a_pad_has_the_room_of_its_own_wall(steel: Material) -> None:
+    """Half of a wall 0.5 m high has room for 0.15 m, half of one 0.2 m wide has not."""
+    assert padded(steel, WIDTHS).joints[0].padded
+    with pytest.raises(BoomError) as caught:
+        padded(steel, {**WIDTHS, "below": 0.15})
+    assert caught.value.where == "joints[0].pads[1].width"
+    assert caught.value.what.startswith("must be above 0 and not above half a wall of the inner")

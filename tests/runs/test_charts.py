@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Curves that a page carries: the samples of the files, and few enough of them."""
+"""Curves of the interactive charts, and their colours."""
 
 import base64
 import gzip
@@ -7,10 +7,12 @@ import json
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 
 from runs import CASES
 from runs.case.reading import load
 from runs.pipeline.model_quality import main_models
+from runs.report import theme
 from runs.report.charts import MOST, Chart, Curve, extremes, pack_charts, pack_plotly
 
 
@@ -85,3 +87,19 @@ def test_shell_beam_and_bonded_are_read_first(name: str, first: set[str]) -> Non
     """Reference: the case files."""
     case = load(str(CASES / f"{name}.toml"))
     assert main_models(case, [model.name for model in case.models]) == first
+
+
+def test_colours_can_be_told_apart() -> None:
+    """Reference: external, WCAG 2.1. A graphical object needs a contrast of 3 to the paper."""
+    for colour in (*theme.PALETTE, theme.PLAY_FREE, theme.LOSS):
+        linear = [
+            c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)
+        ]
+        luminance = float(np.dot(linear, [0.2126, 0.7152, 0.0722]))
+        assert 1.05 / (luminance + 0.05) > 3.0, colour
+
+
+def test_more_models_than_colours_still_differ() -> None:
+    names = [f"model {i}" for i in range(3 * len(theme.PALETTE))]
+    drawn = theme.strokes([*names, "bonded"], ["bonded"])
+    assert len(set(drawn.values())) == len(names) + 1

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What modules import: of each other without cycles, of libraries what a command needs."""
+"""Imports of modules, versions of the sources, and the paper as a client."""
 
 from __future__ import annotations
 
 import ast
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -15,6 +16,10 @@ from pathlib import Path
 import pytest
 
 from runs import CASES
+from runs.case import reading as case_file
+from runs.folder.versions import packages, program, sources
+from runs.paper.statements import STATEMENTS
+from runs.paper.verdicts import addition, evidence
 
 ROOT = Path(__file__).parents[2]
 # What each room knows besides itself.
@@ -132,3 +137,98 @@ def test_importing_the_package_keeps_warnings() -> None:
         [sys.executable, "-c", program], cwd=ROOT, check=True, capture_output=True, text=True
     )
     assert "UserWarning: heard" in done.stderr
+
+
+def test_every_module_counts_wherever_it_lies(tmp_path: Path) -> None:
+    package = tmp_path / "package"
+    deep = package / "inner" / "innermost"
+    deep.mkdir(parents=True)
+    for folder in (package, package / "inner", deep):
+        (folder / "__init__.py").touch()
+    (deep / "a.py").write_text("x = 1\n")
+    found = [sources([package])]
+    (deep / "a.py").write_text("x = 2\n")
+    found.append(sources([package]))
+    (deep / "a.py").rename(deep / "b.py")
+    found.append(sources([package]))
+    (deep / "b.py").rename(package / "b.py")
+    found.append(sources([package]))
+    assert len(set(found)) == 4
+
+
+def test_results_are_no_source(tmp_path: Path) -> None:
+    (tmp_path / "__init__.py").touch()
+    before = sources([tmp_path])
+    (tmp_path / "a.txt").touch()
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "a.py").touch()
+    assert sources([tmp_path]) == before
+
+
+def test_the_packages_are_found_by_themselves() -> None:
+    names = {package.name for package in packages()}
+    assert {"geometry", "dynamics", "beam_model", "shell_model", "runs"} <= names
+    assert "tests" not in names
+    assert program()["sources"] == sources(packages())
+
+
+PACKAGES = ("beam_model", "dynamics", "geometry", "protractile", "runs", "shell_model")
+CLIENT = ROOT / "runs" / "client.py", *(ROOT / "runs" / "paper").glob("**/*")
+KNOWS = re.compile(
+    r"\"S\d+\"|\bstatements?\b(?! import CaseKeys)|\bverdicts?\b|reproduced|contradicted|undecided"
+)
+
+
+def test_no_other_module_knows_the_paper() -> None:
+    """Neither modules nor templates of the report; who imports it: ``test_imports.py``."""
+    modules = [path for room in PACKAGES for path in (ROOT / room).glob("**/*.py")]
+    general = {*modules, *(ROOT / "runs/report/templates").iterdir()}.difference(CLIENT)
+    assert len(general) > 150
+    lines = [(path, line) for path in general for line in path.read_text("utf-8").splitlines()]
+    assert [(path, line) for path, line in lines if KNOWS.search(line)] == []
+
+
+TIP, CLOSE_UP, HEAD = "figure-tip", "figure-tip-close-up", "figure-head"
+SLOW = "figure-slow-peaks", "table-horizons", "table-slow-peaks"
+
+
+@pytest.mark.parametrize(
+    ("case", "changed"),
+    [
+        ("paper", {}),
+        ("paper-friction",
+         {
+             "S2": [*SLOW], "S3": [*SLOW, "table-peaks-against"],
+             "S7": [TIP, HEAD, "figure-friction", "table-whole"],
+             "S8": ["figure-friction", "figure-energy-residual", "table-steps"],
+         }),
+        ("three-segments", {"S6": [CLOSE_UP, HEAD, "figure-head-2"], "S11": [TIP, CLOSE_UP]}),
+    ],
+)  # fmt: skip
+def test_evidence_of_each_statement(case: str, changed: dict[str, list[str]]) -> None:
+    """Reference: the statements themselves; with friction others are meant."""
+    found = evidence(case_file.load(str(CASES / f"{case}.toml")))
+    assert {key: [*anchors] for key, anchors in found.items()} == {
+        "S1": [CLOSE_UP],
+        "S2": [TIP, *SLOW],
+        "S3": [TIP, *SLOW, "table-peaks-against"],
+        "S4": [CLOSE_UP, "table-pointwise"],
+        "S5": [CLOSE_UP],
+        "S6": [CLOSE_UP, HEAD],
+        "S7": ["figure-friction", "table-whole"],
+        "S8": ["figure-friction"],
+        "S9": ["table-laws"],
+        "S10": ["table-steps"],
+        "S11": [],
+    } | changed
+    assert [*found] == [*STATEMENTS]
+
+
+@pytest.mark.parametrize(("case", "numbers"), [("paper", (6, 7)), ("paper-friction", (8, 9))])
+def test_figures_name_their_counterparts(case: str, numbers: tuple[int, int]) -> None:
+    """Reference: the paper's Figs. 6 and 7 are without, 8 and 9 with friction."""
+    found = case_file.load(str(CASES / f"{case}.toml"))
+    remarks = addition(found, []).remarks
+    for place, number in zip(("tip", "head"), numbers, strict=True):
+        assert f"counterpart of Fig. {number} of the paper" in remarks[f"figure-{place}"]
+    assert addition(found.without_judgements(), []).remarks == {}
