@@ -47,9 +47,7 @@ def _loops(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Function]) -> None:
-    """Shells that stay in place come first, for the other workers to test while the first one
-    compiles; files without a slow test come last, and keep all workers busy to the end.
-    """
+    """Put slow files first, shells without motions before all, so that all workers stay busy."""
     slow = {item.path for item in items if item.get_closest_marker("slow")}
     items.sort(key=lambda item: (item.path not in slow, _moves(item)))
 

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Closed solutions of beams, to hold the models against.
-
-Nothing of them is shared with the library: statics by Macaulay's brackets, natural frequencies
-by the transcendental determinant of Euler-Bernoulli spans.
-"""
+"""Closed solutions of beams, independent of the library: statics by Macaulay's brackets,
+frequencies by determinants."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -80,9 +80,8 @@ def rest(system: GapSystem) -> tuple[float, float]:
 
 @pytest.mark.parametrize("stiffness", [3.0e7, 1.0e10], ids=["elastic", "stiff"])
 def test_statics_of_a_luffed_beam(beam: Beam, stiffness: float) -> None:
-    """Reference: analytic, by hand as above, for elements, which are exact at their nodes; the
-    force is that of the lever arm for every model; series lack the bend at the lug.
-    """
+    """Reference: by hand as above, exact at nodes of elements; the force is the lever arm's in
+    every model."""
     boom = luffed(beam, replace(CYLINDER, stiffness=stiffness))
     (segment,) = boom.segments
     expected = by_hand(segment, boom.cylinders[0])
@@ -130,9 +129,8 @@ def test_a_lowered_pin_needs_no_cylinder() -> None:
 
 @pytest.mark.parametrize("bonded", [False, True], ids=["one", "of two bonded"])
 def test_frequency_of_a_stiff_boom_on_its_cylinder(beam: Beam, bonded: bool) -> None:
-    """Reference: analytic, r √(k / I) about the hinge; beams of 1e4 times the stiffness of steel
-    follow within 2e-4, rigid ones to round-off.
-    """
+    """Reference: analytic, r √(k / I) about the hinge; stiff beams follow within 2e-4, rigid ones
+    to round-off."""
     stiff = Material(youngs_modulus=2.1e15, poissons_ratio=0.3, density=7850.0)
     whole = beam(supports=(HINGE,), material=stiff)
     parts = (replace(whole, end=6.0), replace(whole, start=6.0, supports=(), name="fly"))
@@ -161,8 +159,7 @@ def test_frequency_of_a_stiff_boom_on_its_cylinder(beam: Beam, bonded: bool) -> 
 
 def test_two_inclined_cylinders_hold_the_twist_by_the_slope(beam: Beam) -> None:
     """Reference: analytic, Bredt's shaft and Bernoulli's beam from a hinge that holds twist and
-    slope sideways: of what they read, q = b (s_z φ − s_x v′), springs k give −k q both ways.
-    """
+    slope sideways: of what they read, q = b (s_z φ − s_x v′), springs k give −k q both ways."""
     base = in_space(beam(supports=(Support(3.0, "hinged"),)))
     inner = in_space(beam(name="fly", start=7.0, end=9.0, section=SMALL))
     joint = Joint(0, 1, (7.2, 7.8), play=0.0, lateral_play=0.0, bonded=True)

@@ -64,9 +64,7 @@ def test_a_rigid_segment_on_its_hinge_loses_its_swing(
     beam: Callable[..., Segment], held: str
 ) -> None:
     """Reference: analytic. About its hinge, with an arm r: ζ = c r / 2√(k I), δ = 2πζ/√(1 − ζ²).
-
-    The line of the cylinder, from (1.4, −2) to (6, −0.5) m, passes the hinge at (3, −0.25) m.
-    """
+    The line of the cylinder, from (1.4, −2) to (6, −0.5) m, passes the hinge at (3, −0.25) m."""
     supports, cylinders = [Support(3.0, depth=0.25 if held == "cylinder" else 0.0)], []
     if held == "support":
         arm, damping = 2.5, 4.0e3

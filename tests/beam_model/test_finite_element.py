@@ -73,10 +73,8 @@ def test_frequencies_converge_at_order_four(
 
 @pytest.mark.parametrize("rotary_inertia", [False, True])
 def test_shear_flexible_frequencies_of_two_pinned_ends(beam: Beam, rotary_inertia: bool) -> None:
-    """Reference: analytic. w = W sin kx, θ = Θ cos kx in Timoshenko's equations.
-
-    GA k² W − GA k Θ = m̄ ω² W and (E J k² + GA) Θ − GA k W = I_p ω² Θ.
-    """
+    """Reference: analytic. w = W sin kx, θ = Θ cos kx in Timoshenko's equations. GA k² W − GA k Θ =
+    m̄ ω² W and (E J k² + GA) Θ − GA k W = I_p ω² Θ."""
     segment = beam(supports=(3.0, 8.0))
     shear = shear_stiffness(segment, "timoshenko")
     expected = []

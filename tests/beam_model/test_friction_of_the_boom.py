@@ -75,9 +75,8 @@ def test_the_ledger_closes_beside_damping_for_long(five_terms: GapSystem) -> Non
 
 
 def test_a_smaller_step_changes_little(five_terms: GapSystem) -> None:
-    """Reference: a finer step, 1e-6 s. A sixteenth of the step leaves a tenth of the error at most:
-    where a joint begins to stick or to slip within a step, the order is one.
-    """
+    """Reference: a finer step, 1e-6 s. The order is one where joints begin to stick: a sixteenth, a
+    tenth."""
     tips = [
         FixedStep(step)(Motion(five_terms, 2.0)).data["tip"].values
         for step in (2.56e-4, 1.6e-5, 1e-6)

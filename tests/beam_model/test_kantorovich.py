@@ -92,10 +92,7 @@ def test_printed_base_has_no_slope_at_its_first_support(paper_boom: Boom) -> Non
 def test_printed_inner_functions_keep_the_tip_on_the_tangent_at_the_tail(
     paper_boom: Boom,
 ) -> None:
-    """Reference: analytic. Each of (30), (31) has u(x4) = u(x2) + u'(x2) (x4 − x2).
-
-    So however many terms it has, the printed series is stiffer than the beam.
-    """
+    """Reference: analytic, u(x4) = u(x2) + u'(x2) (x4 − x2) of each of (30), (31)."""
     model = kantorovich_bending(paper_boom.segments[1], 9, "as printed", rotary_inertia=False)
     tangent = model.at(9.0) + 10.0 * slope(model, 9.0)
     assert np.abs(model.at(19.0) - tangent).max() < 1e-8
@@ -103,10 +100,8 @@ def test_printed_inner_functions_keep_the_tip_on_the_tangent_at_the_tail(
 
 @pytest.mark.parametrize("terms", [3, 24, 60])
 def test_complete_and_pinned_are_one_space_on_pinned_supports(paper_boom: Boom, terms: int) -> None:
-    """Reference: analytic, the same polynomials from their roots and from what is held.
-
-    With many terms the basis must rise in degree, or the lowest modes lose five digits.
-    """
+    """Reference: analytic, the same polynomials from their roots and from the supports, in rising
+    degree."""
     outer = paper_boom.segments[0]
     pinned, complete = (
         frequencies(kantorovich_bending(outer, terms, base, rotary_inertia=False))[:3]
@@ -168,12 +163,8 @@ def test_frequencies_fall_with_every_term(paper_boom: Boom, base: Base, number: 
 
 def test_pinned_outer_series_converges_to_the_beam(paper_boom: Boom) -> None:
     """Reference: other code, Hermite elements, and E J w = P a² (l + a)/3 under a force P at x3.
-
-    The reaction at x1 breaks the third derivative, so the error falls as a power of the number
-    of terms. Measured: four frequencies within 1e-3 at 12 terms and 1.5e-4 at 24, the compliance
-    at x3 within 4e-4 and 6e-5. Two terms are off by 11 % and more, by 16 % in the compliance;
-    as printed, 24 terms are still off by 2 to 3 %, by 5 % in the compliance.
-    """
+    Measured at 12 and 24 terms: frequencies within 1e-3 and 1.5e-4, compliance 4e-4 and 6e-5; as
+    printed 2 to 5 % off."""
     outer = paper_boom.segments[0]
     beam = finite_element_segment(outer, 0.125, (), "euler-bernoulli", False)
     fine = frequencies(beam.components["z"])[:4]

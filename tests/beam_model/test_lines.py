@@ -29,9 +29,8 @@ MODELS: dict[str, Callable[[Boom], list[SegmentModel]]] = {
 
 @pytest.mark.parametrize("kind", MODELS)
 def test_a_cantilever_bends_as_its_loads_ask(beam: Callable[..., Segment], kind: str) -> None:
-    """Reference: by hand. −100 N/m and −2000 N at the tip of a cantilever from 3 to 8 m: with
-    s = 8 − x, M = 2000 s + 50 s², which pulls at the top, V = −2000 − 100 s.
-    """
+    """Reference: by hand, −100 N/m and −2000 N at the tip: M = 2000 s + 50 s², V = −2000 − 100 s, s
+    = 8 − x."""
     segment = beam(supports=[Support(3.0, "clamped")], load=-100.0)
     boom = Boom((segment,), (), (Load(0, "z", -2000.0, 8.0, Step()),))
     models = MODELS[kind](boom)
@@ -50,11 +49,9 @@ def test_a_cantilever_bends_as_its_loads_ask(beam: Callable[..., Segment], kind:
 def test_section_forces_of_a_column_refer_to_the_straight_axis(
     beam: Callable[..., Segment], kind: str
 ) -> None:
-    """Reference: by hand, across the straight axis. −500 N/m and −44,049 N at the tip of a clamped
-    column of 5 m under half of Euler's force; P times the tip's deflection increases the moment.
-
-    The mean slope of M beside the clamp is 5 to 9 % more, that beside the tip twice the load.
-    """
+    """Reference: by hand. −500 N/m and −44,049 N on a column of 5 m under half of Euler's force, P
+    w adds to M. Mean slopes of M are 5 to 9 % more beside the clamp, twice the load beside the
+    tip."""
     free = beam(supports=[Support(3.0, "clamped")], load=-500.0)
     force = 0.5 * np.pi**2 * free.bending_stiffness / (4.0 * 5.0**2)
     pressed = with_compression([free], [], [Thrust(0, 8.0, force)])
@@ -71,9 +68,8 @@ def test_section_forces_of_a_column_refer_to_the_straight_axis(
 
 
 def test_joint_with_play_transfers_forces_of_the_lever_rule(paper_boom: Boom) -> None:
-    """Reference: by hand, 550.7 N upwards at 14 m on 9 and 10 m: the moment of the inner segment is
-    55.07 · 9²/2 N m at 10 m, pulling at the bottom, and its shear force jumps there by 2753.5 N.
-    """
+    """Reference: by hand, 550.7 N at 14 m on 9 and 10 m: M = 55.07 · 9²/2 N m at 10 m, V jumps
+    there by 2753.5 N."""
     models = finite_element_segments(paper_boom, 0.25, "euler-bernoulli", False)
     system = gap_system(touching(paper_boom, PowerContact(1e9, 1.0).behind(7e-3)), models)
     inner = lines(paper_boom, models)[1]
@@ -85,9 +81,8 @@ def test_joint_with_play_transfers_forces_of_the_lever_rule(paper_boom: Boom) ->
 
 
 def test_a_boom_in_space_bends_sideways_and_twists(spatial_boom: Boom) -> None:
-    """Reference: by hand. 300 N to the side at 19 m: with s = 19 − x, lateral moment −300 s of a
-    bonded boom in its inner segment, whose stations are the only other places that act on it.
-    """
+    """Reference: by hand. 300 N to the side at 19 m: lateral moment −300 (19 − x) in the inner
+    segment."""
     load = Load(1, "y", 300.0, 19.0, Step())
     boom = replace(spatial_boom.bonded, loads=(load,))
     models = finite_element_segments(boom, 0.5, "timoshenko", True)

@@ -31,9 +31,8 @@ def chain(boom: Boom, count: int) -> Boom:
 
 @pytest.mark.parametrize("kind", ["series", "elements"])
 def test_the_size_grows_with_the_number_of_segments(paper_boom: Boom, kind: str) -> None:
-    """Reference: the paper's 5.3. Every further segment adds the same number of equations, and the
-    two forces of its joint; nothing that is square in them.
-    """
+    """Reference: the paper's 5.3. Each segment adds as many equations and two forces, nothing
+    square."""
     law = PowerContact(1.0e9, 1.0).behind(7.0e-3)
 
     def model(boom: Boom, number: int, segment: Segment) -> SegmentModel:

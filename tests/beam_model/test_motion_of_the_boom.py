@@ -37,9 +37,8 @@ def test_energy_is_kept_for_ten_seconds(five_terms: GapSystem) -> None:
 
 
 def test_the_step_of_the_paper_keeps_the_first_peak(five_terms: GapSystem) -> None:
-    """Reference: other code, a finer step; 7 s in 4375 steps, as the paper's finite element run
-    with friction. Micro-impacts before the peak scatter it by 2 %.
-    """
+    """Reference: other code, a finer step; 4375 steps in 7 s as in the paper. Micro-impacts scatter
+    by 2 %."""
     coarse = FixedStep(1.6e-3)(Motion(five_terms, 7.0, output_step=1.6e-3))
     fine = FixedStep(1.0e-5)(Motion(five_terms, 0.7))
     assert coarse.data.attrs["steps"] == 4375
@@ -78,12 +77,8 @@ def test_the_first_contact_does_not_depend_on_the_step(five_terms: GapSystem) ->
 def test_with_friction_the_complete_series_follows_the_elements(
     paper_boom: Boom, series: Models, elements: Models
 ) -> None:
-    """Reference: other code, Hermite elements, through the paper's case with friction.
-
-    With friction the motion is regular, and series and elements can be held side by side after
-    their contacts too. Measured over 10 s with elements of 0.25 m: 0.11 % of the tip's range.
-    The paper's five terms are 8 % off.
-    """
+    """Reference: other code, Hermite elements. Friction makes the motion regular. Measured over 10
+    s with elements of 0.25 m: 0.11 % of the tip's range."""
     (joint,) = paper_boom.joints
     joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
     boom = replace(paper_boom, joints=(joint,))
@@ -122,10 +117,8 @@ def in_millimetres_and_tonnes(segment: Segment) -> Segment:
 
 @pytest.mark.parametrize("kind", ["series", "elements"])
 def test_units_do_not_matter(paper_boom: Boom, kind: str) -> None:
-    """Reference: analytic, the first contacts of the boom in mm, t and s, before chaos sets in.
-
-    k N/mⁿ are k/1000ⁿ N/mmⁿ.
-    """
+    """Reference: analytic, the first contacts of the boom in mm, t and s. k N/mⁿ are k/1000ⁿ
+    N/mmⁿ."""
     (joint,) = paper_boom.joints
     small = Boom(
         tuple(in_millimetres_and_tonnes(segment) for segment in paper_boom.segments),

@@ -56,9 +56,8 @@ def telescope(thrust: float, bonded: bool = False, **changes: object) -> Boom:
 
 
 def test_segment_held_by_contacts_only_tips_over(build: Build) -> None:
-    """Reference: analytic. Turned by θ about its middle a free beam gives way by P L θ²/2 against
-    the kinetic energy m̄ L³ θ̇²/24, with the shear and bending that it has besides 1e-3 more.
-    """
+    """Reference: analytic, P L θ²/2 of a free beam turned by θ against m̄ L³ θ̇²/24; shear and
+    bending add 1e-3."""
     thrust, boom = 5.0e3, telescope(5.0e3)
     fly = boom.segments[1]
     system = gap_system(touching(boom, PowerContact(1e9, 1.0).behind(5e-3)), build(boom))
@@ -69,9 +68,8 @@ def test_segment_held_by_contacts_only_tips_over(build: Build) -> None:
 
 
 def test_soft_walls_at_pads_lower_the_buckling_load(build: Build) -> None:
-    """Reference: analytic, P = a²/(2 c L) of a rigid fly of length L on two springs of compliance c
-    at a distance a; bending takes 0.3 % off. Without compliance joints are bonded.
-    """
+    """Reference: analytic, P = a²/(2 c L) of a rigid fly of length L on two springs of compliance
+    c; bending takes 0.3 %."""
     thrust, compliance = 5.0e3, 1.0e-4
     boom = telescope(thrust)
     models = build(boom)
@@ -112,9 +110,8 @@ def test_both_planes_buckle_each_by_its_own_stiffness(
 
 
 def test_buckling_factor_depends_on_the_locked_segment(build: Build) -> None:
-    """Reference: analytic, by order. Locked at the head the stiffer arm carries the force through
-    the overlap, at the tail the fly does; a cylinder from the arm's foot leaves the arm free of it.
-    """
+    """Reference: analytic, by order: the stiffer arm carries the force through the overlap, or the
+    fly."""
     factors = [
         critical_factor(boom, build(boom))
         for boom in (telescope(1e4, locked_at=at) for at in (6.0, 8.0, 0.0))
@@ -125,9 +122,8 @@ def test_buckling_factor_depends_on_the_locked_segment(build: Build) -> None:
 
 
 def test_the_static_tip_grows_as_the_buckling_factor_says(build: Build) -> None:
-    """Reference: analytic. δ ≈ δ₀/(1 − 1/λ) of a boom whose shape is near its buckling mode
-    (Timoshenko and Gere 1961), to 2 %.
-    """
+    """Reference: analytic, δ ≈ δ₀/(1 − 1/λ) near the buckling mode to 2 % (Timoshenko and Gere
+    1961)."""
     straight = gap_system(telescope(0.0).bonded, build(telescope(0.0)))
     factor = critical_factor(telescope(1e4), build(telescope(1e4)))
     assert factor is not None
@@ -138,10 +134,8 @@ def test_the_static_tip_grows_as_the_buckling_factor_says(build: Build) -> None:
 
 
 def test_in_play_the_boom_rests_as_its_contacts_let_it(build: Build) -> None:
-    """Reference: analytic. A rigid fly whose contacts are stiff leans on both stations as far as
-    its play lets it; the pressed boom's tip is the bonded one's and that of the tilt by 2Δ over
-    2 m.
-    """
+    """Reference: analytic. A rigid fly leans on both stations: the bonded boom's tip and the tilt
+    by 2Δ over 2 m."""
     boom = telescope(2.0e4)
     system = gap_system(touching(boom, PowerContact(1e12, 1.0).behind(5e-3)), build(boom))
     bonded = gap_system(boom.bonded, build(boom))
@@ -153,9 +147,8 @@ def test_in_play_the_boom_rests_as_its_contacts_let_it(build: Build) -> None:
 
 
 def test_weights_of_point_masses_press(build: Build) -> None:
-    """Reference: analytic. Of a mass at the tip Euler's cantilever, of the column's own weight
-    Greenhill's; both add up to 1 (Dunkerley; Timoshenko and Gere 1961), shear apart.
-    """
+    """Reference: analytic, Euler's and Greenhill's cantilevers, added by Dunkerley (Timoshenko and
+    Gere 1961)."""
     boom = alone(column(supports=CLAMP, masses=(PointMass(10.0, 5.0e4),)), 0.0, gravity=9.80665)
     (segment,) = boom.segments
     factor = critical_factor(boom, build(boom))

@@ -52,9 +52,8 @@ def test_a_condensed_system_answers_slow_forces_alike() -> None:
 
 
 def test_excited_modes_are_kept_before_slower_unexcited_modes() -> None:
-    """Reference: analytic, of pushes of one size that leave out every second mode the order by
-    b²/ω⁴ is that of ω; of 16 modes beside two blocks of four the slowest eighth of 24 is kept.
-    """
+    """Reference: analytic, by order b²/ω⁴ of pushes of one size; of 24 modes the slowest eighth is
+    kept."""
     whole = system()
     signs = np.sign(np.vstack([whole.rows, whole.friction_rows, whole.load]))
     signs[:, 1::2] = 0.0

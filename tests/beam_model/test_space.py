@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Booms in space: two planes and a twist, pads in the corners, friction of one plane by the
-other."""
+"""Booms in space: two planes and a twist, pads in the corners, friction across planes."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -66,10 +65,8 @@ def rolled(boom: Boom) -> Boom:
 def test_twisting_frequencies(
     beam: Beam, supports: tuple[Support, ...], numbers: tuple[float, ...], rigid: int
 ) -> None:
-    """Reference: analytic, ω = κ π/L √(G J_t / I), κ = ½, 3/2, … of a bar held at one end.
-
-    Linear elements are of order two, from above: (κπh/L)²/24.
-    """
+    """Reference: analytic, ω = κ π/L √(G J_t / I), κ = ½, 3/2, …; order two from above,
+    (κπh/L)²/24."""
     segment = in_space(beam(supports=supports))
     lateral = segment.lateral
     assert lateral is not None
@@ -223,10 +220,8 @@ def same(one: Trajectory, other: Trajectory, names: dict[str, str], tolerance: f
 def test_the_vertical_plane_is_the_flat_boom(
     spatial_boom: Boom, kind: str, duration: float
 ) -> None:
-    """Reference: the flat model. Without load sideways and without friction nothing leaves the
-    plane. Every press amplifies round-off: the elements' heads differ by 8e-15 of their range after
-    0.15 s, by 9e-11 after 0.4 s and by 3e-8 after 0.5 s.
-    """
+    """Reference: the flat model, to round-off, which each contact amplifies: 8e-15 after 0.15 s,
+    3e-8 after 0.5 s."""
     (joint,) = spatial_boom.joints
     flat = replace(spatial_boom, joints=(replace(joint, lateral_play=None),))
     runs = []
@@ -246,9 +241,8 @@ def test_the_vertical_plane_is_the_flat_boom(
 
 
 def test_a_boom_on_its_side_does_the_same_on_its_side(spatial_boom: Boom) -> None:
-    """Reference: analytic, the exchange of y and z. Loads, sections, plays and laws with it;
-    friction too, which couples the planes. The presses amplify round-off to 1e-13; from 0.16 s on
-    steps with 16 pressed frictions may have several solutions, and round-off decides for one."""
+    """Reference: analytic, the exchange of y and z. Contacts amplify round-off to 1e-13 until 0.16
+    s; later steps with 16 frictions may have several solutions."""
     (joint,) = spatial_boom.joints
     boom = pushed(replace(spatial_boom, joints=(replace(joint, friction=0.2),)), 40.0, 30.0)
     upright = gap_system(touching(boom, LAW, LATERAL_LAW), beams(boom))
@@ -324,8 +318,7 @@ def test_friction_takes_energy_and_gives_none(spatial_boom: Boom) -> None:
 
 
 def test_bonded_in_space_nothing_moves_between_the_segments(spatial_boom: Boom) -> None:
-    """Reference: analytic. The flat bonded boom's frequencies, those of the boom on its side, and
-    twisting ones beside them; no more rigid motions."""
+    """Reference: analytic, the flat boom's frequencies, those on its side, and twisting ones."""
     boom = pushed(spatial_boom, 5.0, 6.0)
     system = gap_system(boom.bonded, beams(boom))
     assert (system.omega2 > 1.0).all()

@@ -18,9 +18,8 @@ LAW = PowerContact(1.0e9, 1.0).behind(7.0e-3)
 
 
 def test_reactions_of_supports_and_stations_follow_the_lever_rule(paper_boom: Boom) -> None:
-    """Reference: by hand. 550.7 N upwards at 14 m on 9 and 10 m, all with 831.6 N at 5 m on 0 and
-    2 m.
-    """
+    """Reference: by hand. 550.7 N upwards at 14 m on 9 and 10 m, all with 831.6 N at 5 m on 0 and 2
+    m."""
     head = 550.7 * (14.0 - 9.0) / (10.0 - 9.0)
     tail = 550.7 - head
     far = -(831.6 * 5.0 + tail * 9.0 + head * 10.0) / 2.0
@@ -44,9 +43,7 @@ def test_reactions_of_supports_and_stations_follow_the_lever_rule(paper_boom: Bo
 
 
 def test_transferred_loads_are_counted_once(paper_boom: Boom) -> None:
-    """Reference: by hand, as above with the support at the inner segment's tail, 9 m: the ground
-    bears what is left there, and nothing where the outer segment's head holds the inner one.
-    """
+    """Reference: by hand, as above with the support at the inner segment's tail, 9 m."""
     outer, inner = paper_boom.segments
     moved = replace(outer, supports=(Support(0.0), Support(9.0)))
     boom = replace(paper_boom, segments=(moved, inner))
@@ -64,9 +61,7 @@ def test_transferred_loads_are_counted_once(paper_boom: Boom) -> None:
 
 
 def test_the_tip_turns_by_the_play(paper_boom: Boom) -> None:
-    """Reference: by hand. Without bending the play of 7 mm each way at 1 m lifts the tip by
-    7 + 14 · 9 mm.
-    """
+    """Reference: by hand. The play of 7 mm each way at 1 m lifts the tip by 7 + 14 · 9 mm."""
     stiff = replace(paper_boom.segments[0].material, youngs_modulus=2.1e14)
     segments = tuple(replace(segment, material=stiff) for segment in paper_boom.segments)
     hard = PowerContact(1.0e12, 1.0).behind(7.0e-3)

@@ -138,10 +138,9 @@ def test_a_spring_under_the_end_of_a_cantilever(
 def test_frequencies_with_a_rotational_spring_at_the_hinge(
     beam: Beam, model_of: Callable[[Segment], Component], stiffness: float
 ) -> None:
-    """Reference: analytic, between a pinned and a clamped end (Blevins 1979):
-    (kL/EJ) (1 + cos βL cosh βL) = βL (sin βL cosh βL − cos βL sinh βL). On the soft spring the beam
-    is nearly rigid, ω² = 3k/m̄L³, and the highest mode's round-off takes up to 2e-5 of that.
-    """
+    """Reference: analytic, between a pinned and a clamped end (Blevins 1979): (kL/EJ) (1 + cos βL
+    cosh βL) = βL (sin βL cosh βL − cos βL sinh βL). On the soft spring the beam is nearly rigid, ω²
+    = 3k/m̄L³, and the highest mode's round-off takes up to 2e-5 of that."""
     segment = beam(supports=(Support(3.0, rotation_stiffness=stiffness),))
     model = model_of(segment)
     assert model.rigid_modes == segment.rigid_modes == 0
@@ -199,10 +198,8 @@ def test_one_spring_leaves_a_rigid_motion(beam: Beam) -> None:
 
 
 def test_complete_functions_converge_on_any_supports(beam: Beam) -> None:
-    """Reference: other code, Hermite elements. A clamped, a pinned and an elastic support.
-
-    The reaction inside the span breaks the third derivative: order three in the terms.
-    """
+    """Reference: other code, Hermite elements. The reaction inside the span leaves order three in
+    the terms."""
     supports = (Support(3.0, "clamped"), Support(5.0), Support(8.0, stiffness=4.0e6))
     segment = beam(supports=supports)
     fine = frequencies(elements(segment))[:3]

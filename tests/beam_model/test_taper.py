@@ -42,9 +42,8 @@ def elements(boom: Boom, theory: Theory) -> list[SegmentModel]:
 
 @pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
 def test_default_elements_are_near_the_cone(theory: Theory) -> None:
-    """Reference: analytic, a truncated cone's tip, first frequency and critical force (Kirchhoff
-    1879, Dinnik 1929); a thousandth is what a boom's maker asks for, and this is a tenth of it.
-    """
+    """Reference: analytic, a cone's tip, first frequency and critical force (Kirchhoff 1879, Dinnik
+    1929), to 1e-4."""
     boom = taper.arm(0.1 * taper.critical())
     plain = replace(boom, segments=taper.arm().segments)
     system = gap_system(plain, elements(plain, theory))
@@ -59,9 +58,7 @@ def test_default_elements_are_near_the_cone(theory: Theory) -> None:
 
 @pytest.mark.parametrize("direction", ["z", "y"])
 def test_a_deep_arm_shears_as_it_should(direction: str) -> None:
-    """Reference: analytic, ∫ s²/(E J) + 1/(G A_s) dx by quadrature, of a box whose sizes change
-    each by its own law; without the shear it would be 3 % less.
-    """
+    """Reference: analytic, ∫ s²/(E J) + 1/(G A_s) dx by quadrature; without the shear 3 % less."""
     boom = Boom((arm(),), (), (Load(0, "z", 1.0, 8.0, Step()),))
     segment = boom.segments[0]
     if direction == "y":
@@ -88,9 +85,8 @@ def numbers(box: BoxSection) -> tuple[float, float, float, float]:
 
 
 def test_mass_equals_the_mass_of_the_plates() -> None:
-    """Reference: by hand, the volume of its walls: ∫ A dx = 8 (A_0 + 4 A_m + A_1)/6, and where its
-    middle is; series, elements and rigid segments, whose acceleration is felt by all of it.
-    """
+    """Reference: by hand, ∫ A dx = 8 (A_0 + 4 A_m + A_1)/6, and its centroid, for series, elements
+    and rigid segments."""
     sections = [ROOT, BoxSection(0.55, 0.425, 0.015, 0.01), HEAD]
     areas = [section.area for section in sections]
     mass = 7850.0 * 8.0 * (areas[0] + 4.0 * areas[1] + areas[2]) / 6.0
@@ -172,9 +168,8 @@ def test_twist_follows_the_local_constant() -> None:
 
 
 def test_sections_fit_where_they_touch() -> None:
-    """Reference: by hand. A fly that grows from 0.5 to 0.98 m is 0.62 m high at the head of an arm
-    of 0.6 m there, whose flanges are 20 mm thick, its own 10 mm: −0.05 m are free.
-    """
+    """Reference: by hand. The fly is 0.62 m high in an arm of 0.6 m, walls 20 and 10 mm: −0.05 m
+    are free."""
     outer = replace(arm(), head_section=replace(ROOT, height=0.6))
     inner = BoxSection(height=0.5, width=0.4, flange=0.01, web=0.01)
     fly = Segment.of_section(

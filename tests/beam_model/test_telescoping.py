@@ -73,9 +73,8 @@ def test_standing_on_the_way_is_the_boom_built_there(paper_boom: Boom, kind: str
 
 
 def test_three_segments_a_stop_and_dashpots_on_the_way(paper_boom: Boom) -> None:
-    """Reference: analytic, the boom whose segments lie there; a stop reads the last segment where
-    both joints have drawn it to.
-    """
+    """Reference: analytic, the boom whose segments lie there; a stop reads the last segment
+    there."""
     drives = (Drive(SCurve(1.0, 2.0), ("inner", "outer")), Drive(SCurve(2.0, 2.0), DRIVE.carriers))
 
     def built(ways: tuple[float, float], drives: Sequence[Drive | None]) -> GapSystem:
@@ -131,9 +130,8 @@ def test_a_slow_drive_follows_the_statics(paper_boom: Boom) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("thrust", [0.0, 1.0e5], ids=["free", "pressed"])
 def test_an_integration_of_its_own(paper_boom: Boom, thrust: float) -> None:
-    """Reference: other code, Hermite elements with moving rows and a moving thrust by Runge and
-    Kutta's method (DOP853), assembled in the tests; a second-order approach to it.
-    """
+    """Reference: other code, Hermite elements with moving rows and thrust by DOP853, to second
+    order."""
     history = SCurve(4.0, 0.4)
     boom = telescope(paper_boom, 0.0, Drive(history, DRIVE.carriers))
     segments = tuple(replace(segment, rotary_inertia=0.0) for segment in boom.segments)
@@ -280,9 +278,7 @@ def frequencies(system: GapSystem) -> Array:
 def test_a_pressed_boom_on_the_way_is_the_boom_built_there(
     paper_boom: Boom, kind: str, lock: tuple[Carrier, float | None]
 ) -> None:
-    """Reference: other code path, the boom whose segments lie there: its rest, its frequencies, and
-    the force under which it buckles, which is the smallest where it is farthest out.
-    """
+    """Reference: other code path, the boom built there: rest, frequencies, buckling force."""
     build, (carrier, x) = BUILDS[kind], lock
     boom = pressed(paper_boom, 0.0, replace(DRIVE, locked=carrier), x)
     system = gap_system(touching(boom, LAW), build(boom))
@@ -337,9 +333,8 @@ def test_a_slow_drive_follows_the_second_order_statics(paper_boom: Boom) -> None
 
 @pytest.mark.slow
 def test_the_ledger_and_the_order(paper_boom: Boom) -> None:
-    """Reference: analytic, the balance to round-off, with friction and dashpots
-    as well, and errors that fall with the square of the step.
-    """
+    """Reference: analytic, the balance to round-off with friction and dashpots; errors of order
+    two."""
     for changes in ({}, RESISTED):
         boom = pressed(paper_boom, 0.0, Drive(Stroke(4.0, 4.0, 0.2), DRIVE.carriers))
         boom = replace(boom, joints=(replace(boom.joints[0], **changes),))

@@ -29,10 +29,8 @@ def pad(start: float = 0.0, end: float = 0.1, side: int = 1) -> PressedArea:
 
 
 def test_a_tube_under_pressure_on_two_walls_bends_as_a_frame() -> None:
-    """Reference: analytic, frame of equal members, of which two carry an even load, without ν.
-
-    A joint turns by θ = p a³/48 D, and the loaded member deflects by p a⁴/720 D + θ a/6 on average.
-    """
+    """Reference: analytic, frame of equal members: θ = p a³/48 D at a joint, p a⁴/720 D + θ a/6 on
+    average."""
     span = ((-0.5 * SIDE, 0.5 * SIDE),)
     walls = PressedArea(0.0, LENGTH, "z", 1, span), PressedArea(0.0, LENGTH, "z", -1, span)
     compliance = wall_compliance.wall_compliance(tube(Material(2.1e11, 0.0, 7850.0)), walls)

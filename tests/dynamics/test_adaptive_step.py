@@ -67,9 +67,8 @@ def test_the_step_fits_the_output(one_mass: OneMass) -> None:
 
 
 def test_steps_without_contact_are_joined() -> None:
-    """Reference: other code path, every step on its own. The flow is exact, so that the motion is
-    the same to round-off until chaos amplifies it; a step in which a contact closes is never one
-    of those that are joined."""
+    """Reference: other code path, every step on its own, equal to round-off until chaos amplifies
+    it."""
     for step in (1e-2 / 64.0, 1e-2 / 96.0):
         motion = replace(MOTION, duration=0.5)
         joined, single = FixedStep(step)(motion), FixedStep(step)(unjoined(motion))
@@ -161,8 +160,7 @@ def test_mean_forces_of_two_steps_do_not_alternate(one_mass: OneMass) -> None:
 def test_unresolved_peak_is_marked(
     one_mass: OneMass, stiffness: float, exponent: float, speed: float
 ) -> None:
-    """Reference: analytic, k pⁿ at ½ m v² = k pⁿ⁺¹/(n + 1), which the step that is told finds: half
-    of √(m/F′(p))."""
+    """Reference: analytic, k pⁿ at ½ m v² = k pⁿ⁺¹/(n + 1), and half of √(m/F′(p)) for the step."""
     depth = ((exponent + 1.0) * 0.5 * speed**2 / stiffness) ** (1.0 / (exponent + 1.0))
     force, slope = stiffness * depth**exponent, exponent * stiffness * depth ** (exponent - 1.0)
     system = one_mass(2.0, PowerContact(stiffness, exponent).behind(1e-3))

@@ -59,9 +59,7 @@ def _rubbing(environment: dict[str, str]) -> str:
 def test_compiled_and_cached_loops_give_equal_bits(
     tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    """Reference: the same motion, in a process that has found all that the first one compiled:
-    one of the tests' own workers, or one with an empty folder for it.
-    """
+    """Reference: the same motion in a process that finds the loops compiled."""
     of_worker = rubbing.compiled_in(tmp_path_factory)
     environment = {} if of_worker.exists() else {"NUMBA_CACHE_DIR": str(tmp_path)}
     one = of_worker.read_text("utf-8") if of_worker.exists() else _rubbing(environment)

@@ -102,9 +102,7 @@ def test_bad_values_are_refused(arguments: dict[str, float], message: str) -> No
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 10.0])
 @pytest.mark.parametrize("force", [1.0e-40, 1.0e-18, 1.0e-3, 1.0e5, 1.0e200])
 def test_the_slope_is_known_at_any_force(exponent: float, force: float) -> None:
-    """Reference: analytic. k pⁿ = F, on the stiffer side; far less than a clearance and far more
-    than any number of a case among them.
-    """
+    """Reference: analytic, k pⁿ = F on the stiffer side, of extreme forces too."""
     n, k = exponent, 1.0e13
     law = PowerContact(0.5 * k, n, stiffness_below=k).behind(7.0e-3)
     assert law.slope_at(force) == pytest.approx(n * k * (force / k) ** ((n - 1.0) / n), rel=1e-9)
@@ -220,8 +218,7 @@ def test_a_mass_rebounds_as_it_should(
 
 
 def test_contact_never_pulls(one_mass: OneMass) -> None:
-    """A load tears a mass off a stop faster than 1/d: the contact lets go, and what it still
-    stored is lost."""
+    """A load tears a mass off a stop faster than 1/d: the contact opens and loses its energy."""
     stop = PowerContact(stiffness=1.0e4, exponent=1.0, damping=5.0).upper()
     system = one_mass(1.0, stop, force=-2.0e3)
     run = FixedStep(1e-5)(Motion(system, 0.05, output_step=1e-4, position=np.array([0.1])))

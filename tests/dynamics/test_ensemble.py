@@ -54,8 +54,7 @@ def test_a_member_is_a_run_of_the_changed_system(vary: Vary) -> None:
 
 
 def test_all_loads_vary_and_nothing_else() -> None:
-    """Reference: other code path, a single run of the system changed by hand; from a place and a
-    speed of its own."""
+    """Reference: other code path, a single run of the system changed by hand."""
     pushed = Excitation(np.array([1.0, -2.0]), Sine(0.7))
     system = replace(CHAOTIC, excitations=[pushed])
     start = {"position": np.array([0.01, 0.0]), "velocity": THROWN}

@@ -65,10 +65,8 @@ def position(frame: FrameMotion, time: Array, x: float, extension: MotionLaw) ->
 
 
 def test_accelerations() -> None:
-    """Reference: second differences of the place in axes that stand still, turned by both angles.
-
-    Slewing, luffing and telescoping act together.
-    """
+    """Reference: second differences of the place in fixed axes, turned by both angles and
+    extended."""
     frame = FrameMotion(LAWS[0], LAWS[1], 35.0, foot=0.5, radius=-1.2)
     extension, x, h = SCurve(2.0, 2.5), 9.0, 1.0e-4
     time = TIME[np.abs(np.subtract.outer(TIME, np.array(LAWS[1].kinks))).min(axis=1) > h]

@@ -159,8 +159,7 @@ THROWN = np.array([1.0, 0.3, -0.5])
 
 
 def test_two_coupled_rows_against_located_events() -> None:
-    """Reference: other code, scipy's DOP853 from event to event. A row that comes to rest within a
-    step keeps a speed of the order of the step, which returns as it sets out: order 1."""
+    """Reference: other code, scipy's DOP853 from event to event; the order is 1."""
     times = np.linspace(0.0, 12.0, 121)
     expected = motion_by_events(COUPLED, LIMITS, THROWN, times)
     slips = np.diff(expected @ COUPLED.friction_rows.T, axis=0)
@@ -199,9 +198,8 @@ def test_sticking_places_do_not_creep() -> None:
 
 
 def test_dependent_friction_rows_share_the_force() -> None:
-    """Reference: other code path. Three rows in a plane, one of them doubled with half the limit,
-    move as if each were there once; what can be said of the forces alone is their sum. Up to 9 s,
-    where the iteration cycles in one step, which is halved."""
+    """Reference: other code path. Doubled rows with half the limit move as single ones; only sums
+    of forces are unique."""
     row = COUPLED.friction_rows
     once = modes(np.sqrt(COUPLED.omega2), COUPLED.load, row, LIMITS)
     twice = modes(

@@ -43,9 +43,8 @@ def hoisted(
 
 
 def test_factor_of_a_rigid_boom() -> None:
-    """Reference: analytic, φ₂ = 1 + (v/g) √(k/m): a load that leaves the ground at the speed v
-    relative to the winch swings about its place on the rope by v √(m/k).
-    """
+    """Reference: analytic, φ₂ = 1 + (v/g) √(k/m) of a load that leaves the ground at the speed
+    v."""
     stiff = replace(mass_on_spring(), omega2=np.array([1.0e16]), load=np.zeros(1))
     load = HangingLoad(MASS, ROPE, GRAVITY, Stroke(3.0, SPEED), slack=0.0)
     motion = hoisted(load, stiff, 1.0, 1.0e-4)
@@ -121,10 +120,7 @@ def test_pendulum_on_a_support_with_a_constant_acceleration() -> None:
 
 
 def test_load_under_a_boom_at_constant_slewing_speed() -> None:
-    """Reference: analytic, the load hangs outwards by ψ̇² R l/(g − ψ̇² l) for small angles.
-
-    About this place it swings with √(g/l) ± ψ̇ in the frame of the boom.
-    """
+    """Reference: analytic, ψ̇² R l/(g − ψ̇² l) outwards, and a swing with √(g/l) ± ψ̇ about it."""
     stiff = replace(mass_on_springs(), omega2=np.full(2, 1.0e16))
     rate, own = np.deg2rad(10.0), np.sqrt(GRAVITY / 3.0)
     frame = FrameMotion(slew=Stroke(900.0, 10.0, 10.0), radius=-1.0)
@@ -143,10 +139,7 @@ def test_load_under_a_boom_at_constant_slewing_speed() -> None:
 
 
 def test_load_swings_during_slewing_and_luffing() -> None:
-    """Reference: other code, scipy's DOP853 of tip and load in the turning frame.
-
-    There the load has all terms of Coriolis, of Euler, and centrifugal ones. Order 2 in the step.
-    """
+    """Reference: other code, scipy's DOP853 with Coriolis, Euler and centrifugal terms. Order 2."""
     frame = FrameMotion(SCurve(80.0, 2.0), Stroke(-20.0, 15.0, 0.5), 50.0, 0.5, -1.0)
     place, out, length = 9.0, SCurve(1.0, 2.0), 3.0
     wind = Ramp(0.5)

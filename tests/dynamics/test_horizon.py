@@ -64,9 +64,8 @@ class Counted:
 
 
 def test_stops_when_it_is_known() -> None:
-    """Reference: by hand. Of the linear system the finer step and three runs of the largest change,
-    besides the motion itself; of the chaotic one three of each change. Within a quarter the finer
-    step alone has parted, and is not run to the end."""
+    """Reference: by hand, the numbers of runs: 4 besides the motion of the linear system, 3 for
+    each change of the chaotic one; within a quarter the finer step alone has parted."""
     sizes = [1e-12, 1e-10, 1e-8, 1e-6]
     for system, begun, ended in ((LINEAR, 1 + 3, 1 + 3), (CHAOTIC, 1 + 4 * 3, 4 * 3)):
         motion = Motion(system, 20.0, 1e-2)

@@ -39,11 +39,8 @@ def modes() -> GapSystem:
 
 @pytest.mark.parametrize("step", [1.0e-2, 1.0])
 def test_flow_is_the_matrix_exponential(step: float) -> None:
-    """Reference: other code, scipy.linalg.expm over (a, v, load, ramp, mean).
-
-    Each entry is held against the size that it has without decay, so that those that are
-    small because the step is small are not passed by.
-    """
+    """Reference: other code, scipy.linalg.expm over (a, v, load, ramp, mean), by the size without
+    decay."""
     flow = modal_flow(modes(), np.array([2.0 * step, step]))
     for k, (name, (omega2, damping, _)) in enumerate(MODES.items()):
         generator = np.zeros((5, 5))
@@ -64,12 +61,8 @@ def test_flow_is_the_matrix_exponential(step: float) -> None:
 def test_load_response_of_the_shortest_steps(
     one_mass: Callable[..., GapSystem], omega2: float, damping: float
 ) -> None:
-    """Reference: analytic, the series h²/2 − c h³/6 + (c² − ω²) h⁴/24 of r, h²/6 − c h³/24 +
-    (c² − ω²) h⁴/120 of p, and so on of u.
-
-    At the steps that contacts need, a difference of two numbers near one leaves few digits of
-    it, and a relative error of it acts as one of the load.
-    """
+    """Reference: analytic, the series h²/2 − c h³/6 + (c² − ω²) h⁴/24 of r, h²/6 − c h³/24 + (c² −
+    ω²) h⁴/120 of p, and so on of u; differences of numbers near one would leave few digits."""
     mode = one_mass(1.0, spring=omega2, dashpot=damping)
     flow = modal_flow(mode, times := np.array([1.0e-4, 1.0e-5, 1.0e-6]))
     for found, first in ((flow.gain, 2), (flow.ramp, 6), (flow.drift, 24)):

@@ -116,8 +116,7 @@ def test_random_steps_meet_their_laws(equal_rows: bool) -> None:
 
 
 def test_equal_friction_rows_stick_at_once() -> None:
-    """Reference: analytic, no slip below the friction limit. Pads in the corners of a rigid section
-    have equal friction rows, whose Jacobian is singular: no equation may get lost with a pivot."""
+    """Reference: analytic, no slip below the limit; equal rows make the Jacobian singular."""
     random, time = np.random.default_rng(3), 1.0e-3
     for _ in range(200):
         copies = random.permutation(np.repeat(random.normal(size=(3, 4)), 2, axis=0))

@@ -27,9 +27,8 @@ def _tipping(one_mass: Callable[..., GapSystem]) -> GapSystem:
 
 
 def test_modes_soften_as_the_whole_stiffness_does() -> None:
-    """Reference: analytic, the eigenvalues of diag(ω²) − G by another routine; what translates
-    keeps its ω of exactly 0.
-    """
+    """Reference: analytic, the eigenvalues of diag(ω²) − G by another routine; translations keep ω
+    = 0."""
     omega2 = np.array([0.0, 0.0, 4.0e2, 9.0e4])
     slope = np.array([[0.0, 0.3, 0.7, -0.2], [0.0, 0.5, -0.4, 0.6]])
     geometric = 20.0 * slope.T @ slope

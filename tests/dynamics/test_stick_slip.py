@@ -110,8 +110,7 @@ def test_other_drives_push() -> None:
 
 @pytest.mark.parametrize("start", [0.0, 0.1])
 def test_sudden_start_of_another_drive(start: float) -> None:
-    """Reference: analytic. A jump to v of another drive gives the impulse m_b v to all that is
-    pulled, which swings by m_b v/(m ω)."""
+    """Reference: analytic. A jump to v gives the impulse m_b v, and a swing by m_b v/(m ω)."""
     pulled = replace(ROPE, coupled_drives=((0.4 * MASS, Stroke(2.0, 1.0, start=start)),))
     time = np.linspace(0.0, 0.9, 901)
     found = move_segment(pulled, SCurve(1e-9, 1.0, start=5.0), time, np.zeros(time.size))
@@ -182,8 +181,7 @@ def missed(ratio: float, friction: Friction, counts: Array) -> list[float]:
 
 
 def test_order_in_the_step() -> None:
-    """Reference: other code, Runge and Kutta's method from event to event: the order is 2, however
-    near a time of an output events come."""
+    """Reference: other code, Runge and Kutta's method from event to event: the order is 2."""
     counts = np.array([1000, 1300, 1700, 2200, 8000, 11_000, 14_000, 20_000])
     off = missed(0.0, lambda t: FRICTION + 0.0 * np.asarray(t), counts)
     assert (np.array(off) * counts**2).max() < 0.15

@@ -95,11 +95,8 @@ def lossy(history: History, **changes: Any) -> GapSystem:
 
 
 def test_a_moving_force_on_a_beam() -> None:
-    """Reference: analytic, the series of a constant force that passes a simply supported beam
-    (Frýba 1972, Vibration of solids and structures under moving loads).
-
-    A mass of 1e-5 of the beam's on a stiff contact is that force.
-    """
+    """Reference: analytic, the series of a constant force on a simply supported beam (Frýba
+    1972)."""
     force, speed, count, stiffness, mass = 1.0e3, 20.0, 30, 1.0e7, 0.01
     law = PowerContact(stiffness, 1.0).lower()
     assert law is not None
@@ -139,8 +136,7 @@ def test_drive_has_no_effect_before_its_start(drawn: Drawn) -> None:
 
 
 def test_a_slow_drive_passes_through_places_of_rest() -> None:
-    """Reference: analytic, statics. A mass that is carried slowly deflects the beam as it does at
-    rest in each place, and the drive works against the slope that it makes."""
+    """Reference: analytic, statics in each place, and the work against the slope of the beam."""
     law = PowerContact(1.0e6, 1.0).lower()
     damping = np.append(0.2 * frequencies(8), 20.0)
     slow = rider(SCurve(2.5, 20.0), law, mass=20.0, weight=2.0e3, start=2.5, damping=damping)

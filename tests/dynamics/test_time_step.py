@@ -206,10 +206,7 @@ def test_motion_runs_back_through_its_contacts(exponent: float) -> None:
 
 
 def test_mass_on_a_spring_against_a_spring_stop(one_mass: OneMass) -> None:
-    """Reference: external source, SDND101 of the Code_Aster validation manual.
-
-    100 kg on 1e4 N/m meet a stop of 1e6 N/m without gap at 1 m/s; analytic, the impulse.
-    """
+    """Reference: external, SDND101 of the Code_Aster validation manual; analytic, the impulse."""
     stop = PowerContact(stiffness=1.0e6, exponent=1.0).upper()
     system = one_mass(100.0, stop, spring=1.0e4)
     run = FixedStep(1e-4)(Motion(system, 0.04, 1.0e-3, velocity=np.array([10.0])))
@@ -226,10 +223,7 @@ def crossings(time: Array, y: Array, level: float) -> Array:
 
 
 def test_falling_mass(one_mass: OneMass) -> None:
-    """Reference: external source, SDND108 of the Code_Aster validation manual.
-
-    1 kg falls from 0 at −1 m/s under 10 m/s² on a stop of 100 N/m at −2 m.
-    """
+    """Reference: external, SDND108 of the Code_Aster validation manual."""
     stop = PowerContact(stiffness=100.0, exponent=1.0).lower().behind(2.0)
     system = one_mass(1.0, stop, force=-10.0)
     run = FixedStep(1e-3)(Motion(system, 1.2, 1.0e-3, velocity=np.array([-1.0])))
@@ -322,10 +316,7 @@ def test_first_contact_late_at_once_or_never(
 
 
 def test_units_do_not_matter() -> None:
-    """Reference: analytic. The same system in mm, t and s, before chaos sets in.
-
-    √t·mm are √1000 times as many as √kg·m; forces in N stay what they are.
-    """
+    """Reference: analytic. The same system in mm, t and s, before chaos; √t·mm are √1000 √kg·m."""
     si, scale = two_modes(), np.sqrt(1000.0)
     law = PowerContact(si.laws[0].terms[0].stiffness / 1e6, 2.0).behind(1e3 * si.laws[0].above)
     small = replace(
@@ -403,8 +394,7 @@ def test_unloaded_segments_stay_at_rest(one_mass: OneMass) -> None:
 @pytest.mark.parametrize("what", ["linear", "Hertz", "unlike sides", "Hunt-Crossley"])
 @pytest.mark.parametrize("step", [5e-3, 5e-4, 5e-5])
 def test_a_peak_is_no_less_than_the_mean(what: str, step: float) -> None:
-    """Reference: analytic. A step in which a contact opens presses, too; whether it resolves the
-    press or not, no interval has a mean above its largest force."""
+    """Reference: analytic. No interval has a mean above its largest force, resolved or not."""
     run = FixedStep(step)(Motion(MOVED[what][0], 0.5, 1.0e-2, velocity=THROWN))
     means, peaks = (
         np.abs(run.data[name].values) for name in ("contact_force", "contact_force_peak")
@@ -430,9 +420,8 @@ def test_shims_touch_from_the_start() -> None:
 
 
 def test_a_ball_rides_on_a_cantilever() -> None:
-    """Reference: other code, the scheme and the data of Siconos' ImpactingEulerBernouilliBeam, in
-    steps of 20 µs. A stiff contact with much damping stands for the restitution 0; both chatter,
-    and so does the time at which the ball leaves, after 50 ms."""
+    """Reference: other code, scheme and data of Siconos' ImpactingEulerBernouilliBeam in steps of
+    20 µs. Both chatter, and so does the time at which the ball leaves, after 50 ms."""
     stop = PowerContact(1.0e7, 1.0, damping=5.0).lower().behind(HEIGHT)
     run = FixedStep(1e-4)(falling(ELEMENTS, stop, 0.06))
     expected = moreau_jean(2e-5)[::50] - [HEIGHT, 0.0]

@@ -55,10 +55,7 @@ def test_variables_dims_and_units(one_mass: Callable[..., GapSystem]) -> None:
 
 
 def test_rows_are_gathered_by_station(one_mass: Callable[..., GapSystem]) -> None:
-    """Three rows that share two stops move as two rows do, and report the same forces.
-
-    Reference: other code path, one whole row a station.
-    """
+    """Three rows at two stops report the forces of two rows. Reference: other code path."""
     row = np.array([[0.8], [-0.5]])
     whole = GapSystem(
         omega2=np.array([10.0]),
@@ -160,9 +157,7 @@ def test_first_peak_of_a_slow_motion(
 
 
 def test_rates_are_those_of_the_motion(one_mass: Callable[..., GapSystem]) -> None:
-    """Reference: analytic. a cos ω t has the velocity −a ω sin ω t, and between two outputs the
-    mean acceleration that the difference of their velocities is.
-    """
+    """Reference: analytic, −a ω sin ω t, and its difference quotients between outputs."""
     system = one_mass(2.0, spring=800.0)
     row = system.observers["tip"].row
     system = replace(
@@ -178,8 +173,7 @@ def test_rates_are_those_of_the_motion(one_mass: Callable[..., GapSystem]) -> No
 def test_blows_from_both_sides_within_an_output_interval_do_not_cancel(
     one_mass: Callable[..., GapSystem],
 ) -> None:
-    """Reference: analytic, v √(k m) of a free mass between two stops, each with a row of its own;
-    beside them the same stops in one row."""
+    """Reference: analytic, v √(k m) of a free mass between two stops in two rows, and in one."""
     both = one_mass(2.0, STOP)
     apart = replace(
         both,

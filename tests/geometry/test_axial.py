@@ -132,9 +132,7 @@ def test_a_lock_is_on_the_outer_segment_and_not_beyond_the_inner_one() -> None:
 def test_drawn_out_a_force_goes_along(
     carrier: Carrier, locked: float | None, entered: MovingForce | None
 ) -> None:
-    """Reference: other code path, the forces of the boom whose fly lies 1 m farther out or in, in
-    the places of the material.
-    """
+    """Reference: other code path, the forces of the boom built there."""
     ways = PiecewiseLinear([0.0, 1.0], [0.0, 1.0])
     rope, drive = [Thrust(1, 14.0, 1000.0)], Drive(ways, ("inner", "outer"), 0.0, carrier)
     joint = replace(JOINT, drive=drive, locked_at=locked)

@@ -42,11 +42,7 @@ def test_a_bonded_joint_has_none(paper_boom: Boom) -> None:
 
 
 def test_pads_in_space_are_in_the_corners(spatial_boom: Boom) -> None:
-    """Reference: analytic, by hand: 4 flange pads at each station, then 4 web pads at each.
-
-    The inner faces of the outer box, the webs and flanges of the inner one, and between the
-    two boxes the clearance.
-    """
+    """Reference: analytic, by hand: 4 flange pads at each station, then 4 web pads at each."""
     outer, inner = (segment.section for segment in spatial_boom.segments)
     assert outer is not None
     assert inner is not None
@@ -125,9 +121,8 @@ def test_shares_of_a_station_sum_to_one(spatial_boom: Boom) -> None:
 def test_a_station_presses_corners_evenly_or_about_itself(
     paper_boom: Boom, station: float, start: float, ends: tuple[float, float]
 ) -> None:
-    """Reference: analytic. A unit force whose resultant is at the station, on a tenth of a metre
-    of the outer segment, [0, 10] m: even within, along a line from 4/c down to -2/c at an end.
-    """
+    """Reference: analytic. A unit force whose resultant is at the station, on a tenth of a metre of
+    the outer segment, [0, 10] m: even within, along a line from 4/c down to -2/c at an end."""
     stretch = ContactInterval.from_station(paper_boom.segments[0], station, 0.1)
     assert (stretch.start, stretch.end) == pytest.approx((start, start + 0.1))
     assert stretch.line_load(np.array([start, start + 0.1])) == pytest.approx(ends)

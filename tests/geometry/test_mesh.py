@@ -107,9 +107,7 @@ def test_walls_lie_on_the_mid_lines(mesh: SegmentMesh) -> None:
 
 
 def test_diaphragm_fills_the_outline_and_shares_its_nodes(closed_mesh: SegmentMesh) -> None:
-    """Reference: analytic. Its area is the enclosed one; three triangles meet on its outline
-    within the segment, two at the segment's end; no two points coincide.
-    """
+    """Reference: analytic, the enclosed area; three triangles at its outline, two at an end."""
     for number, x in enumerate((9.0, 10.0), start=len(WALLS)):
         plate = closed_mesh.walls == number
         assert areas(closed_mesh)[plate].sum() == pytest.approx(BOX.height * BOX.width, rel=1e-12)
@@ -417,8 +415,7 @@ def _longest(mesh: SegmentMesh) -> Array:
 
 def test_graded_mesh_is_conforming_and_complete(graded: SegmentMesh) -> None:
     """Reference: analytic. Two triangles at every edge, one at the ends, three at the diaphragm;
-    areas of walls and plate.
-    """
+    areas of walls and plate."""
     edges = Counter(
         tuple(sorted((t[i], t[i - 1]))) for t in graded.triangles.tolist() for i in range(3)
     )
@@ -445,10 +442,8 @@ def test_graded_mesh_is_symmetric(graded: SegmentMesh, axis: int) -> None:
 
 
 def test_graded_mesh_is_fine_in_zones_and_coarse_elsewhere(graded: SegmentMesh) -> None:
-    """Reference: analytic. No triangle is larger than its nearest spot allows; those a metre away
-    are rectangles' halves of 0.05 m across, and of 0.2 m along the boom as nearly as whole numbers
-    let them be.
-    """
+    """Reference: analytic. Edges are within the nearest zone's limit; a metre away 0.05 m by nearly
+    0.2 m."""
     places = np.column_stack([graded.points[:, 0], np.abs(graded.points[:, 1:])])
     allowed = np.minimum(CORNER.edge_length(places), PAD.edge_length(places))
     sides = _longest(graded) / np.sqrt(2.0)
@@ -474,10 +469,8 @@ def test_lines_of_a_graded_mesh_are_complete(graded: SegmentMesh) -> None:
 
 
 def test_refinement_zones_are_at_loads_supports_and_stiffeners(paper_boom: Boom) -> None:
-    """Reference: analytic, by hand, for the paper's outer segment with a collar and a diaphragm:
-    supports, stiffeners, the corners at 9 and, moved inwards, at 10 m; pads in their place. Four
-    times the tolerance, twice the size.
-    """
+    """Reference: by hand, with a collar, a diaphragm and pads. Four times the tolerance, twice the
+    size."""
     outer, inner = paper_boom.segments
     assert outer.section is not None
     assert inner.section is not None

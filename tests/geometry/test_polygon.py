@@ -85,9 +85,7 @@ def test_an_upright_rectangle_is_a_box() -> None:
 
 
 def test_a_regular_hexagon() -> None:
-    """Reference: analytic. A hexagon of side a has the area (3√3/2) a² and J = (5√3/16) a⁴; the
-    walls' surfaces are hexagons of sides a ± t/√3.
-    """
+    """Reference: analytic, (3√3/2) a² and J = (5√3/16) a⁴ of hexagons of sides a ± t/√3."""
     side, wall = 0.2, 0.02
     section = regular(6, side, wall)
     outer, inner = side + wall / np.sqrt(3.0), side - wall / np.sqrt(3.0)
@@ -104,9 +102,7 @@ def test_a_regular_hexagon() -> None:
 
 
 def test_many_plates_are_a_tube() -> None:
-    """Reference: analytic, a thin tube: J = π r³ t, torsion 2 π r³ t, shear area π r t. The corners
-    of 240 plates are within 1e-4 of the circle.
-    """
+    """Reference: analytic, a thin tube: J = π r³ t, torsion 2 π r³ t, shear area π r t, to 1e-4."""
     radius, wall = 0.2, 1.0e-4
     tube = regular(240, 2.0 * radius * np.sin(np.pi / 240), wall)
     assert tube.second_moment_of_area == pytest.approx(np.pi * radius**3 * wall, rel=5e-4)

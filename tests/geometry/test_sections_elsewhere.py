@@ -72,8 +72,7 @@ def test_area_and_second_moments(name: str) -> None:
 def test_torsion_shear_areas_and_shear_centre_of_thin_walls(name: str) -> None:
     """Reference: other code, extrapolated from half and a quarter of the thickness to none: what
     corners carry otherwise than mid-lines goes with the thickness. It is 0.3 to 1.2 % of these
-    walls themselves.
-    """
+    walls themselves."""
     halves = [thinner(ALL[name], part) for part in (0.5, 0.25)]
     for key in OF_WALLS:
         half, quarter = (elsewhere(one)[key] / getattr(one, key) for one in halves)

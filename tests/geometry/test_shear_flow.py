@@ -11,9 +11,8 @@ from tests.geometry.test_polygon import ALL, HEXAGON, OCTAGON, TRAPEZOID, U
 
 
 def test_a_box_worked_by_hand() -> None:
-    """Reference: analytic. Over half a flange, b/2 long, q grows to c = t b h/4 J; over the web
-    it is c + (t/2J)(h²/4 − z²). J is that of the mid-lines.
-    """
+    """Reference: analytic, t b h/4 J at the end of half a flange, plus (t/2J)(h²/4 − z²) over the
+    web."""
     b, h, t = 0.4, 0.6, 0.01
     bending = t * h**3 / 6.0 + b * t * h**2 / 2.0
     corner, hump = t * b * h / (4.0 * bending), t * h**2 / (8.0 * bending)
@@ -39,9 +38,7 @@ def test_it_is_the_force_and_does_not_twist(name: str, direction: Direction) -> 
 @pytest.mark.parametrize("name", ALL)
 @pytest.mark.parametrize("direction", ["z", "y"])
 def test_carriers_hold_a_force_through_the_axis(name: str, direction: Direction) -> None:
-    """Reference: analytic. Read in a rigid motion, they give its part along the force, and no turn
-    about the axis.
-    """
+    """Reference: analytic. In a rigid motion they give its part along the force, and no turn."""
     section = ALL[name]
     found = section.shear_plates(direction)
     forces = sum(force * section.plates[n].tangent for n, force in found)

@@ -82,8 +82,7 @@ def test_unloaded_stop_gives_no_support(paper_boom: Boom, loads: tuple[Load, ...
 
 def test_a_collar_presses_a_stop_by_its_weight(steel: Material) -> None:
     """Reference: by hand. Beyond the hinge at 4 m weigh 75.36 kg/m · 10 m · 1 m, before it a collar
-    of 7850 kg/m³ · 1.4 m · 1 m · 30 mm on a lever of 3.5 m: 754 and 1154 kg m.
-    """
+    of 7850 kg/m³ · 1.4 m · 1 m · 30 mm on a lever of 3.5 m: 754 and 1154 kg m."""
     box = BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006)
     assert steel.density * box.area == pytest.approx(75.36)
     arm = Segment.of_section("arm", 0.0, 10.0, steel, box, supports=(Support(4.0),))

@@ -73,9 +73,8 @@ def test_no_segment_is_drawn_in_through_a_diaphragm(steel: Material) -> None:
 
 
 def test_tapered_segments_fit_all_of_the_way(steel: Material) -> None:
-    """Of 0.40 to 0.36 m over 10 m, and 0.34 to 0.30 m over 10 m from 5 m on, less walls, are free
-    26 mm at first; with the tail at 9 m 4 mm/m · 4 m less.
-    """
+    """Of 0.40 to 0.36 m and 0.34 to 0.30 m less walls 26 mm are free at first, 16 mm less at 9
+    m."""
     sections = (
         BoxSection(height, width, flange, web=0.006)
         for height, width, flange in (

@@ -49,10 +49,9 @@ def _smaller(section: Section, clear: float) -> PolygonSection:
 
 
 def test_room_between_inclined_plates() -> None:
-    """Reference: analytic. In a hexagon with the same gap g everywhere the flats leave 2 g along
-    z, and so do plates of the slope n_z, 2 g/n_z, more than that. Along y all is up to these:
-    2 g/n_y; where the play has been used up to one side, n_z times half of it is gone.
-    """
+    """Reference: analytic. In a hexagon with the same gap g everywhere the flats leave 2 g along z,
+    and so do plates of the slope n_z, 2 g/n_z, more than that. Along y all is up to these: 2 g/n_y;
+    where the play has been used up to one side, n_z times half of it is gone."""
     inner, gap = _smaller(HEXAGON, 0.01), 0.01
     n_y, n_z = HEXAGON.plates[1].tangent * [1.0, -1.0]
     n_y, n_z = HEXAGON.plates[1].tangent[1], -HEXAGON.plates[1].tangent[0]

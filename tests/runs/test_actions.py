@@ -75,9 +75,8 @@ def test_a_point_load_at_rest_bends_as_it_should(tmp_path: Path) -> None:
 
 
 def test_boom_at_rest_has_contact_forces_and_no_peak(tmp_path: Path) -> None:
-    """Reference: analytic. The lever rule on the stop, a cantilever's end under a uniform load that
-    a stiff stop carries with 3/8 of it.
-    """
+    """Reference: analytic, the lever rule on the stop; a stiff stop carries 3/8 of a uniform
+    load."""
     text = """
     [start]
     state = "equilibrium"
@@ -115,9 +114,8 @@ def test_a_released_load_leaves_the_beam_swinging(tmp_path: Path) -> None:
 
 
 def test_a_payload_hangs_from_the_tip_with_its_mass(tmp_path: Path) -> None:
-    """Reference: analytic. A mass far above the beam's own swings at √(3 E J / m L³) about the
-    deflection of its weight.
-    """
+    """Reference: analytic. A large mass swings at √(3 E J / m L³) about the deflection of its
+    weight."""
     moved = tip(tmp_path, "[payload]\nmass = 2e4\n")
     static = -2.0e4 * 9.80665 * 10.0**3 / (3.0 * BENDING)
     # A beam's mass adds 33/140 of itself to the tip (Rayleigh).
@@ -155,9 +153,7 @@ def test_the_ground_s_acceleration_is_a_load_on_every_mass(tmp_path: Path) -> No
 
 
 def test_a_thrown_segment_has_the_momentum_of_its_speed(tmp_path: Path) -> None:
-    """Reference: analytic. What the support leaves of ½ m v² is the modes' share of the momentum,
-    nearly all of it for a fine beam, which holds still at one point alone.
-    """
+    """Reference: analytic. The support leaves nearly all of ½ m v² of a fine beam."""
     results = run(tmp_path, "[start]\nvelocity = { beam = 0.1 }\n")
     kinetic = float(results.trajectories["kinetic_energy"].values[0, 0])
     whole = 0.5 * 831.6 * 0.1**2
@@ -165,9 +161,7 @@ def test_a_thrown_segment_has_the_momentum_of_its_speed(tmp_path: Path) -> None:
 
 
 def test_damping_of_all_modes_takes_the_energy(tmp_path: Path) -> None:
-    """Reference: analytic. From rest a mode of ratio ζ swings as e^(−ζ ω t) (cos ω' t +
-    ζ ω / ω' sin ω' t) with ω' = √(1 − ζ²) ω.
-    """
+    """Reference: analytic, e^(−ζ ω t) (cos ω' t + ζ ω / ω' sin ω' t) with ω' = √(1 − ζ²) ω."""
     text = """
     [damping]
     modal = 0.05

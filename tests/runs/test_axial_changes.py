@@ -46,11 +46,8 @@ def turning_beam(frame: FrameMotion, tip: float = 0.0) -> tuple[GapSystem, GapSy
 )
 @pytest.mark.parametrize("key", ["slew", "luff"])
 def test_frequency_of_a_rotating_cantilever(key: str, speed: float, flapping: float) -> None:
-    """Reference: published, Wright, Smith, Thresher and Wang (1982), rotating uniform beam.
-
-    Speeds and frequencies are in √(E J/m̄)/L². Normal to the plane of rotation the beam flaps; in
-    it, the square of the frequency is smaller by that of the speed.
-    """
+    """Reference: published, Wright, Smith, Thresher and Wang (1982), in √(E J/m̄)/L². In the plane
+    of rotation the square of the frequency is smaller by that of the speed."""
     rate = np.rad2deg(speed * UNIT)
     system, moving = turning_beam(FrameMotion(**{key: Stroke(20.0 * rate, rate, 1.0)}))
     found = np.sqrt(moving.at_time(10.0).in_own_modes().omega2.min()) / UNIT
@@ -60,10 +57,7 @@ def test_frequency_of_a_rotating_cantilever(key: str, speed: float, flapping: fl
 
 
 def test_luffing_beam_column() -> None:
-    """Reference: other code, scipy's LSODA of three modes of a cantilever with a mass at its tip.
-
-    The weight along the beam grows to a sixth of the buckling load as the beam rises to 80 degrees.
-    """
+    """Reference: other code, scipy's LSODA of three modes; the weight along grows to P_crit/6."""
     frame = FrameMotion(luff=SCurve(80.0, 1.0), gravity=10.0)
     system, moving = turning_beam(frame, tip=2.0e4)
     motion = FixedStep(5.0e-4)(build_motion(moving, 2.0, 0.01, at_rest=False))

@@ -26,8 +26,7 @@ def legend(sheet: Figure) -> list[str]:
 
 
 def test_a_lift_stands_at_its_angle() -> None:
-    """Reference (analytic): a tip 15.7 m from the foot at 45 degrees is 11.10 m off and high; the
-    ground of the cylinder at (0.7, -1.1) is at (1.273, -0.283)."""
+    """Reference (analytic): a tip 15.7 m from the foot at 45 degrees is 11.10 m off and high."""
     whole = drawn("lift").axes[0]
     places = np.concatenate([line.get_xydata() for line in whole.lines])
     for reference in ((11.1016, 11.1016), (1.2728, -0.2828)):

@@ -94,10 +94,8 @@ def test_a_boom_rests_in_calculix_as_here(
 def test_boxes_buckle_in_calculix_as_here(
     tmp_path: Path, box: LoadedBox, n: int, count: int, tolerance: float
 ) -> None:
-    """Reference: other code, CalculiX, linear buckling under loads at the ends on the same mesh.
-
-    The lowest factor is above 1 and below 2, since CalculiX may leave out others.
-    """
+    """Reference: other code, CalculiX, linear buckling on the same mesh; factors between 1 and
+    2."""
     shell, load, forces = box.pressed(n)
     text = deck(box.name, [shell], [], [load], f"*BUCKLE\n{count}")
     (tmp_path / "box.inp").write_text(text, "utf-8")

@@ -106,9 +106,8 @@ def test_a_calibrated_beam_gives_way_as_the_shell(built: dict[str, BuiltModel]) 
 
 
 def test_it_moves_as_the_shell(built: dict[str, BuiltModel]) -> None:
-    """Reference: other code, the shell's tip as a part of its range, which textbook beams miss by
-    several times as much. A series has no shear but that of its springs.
-    """
+    """Reference: other code, the shell's tip as a part of its range; textbook beams miss it by
+    far."""
     shell = tip(built["shell"].system)
 
     def error(name: str) -> float:

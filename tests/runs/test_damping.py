@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Damped booms that their weight presses keep their energy ledger at the steps chosen for them.
-
-Reference of all: analytic, conservation of energy.
-"""
+"""Energy balance of damped booms under their weight. Reference: conservation of energy."""
 
 from pathlib import Path
 

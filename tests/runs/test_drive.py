@@ -249,8 +249,7 @@ def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
 
 
 def test_drive_works_against_axial_forces(tmp_path: Path) -> None:
-    """Reference: analytic, half of 550.7 kg and a rope of 20 kN over 4 m, beside what bending and
-    friction take without them."""
+    """Reference: analytic, half of 550.7 kg and a rope of 20 kN over 4 m."""
     path = Path(case_file(tmp_path, "duration = 7.0", "duration = 0.3"))
     text = path.read_text(encoding="utf-8").replace("time = 5.0", "time = 0.2")
     text = text.replace("normal_forces = [0.0, 0.0]", "normal_forces = [0.0, 0.0]\nlocked_at = 1.0")

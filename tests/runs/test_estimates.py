@@ -101,9 +101,8 @@ def memory(*arguments: str) -> int:
 def test_memory_is_not_above_the_estimate_and_not_far_below(
     edits: tuple[tuple[str, str], ...], options: tuple[str, ...], members: int | None
 ) -> None:
-    """Reference: external, what the operating system has counted; a first run of all, which
-    compiles, takes three times as much as a later one.
-    """
+    """Reference: external, the count of the operating system; a first run takes three times as
+    much."""
     write(*edits)
     case = case_file.load("case.toml")
     case = case_file.select(case, "case.toml", [options[1]], members=members)
@@ -122,9 +121,7 @@ def test_memory_is_not_above_the_estimate_and_not_far_below(
     ],
 )  # fmt: skip
 def test_times_are_within_a_factor_of_two(name: str, seconds: float) -> None:
-    """Reference: external, wall times of all models on two cores without other load, as
-    ``summary.json`` has them, of a first run with compiled code.
-    """
+    """Reference: external, wall times of all models on two idle cores, in ``summary.json``."""
     case = case_file.load(str(CASES / f"{name}.toml"))
     assert 0.5 * seconds <= models_cost(Preview(CheckedCase(case))).seconds <= 2.0 * seconds
 
@@ -142,9 +139,7 @@ def test_short_times_are_in_seconds(seconds: float, text: str) -> None:
     [("paper", 0.1, 0.01), ("paper", 0.2, 0.001), ("lift", 0.1, 0.002), ("spatial", 0.1, 0.002)],
 )
 def test_dofs_of_a_graded_mesh_are_estimated(name: str, mesh_size: float, tolerance: float) -> None:
-    """Reference: the meshes themselves, of 21 dofs for each point; at a tolerance of 0.001 a fixed
-    number for each square of the mesh size is 2.4 times low.
-    """
+    """Reference: the meshes themselves, 21 dofs a point."""
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     from shell_model.boom_shell import segment_mesh
 
@@ -178,9 +173,8 @@ def test_excessive_memory_or_time_is_refused(edits: tuple[tuple[str, str], ...],
 
 @pytest.mark.parametrize("name", ["lift", "coarse"])
 def test_a_check_of_short_elements_is_soon_done(name: str) -> None:
-    """Reference: other code path, elements of 0.5 m, whose buckling factor and damping are within
-    1 %. Elements of 4 mm take 10 000 coordinates, whose eigenproblem would take minutes.
-    """
+    """Reference: other code path, elements of 0.5 m within 1 %; those of 4 mm would take
+    minutes."""
     text = (CASES / f"{name}.toml").read_text(encoding="utf-8")
     told = []
     for length in ("0.5", "0.004"):

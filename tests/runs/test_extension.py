@@ -144,9 +144,7 @@ def test_a_drawn_out_case_reads_back_as_itself() -> None:
 
 @pytest.mark.parametrize(("extension", "tip"), [(1.0, 12.0), (4.0, 18.0), (8.5, 27.0)])
 def test_one_key_draws_all_segments_out(extension: float, tip: float) -> None:
-    """Reference: analytic. The tip is at the base's length and both extensions; overlaps are what
-    is left of the lengths, and what is on a segment keeps its distance from its ends.
-    """
+    """Reference: analytic, lengths, extensions and overlaps; distances from ends are kept."""
     boom = build_boom(change(case_of(CRANE), **{"joint.extension": extension}))
     base, middle, fly = boom.segments
     assert boom.tip == pytest.approx(tip, rel=1e-15)
@@ -208,9 +206,8 @@ def test_a_contradiction_is_one_line(relative: str, wrong: str, line: str) -> No
 
 
 def test_frequencies_over_the_extension_are_one_command() -> None:
-    """Reference: analytic, the exact frequencies of the play-free boom (its determinant). The first
-    one falls as the boom grows, and play makes no boom stiffer.
-    """
+    """Reference: analytic, exact frequencies of the boom without play; play makes no boom
+    stiffer."""
     case_of(PAPER)
     command = ["frequencies", "crane.toml", "--vary", "joint.extension=5:9:3", "--out", "out"]
     with pytest.raises(SystemExit) as ended:

@@ -99,9 +99,7 @@ def test_a_uniform_load_bends_between_nodes(tmp_path: Path) -> None:
 
 
 def test_largest_values_of_a_sine_and_a_ramp(tmp_path: Path) -> None:
-    """Reference: analytic. The sine is largest at a quarter of its period and pulls the arm back
-    at three quarters, where the moments of both loads add up.
-    """
+    """Reference: analytic, the sine at a quarter of its period, and at three quarters the sum."""
     found = extremes_of(tmp_path, boom_of(RAMP + SINE))
     arm = found["stress, arm at 0 m"]
     inertia = build_boom(read_case(tmp_path, boom_of(RAMP))).segments[0].second_moment_of_area
@@ -244,9 +242,8 @@ def answers(model: str, folder: Path, case: str = CASE) -> ModelDesignResults:
 
 
 def test_sudden_load_doubles_the_static_results(tmp_path: Path) -> None:
-    """Reference: analytic. A boom of one coordinate swings around its rest from zero: everything
-    is twice what it is at rest, at half a period, which the output step meets within 1e-5.
-    """
+    """Reference: analytic. A boom of one coordinate swings to twice its rest after half a
+    period."""
     series = 'kind = "kantorovich"\nterms = [1]\nbase = "complete"'
     found = answers(series, tmp_path)
     assert found.motion is not None
@@ -263,9 +260,7 @@ def test_sudden_load_doubles_the_static_results(tmp_path: Path) -> None:
 
 
 def test_stress_and_reactions_at_rest_are_those_of_hand(tmp_path: Path) -> None:
-    """Reference: by hand. 1000 N/m on 10 m: 10 kN and 50 kN m at the wall, σ = M c/J with
-    c = (0.40 + 0.008)/2 m.
-    """
+    """Reference: by hand. 1000 N/m on 10 m: 10 kN, 50 kN m, σ = M c/J with c = 0.204 m."""
     beam = 'kind = "finite-element"\ntheory = "timoshenko"\nelement_length = 0.25'
     found = answers(beam, tmp_path)
     assert found.motion is not None
@@ -282,9 +277,7 @@ def test_stress_and_reactions_at_rest_are_those_of_hand(tmp_path: Path) -> None:
 
 
 def test_lateral_reactions_are_reported(tmp_path: Path) -> None:
-    """Reference: by hand. On 6 and 5 m 1000 N/m across and 500 N/m from the side: 11 and 5.5 kN,
-    1000 (6 · 3 + 5 · 7.5) N m and half of that at the wall, no torque.
-    """
+    """Reference: by hand: 11 and 5.5 kN, 1000 (6 · 3 + 5 · 7.5) N m and half of it, no torque."""
     beam = 'kind = "finite-element"\ntheory = "timoshenko"\nelement_length = 0.25'
     found = answers(beam, tmp_path, SIDEWAYS)
     assert found.motion is not None
@@ -298,9 +291,7 @@ def test_lateral_reactions_are_reported(tmp_path: Path) -> None:
 
 
 def test_outer_corners_lie_on_the_outer_surfaces() -> None:
-    """Reference: by hand. Half a thickness beyond the mid-lines of a box; of a hexagon no more
-    than that.
-    """
+    """Reference: by hand, half a thickness beyond the mid-lines; of a hexagon no more."""
     y, z = outer_corners(BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006))
     np.testing.assert_allclose(np.abs(y), 0.153)
     np.testing.assert_allclose(np.abs(z), 0.204)

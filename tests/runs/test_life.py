@@ -11,27 +11,23 @@ from runs.pipeline.strength import StressHistory, count_stress_ranges, endurance
 
 
 def test_cycles_are_those_of_the_standard() -> None:
-    """Reference: external. The example of ASTM E1049-85, figure 6: one half and three halves of 3
-    and 4, a half of 6, one of 8, a half of 9.
-    """
+    """Reference: external, ASTM E1049-85, figure 6: 3 and 4, 6, 8, 9 in half cycles."""
     found = count_stress_ranges([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0])
     expected = {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
     assert dict(zip(found.sizes.tolist(), found.counts.tolist(), strict=True)) == expected
 
 
 def test_a_curve_has_the_points_of_the_code() -> None:
-    """Reference: external. EN 1993-1-9, 7.1: category 71 bears 2e6 cycles of 71 N/mm², 5e6 of
-    0.737, 1e8 of 0.549 of these, by hand 52.3 and 28.7 N/mm²; less does nothing.
-    """
+    """Reference: external, EN 1993-1-9, 7.1, category 71: 2e6 cycles of 71 N/mm², 52.3 and 28.7
+    N/mm²."""
     sizes = 1e6 * np.array([142.0, 71.0, 52.31, 40.0, 28.74, 28.70])
     expected = [2e6 / 8.0, 2e6, 5e6, 5e6 * (52.31 / 40.0) ** 5, 1e8, np.inf]
     np.testing.assert_allclose(endurance(sizes, 71e6), expected, rtol=1e-3)
 
 
 def test_damage_of_a_sine_equals_the_damage_of_its_cycles() -> None:
-    """Reference: by hand. Ten cycles of 100 MPa at category 71 and a factor 1.15: the damage of a
-    run 10/2e6 (115/71)³, that of a life 20 000 times as much, the equivalent range 10^⅓ 100 MPa.
-    """
+    """Reference: by hand, 10/2e6 (115/71)³ of a run, 20 000 times that of a life, range 10^⅓ 100
+    MPa."""
     time = np.linspace(0.0, 10.0, 10 * 400 + 1)
     stress = 50e6 * np.cos(2.0 * np.pi * time)
     table = LifeTable(detail_category=71.0, partial_factor=1.15, repeats=20_000)

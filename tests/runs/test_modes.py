@@ -40,9 +40,7 @@ def found(boom: Boom, models: list[SegmentModel]) -> list[Mode]:
 
 
 def test_modes_are_those_of_an_exact_beam(arm: Boom) -> None:
-    """Reference: analytic. A cantilever's (βL)² = 3.51602, 22.0345 in both planes; and
-    √(GJ/I) / 4L of its first twist (Blevins 1979).
-    """
+    """Reference: analytic, (βL)² = 3.51602, 22.0345 and √(GJ/I) / 4L (Blevins 1979)."""
     root, lateral = arm.segments[0], arm.segments[0].lateral
     assert lateral is not None
     first = finite_element_segments(arm, 0.5, "euler-bernoulli", rotary_inertia=False)
@@ -61,9 +59,7 @@ def test_modes_are_those_of_an_exact_beam(arm: Boom) -> None:
 
 
 def test_a_mode_is_found_again_whatever_its_place(arm: Boom) -> None:
-    """Reference: the same boom on its side, whose planes are exchanged: shapes are alike where they
-    move the same way, and nowhere else.
-    """
+    """Reference: the same boom on its side, whose planes are exchanged."""
     models = finite_element_segments(arm, 0.5, "euler-bernoulli", rotary_inertia=False)
     series = kantorovich_segments(arm, [12, 4], "complete", rotary_inertia=False)
     here, there = found(arm, models), found(arm, series)
@@ -80,9 +76,8 @@ def test_a_mode_is_found_again_whatever_its_place(arm: Boom) -> None:
 
 
 def test_rigid_segments_swing_on_their_springs(steel: Material) -> None:
-    """Reference: analytic. A bar of mass m on two equal springs at its ends: ω² = 2k/m of its
-    heave and k L²/2I of its pitch.
-    """
+    """Reference: analytic, ω² = 2k/m of the heave and k L²/2I of the pitch of a bar on two
+    springs."""
     bar = Segment.of_section("bar", 0.0, 4.0, steel, BOX)
     segment = replace(bar, supports=(Support(0.0, stiffness=1e6), Support(4.0, stiffness=1e6)))
     boom = Boom((segment,), ())

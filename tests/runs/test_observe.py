@@ -57,9 +57,8 @@ def turned(folder: Path, model: str) -> Results:
     ["kantorovich-5", "beam-fe", "timoshenko", pytest.param("shell", marks=pytest.mark.slow)],
 )  # fmt: skip
 def test_a_free_segment_turns_as_a_rigid_body(tmp_path: Path, model: str) -> None:
-    """Reference: analytic. Until it touches, x moves by (0.01 + 0.02 (x − 9)) t, and nothing
-    accelerates; the first contact is where the head's play of 7 mm is taken, at 0.233 s.
-    """
+    """Reference: analytic, (0.01 + 0.02 (x − 9)) t until the head's play of 7 mm is taken at 0.233
+    s."""
     if model == "shell":
         pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     data = turned(tmp_path, model).trajectories.isel(model=0)
@@ -104,9 +103,7 @@ def test_segments_in_space_turn_in_both_planes(tmp_path: Path, kind: str) -> Non
 
 
 def test_velocity_is_the_slope_of_the_deflection(tmp_path: Path) -> None:
-    """Reference: analytic. Through contacts, the velocity's integral is the way, and the
-    acceleration's by steps is the change of the velocity.
-    """
+    """Reference: analytic, integrals of velocity and acceleration through contacts."""
     text = COARSE.replace(
         "[[model]]", TURNED.replace("turn = 0.02", "turn = 0.05") + "[[model]]", 1
     )

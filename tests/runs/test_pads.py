@@ -194,9 +194,7 @@ def test_two_halves_of_a_pad_are_the_pad(tmp_path: Path) -> None:
 
 
 def test_pads_share_as_they_are_stiff(tmp_path: Path) -> None:
-    """Reference: by hand. Below, E A/t of 1.9e9 · 0.01/0.02 and of a third of that; a shim of 2 mm
-    lets the softer one touch 2 mm earlier.
-    """
+    """Reference: by hand, E A/t of 1.9e9 · 0.01/0.02 and a third of that; a shim of 2 mm."""
     below = pad_on("below", 0.05, 0.02), pad_on("below", 0.025, 0.03, offset=0.06, shim=0.002)
     case = case_with(tmp_path, several(pad_on("above", 0.05, 0.02), *below))
     system = build(case, build_boom(case), case.models[0]).system
@@ -209,9 +207,7 @@ def test_pads_share_as_they_are_stiff(tmp_path: Path) -> None:
 
 
 def test_each_pad_tells_its_pressure(tmp_path: Path) -> None:
-    """Reference: by hand. Below, two pairs of one stiffness per area: the head's largest force over
-    both areas; above nothing presses there beyond what the tail's largest force does.
-    """
+    """Reference: by hand, the head's largest force over both areas; above the tail's."""
     pads = [
         pad_on("above", 0.05, 0.02),
         pad_on("below", 0.03, 0.02, allowable_pressure=2e7),

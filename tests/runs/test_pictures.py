@@ -154,10 +154,7 @@ def test_pictures_are_named_after_their_content(pictures: list[Path]) -> None:
 
 @pytest.mark.slow
 def test_boom_is_drawn_and_moves(pictures: list[Path]) -> None:
-    """Reference: analytic. Columns and rows of coloured pixels against the camera's projection.
-
-    The tip rises from 9 to 163 mm between the two pictures; grey, black and white have no hue.
-    """
+    """Reference: analytic, the camera's projection; the tip rises from 9 to 163 mm."""
     top = {}
     for name in ("first-peak", "first-contact"):
         picture = picture_of(pictures, f"boom-{name}.png")[110:570]
@@ -191,10 +188,7 @@ def test_the_scale_of_deflections_ends_with_the_largest() -> None:
 
 @pytest.mark.parametrize("steep", [0.0, 1.0, 1.2345, 4.0])
 def test_the_scale_of_stresses_ends_with_the_largest(steep: float) -> None:
-    """The number at the end of the bar is not above the largest stress, 0 at rest.
-
-    Reference: analytic, the stresses themselves.
-    """
+    """Reference: analytic, the stresses; the end of the bar is not above the largest."""
     stress = moving_scene(state=steep).stress
     assert stress is not None
     of_stress = Sheet(STRESS_PIXELS, 0)
@@ -209,11 +203,7 @@ def test_the_scale_of_stresses_ends_with_the_largest(steep: float) -> None:
 @pytest.mark.usefixtures("_opengl")
 @pytest.mark.parametrize("steep", [1.0, 4.0])
 def test_arrows_and_their_numbers_stay_above_the_axis(steep: float) -> None:
-    """Two red arrows, as long as their forces make them, however steep the overlap is.
-
-    Reference: analytic. The forces of the first peak are 1 and 0.9 of the largest, and the
-    arrows 110 and 104 pixels.
-    """
+    """Reference: analytic. Forces of 1 and 0.9 of the largest make arrows of 110 and 104 pixels."""
     shell, instants = moving_scene(state=steep), [Instant(0.5)]
     (overlap,) = shell.overlaps
     assert shell.stress is not None
@@ -231,9 +221,7 @@ def test_arrows_and_their_numbers_stay_above_the_axis(steep: float) -> None:
 
 @pytest.mark.slow
 def test_stress_is_dark_where_it_is_large(pictures: list[Path]) -> None:
-    """Reference: the fixture. The inner segment is pressed from 9 to 9.4 m, and nowhere else; at
-    the end of the light scale red is above blue, at its dark end below.
-    """
+    """Reference: the fixture. The inner segment is pressed from 9 to 9.4 m, and nowhere else."""
     overlap = picture_of(pictures, "stress-first-peak.png")[390:800]
     dark = warmth(overlap) < -30.0
     assert dark.mean() > 0.02
@@ -260,9 +248,8 @@ def test_mesh_and_sections_are_drawn(shell: Scene) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("_opengl")
 def test_loads_masses_and_cylinders_are_marked_where_the_boom_is(shell: Scene) -> None:
-    """Reference: analytic. The symbols of the drawing, 30 pt high: a red arrow and a black ball at
-    the tip where that is, and a black bar along the line of the cylinder.
-    """
+    """Reference: analytic. Symbols of 30 pt: a red arrow and a black ball at the tip, a bar along
+    the cylinder."""
     payload = PayloadTable(mass=100.0)
     down = LoadTable(segment="inner", x="head", magnitude=-1.0e3)
     marked = moving_scene(CASE.model_copy(update={"payload": payload, "loads": (down,)}))

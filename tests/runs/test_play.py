@@ -44,9 +44,7 @@ def numbers(found: DesignResults, model: str) -> dict[tuple[str, str], PlayDiffe
 
 
 def test_play_adds_its_lever_at_rest(answers: DesignResults) -> None:
-    """Reference: by hand. Play turns the inner segment by 14 mrad and contacts by 5 µrad, which
-    lifts the tip by 133 mm and 47 µm: in any model, since the boom is statically determinate.
-    """
+    """Reference: by hand, 14 mrad of play and 5 µrad of contacts: 133 mm and 47 µm in any model."""
     assert [play.model for play in answers.play] == ["kantorovich-5", "beam-fe"]
     at_rest = numbers(answers, "beam-fe")["deflection at rest", "tip"]
     assert at_rest.increase == pytest.approx(0.133 + 10.0 * 4.956e-6 - 2.2e-6, abs=1e-7)
@@ -75,9 +73,7 @@ def test_motions_are_held_against_those_without_play(answers: DesignResults) -> 
 
 @pytest.mark.slow
 def test_play_adds_equal_deflections_to_shells_and_beams() -> None:
-    """Reference: by hand, the same lever; what the walls give way is no play. In motion another
-    model, elements, whose tip goes as much farther within a fifth.
-    """
+    """Reference: by hand, the same lever; in motion elements, within a fifth."""
     mpi = pytest.importorskip("mpi4py.MPI")
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     found = run_of(["timoshenko", "shell"], mpi.COMM_SELF)
@@ -129,8 +125,7 @@ LAW = PowerContact(1e6, 1.0).behind(0.01)
 @pytest.fixture
 def pair() -> GapSystem:
     """1 kg on a spring of 100 N/m, 1 kg that hangs in it by a play of 10 mm each way, with 5 N on
-    it, and a rest on the ground far below.
-    """
+    it, and a rest on the ground far below."""
     return GapSystem(
         omega2=np.array([100.0, 0.0]),
         load=np.array([0.0, -5.0]),
@@ -146,9 +141,7 @@ def pair() -> GapSystem:
 
 
 def test_the_bonded_boom_lacks_the_play_alone(pair: GapSystem) -> None:
-    """Reference: by hand. Both hang at −5/100 m; with play the inner one is 10 mm and 5 µm lower.
-    Together they swing at √(100/2) rad/s.
-    """
+    """Reference: by hand, −5/100 m; 10 mm and 5 µm lower with play; together √(100/2) rad/s."""
     rest = equilibrium(pair, pair.load)
     bonded, basis = bonded_system(pair, [rest])
     hung = equilibrium(bonded, bonded.load)

@@ -81,8 +81,7 @@ def test_the_middle_goes_and_both_ends_stay() -> None:
 
 
 def test_progress_shows_stage_and_remaining_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: by hand. Of 40 % in 12 s, 18 s are left; what follows within five seconds is not
-    told, nor what has ended by then. What a stage took that is told of at its end is not known."""
+    """Reference: by hand. Of 40 % in 12 s, 18 s are left; nothing is printed again within 5 s."""
     every = 5.0
     monkeypatch.setattr(progress, "EVERY", every)
     said: list[str] = []

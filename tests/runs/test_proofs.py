@@ -152,8 +152,7 @@ def test_yield_plate_and_deflection_of_a_cantilever(tmp_path: Path) -> None:
 
 
 def test_a_combination_in_motion(tmp_path: Path) -> None:
-    """Reference: analytic. A load that is suddenly there deflects twice as far; the first mode has
-    97 % of the deflection, and the others of it at most as much again."""
+    """Reference: analytic. A sudden load deflects twice as far; 97 % is in the first mode."""
     found, _ = proofs_of(tmp_path, ARM)
     text = ARM.replace("factors", "motion = true\nfactors", 1).replace("= 1.0 }", "= 0.2 }", 1)
     moved, _ = proofs_of(tmp_path, text)
@@ -195,9 +194,8 @@ def test_damage_of_details(tmp_path: Path, name: str, x: float, category: float)
 
 
 def test_cycles_of_a_motion(tmp_path: Path) -> None:
-    """Reference: other code path, the fatigue life of a run under the same load.
-
-    The sequence is the motion twice, and closed: of some fifty cycles the run counts one half."""
+    """Reference: other code path, the fatigue life of a run; of some fifty cycles the run counts
+    one half."""
     text = ARM.replace("{ partial", "{ detail_category = 80.0, partial").replace(
         "= 1.0 }", "= 4.0 }", 1
     )

@@ -142,9 +142,7 @@ def second_order(boom: Boom, rest: StaticState) -> float:
 @pytest.mark.parametrize("lowered", [0.0, 0.3])
 @pytest.mark.parametrize("name", LUFFED)
 def test_moments_about_the_pin_are_in_balance(name: str, lowered: float) -> None:
-    """Reference: analytic. Weights, loads, cylinder and second order about the pin within 0.1 %;
-    what pin and lug bear acts where they are.
-    """
+    """Reference: analytic, moments of all forces about the pin, within 0.1 %."""
     case = case_file.load(str(CASES / f"{name}.toml"))
     base, *others = case.segments
     (pin,) = base.supports

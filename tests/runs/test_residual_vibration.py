@@ -73,8 +73,7 @@ def test_fixed_boom_vibrates_with_its_initial_amplitude() -> None:
 
 
 def test_a_slow_drive_swings_about_the_rest_of_each_place() -> None:
-    """Reference (analytic): from rest at 1/4 m the tip goes to 1 / (1 + 3/4) m, within 1 % of that
-    way where the drive takes 60 s; at once, it swings by all of it."""
+    """Reference (analytic): from 1/4 m to 1 / (1 + 3/4) m within 1 % in 60 s; at once all of it."""
     way = 1.0 / 1.75 - 0.25
     slow, fast = (
         farthest_from_rest(system, simulate(system, duration, position=[0.25]))[0]

@@ -154,9 +154,8 @@ def test_the_only_joint_is_not_named(shell: Scene) -> None:
 
 
 def test_from_above_y_points_up(shell: Scene) -> None:
-    """Reference: analytic. A boom in space, turned so that its width is its height; what moves
-    up comes towards the eye.
-    """
+    """Reference: analytic. A boom in space, turned so that its width is its height; what moves up
+    comes towards the eye."""
     motion = moving_trajectories().sel(model="shell").isel(station=[0, 1, 0, 1])
     motion = motion.assign(tip_lateral=-2.0 * motion["tip"])
     side, above = Scene.views(moving_fields(), motion, load(str(CASES / "spatial.toml")))

@@ -70,9 +70,7 @@ def test_a_normal_force_has_both_sides_of_a_jump() -> None:
 
 
 def test_shear_force_uses_the_extended_axial_forces() -> None:
-    """Reference: by hand. 1 kN at the head of a column that 20 % of Euler's force presses, drawn
-    from 2 m out to 5 m; with the axial force of the start it is up to 22 % off.
-    """
+    """Reference: by hand, 1 kN on a column under 20 % of Euler's force, drawn from 2 to 5 m."""
     force = 0.2 * np.pi**2 * STIFFNESS / (4.0 * LENGTH**2)
     boom = replace(column(force), loads=(Load(0, "z", -1.0e3, LENGTH, Step()),))
     models = finite_element_segments(boom, 0.25, "euler-bernoulli", False)

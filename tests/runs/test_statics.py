@@ -41,9 +41,8 @@ def told(case: Case) -> list[str]:
 
 
 def test_masses_forces_and_tips_are_those_of_hand() -> None:
-    """Reference: by hand, the lever rule; without play other code, 9.916 mm of shear-flexible
-    elements; the play lifts the tip by 7 + 14 · 9 mm beyond, and bends nothing.
-    """
+    """Reference: by hand, the lever rule; other code, 9.916 mm of elements; play adds 7 + 14 · 9
+    mm."""
     lines = told(case_file.load(str(CASES / "coarse.toml")))
     assert "outer 831.6 0 5" in lines
     assert "all 1382 0 8.586" in lines
@@ -190,9 +189,7 @@ def answers() -> DesignResults:
 
 
 def test_a_joint_tilts_by_its_play(answers: DesignResults) -> None:
-    """Reference: by hand. Play of 14 mm over 1 m turns by 14 mrad, what lifts the tip, 10 m on, by
-    133 mm; contacts of 1e9 N/m are pressed in by 2.2 and 2.8 µm by the forces of the lever rule.
-    """
+    """Reference: by hand, 14 mrad lift the tip by 133 mm; contacts give way by 2.2 and 2.8 µm."""
     (rest,) = answers.models["timoshenko"].static
     (tilt,) = rest.tilts
     assert tilt.rotation == pytest.approx(0.014 + 4.956e-6, abs=1e-8)
@@ -204,9 +201,7 @@ def test_a_joint_tilts_by_its_play(answers: DesignResults) -> None:
 
 
 def test_play_adds_its_lever_and_no_moment(answers: DesignResults) -> None:
-    """Reference: by hand. The boom is statically determinate: its play turns it as a lever does,
-    and moments stay what they are without it.
-    """
+    """Reference: by hand. Play turns the boom as a lever, and changes no moment."""
     found = answers.models["timoshenko"]
     (rest,), (bonded,) = found.static, found.static_bonded
     # The bonded boom's stations bend nothing: what is added is the tilt alone.
@@ -255,9 +250,7 @@ def test_a_drawn_boom_rests_under_the_largest_loads_of_where_it_is() -> None:
 
 
 def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
-    """Reference: by hand. Drawn out to 19 m, 2 kN at the tip, 550.7 N at 14 m, 83.16 N/m beyond the
-    support at 2 m bend there; play of 14 mm over 1 m turns by 14 mrad, and what presses by more.
-    """
+    """Reference: by hand. At 19 m 2 kN, 550.7 N at 14 m, 83.16 N/m; 14 mrad of play."""
     case = case_file.load(str(CASES / "drawn-out.toml"))
     table = ((0.0, 0.0), (5.5, 0.0), (6.0, 1.0))
     late = LoadTable.model_validate(

@@ -91,8 +91,7 @@ def test_nothing_sticks_where_nothing_rubs(tmp_path: Path) -> None:
 
 
 def test_drive_moves_all_outboard_masses() -> None:
-    """Reference: analytic, masses of the segments beyond each joint of the crane, and of those
-    beyond two of them, which another drive moves, too; units of mm, t and s in SI units."""
+    """Reference: analytic, the masses beyond each joint of the crane; mm, t and s in SI units."""
     crane = load(str(CASES / "crane-telescopes.toml"))
     case = change(crane, **{"joint.drive.stiffness": 4e6, "joint[2].drive.static_friction": 0.15})
     boom = build_boom(case)
@@ -183,8 +182,7 @@ def test_a_run_tells_how_it_sticks_and_slips(tmp_path: Path) -> None:
 
 
 def test_a_coarse_shell_sticks_and_slips(tmp_path: Path) -> None:
-    """Reference: analytic, what the pull leaves of the shell's own friction; other code, beam
-    elements, whose pads press alike, by 1e-3."""
+    """Reference: analytic, the shell's own friction; other code, beam elements, by 1e-3."""
     beam = '[[model]]\nname = "timoshenko"'
     coarse = 'kind = "shell"\nmesh_size = 1.0\ncontact_tolerance = "any"'
     changes = {
@@ -268,8 +266,7 @@ def test_a_lag_is_told_in_the_units_of_the_case(tmp_path: Path) -> None:
 
 
 def test_a_report_warns_where_it_lags_far_behind(tmp_path: Path) -> None:
-    """Reference: the lines that a user reads; by hand, 9.72 kN pull a rope of 1e5 N/m by 97 mm, and
-    by up to half as much again before it slips."""
+    """Reference: by hand, 9.72 kN pull a rope of 1e5 N/m by 97 mm, up to half as much again."""
     slow = {"time = 5.0": "time = 8.0", "duration = 7.0": "duration = 8.0"}
     case = drawn_by(tmp_path, ROPE.replace("2e5", "1e5"), **slow)
     results = run_case(change(case, **{"time.output_step": 0.01}), models=["kantorovich-5"])

@@ -42,11 +42,8 @@ LUFF = "[luff]\ntravel = 10.0\ntime = 3.0\n"
 
 
 def test_bar_turned_with_a_constant_acceleration() -> None:
-    """Reference: analytic, an Euler-Bernoulli cantilever turned about its foot.
-
-    The load −m̄ x α̈ bends its tip by w(t) = −4 α̈ Σ (−1)ⁿ⁺¹ L (1 − cos ω t)/(λ ω)², about the
-    static −11 m̄ α̈ L⁵/(120 E I).
-    """
+    """Reference: analytic, an Euler-Bernoulli cantilever under −m̄ x α̈: w(t) = −4 α̈ Σ (−1)ⁿ⁺¹ L
+    (1 − cos ω t)/(λ ω)², about −11 m̄ α̈ L⁵/(120 E I)."""
     length, mass, bending = 6.0, 40.0, 2.1e11 * 8.0e-6
     beam = Segment(
         "beam", 0.0, length, Material(2.1e11, 0.3, 7850.0), mass, 8.0e-6, rotary_inertia=0.0,
@@ -87,10 +84,7 @@ def static_tip(case: Case, time: float) -> float:
 
 
 def test_luffed_arm(tmp_path: Path) -> None:
-    """Reference: the arm that is built at the angle to which the other one luffs.
-
-    Its weight along the boom bends it by 1.3 % more.
-    """
+    """Reference: the arm built at the angle; its weight along bends it by 1.3 % more."""
     luffed = slewing_arm(tmp_path, LUFF.replace("10.0", "50.0"))
     there = slewing_arm(tmp_path, arm=ARM.replace("angle = 0.0", "angle = 50.0"))
     assert static_tip(luffed, 3.0) == pytest.approx(static_tip(there, 0.0), rel=1e-3)
@@ -132,10 +126,8 @@ def test_results_of_slewing_and_luffing(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("bonded", "least", "most"), [(True, 0.0, 0.01), (False, 0.1, 0.5)])
 def test_shaper_proposed_by_check(tmp_path: Path, bonded: bool, least: float, most: float) -> None:
-    """Reference: the vibration after the same slewing without the shaper.
-
-    Without play a thousandth of it remains, with play of 4 mm about a quarter.
-    """
+    """Reference: the vibration without the shaper: a thousandth of it without play, a quarter with
+    4 mm."""
     slew = "[damping]\nmodal = 0.02\n[slew]\ntravel = 12.0\ntime = 1.5\n"
     plain = slewing_arm(tmp_path, slew)
     model = plain.models[0].model_copy(update={"bonded_joints": bonded})

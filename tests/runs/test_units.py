@@ -1,10 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The same boom in SI and in millimetres, tonnes and seconds moves the same way.
-
-Forces are newtons in both. Nothing in the models may compare a length, a mass or a stiffness with
-a number of its own. Friction makes the motion regular, so that round-off stays round-off while
-the step resolves the contacts.
-"""
+"""The same boom in SI and in mm, t and s: nothing compares a dimensional number with one of its
+own."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -56,10 +56,7 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_boom_without_loads_is_run_and_reported(
     kind: str, request: pytest.FixtureRequest
 ) -> None:
-    """Reference: analytic. Without loads it rests straight, and moves only if it begins so.
-
-    Figures of one boom that rests and of one that moves are printed.
-    """
+    """Reference: analytic. Without loads it rests straight, and moves only if it starts so."""
     added, moves = ADDED[kind]
     if kind not in {"nothing", "thrown"}:
         request.getfixturevalue("unprinted")

@@ -54,9 +54,7 @@ def run(folder: Path, name: str, **changes: str) -> Results:
 
 @pytest.mark.slow
 def test_a_run_has_factors_of_shell_and_panels(tmp_path: Path) -> None:
-    """Reference: other code, panel formulas. The shell exceeds them by the restraint at folds; the
-    load in its line of contact, at the tail, takes from them.
-    """
+    """Reference: other code, panel formulas, which the restraint at folds exceeds."""
     results = run(tmp_path, "coarse.toml", statements="[]", duration="0.01")
     summary = Summary.model_validate_json(str(results.summary))
     shell, beam = (summary.design.models[name] for name in ("shell", "timoshenko"))

@@ -40,10 +40,8 @@ def _differ(found: Array, expected: Array) -> float:
 
 @pytest.mark.slow
 def test_without_lateral_load_the_boom_moves_as_the_flat_one() -> None:
-    """Reference: this shell in its plane. The mean of a wall's two pads is the flat row: equal
-    compliances to 1e-9. Until the first press the motions agree to 1e-9; after it the
-    micro-impacts amplify the different local modes, to less than 1 % of the range in 0.3 s.
-    """
+    """Reference: this shell in its plane: compliances and motion to 1e-9 until the first contact,
+    then 1 % in 0.3 s."""
     flat, space = (reduced(one, 0.5, moments=2).system for one in (flat_boom(), boom_in_space()))
     for sigma in SHIFTS:
         expected = _compliance(flat, flat.rows, sigma)
@@ -78,11 +76,8 @@ def octagonal_boom() -> Boom:
     ids=["boxes", "octagons"],
 )
 def test_a_boom_on_its_side_is_the_same_boom(upright: Boom, law: ContactLaw, off: float) -> None:
-    """Reference: symmetry. With its sections, loads and plays exchanged between the planes, the
-    boom has the same frequencies, its stations the same compliances with directions
-    exchanged, its ends the same loads; the mesh lies down with the section, so that only round-off
-    differs.
-    """
+    """Reference: symmetry: frequencies, compliances and loads with directions exchanged, to
+    round-off."""
     joint = upright.joints[0]
     assert joint.lateral_play is not None
     lying = Boom(
@@ -107,9 +102,7 @@ def test_a_boom_on_its_side_is_the_same_boom(upright: Boom, law: ContactLaw, off
 
 @pytest.mark.slow
 def test_segments_rolling_together_keep_their_gaps() -> None:
-    """Reference: analytic. Turned rigidly by φ about the axis, the free inner segment's pads read
-    the lever arms of geometry's pads: φ y of a flange's, −φ z of a web's.
-    """
+    """Reference: analytic. Turned by φ, flange pads read φ y, web pads −φ z."""
     system = reduced(boom_in_space(friction=0.2), 0.5).system
     rigid = np.flatnonzero(system.omega2 == 0.0)
     names = ("tip", "tail", "tip_lateral", "tail_lateral", "tip_twist")
@@ -170,9 +163,7 @@ def test_friction_in_space_takes_energy_and_gives_none_back() -> None:
 
 @pytest.mark.slow
 def test_lateral_motion_follows_beams() -> None:
-    """Reference: other code, this project's Timoshenko frame elements in space, under loads along
-    y alone: first press at the same time, the tip at the same place until then and about it after.
-    """
+    """Reference: other code, Timoshenko frame elements in space under lateral loads."""
     flat = boom_in_space()
     segments = tuple(
         replace(segment, load=0.0, lateral=replace(segment.lateral, load=segment.load))
@@ -191,9 +182,7 @@ def test_lateral_motion_follows_beams() -> None:
 
 @pytest.mark.slow
 def test_the_bonded_boom_vibrates_as_beams_in_both_planes() -> None:
-    """Reference: other code, this project's bonded Timoshenko frame elements: three bending
-    frequencies in each plane. Up to 0.7 % apart; shear is 3 % of the lowest.
-    """
+    """Reference: other code, bonded Timoshenko elements: three frequencies a plane within 0.7 %."""
     boom = boom_in_space()
     boom = replace(boom, joints=(replace(boom.joints[0], bonded=True),))
     expected = bonded_beams(boom, 0.5).frequencies[:6]

@@ -22,9 +22,7 @@ from tests.touching import touching
 @pytest.mark.slow
 @pytest.mark.parametrize("line", ["near webs", "across"])
 def test_a_uniform_approach_gives_the_law_of_the_paper_exactly(line: ContactLine) -> None:
-    """Reference: analytic, (4). Lift the free inner segment without strain, beyond its play:
-    every station carries F(y) once, on the top; sunk, on the bottom.
-    """
+    """Reference: analytic, (4): lifted without strain every station carries F(y) once."""
     system = reduced(flat_boom(), 0.25, line, moments=2).system
     rigid = np.flatnonzero(system.omega2 == 0.0)
     tip, tail = (system.observers[name].row for name in ("tip", "tail"))
@@ -51,9 +49,7 @@ def test_the_load_lifts_the_boom_by_its_weight() -> None:
 
 @pytest.mark.slow
 def test_first_contact_follows_the_beam() -> None:
-    """Reference: other code, this project's beams: the first contact of stiff thin beams is at
-    0.1195 s; shear and distortion delay it by less than 1 %. Energy is kept.
-    """
+    """Reference: other code, beams: 0.1195 s; shear and distortion delay it by less than 1 %."""
     trajectory = AdaptiveStep()(Motion(reduced(flat_boom(), 0.25, moments=2).system, 0.4))
     assert trajectory.first_contact == pytest.approx(0.1195, rel=0.01)
     assert trajectory.energy_residual < 1.0e-4

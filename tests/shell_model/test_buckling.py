@@ -63,9 +63,8 @@ def test_tension_has_no_factor() -> None:
 
 
 def test_finite_strips_know_walls_and_columns() -> None:
-    """Reference: analytic. Walls of a square tube have k = 4, and 5.33 where it bends; a long tube
-    is Euler's column.
-    """
+    """Reference: analytic, k = 4 of a square tube, 5.33 in bending; a long tube is Euler's
+    column."""
     strips, width = Strips.of(TUBE, STEEL), 0.4
     stress = UNIT * (0.004 / width) ** 2
     found = strips.lowest(3.0 * width, range(1, 7), lambda y, z: np.full_like(z, -stress))
@@ -100,10 +99,7 @@ def test_webs_buckle_under_patch_loads(pressed: PressedBox) -> None:
 
 @pytest.mark.slow
 def test_a_column_buckles_as_a_whole_and_in_its_walls() -> None:
-    """Reference: other code, finite strips, in one half-wave and in many; 1 %.
-
-    The second mode is the column's, sideways.
-    """
+    """Reference: other code, finite strips, in one half-wave and in many; 1 %."""
     whole = Strips.of(COLUMN.section, STEEL).factor(COLUMN.length, 1, COLUMN.stress)
     shell, modes = COLUMN.shell(4, 2)
     assert modes.factors == pytest.approx([whole, whole], rel=0.01)
@@ -135,9 +131,7 @@ def buckled(boom: Boom, options: ShellOptions, count: int = 1) -> list[SegmentBu
 
 @pytest.mark.slow
 def test_a_beam_on_two_supports_buckles_where_it_bends_most() -> None:
-    """Reference: other code, finite strips under the largest moment, from below: the moment falls
-    to both sides.
-    """
+    """Reference: other code, finite strips under the largest moment, from below."""
     supports = Support(0.0), Support(4.0)
     segment = box_segment("beam", 0.0, 4.0, TUBE, load=-8.0e3, supports=supports)
     (found,) = buckled(Boom((segment,), ()), ShellOptions(0.1))
@@ -159,9 +153,8 @@ BOOMS = touching(flat_boom(), LAW), touching(boom_in_space(sideways=0.3), LAW, L
 @pytest.mark.slow
 @pytest.mark.parametrize("boom", BOOMS, ids=["flat", "in space"])
 def test_segments_of_a_boom_buckle_between_their_contacts(boom: Boom) -> None:
-    """Reference: analytic. Forces twice as large have half the factor, whatever the contacts'
-    stiffness at rest; the outer segment, which carries both, buckles before the inner one.
-    """
+    """Reference: analytic. Twice the forces have half the factor; the outer segment buckles
+    first."""
     options = ShellOptions(0.25)
     shell, state = at_rest(boom, options)
     twice = replace(state, forces=[2.0 * one for one in state.forces])

@@ -30,9 +30,7 @@ def _dragged(boom: Boom) -> Boom:
 @pytest.mark.slow
 @pytest.mark.parametrize("line", ["near webs", "across"])
 def test_a_station_slides_as_the_mean_of_its_contact_rows(line: ContactLine) -> None:
-    """Reference: analytic. Of webs to webs, one top and one bottom row; of points across, each
-    with its weight. Friction needs no coordinates that contact has not asked for.
-    """
+    """Reference: analytic, one top and one bottom row; points with their weights."""
     system = reduced(flat_boom(friction=0.2), 0.5, line).system
     assert system.num_modes == reduced(flat_boom(), 0.5, line).system.num_modes
     assert [(f.station, f.normal_force) for f in system.frictions] == [(0, 4500.0), (1, 5000.0)]
@@ -57,9 +55,7 @@ def test_a_dashpot_resists_the_mean_of_its_stations_contact_rows(line: ContactLi
 @pytest.mark.slow
 @pytest.mark.parametrize("line", ["near webs", "surface"])
 def test_dashpots_dissipate_equally_in_shells_and_beams(line: ContactLine) -> None:
-    """Reference: other code, this project's Timoshenko elements; 0.2 and 1.4 % apart over 0.4 s, in
-    which the segments cross their play and press. Energy is kept.
-    """
+    """Reference: other code, Timoshenko elements, 0.2 and 1.4 % apart over 0.4 s."""
     boom = _dragged(flat_boom())
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     beam, shell = (
@@ -74,9 +70,7 @@ def test_dashpots_dissipate_equally_in_shells_and_beams(line: ContactLine) -> No
 
 @pytest.mark.slow
 def test_friction_takes_energy_and_gives_none_back() -> None:
-    """Reference: analytic. The loss never falls, and the ledger closes; the smooth boom loses
-    nothing.
-    """
+    """Reference: analytic. The loss never falls, and the energy balance closes."""
     rough, smooth = (
         AdaptiveStep()(Motion(reduced(flat_boom(friction), 0.5).system, 0.25))
         for friction in (0.2, 0.0)
@@ -92,9 +86,7 @@ def test_friction_takes_energy_and_gives_none_back() -> None:
 
 @pytest.mark.slow
 def test_loads_act_where_and_when_they_say() -> None:
-    """Reference: analytic. The middle of a free segment moves with force over mass, whatever
-    the load; a uniform one is the step load's own vector.
-    """
+    """Reference: analytic, force over mass of a free segment; a uniform load is the step load."""
     boom = flat_boom()
     ramp = Ramp(0.1)
     loads = (Load(1, "z", 55.07, None, Step()), Load(1, "z", 100.0, 14.0, ramp))
@@ -133,19 +125,13 @@ def test_stop_reads_the_deflection_of_its_flange() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("boom", [flat_boom(), three_segments()], ids=["two", "three"])
 def test_static_state_with_axial_forces_follows_beams(boom: Boom) -> None:
-    """Reference: other code, this project's Timoshenko elements with the segments bonded.
-
-    They are up to 0.25 % apart, for the corners that take the forces in the overlaps; shear is
-    3 %. The middle one of three segments has two joints.
-    """
+    """Reference: other code, bonded Timoshenko elements within 0.25 %; shear is 3 %."""
     assert_rests_as_beams(reduced(boom, 0.25).system, boom, 5.0e-3)
 
 
 @pytest.mark.slow
 def test_a_bonded_joint_has_no_play() -> None:
-    """Reference: other code, the bonded Timoshenko elements: no contact is left, the tip and the
-    lowest frequency agree within 0.2 %, and no motion is free.
-    """
+    """Reference: other code, bonded Timoshenko elements within 0.2 %; no rigid motion."""
     boom = three_segments(bonded=True)
     shell = reduced(boom, 0.25)
     system, beams = shell.system, bonded_beams(boom)

@@ -40,10 +40,8 @@ def at_rest(boom: Boom, options: ShellOptions) -> list[tuple[Line, Array]]:
 @pytest.mark.slow
 @pytest.mark.parametrize("tolerance", [None, 0.02])
 def test_section_forces_of_a_shell_follow_statics(tolerance: float | None) -> None:
-    """Reference: by hand. The inner segment outside the overlap: with s = 19 − x, V = 55.07 s and
-    M = −55.07 s²/2, on a uniform mesh and on one that is fine at stations; the second order of the
-    bands' lengths is below 3 N m.
-    """
+    """Reference: by hand, V = 55.07 s and M = −55.07 s²/2 with s = 19 − x, on uniform and graded
+    meshes."""
     options = ShellOptions(mesh_size=0.2, contact_tolerance=tolerance)
     line, position = at_rest(flat_boom(), options)[1]
     found = line.read(position)
@@ -55,10 +53,8 @@ def test_section_forces_of_a_shell_follow_statics(tolerance: float | None) -> No
 
 @pytest.mark.slow
 def test_a_pressed_shell_bears_its_loads_across() -> None:
-    """Reference: by hand, across the straight axis. −500 N/m and −44,049 N at the tip of a clamped
-    column under half of Euler's force, a metre off its ends; walls carry up to 2.2 times as much
-    across themselves.
-    """
+    """Reference: by hand. −500 N/m and −44,049 N on a column under half of Euler's force; walls
+    carry up to 2.2 times as much across themselves."""
     clamp = Support(0.0, "clamped")
     box = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
     free = box_segment("boom", 0.0, 10.0, box, load=-500.0, supports=(clamp,))
@@ -77,9 +73,8 @@ def test_a_pressed_shell_bears_its_loads_across() -> None:
 
 @pytest.mark.slow
 def test_a_shell_in_space_bends_and_twists_as_beams_do() -> None:
-    """Reference: another model, shear-flexible beam elements of the same boom with a side load:
-    section forces within 1 % of their largest outside the overlap, deflections within 2 %.
-    """
+    """Reference: another model, shear-flexible elements: section forces within 1 %, deflections
+    within 2 %."""
     boom = boom_in_space(sideways=0.4)
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     system = gap_system(touching(boom, LAW, LATERAL_LAW), models)
@@ -106,9 +101,8 @@ def test_cuts_pass_no_triangle() -> None:
 
 
 def test_cuts_are_where_something_acts() -> None:
-    """Reference: by hand. A place between lines that are closer than bands are long stays a cut,
-    and the lines beside it, which would leave shorter bands, do not.
-    """
+    """Reference: by hand. A loaded place stays a cut; lines beside it that leave short bands do
+    not."""
     edges = np.linspace(0.0, 10.0, 1001)
     spans = np.column_stack([edges[:-1], edges[1:]])
     cuts = band_boundaries(spans, [2.01])
@@ -119,9 +113,7 @@ def test_cuts_are_where_something_acts() -> None:
 
 @pytest.mark.slow
 def test_support_reaction_of_a_shell() -> None:
-    """Reference: by hand, as in tests/beam_model/test_statics.py: −5933.9 N at 2 m.
-    The mean over a band around the support would lose a third of the reaction.
-    """
+    """Reference: by hand, as in tests/beam_model/test_statics.py: −5933.9 N at 2 m."""
     line, position = at_rest(flat_boom(), ShellOptions(mesh_size=0.2, contact_tolerance=0.02))[0]
     before, behind = (line.one_sided_row("shear", 2.0, side) @ position for side in (-1, 1))
     assert before - behind == pytest.approx(-5933.9, rel=0.02)

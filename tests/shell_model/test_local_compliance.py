@@ -28,10 +28,8 @@ SIZES = (0.8, 0.4, 0.2)
 
 @pytest.mark.slow
 def test_no_rigid_motion_fills_it() -> None:
-    """Reference: analytic. A rigid motion opens no squeezed station: its rows above and below are
-    the same in the rigid modes, and a hundredth of the shift, a hundred times the rigid compliance,
-    leaves the local one.
-    """
+    """Reference: analytic. Rigid modes open no squeezed station: other shifts leave the local
+    compliance."""
     shell = reduced(flat_boom(), 0.4, moments=2)
     system = shell.system
     rigid = system.rows[:, system.omega2 == 0.0]
@@ -46,9 +44,7 @@ def test_no_rigid_motion_fills_it() -> None:
 
 @pytest.mark.slow
 def test_a_mesh_tells_how_far_the_next_finer_one_is() -> None:
-    """Reference: other code, meshes of half and of a quarter the edge length. What a mesh says of
-    itself is the change from its coarser companion, found without reducing it.
-    """
+    """Reference: other code, meshes of half and a quarter of the edge length."""
     for coarse, fine in pairwise(reduced(flat_boom(), size, moments=2) for size in SIZES):
         change = 1.0 - coarse.local_compliance / fine.local_compliance
         assert fine.mesh_error == pytest.approx(change.max(), rel=1.0e-4)
@@ -96,10 +92,7 @@ def stiffness(boom: Boom, contact_tolerance: float | None = None) -> list[Stiffn
 @pytest.mark.slow
 @pytest.mark.parametrize("boom", [flat_boom(), boom_in_space()])
 def test_plates_are_nearly_the_beam_of_their_section(boom: Boom) -> None:
-    """Reference: analytic, E J of the section and G A_s of its shear flow, and Bredt's G J_t.
-
-    Folds, Poisson's effect and shear lag of short stretches make what is allowed.
-    """
+    """Reference: analytic, E J, G A_s of the shear flow, and Bredt's G J_t."""
     for segment, found in zip(boom.segments, stiffness(boom), strict=True):
         planes = (segment, segment.turned())[: len(found.bending)]
         for plane, bending, shear in zip(planes, found.bending, found.shear, strict=True):
@@ -152,9 +145,7 @@ def _squeezed(boom: Boom, tolerance: float | None) -> float:
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", PADS)
 def test_a_tolerance_is_kept(kind: str) -> None:
-    """Reference: the mesh of a quarter of the tolerance, extrapolated as errors of the square of
-    the size (Richardson 1911). A uniform mesh of the same size is far off.
-    """
+    """Reference: a mesh for a quarter of the tolerance, extrapolated (Richardson 1911)."""
     boom = _short_boom(PADS[kind])
     uniform, coarse, fine = (_squeezed(boom, tolerance) for tolerance in (None, 0.16, 0.04))
     limit = fine + (fine - coarse) / 3.0
@@ -215,9 +206,8 @@ def test_estimated_compliance_follows_the_shell(
 
 @pytest.mark.slow
 def test_a_pad_on_the_corners_bends_no_wall() -> None:
-    """Reference: other code path, stations at the middles of the pads that press the corners along
-    their length; narrow pads beside the webs come near from above.
-    """
+    """Reference: other code path, stations at the middles of the pads; narrow pads are near from
+    above."""
 
     def local(boom: Boom) -> float:
         return float(reduced(boom, 0.1, contact_tolerance=0.05).local_compliance.max())

@@ -71,9 +71,7 @@ def test_rigid_motions_belong_to_their_families(
 
 @pytest.mark.parametrize("kind", ["held", "laden", "unequal"])
 def test_a_quarter_moves_as_its_family_does_in_the_whole(box_shell: Shells, kind: str) -> None:
-    """Reference: other code, the whole shell. The forces that it needs for a family's motion are
-    the quarter's in that family, and none in the others.
-    """
+    """Reference: other code, the whole shell: its forces are the quarter's in this family alone."""
     shells = {
         "held": lambda: box_shell(0.5, supports=HELD),
         "laden": lambda: _laden(BOX),

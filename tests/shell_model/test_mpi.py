@@ -157,9 +157,7 @@ def test_two_ranks_give_the_serial_frequencies(two_ranks: dict[str, Any]) -> Non
 
 
 def test_two_ranks_give_the_serial_coordinates(two_ranks: dict[str, Any]) -> None:
-    """Reference: the serial run, mode by mode and sign by sign. A basis that lets round-off
-    grow differs by whole modes here, though its compliances do not.
-    """
+    """Reference: the serial run, mode by mode and sign by sign."""
     found, serial = (
         {name: np.array(part) for name, part in answer.items()}
         for answer in (two_ranks["spatial"], spatial(MPI.COMM_SELF))
@@ -173,11 +171,7 @@ def test_two_ranks_give_the_serial_coordinates(two_ranks: dict[str, Any]) -> Non
 def test_ranks_give_the_serial_motion(
     two_ranks: dict[str, Any], tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    """Reference: one rank, to the last bit of all that decides a motion.
-
-    A relative change of 1e-15 in the coordinates grows to 1e-4 of the tip's range in ten seconds
-    with friction.
-    """
+    """Reference: one rank, to the last bit of all that decides a motion."""
     three = _told(ranks_in(tmp_path_factory.mktemp("three"))(3, _PROGRAM, "rubbing"))
     assert three.pop("ranks") == 3
     serial = rubbing(MPI.COMM_SELF)
@@ -216,9 +210,7 @@ def test_two_ranks_give_the_serial_motion_of_all(
 
 
 def test_ranks_share_an_edge_of_three_walls(two_ranks: dict[str, Any]) -> None:
-    """Reference: analytic, three displacements at vertices and edges, three rotations at edges,
-    each once, however the ranks part the triangles on an edge.
-    """
+    """Reference: analytic, the dofs of vertices and edges, each once for any partition."""
     serial = [short_box(MPI.COMM_SELF, size).num_dofs for size in SHORT_SIZES]
     assert two_ranks["dofs"] == serial == [780, 2220]
 

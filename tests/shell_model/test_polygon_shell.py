@@ -51,9 +51,7 @@ def _read(row: Row, field: Array) -> float:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SECTIONS)
 def test_rows_read_rigid_motions(box_shell: Shells, name: str) -> None:
-    """Reference: analytic. Shifts are read as they are, a turn φ about the axis as a twist of φ;
-    the plates that carry a force through the axis do not read a turn.
-    """
+    """Reference: analytic. Shifts are read as they are, a turn φ as a twist of φ."""
     section = SECTIONS[name]
     shell = box_shell(0.5, section=section)
     outline = shell.outline(10.0)
@@ -100,9 +98,7 @@ def test_contacts_read_the_true_faces(box_shell: Shells, section: Section) -> No
 def test_a_free_segment_vibrates_as_its_beam(
     box_shell: Shells, section: Section, direction: Direction
 ) -> None:
-    """Reference: other code, Timoshenko elements with the section's own numbers. The box is 0.3 %
-    apart; a tenth less of J would be 5 %, and unequal flanges about half the height 1.7 %.
-    """
+    """Reference: other code, Timoshenko elements, 0.3 % apart; a tenth of J would be 5 %."""
     off = frequencies_off(box_shell(0.25, section=section), direction)
     assert off == pytest.approx(0, abs=6e-3)
 
@@ -121,9 +117,7 @@ def test_a_segment_on_its_side_vibrates_along_y_as_upright_along_z(box_shell: Sh
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SECTIONS)
 def test_pressed_ring_deforms_as_a_frame(name: str) -> None:
-    """Reference: other code, a plane frame of bars. A ring of 20 mm bends as bars do; one of 80 mm
-    is 3 % stiffer, since its folds keep it from bending across.
-    """
+    """Reference: other code, a plane frame of bars; a ring of 80 mm is 3 % stiffer."""
     section = SECTIONS[name]
     expected = sections.ring_of_bars(section, 0.02)
     assert sections.ring_of_shell(section, 0.02, 0.01) == pytest.approx(expected, rel=2e-3)
@@ -132,9 +126,7 @@ def test_pressed_ring_deforms_as_a_frame(name: str) -> None:
 
 @pytest.mark.slow
 def test_a_box_written_as_a_polygon_is_the_box() -> None:
-    """Reference: other code, the box's own plates, faces and carriers. Single modes of two shells
-    may differ by a sign; what a force on a row does to each row may not.
-    """
+    """Reference: other code, the box: frequencies and compliances of rows."""
     boxes = BoxSection(0.50, 0.32, 0.008, 0.006), BoxSection(0.46, 0.28, 0.006, 0.005)
     polygons = [
         PolygonSection(
@@ -161,9 +153,7 @@ def _compliance(system: GapSystem) -> Array:
 
 @pytest.mark.slow
 def test_a_hexagonal_boom_with_collars_follows_its_beam(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: other code, Timoshenko elements. Without collars at its stations the hexagons
-    unfold under the pads, and the first peak is 9 % higher; the box is 0.1 % apart without any.
-    """
+    """Reference: other code, Timoshenko elements. Without collars the first peak is 9 % higher."""
     monkeypatch.setattr(sections, "MESH_SIZE", 0.2)
     monkeypatch.setattr(sections, "TOLERANCE", 0.03)
     monkeypatch.setattr(sections, "DURATION", 0.65)
@@ -217,10 +207,7 @@ def test_a_pressed_boom_rests_as_its_beams_do(pair: tuple[Section, Section], rel
 
 @pytest.mark.slow
 def test_thicker_flanges_give_way_less() -> None:
-    """Reference: analytic, by order. The upper flanges of both segments, which meet, are the
-    thicker ones; with equal flanges both sides give way alike. With all that a segment may have,
-    on a graded mesh.
-    """
+    """Reference: analytic, by order: thicker upper flanges; equal flanges give way alike."""
     compliances = []
     for pair in ((BOX, replace(BOX, height=0.46, width=0.28)), UNEQUAL_BOXES):
         boom = _laden(sections.boom_of(*pair), "near webs")
@@ -247,9 +234,7 @@ def test_thicker_flanges_give_way_less() -> None:
 def test_polygon_segment_with_all_attachments(
     pair: tuple[Section, Section], line: ContactLine
 ) -> None:
-    """Reference: analytic. Collars, diaphragms, masses, springs, pads and stops are read on any
-    outline: the masses of a rigid motion along z are those of all parts.
-    """
+    """Reference: analytic, the masses of a rigid motion along z, on any outline."""
     boom = _laden(sections.boom_of(*pair), line)
     found = reduced(boom, 0.5, line, law=LINEAR, contact_tolerance=1.0)
     assert np.isfinite(found.local_compliance[:-2]).all() or line == "surface"

@@ -130,9 +130,7 @@ def _measured(shell: SegmentShell, reduced: ReducedSegment, inputs: Array, rows:
 
 @pytest.mark.slow
 def test_a_basis_grows_until_it_meets_the_tolerance(box_shell: Shells) -> None:
-    """Reference: full solves at frequencies that the reduction has not seen. The error there is
-    below twice the tolerance, for contacts and for what the end of the segment gets of them.
-    """
+    """Reference: full solves at other frequencies, below twice the tolerance."""
     shell = box_shell(0.25, supports=HELD)
     inputs, end = _inputs(shell), shell.outline(10.0)
     rows = np.column_stack([shell.row(end.mean_deflection()), shell.row(end.rotation())])

@@ -53,9 +53,8 @@ def sparse(matrix: PETSc.Mat) -> csr_array:
 
 
 def test_geometric_stiffness_of_a_rigid_rotation() -> None:
-    """Reference: analytic. A rotation by θ shortens the axis by θ²/2 per length: K_G of a unit
-    rotation is ∫P dx, with a collar and self-weight; K_G of a translation is 0.
-    """
+    """Reference: analytic. K_G of a unit rotation is ∫P dx, with a collar and self-weight; of a
+    translation 0."""
     fly = replace(telescope(0.0).segments[1], collars=(Collar((7.0, 8.0), 0.004),))
     (pressed,) = with_compression([fly], [], [Thrust(0, 9.0, 4e4)], gravity=9.0)
     mesh = segment_mesh(Boom((replace(pressed, supports=HELD),), ()), 0, OPTIONS)
@@ -84,9 +83,8 @@ def column(part: float) -> Boom:
 
 
 def test_a_reduced_column_bends_as_the_full_one_under_its_axial_force() -> None:
-    """Reference: other code path, (K − K_G) u = f of all degrees of freedom, within 1e-5 at 40 %
-    of the critical force, where the second order is two thirds of the first.
-    """
+    """Reference: other code path, (K − K_G) u = f of all dofs within 1e-5 at 40 % of the critical
+    force."""
     boom = column(0.4)
     full = assemble_segment(MPI.COMM_SELF, boom.segments[0], segment_mesh(boom, 0, OPTIONS))
     assert full.geometric is not None
@@ -121,9 +119,7 @@ def test_shell_held_by_contacts_tips_over_as_a_beam() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("lateral", [None, 6e-3])
 def test_a_bonded_shell_buckles_where_its_beam_does(lateral: float | None) -> None:
-    """Reference: other code, shear-flexible elements; walls that give way at the two stations
-    soften the boom by up to 2 %.
-    """
+    """Reference: other code, shear-flexible elements; local compliance takes up to 2 %."""
     boom = telescope(THRUST, lateral)
     beam = critical_factor(boom, finite_element_segments(boom, 0.25, "timoshenko", True))
     assert beam is not None

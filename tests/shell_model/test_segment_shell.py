@@ -21,10 +21,7 @@ Shells = Callable[..., SegmentShell]
 
 
 def test_rigid_motions_carry_the_mass_of_the_box(box_shell: Shells) -> None:
-    """Reference: analytic, ρ A L for the translations, ρ (J_y + J_z) L for the roll.
-
-    The mid-surface box has its second moments without the corners' own share, (t/h)² of it.
-    """
+    """Reference: analytic, ρ A L and ρ (J_y + J_z) L, without the corners' own share (t/h)²."""
     shell = box_shell(0.25)
     motions = shell.rigid_motions()
     masses = (motions.T @ times(shell.mass, motions)).diagonal()
@@ -36,10 +33,7 @@ def test_rigid_motions_carry_the_mass_of_the_box(box_shell: Shells) -> None:
 
 @pytest.mark.slow
 def test_free_box_vibrates_as_a_timoshenko_beam_at_long_wavelength(box_shell: Shells) -> None:
-    """Reference: other code, this project's Timoshenko elements, themselves tested against
-    analytic frequencies. Six rigid modes at zero; the first bending frequency closes in on
-    the beam's with the square of the wavelength, as section distortion must.
-    """
+    """Reference: other code, Timoshenko elements; errors fall with the square of the wavelength."""
     differences = []
     for length in (10.0, 20.0):
         measured = natural_frequencies(box_shell(0.2, length=length), 10)
@@ -70,11 +64,8 @@ def _overhang_compliance(box_shell: Shells, size: float) -> float:
 
 @pytest.mark.slow
 def test_static_compliance_is_timoshenkos(box_shell: Shells) -> None:
-    """Reference: analytic. Supports at 0 and 2 m, unit force at 10 m shared by the webs:
-    a² (l + a) / 3EJ + (a + a²/l) / G A_web, with l = 2 m and a = 8 m.
-
-    The measured difference, 0.1 %, is a third of what the flanges' shear flow can add.
-    """
+    """Reference: analytic, a² (l + a) / 3EJ + (a + a²/l) / G A_web, l = 2 m, a = 8 m; 0.1 % apart,
+    a third of the flanges' shear flow."""
     bending = 64.0 * 10.0 / (3.0 * STEEL.youngs_modulus * BOX.second_moment_of_area)
     shear = (8.0 + 32.0) / (STEEL.shear_modulus * BOX.shear_area)
     assert shear > 0.02 * bending  # the tolerance is smaller than the effect
@@ -85,9 +76,8 @@ def test_static_compliance_is_timoshenkos(box_shell: Shells) -> None:
 
 
 def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
-    """Reference: analytic. A lifted, pitched box in the plane of bending; a shifted, yawed and
-    rolled one out of it, where a point (y, z) moves by φ (−z, y).
-    """
+    """Reference: analytic, lifted and pitched; shifted, yawed and rolled, where (y, z) moves by φ
+    (−z, y)."""
     shell = box_shell(0.25)
     outline, corners = shell.outline(10.0), CornerLines(shell)
     at_end, within = (ContactInterval.from_station(shell.segment, x, 0.1) for x in (10.0, 7.3))
@@ -117,10 +107,8 @@ def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
 
 @pytest.mark.slow
 def test_a_length_of_a_corner_gives_way_alike_on_any_mesh(box_shell: Shells) -> None:
-    """Reference: analytic. With every halving of the mesh the compliance, less that of the same
-    force spread over the webs, changes by less than a third of the change before; that of a force
-    at one point grows with the logarithm of the mesh, by as much each time.
-    """
+    """Reference: analytic. Changes by halved meshes fall to a third over a length, and stay at a
+    point."""
     section = BoxSection(0.2, 0.2, 0.006, 0.006)
 
     def local(size: float, length: float) -> float:

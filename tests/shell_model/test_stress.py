@@ -64,9 +64,7 @@ def still(places: Array) -> Array:
 
 @pytest.mark.slow
 def test_pull_along_the_boom_is_a_uniform_stress_of_the_walls() -> None:
-    """Reference: analytic. ε along x with free contraction is σ_x = E ε; the diaphragm, which
-    contracts with the walls, has -ν E ε / (1 - ν) in all directions of its plane.
-    """
+    """Reference: analytic, σ_x = E ε, and -ν E ε / (1 - ν) in the plane of the diaphragm."""
     strain = 1.0e-4
     found, mesh = stresses(lambda p: strain * p * [1.0, -NU, -NU], still)
     walls = found[mesh.on_walls]
@@ -79,9 +77,7 @@ def test_pull_along_the_boom_is_a_uniform_stress_of_the_walls() -> None:
 
 @pytest.mark.slow
 def test_shear_has_the_sign_of_the_way_around() -> None:
-    """Reference: analytic. u_y = γ x is τ = G γ along y: with s on the top, against it on the
-    bottom, none in the webs.
-    """
+    """Reference: analytic, τ = G γ of u_y = γ x: with s on the top, against it on the bottom."""
     shear = 1.0e-4
     found, mesh = stresses(
         lambda p: shear * np.stack([0.0 * p[:, 0], p[:, 0], 0.0 * p[:, 0]], axis=1), still
@@ -96,9 +92,7 @@ def test_shear_has_the_sign_of_the_way_around() -> None:
 
 @pytest.mark.slow
 def test_bending_stress_is_read_at_the_outer_face() -> None:
-    """Reference: analytic. With u_x = κ x z the top has ε = κ h/2 in its middle and κ t/2 more
-    on its outer face, the bottom the opposite, which is the same on its own outer face.
-    """
+    """Reference: analytic, ε = κ h/2 in the middle of the top and κ t/2 more on its outer face."""
     bend = 1.0e-4
     found, mesh = stresses(
         lambda p: bend * np.stack([p[:, 0] * p[:, 2], 0 * p[:, 0], -0.5 * p[:, 0] ** 2], axis=1),
@@ -177,9 +171,7 @@ def cantilever() -> ShellStress:
 @pytest.mark.slow
 @pytest.mark.parametrize("x", [3.0, 5.0, 7.0])
 def test_stress_away_from_supports_follows_the_beam(cantilever: ShellStress, x: float) -> None:
-    """Reference: analytic. σ = M z / J with M = q (L - x)² / 2, in the flanges' means and up
-    the webs, within 1 % of the largest.
-    """
+    """Reference: analytic, σ = M z / J with M = q (L - x)² / 2, within 1 % of the largest."""
     moment = -50.0 * (10.0 - x) ** 2
     extreme = abs(moment) * 0.5 * BOX.height / BOX.second_moment_of_area
     stress = cantilever.at(0.0)
@@ -240,9 +232,7 @@ def test_forces_of_sloping_walls_are_in_equilibrium() -> None:
 
 @pytest.mark.slow
 def test_a_bonded_boom_keeps_each_segments_stresses() -> None:
-    """Reference: analytic. Bonded segments are one cantilever beyond the support at 2 m: what is
-    beyond 5 m weighs on it with its moment, whatever the combination of coordinates.
-    """
+    """Reference: analytic. Bonded segments are one cantilever beyond the support at 2 m."""
     boom = three_segments(bonded=True)
     fields, shell = at_rest(boom, 0.25)
     assert fields.sizes["mode"] < sum(fields.sizes[f"own_{k}"] for k in (1, 2, 3))
@@ -269,9 +259,8 @@ def axial_force(shell: ShellStress, x: float) -> float:
 
 
 def test_a_column_is_pressed_by_its_load_and_its_weight() -> None:
-    """Reference: by hand, −P/A in every wall, with m̄ g (L − x) of weight at the middle of a row;
-    a collar takes its share of the same force.
-    """
+    """Reference: by hand, −P/A in every wall, with m̄ g (L − x) of weight; a collar takes its
+    share."""
     force, gravity = 0.1 * CRITICAL, 9.80665
     boom = column((CLAMP,), force)
     shell = stressed(boom)
@@ -293,9 +282,7 @@ def test_a_column_is_pressed_by_its_load_and_its_weight() -> None:
 
 
 def test_a_taper_is_pressed_most_at_its_slender_end() -> None:
-    """Reference: by hand, −P/A of the local section, four times as much at the head as at the tail,
-    and the same force in each.
-    """
+    """Reference: by hand, −P/A of the local section, four times as much at the head."""
     shell = stressed(arm(1000.0))
     stress, x = shell.at(0.0).membrane[:, 0], shell.centroids[:, 0]
     (segment,) = arm().segments
@@ -331,9 +318,8 @@ def shell() -> ShellStress:
 
 
 def test_bands_see_the_spot_and_patches_its_mean(shell: ShellStress) -> None:
-    """Reference: analytic. The bending is 1 MPa at the flanges at its height; a spot in a patch
-    of thirty triangles raises their mean by a thirtieth of it.
-    """
+    """Reference: analytic, 1 MPa at the flanges; a spot raises the mean of a patch by a
+    thirtieth."""
     history = stress_near_places(shell, [1.0, 3.0, 9.0], ["box"])
     near = history["von_mises"].sel(segment="box")
     assert near.sel(place=1.0).max() == pytest.approx(1.0e6, rel=1e-5)

@@ -26,11 +26,7 @@ YOUNG, SHEAR = STEEL.youngs_modulus, STEEL.shear_modulus
 
 @pytest.mark.slow
 def test_a_clamped_box_bends_and_twists_as_a_cantilever(box_shell: Shells) -> None:
-    """Reference: analytic, Timoshenko's L³/3EJ + L/GA along z and y and Bredt's L/GJ_t.
-
-    Shear is 0.5 % along z, the tolerance half of it; the walls that the clamp keeps from
-    contracting stiffen the rest.
-    """
+    """Reference: analytic, L³/3EJ + L/GA along z and y, Bredt's L/GJ_t; shear is 0.5 %."""
     shell = box_shell(0.25, supports=(Support(0.0, "clamped"),))
     end = shell.outline(10.0)
     bending = 10.0**3 / (3.0 * YOUNG)
@@ -48,9 +44,7 @@ def test_a_clamped_box_bends_and_twists_as_a_cantilever(box_shell: Shells) -> No
 def test_elastic_supports_give_way_by_their_reactions(
     box_shell: Shells, direction: Direction
 ) -> None:
-    """Reference: analytic. A unit force at 10 m is borne by −4 at 0 and 5 at 2 m, so springs k
-    add (4² + 5²) / k to what rigid supports leave.
-    """
+    """Reference: analytic, (4² + 5²) / k beyond rigid supports, from −4 and 5 times the force."""
     springs = tuple(Support(x, stiffness=1.0e6) for x in (0.0, 2.0))
     rigid, elastic = (
         compliance(shell, shell.outline(10.0).wall_deflection(direction))
@@ -80,9 +74,8 @@ def test_supports_leave_unheld_rigid_motions_free(box_shell: Shells) -> None:
 
 
 def test_point_masses_have_mass_and_no_rotary_inertia(box_shell: Shells) -> None:
-    """Reference: analytic. 70 kg at 2 m and 30 kg at 10 m add 100 kg to each translation,
-    70·3² + 30·5² kg·m² to pitch and yaw about the middle, nothing to the roll.
-    """
+    """Reference: analytic: 100 kg to translations, 70·3² + 30·5² kg·m² to pitch and yaw, none to
+    roll."""
     masses = (PointMass(2.0, 70.0), PointMass(10.0, 30.0))
     bare, loaded = (
         np.array([motion @ times(shell.mass, motion[:, None])[:, 0] for motion in motions.T])
@@ -102,9 +95,7 @@ def test_point_masses_have_mass_and_no_rotary_inertia(box_shell: Shells) -> None
 def test_lowest_frequency_is_the_beams_in_each_plane(
     box_shell: Shells, direction: Direction, masses: tuple[PointMass, ...]
 ) -> None:
-    """Reference: other code, this project's Timoshenko elements; 0.2 % apart, the second mode
-    up to 1.3 % for the section's distortion. The mass takes 32 % off the first.
-    """
+    """Reference: other code, Timoshenko elements; 0.2 %, the second mode 1.3 %."""
     shell = box_shell(0.25, supports=HELD, masses=masses)
     push = shell.row(shell.outline(10.0).wall_deflection(direction))[:, None]
     found = np.sqrt(reduce_segment(SymmetryReduction(shell), push, KrylovOptions(moments=2)).omega2)
@@ -118,9 +109,7 @@ def test_lowest_frequency_is_the_beams_in_each_plane(
 
 @pytest.mark.slow
 def test_twisting_frequency_is_bredts(box_shell: Shells) -> None:
-    """Reference: analytic, √(G J_t / ρ I_p) / 4l for the 18 m beyond the supports. The wall is
-    thick and the box long, so that the section hardly distorts; what is left is 0.3 %.
-    """
+    """Reference: analytic, √(G J_t / ρ I_p) / 4l for 18 m; 0.3 % of distortion."""
     box = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
     shell = box_shell(0.25, length=20.0, supports=HELD, section=box)
     push = shell.row(shell.outline(20.0).twist())[:, None]

@@ -128,9 +128,8 @@ def test_a_tilted_approach_presses_as_its_integral() -> None:
 
 @pytest.mark.slow
 def test_every_point_has_its_share_of_the_penalty() -> None:
-    """Reference: analytic. The area's weights are positive and add up, on either side; points
-    belong to the nearest station.
-    """
+    """Reference: analytic. Weights are positive and add up; points belong to the nearest
+    station."""
     law = replace(LAW.law, stiffness_below=0.5e13).behind(LAW.above)
     system = _system(flat_boom(), law=law)
     sides, stiffnesses = np.array([one.terms[0][:2] for one in system.laws]).T
@@ -148,9 +147,7 @@ def test_one_sided_law_has_no_points_below() -> None:
 
 @pytest.mark.slow
 def test_friction_stays_at_the_stations() -> None:
-    """Reference: this shell with contact at its stations: the same slides, in compliance, but for
-    the part of 1e-4 that modes which are left out may have.
-    """
+    """Reference: this shell with contact at its stations, but for 1e-4 of truncated modes."""
     lines, surface = (
         _system(flat_boom(friction=0.2), line=line) for line in ("near webs", "surface")
     )
@@ -164,9 +161,7 @@ def test_friction_stays_at_the_stations() -> None:
 
 @pytest.mark.slow
 def test_in_space_each_point_presses_one_corner() -> None:
-    """Reference: analytic. Webs touch too; every point adds to the normal force of one pad; a
-    roll is met by ∫ k_A y² dA = k_A L b³/12 on each flange.
-    """
+    """Reference: analytic. A roll is met by ∫ k_A y² dA = k_A L b³/12 on each flange."""
     system = _system(boom_in_space(friction=0.2))
     pressing = sorted(row for friction in system.frictions for row in friction.normal_rows)
     assert pressing == list(range(len(system.laws))) == list(range(4 * 16))
@@ -214,9 +209,7 @@ def compliances(comm: MPI.Comm) -> list[float]:
 @pytest.mark.slow
 @pytest.mark.parametrize("boom", [flat_boom(0.2), boom_in_space(0.2)], ids=["flat", "space"])
 def test_pads_take_the_place_of_points_one_by_one(boom: Boom) -> None:
-    """Reference: analytic. As many rows with the same laws; a rigid motion is read at the middle
-    of the patch: half its length inside the overlap's ends.
-    """
+    """Reference: analytic. A rigid motion is read at the middle of the patch."""
     plain, padded = _system(boom, "near webs"), _system(_with_pads(boom), "near webs")
     assert padded.laws == plain.laws
     assert padded.frictions == plain.frictions
@@ -254,9 +247,8 @@ def test_pads_are_for_stations_near_webs(line: ContactLine) -> None:
 
 @pytest.mark.parametrize("sides", [("above", "below"), ("above", "below", "left", "right")])
 def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
-    """Reference: by hand. Where both walls rise as the square of the distance from their middle, a
-    pad approaches by the mean of it, (b³ − a³)/3(b − a): each its own; weights as they are stiff.
-    """
+    """Reference: by hand, the mean (b³ − a³)/3(b − a) of a parabola for each pad; weights as
+    stiffnesses."""
     boom = flat_boom() if len(sides) == 2 else boom_in_space()
     pads = tuple(
         SlidePad(0.1, width, offset, side=side, thickness=POLYAMIDE * 0.1 * width / stiffness)

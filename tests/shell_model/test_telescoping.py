@@ -112,9 +112,7 @@ def test_shell_at_an_extension_equals_a_shell_built_there() -> None:
 
 @pytest.mark.slow
 def test_pads_of_a_boom_in_space_on_the_way() -> None:
-    """Reference: other code, the shell in space reduced where it rests: at rest, and what its
-    contacts and friction give way.
-    """
+    """Reference: other code, the shell in space reduced there: rest and compliances."""
 
     def built(way: float, drive: Drive | None) -> GapSystem:
         boom = boom_in_space(friction=0.2, sideways=0.3)
@@ -139,9 +137,8 @@ def test_pads_of_a_boom_in_space_on_the_way() -> None:
 
 @pytest.mark.slow
 def test_no_ring_of_the_mesh_is_felt() -> None:
-    """Reference: analytic, the law of the lever for the forces of the stations at rest, and
-    what pads give way is a straight line from ring to ring within 0.1 %; so is the drive's force.
-    """
+    """Reference: analytic, the lever rule; compliances of pads are straight from ring to ring
+    within 0.1 %."""
     ways = np.linspace(0.5, 2.0, 49)
     (travel,) = shell(0.0, DRIVE).system.travels
     compliances, forces, pulls = [], [], []
@@ -181,10 +178,7 @@ def test_motion_without_speed_equals_the_fixed_shell() -> None:
 
 @pytest.mark.slow
 def test_beams_are_as_near_as_where_it_rests() -> None:
-    """Reference: other code, beam finite elements: as far from the shell as resting booms are.
-
-    The ledger is closed, with the work of the drive.
-    """
+    """Reference: other code, beam elements, as near as resting booms; the energy balance closes."""
     apart = []
     for drive in (None, DRIVE):
         boom = touching(telescope(0.0, drive, dashpot=3.0e3), LAW)
@@ -210,9 +204,7 @@ def told(system: GapSystem) -> Array:
 
 @pytest.mark.slow
 def test_shell_with_axial_forces_equals_a_shell_built_there() -> None:
-    """Reference: other code path, the shell with its axial forces that is reduced where it rests;
-    and analytic, the ledger of a motion.
-    """
+    """Reference: other code path, the shell reduced there; analytic, the energy balance."""
 
     def reduced(way: float, drive: Drive | None = None) -> GapSystem:
         free = telescope(way, drive, 0.3)

@@ -61,9 +61,8 @@ def data(folder: Path) -> Any:
 
 @pytest.mark.slow
 def test_generic_solvers_err_no_more_than_the_time_step(data: Any) -> None:
-    """Reference: the time step of the same level, kind: other code; and not so much less that the
-    generic solvers did a hundred times the work.
-    """
+    """Reference: other code, the time step of the same level; at most a hundred times as
+    accurate."""
     entries = iter(data["solvers"])
     for step, solvers in SIZES.levels:
         ours = next(entries)
@@ -131,9 +130,7 @@ def test_exudyn_moves_telescoped_beams_alike() -> None:
 
 @pytest.mark.slow
 def test_the_rates_are_those_of_the_series() -> None:
-    """Reference: the time step, kind: other code. The boom touches; 1e-5 of the tip's range is far
-    below what a wrong force would do.
-    """
+    """Reference: other code, the time step, to 1e-5 of the tip's range."""
     system = five_terms(case_file.load(str(PAPER)))
     ours = FixedStep(2e-6)(Motion(system, 0.2))
     for rates in (compiled_rates(system), array_rates(system)):

@@ -27,9 +27,7 @@ CONTACT_SIZE = contact_size.Sizes(
 
 @pytest.mark.slow
 def test_pads_beside_the_webs_give_way_more() -> None:
-    """Reference: other code, plate theory for the wall; a flange that bends is ten times softer
-    than a corner, on any mesh, and the boom's first peak is higher for it.
-    """
+    """Reference: other code, plate theory; a flange is ten times softer than a corner."""
     found = contact_size.study(silent, CONTACT_SIZE)
     meshes = found.data["local-compliance"]
     local = np.array([[row[f"edges × {part:g}"] for part in CONTACT_SIZE.meshes] for row in meshes])
@@ -76,10 +74,7 @@ MESH = mesh.Sizes(meshes=(8.0, 4.0, 2.0), default=4.0, duration=0.9, frequencies
 
 @pytest.mark.slow
 def test_coarse_meshes_close_in() -> None:
-    """Reference: other code, the limit of uniform meshes.
-
-    Refinement softens: the lowest frequency falls, compliances rise.
-    """
+    """Reference: other code, the limit of uniform meshes. Refinement softens."""
     found = mesh.study(silent, MESH)
     values = {
         row["quantity"]: [row[f"edges × {part:g}"] for part in MESH.meshes]
@@ -106,9 +101,7 @@ STIFFENERS = stiffeners.Sizes(
 
 @pytest.mark.slow
 def test_stiffeners_act_where_they_are() -> None:
-    """Reference: analytic, for a plate in pure shear, for a ring, and for the masses; elsewhere
-    that a stiffener stiffens its own end of its segment, and leaves the other station as it was.
-    """
+    """Reference: analytic, a plate in shear, a ring, masses; each stiffens its own end alone."""
     found = stiffeners.study(silent, STIFFENERS)
     for proof in found.proofs:
         assert proof.holds, (proof.what, proof.error)
@@ -150,10 +143,8 @@ def test_contact_forces_hold_the_segment() -> None:
 
 @pytest.mark.slow
 def test_the_contact_has_no_stress_of_its_own_and_a_patch_has() -> None:
-    """Reference: analytic away from contacts; near them the refinement itself. Half the mesh
-    would double the stress of the nearest triangle beside a force at a point; beside one along a
-    length it still grows.
-    """
+    """Reference: analytic away from contacts; near them refinement doubles the stress at a
+    point."""
     found = stress.study(silent, STRESS)
     assert all(proof.holds for proof in found.proofs)
     beam = next(proof for proof in found.proofs if "top at 14 m" in proof.what)
@@ -175,11 +166,7 @@ SURFACE_CONTACT = surface_contact.Sizes(
 
 @pytest.mark.slow
 def test_a_surface_is_softer_than_webs_on_webs() -> None:
-    """Reference: sense, and what is proven by hand.
-
-    The outer flange gives way beside its web, so the tip goes higher than near webs; a stiffer
-    penalty lowers it. Forces of known approaches are their integrals.
-    """
+    """Reference: order of compliances; forces of known approaches are their integrals."""
     found = surface_contact.study(silent, SURFACE_CONTACT)
     assert all(proof.holds for proof in found.proofs)
     assert len(found.proofs) == 6

@@ -123,9 +123,7 @@ def refined(values: Sequence[float], ratio: float = 2.0) -> Refined:
 
 
 def test_the_published_example() -> None:
-    """Reference: external, NPARC Alliance's tutorial on spatial convergence: pressure recoveries
-    0.96178, 0.96854, 0.97050 on grids that halve.
-    """
+    """Reference: external, NPARC Alliance's tutorial: 0.96178, 0.96854, 0.97050 on halved grids."""
     found = refined([0.96178, 0.96854, 0.97050])
     assert found.order == pytest.approx(1.7862, abs=1.0e-4)
     assert found.limit == found.best == pytest.approx(0.97130, abs=1.0e-5)

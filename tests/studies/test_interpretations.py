@@ -47,9 +47,7 @@ def judged(one: Interpretation, peak: float = 0.17, **verdicts: Judgement) -> Ju
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
 def test_restored_laws_are_equally_stiff_where_the_pads_work(exponent: float) -> None:
-    """Reference: 1e9 N/m, the quadratic law's slope 2 √(1e13 · 25e3) by hand; the slope here is a
-    difference of forces, good to 1e-6.
-    """
+    """Reference: 1e9 N/m, the quadratic law's slope 2 √(1e13 · 25e3) by hand, to 1e-6."""
     stiffness = replace(RESTORED, exponent=exponent).contact_stiffness
     law = PowerContact(stiffness, exponent)
     depth = (2.5e4 / stiffness) ** (1.0 / exponent)
@@ -108,9 +106,7 @@ def test_exponents_are_compared_within_their_group(peak: float, verdict: str) ->
 
 @pytest.mark.slow
 def test_a_survey_of_two_interpretations() -> None:
-    """Reference: the literal stiffness gives n = 1 and n = 2 first tip peaks that differ by more
-    than half, and the series stay within a tenth of one another; non-regression.
-    """
+    """Reference: non-regression: n = 1 and n = 2 differ by more than half in first peaks."""
     found = survey([replace(LITERAL, exponent=exponent) for exponent in (1.0, 2.0)], members=2)
     for entry in found:
         assert sorted(entry.findings) == sorted(JUDGED)

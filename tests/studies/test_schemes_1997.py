@@ -59,9 +59,8 @@ def test_an_oscillator_turns_as_the_textbook_says(scheme: Scheme, phase: float) 
 
 
 def test_known_errors_in_ten_steps_a_period() -> None:
-    """Reference: by hand: Newmark's period is longer by (ω h)²/12 less a twentieth of that, central
-    differences' shorter by (ω h)²/24 or more; of the three Wilson alone loses amplitude.
-    """
+    """Reference: by hand: periods longer by (ω h)²/12 less a twentieth, shorter by (ω h)²/24;
+    Wilson damps."""
     phase = 2.0 * np.pi / 10.0
     newmark, wilson, central = (textbook_root(scheme, phase) for scheme in ALL)
     assert period_elongation(newmark, phase) == pytest.approx(phase**2 / 12.0, rel=0.05)
@@ -71,9 +70,8 @@ def test_known_errors_in_ten_steps_a_period() -> None:
 
 
 def test_wilson_overshoots_and_newmark_does_not() -> None:
-    """Reference: analytic: let go at 1 m in steps of ω h = 50, Newmark stays within 1 m, and
-    Wilson's first step goes far beyond (Goudreau and Taylor 1973).
-    """
+    """Reference: analytic, ω h = 50: Newmark stays within 1 m, Wilson overshoots (Goudreau and
+    Taylor 1973)."""
     far = {
         scheme: np.abs(integrate(let_go, scheme, False).trajectory.states).max()
         for scheme in (NEWMARK, WILSON)
@@ -105,9 +103,7 @@ def test_an_iterated_contact_is_a_spring_of_the_mode(scheme: Scheme) -> None:
 
 
 def test_a_lagged_contact_gains_energy() -> None:
-    """Reference: analytic: a force a step late is a dashpot of −k h or less, so that the swing of
-    1 kg on 1 N/m grows by exp(h t/4) or more, where iterated it stays.
-    """
+    """Reference: analytic: a lag is a dashpot of −k h, so that the swing grows by exp(h t/4)."""
     step, duration = 0.05, 20.0
     swings = []
     for iterated in (True, False):
@@ -119,9 +115,7 @@ def test_a_lagged_contact_gains_energy() -> None:
 
 
 def test_iterated_impacts_come_near_the_converged_ones() -> None:
-    """Reference: other code, splitting; one blow of 1 kg on a stop in 60 steps, within 1 % of the
-    way back.
-    """
+    """Reference: other code, splitting; one blow in 60 steps, within 1 % of the way back."""
     stop = replace(sprung(), laws=[PowerContact(100.0, 1.0).behind(0.5)])
     motion = Motion(stop, 2.0, 0.005, velocity=np.ones(1))
     found = integrate(motion, NEWMARK, True).trajectory.states[-1]

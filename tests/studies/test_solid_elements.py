@@ -87,9 +87,7 @@ def energy(solid: SolidFamily, field: Array) -> float:
     ],
 )
 def test_patch_of_constant_strain(family: SymmetryClass, strain: Array) -> None:
-    """Reference: analytic. V (2 μ ε:ε + λ tr² ε), in a mesh whose inner points are moved; nodes
-    within feel no force.
-    """
+    """Reference: analytic, V (2 μ ε:ε + λ tr² ε) in a distorted mesh; inner nodes feel no force."""
     solid = assemble_solid(segment(), distorted(coarse()), family)
     field = solid.nodes @ strain
     mu, nu = STEEL.shear_modulus, STEEL.poissons_ratio
@@ -163,10 +161,8 @@ def test_means_read_rigid_motions_and_thickening() -> None:
 
 @pytest.mark.slow
 def test_a_long_cantilever_vibrates_as_a_timoshenko_beam() -> None:
-    """Reference: analytic, Timoshenko's cantilever with the webs as its shear area.
-
-    Shear and rotary inertia take 1.5 % off Euler's frequency; the solid is within 0.2 %.
-    """
+    """Reference: analytic, Timoshenko's cantilever, within 0.2 %; shear and rotary inertia are 1.5
+    %."""
     length = 5.0
     held = (Support(0.0, "clamped"),)
     mesh = mesh_quarter(BOX, (0.0, length), (0.1, 0.5), 0.1)
@@ -201,10 +197,8 @@ def _cantilever(length: float, shear: bool) -> float:
 
 @pytest.mark.slow
 def test_the_shell_of_a_thin_box_is_the_solid_s() -> None:
-    """Reference: other code, this project's elasticity in space.
-
-    Walls of 1/30 of the width, on coarse meshes: deflection of the overhang, lowest frequencies.
-    """
+    """Reference: other code, elasticity in space: deflection of the overhang, lowest
+    frequencies."""
     thin = BoxSection(0.40, 0.30, 0.01, 0.01)
     box = box_segment("box", 0.0, 2.0, thin, supports=(Support(0.0), Support(0.5)))
     mesh = mesh_segment(thin, {"a": 0.0, "held": 0.5, "b": 2.0}, 0.05)
@@ -266,10 +260,7 @@ def volumes(mesh: SolidMesh) -> Array:
 
 @pytest.mark.parametrize("layers", [2, 4])
 def test_the_quarter_has_a_quarter_of_the_volume_and_of_both_second_moments(layers: int) -> None:
-    """Reference: analytic, A L / 4, and J L / 4 of the hollow rectangle.
-
-    A shell's mid-surfaces have the same area, and less second moment: by tw h tf²/2 about y.
-    """
+    """Reference: analytic, A L / 4, and J L / 4; a shell has less by tw h tf²/2 about y."""
     mesh = mesh_quarter(MESHED, PLACES, (0.02, 0.3), 0.05, 2, layers)
     parts = volumes(mesh)
     assert (parts > 0.0).all()
@@ -362,10 +353,7 @@ def test_order_and_passed_limits_are_those_of_a_power_law() -> None:
 
 @pytest.mark.slow
 def test_thick_walls_have_stiffer_corners_than_a_shell() -> None:
-    """Reference: other code, elasticity in space.
-
-    Every frequency of the shell is lower and every compliance higher than the solid's.
-    """
+    """Reference: other code, elasticity in space, which is stiffer."""
     told: list[str] = []
     (found,) = compare(TINY, told.append)
     assert told == ["walls of 40 mm"]

@@ -108,9 +108,7 @@ def test_long_steps_end_at_rest(loaded: _Loaded) -> None:
 
 
 def test_the_method_takes_energy_and_gives_none(loaded: _Loaded) -> None:
-    """Reference: analytic. At ρ∞ = 1 free motion keeps its energy; below it loses, the more the
-    smaller ρ∞ is.
-    """
+    """Reference: analytic. At ρ∞ = 1 energy is kept; below it falls, the more the smaller ρ∞ is."""
     step = loaded.period / 64.0
 
     def missing_energy(radius: float) -> Array:
@@ -132,9 +130,7 @@ def test_the_method_takes_energy_and_gives_none(loaded: _Loaded) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(("exponent", "stiffness"), [(1.0, 1.0e8), (2.0, 1.0e11)])
 def test_impact_follows_the_reduced_shell(exponent: float, stiffness: float) -> None:
-    """Reference: other code. A segment swings up against a stop at its tip and back; the reduced
-    one has many moments and moves in short steps of exact flow.
-    """
+    """Reference: other code, the reduced shell in short steps of exact flow."""
     stop = Stop(0, 10.0, 0.002, PowerContact(stiffness, exponent, stiffness_below=0.0))
     boom = Boom(flat_boom().segments[:1], (), stops=(stop,))
     krylov = KrylovOptions((5.0, 50.0, 300.0, 1500.0, 8000.0), 4)
@@ -152,9 +148,7 @@ def test_impact_follows_the_reduced_shell(exponent: float, stiffness: float) -> 
 
 @pytest.mark.slow
 def test_friction_below_its_limit_holds_exactly() -> None:
-    """Reference: analytic. A tenth of the load is held: no row moves, to round-off, and nothing
-    is lost. The whole load moves them.
-    """
+    """Reference: analytic. A tenth of the load is held: no row moves, and nothing is lost."""
     held = flat_boom(friction=0.2)
     light = tuple(replace(segment, load=0.1 * segment.load) for segment in held.segments)
     motion = integrate_directly(_full(replace(held, segments=light)), 0.1, 5.0e-4)
@@ -172,11 +166,8 @@ def test_friction_below_its_limit_holds_exactly() -> None:
 
 @pytest.mark.slow
 def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
-    """Reference: other code, the reduced shell in steps of exact flow, through the first blow.
-
-    Where a station presses and sticks at once, the sum of both forces moves the boom; which part is
-    whose hangs on how the last slip ended.
-    """
+    """Reference: other code, the reduced shell through the first blow; where a station presses and
+    sticks at once, the sum of both forces is unique."""
     boom = flat_boom(friction=0.2)
     system = reduce_boom(touching(boom, _SOFT), ShellOptions(0.5), MPI.COMM_SELF).system
     reference = FixedStep(1.0e-5)(Motion(system, 0.4))
@@ -231,9 +222,7 @@ def test_bad_steps_are_refused(step: float, radius: float, message: str) -> None
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
 def test_forces_of_a_step_obey_their_laws_to_round_off(exponent: float) -> None:
-    """Reference: analytic. Contacts follow (4); what friction holds stays, what it does not hold
-    moves its way. Rows depend on one another as those of a station do: it slides by their mean.
-    """
+    """Reference: analytic, (4) and Coulomb's law; dependent rows slide by their mean."""
     random = np.random.default_rng(1)
     law = PowerContact(10.0 ** (5.0 + 3.0 * exponent), exponent).behind(1.0e-3)
     laws = [law.one_sided(side) for side in (1, -1, 1, -1)]
@@ -267,9 +256,8 @@ def test_forces_of_a_step_obey_their_laws_to_round_off(exponent: float) -> None:
 
 
 def test_a_block_on_a_rough_floor_stays_or_slides() -> None:
-    """Reference: analytic. Below μN a push moves nothing; above, the compliance times what is left,
-    and friction takes μN times the way.
-    """
+    """Reference: analytic. Below μN nothing moves; above, the rest times the compliance, and loss
+    μN s."""
     rows = ResistingRows([], [DryFriction(0.5, 0, 20.0)], np.array([[1.0e-3]]), onward=2.0)
     assert rows.forces(np.array([9.0e-3])) == pytest.approx([9.0], rel=1.0e-14)
     assert rows.readings == pytest.approx([0.0], abs=1.0e-17)

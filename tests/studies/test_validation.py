@@ -25,9 +25,7 @@ def test_friction_follows_code_aster(rows: object) -> None:
 
 
 def test_the_roller_stiffens_the_beam_as_measured() -> None:
-    """Reference: measured, DROPBEAR; without the roller, analytic, 1.8751² and Rayleigh's tip
-    mass of 0.2427 times the beam's, good to 1 %.
-    """
+    """Reference: measured, DROPBEAR; without the roller 1.8751² and Rayleigh's 0.2427, to 1 %."""
     proofs = list(validation.moving_roller())
     assert len(proofs) == 6
     assert max(proof.error for proof in proofs) < 0.012
@@ -40,10 +38,7 @@ def test_the_roller_stiffens_the_beam_as_measured() -> None:
 
 
 def test_a_heavier_tip_slows_the_boom_lift() -> None:
-    """Reference: external, 1.40 Hz of MathWorks' chart, and statics: 1/f² is linear in the mass.
-
-    Heavier masses would leave fewer digits of f, since the rigid pieces have short elements.
-    """
+    """Reference: external, 1.40 Hz of MathWorks' chart, and statics: 1/f² is linear in the mass."""
     (proof,) = validation.boom_lift()
     assert proof.error < 0.02
     light, middle, heavy = (validation.lift_frequency(0.05, 250.0 * k) ** -2 for k in (1, 2, 4))

@@ -47,9 +47,7 @@ def test_a_first_peak_is_proven_where_there_is_one() -> None:
 
 @pytest.mark.slow
 def test_a_mesh_errs_more_under_more_load() -> None:
-    """Reference: other code, the finer mesh. Ten times the load goes deeper into the walls; one
-    reduction serves both loads.
-    """
+    """Reference: other code, the finer mesh. Ten times the load goes deeper into the walls."""
     contact_types: list[str] = []
     found = study(contact_types.append, TINY)
     assert contact_types == ["near webs", "in space, near webs"]

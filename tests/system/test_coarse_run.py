@@ -80,9 +80,7 @@ def test_every_file_of_a_whole_run_opens(whole: Path) -> None:
 
 
 def test_stresses_beside_a_support_are_those_of_a_beam(whole: Path) -> None:
-    """Reference: analytic. A patch of a flange beside the support at 2 m has σ = M z / J, with
-    the moment that the walls carry to both sides of it, within 5 %, though the mesh is coarse.
-    """
+    """Reference: analytic, σ = M z / J beside the support at 2 m, within 5 % on a coarse mesh."""
     summary = summary_of(whole)
     stress = summary["models"]["shell"]["stress"]
     with xr.open_dataset(whole / "stress.nc", engine="scipy") as data:

@@ -61,11 +61,8 @@ def complaints(answer: subprocess.CompletedProcess[str]) -> list[str]:
 def test_two_ranks_run_a_shell_as_one_does(
     two_ranks: Ranks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Reference: the run on one rank until chaos begins with the first contact.
-
-    The last vectors of the reduced bases depend on round-off, and the highest frequencies with
-    them: they ring at the head with less than 1e-4 of its motion.
-    """
+    """Reference: one rank until the first contact; the highest modes ring at the head by less than
+    1e-4."""
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     case = tmp_path / "case.toml"
     text = Path(COARSE).read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.12")

@@ -149,8 +149,7 @@ MAGNIFIED = "document.querySelector('header p').textContent.match(/× ([0-9.]+)/
 
 
 def test_the_slider_moves_the_boom(page: Page, folder: Path) -> None:
-    """Reference: trajectories.nc. The end of the boom is drawn as far from where it was as the tip
-    has gone, times what the page says; shapes leave 0.2 % of the largest displacement."""
+    """Reference: trajectories.nc, times the shown scale; shapes leave 0.2 %."""
     page.open(folder / "viewer.html", 1000)
     page.wait_for(f"{BOOM}.dataset.frame == '0'")
     magnified = float(page.evaluate(MAGNIFIED))
