@@ -203,7 +203,8 @@ class Draft:
                 ends = self._fitting(place, value, *ends)
             low, high = max(low, ends[0]), min(high, ends[1])
         for usual in usual_ranges(self.case, self.boom):
-            if usual.key == place.name and usual.value == value:
+            # The numbers of a joint range over all that fits.
+            if usual.key == place.name and usual.value == value and place.steps[0] != "joint":
                 low, high = max(low, usual.least), min(high, usual.most)
                 if value == 0.0 and math.isfinite(usual.most):
                     high = usual.most
