@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import combinations, pairwise, product
 from typing import Annotated, Any
 
 import numpy as np
@@ -388,13 +388,24 @@ class Segment:
                 )
             for x in collar.span:
                 self.check_place(f"{key}.span", x)
-        for (_, left), (right, _) in pairwise(sorted(collar.span for collar in self.collars)):
-            if left - right > SAME_PLACE * self.length:
+        for one, other in combinations(self.collars, 2):
+            start = max(one.span[0], other.span[0])
+            common = min(one.span[1], other.span[1]) - start
+            if common > SAME_PLACE * self.length and self._share_wall(one, other):
                 raise BoomError(
                     f"{where}.collars",
-                    f"two lie on one another from {right:g} m on; give one of the thickness of "
+                    f"two lie on one another from {start:g} m on; give one of the thickness of "
                     "both there",
                 )
+
+    def _share_wall(self, one: Collar, other: Collar) -> bool:
+        """Return whether two collars cover a common part of a wall."""
+        if self.section is None:
+            return True
+        return any(
+            a.wall == b.wall and min(a.high, b.high) - max(a.low, b.low) > self.widest.near
+            for a, b in product(one.strips(self.widest), other.strips(self.widest))
+        )
 
     def _check_strips(self, where: str, collar: Collar) -> None:
         if self.section is None:
