@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Calibration of beams by the shell of the same boom: effective stiffness, local compliance.
+"""Calibration of beams by the shell of the same boom: stiffness and local compliance.
 
-With the effective E J, G A_s and G J_t of a segment, a Timoshenko beam has the response of the
-shell to static probes. The effective stiffnesses include shear lag, Poisson's effect and folds.
+The effective stiffnesses E J, G A_s and G J_t of a segment give a Timoshenko beam the static
+response of the shell. They include shear lag, Poisson's effect and folds.
 
-The residual compliance is the additional local compliance at contacts. With the rows B of contacts,
-friction and dashpots, and C = B Ω⁻² Bᵀ over the elastic modes, it is D = C_fine − C_coarse of shell
-and beam (MacNeal 1971). Both models have the same rigid motions and the same inertia forces, so
-that D is purely local. Its positive part D = Σ g gᵀ is added as quasi-static springs: each is a
-coordinate with the rows ω_s g and a frequency ω_s far above the motion.
+The residual compliance is D = C_shell − C_beam (MacNeal 1971). Here C = B Ω⁻² Bᵀ is the compliance
+of the elastic modes with frequencies Ω at the rows B of contacts, friction and dashpots. Shell and
+beam have the same rigid motions and inertia forces, so that D is the local compliance of the walls.
+Its positive part Σ g gᵀ is added as springs. A spring is a coordinate with the rows ω_s g, and its
+frequency ω_s is far above the frequencies of the motion.
 """
 
 from __future__ import annotations
@@ -126,9 +126,11 @@ def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
 
 
 def with_springs(system: GapSystem, residual: Array) -> GapSystem:
-    """Return the system with springs for the positive part of a residual compliance.
+    """Return the system with springs of the positive part of a residual compliance.
 
-    The residual is (num_rows, num_rows) in m/N.
+    Args:
+        system: gap system of the beams.
+        residual: residual compliance (num_rows, num_rows) in m/N.
     """
     sizes = np.sqrt(np.abs(np.diag(residual)))
     sizes[sizes == 0.0] = 1.0

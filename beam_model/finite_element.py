@@ -38,7 +38,7 @@ def finite_element_segments(
 ) -> list[SegmentModel]:
     """Return the models of all segments of a boom, with nodes at all forces.
 
-    Arguments are those of :func:`finite_element_segment`.
+    Arguments as in :func:`finite_element_segment`.
 
     Raises:
         BoomError: the boom lacks data that the theory needs.

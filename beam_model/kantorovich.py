@@ -33,7 +33,7 @@ def kantorovich_segments(
 ) -> list[SegmentModel]:
     """Return the models of all segments of a boom, with a number of terms for each.
 
-    Other arguments are those of :func:`kantorovich_segment`.
+    Other arguments as in :func:`kantorovich_segment`.
 
     Raises:
         BoomError: the base does not admit the boom's supports or cylinders.
@@ -105,7 +105,7 @@ def kantorovich_bending(
 ) -> Component:
     """Return the component of deflection along z, with the matrices (23)–(26).
 
-    Arguments are those of :func:`kantorovich_segment`.
+    Arguments as in :func:`kantorovich_segment`.
     """
     basis = _Basis(segment, bending_basis(segment, terms, base))
     # The base as printed also fixes the slope at the first support.

@@ -15,8 +15,8 @@ from geometry.boom import Segment
 def rigid_segment(segment: Segment) -> SegmentModel:
     """Return the model of a segment that moves without deformation.
 
-    Its motions are those that rigid supports admit, possibly none. Elastic supports and point
-    masses act on them.
+    It has the motions that rigid supports admit, possibly none. Elastic supports and point masses
+    act on them.
     """
     components: dict[Motion, Component] = {"z": _rigid_motion(segment)}
     if segment.lateral is not None:

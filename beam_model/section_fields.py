@@ -59,7 +59,7 @@ def _order_modes(omega2: Array, pushes: Array, slowest: int) -> Indices:
 
 
 def _forces(system: GapSystem) -> Array:
-    """Return all rows and loads (num_pushes, num_modes)."""
+    """Return the rows and load vectors (num_forces, num_modes) of all forces on a system."""
     constant = [system.load, system.released_load, system.initial_impulse]
     excited = [excitation.load for excitation in system.excitations]
     return np.vstack([system.all_rows, *constant, *excited])

@@ -82,7 +82,7 @@ class Elements:
 
     @cached_property
     def unsupported(self) -> list[Component]:
-        """The components along z without supports, with nodes at all possible supports."""
+        """Components along z of segments without supports, with nodes at possible supports."""
         size, theory = self._kind
         components = []
         for number, segment in enumerate(self.boom.segments):

@@ -64,8 +64,8 @@ class FrameMotion:
     def drive_moments(self, time: Array, x: float, mass: float, extension: MotionLaw) -> Array:
         """Return the moments (2, ...) in N·m of slewing and luffing that move a mass.
 
-        They are m ρ a_y about the slewing axis, and m σ (a_z + g cos α) about the foot. Arguments
-        are those of :meth:`accelerations`, and the mass in kg.
+        They are m ρ a_y about the slewing axis, and m σ (a_z + g cos α) about the foot. The
+        arguments are as in :meth:`accelerations`, and the mass in kg.
         """
         _, aside, across = self.accelerations(time, x, extension)
         along, luffed = x - self.foot + extension(time), np.cos(self.luff_angle(time))
@@ -167,7 +167,7 @@ class Spin(FrameAcceleration):
 class PathAcceleration(FrameAcceleration):
     """Acceleration of a point of the straight boom along a fixed axis.
 
-    z points up, and x outwards at ψ = 0. Arguments are those of :class:`FrameAcceleration`.
+    z points up, and x outwards at ψ = 0. Arguments as in :class:`FrameAcceleration`.
     """
 
     def __call__(self, time: Array) -> Array:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Construction of gap systems from contacts, friction and observations, for beams and shells.
 
-A reading is a displacement operator of a model; its row gives the displacement from the modes. For
-a beam the operators are rows already. A shell is first reduced for its operators, and the rows
-follow in the reduced modes.
-The rules of contact and friction are the same for both.
+A displacement operator of a model gives a displacement from all degrees of freedom; its row gives
+the displacement from the modes. The operators of beams are rows. A shell is reduced for its
+operators, and their rows follow in the reduced modes. Contact and friction have the same rules for
+both.
 """
 
 from __future__ import annotations

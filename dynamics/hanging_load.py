@@ -40,7 +40,7 @@ _GROUND = 100.0
 
 @dataclass(frozen=True, slots=True)
 class RopeForce:
-    """Slow rise of the rope force to the weight of a load that lies on the ground; a history.
+    """History of the rope force in a slow lift, up to the weight of a load on the ground.
 
     Args:
         hoist: hoisted length in m over time.
@@ -167,7 +167,7 @@ class HangingLoad:
         tip, lateral = (np.pad(row, (0, dimensions)) for row in (tip, lateral))
 
         def stretches(time: float) -> Array:
-            """Return rows (own, num_modes + own) of the tip displacement relative to the load."""
+            """Return rows (dimensions, num_modes + dimensions) of the tip relative to the load."""
             if self.pendulum is None:
                 return np.asarray(self.cosine * tip[None] - coordinates)
             return np.asarray(self.pendulum.read(time, tip, lateral)[:dimensions] - coordinates)
@@ -252,5 +252,5 @@ class HangingLoad:
         return Trajectory(data, motion.states)
 
     def _coordinates(self, known: Container[str]) -> int:
-        """Return the number of coordinates of the load; ``known`` are the outputs of the boom."""
+        """Return the number of coordinates of the load, from the outputs of the boom."""
         return 1 if self.pendulum is None else 2 + ("tip_lateral" in known)

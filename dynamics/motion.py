@@ -101,7 +101,7 @@ def build_motion(
 def initial_state(system: GapSystem, at_rest: bool) -> tuple[GapSystem, Array, Array]:
     """Return the system from t = 0 on, and its initial a and ȧ, (num_modes,) each.
 
-    Arguments and errors are those of :func:`build_motion`.
+    Arguments and errors as in :func:`build_motion`.
     """
     system = system.gather_loads()
     held = _load_before_start(system, at_rest)

@@ -31,7 +31,10 @@ STATION_VARIABLES: Mapping[str, Mapping[str, str]] = {
     "contact_force": {"units": "N", "long_name": f"contact force, mean of {_INTERVAL}"},
     "contact_force_peak": {"units": "N", "long_name": f"largest contact force of {_INTERVAL}"},
     "friction_force": {"units": "N", "long_name": f"friction force, mean of {_INTERVAL}"},
-    "gap": {"units": "m", "long_name": "deflection of the inner segment less that of the outer"},
+    "gap": {
+        "units": "m",
+        "long_name": "deflection of the inner less deflection of the outer segment",
+    },
 }
 
 # Variables of each drive; the suffix of its travel follows each name.
@@ -292,7 +295,7 @@ class Trajectory:
 
 
 def prominent_peaks(values: Array, prominence: float) -> list[int]:
-    """Return the indices of all peaks with a prominence.
+    """Return the indices of all peaks with at least this prominence.
 
     They are the peaks of ``scipy.signal.find_peaks``, whose import takes half a second.
     """
@@ -305,7 +308,7 @@ def prominent_peaks(values: Array, prominence: float) -> list[int]:
 
 
 def _first_prominent(values: Array, prominence: float) -> int | None:
-    """Return the index of the first peak with a prominence, or None."""
+    """Return the index of the first peak with at least this prominence, or None."""
     if prominence == 0.0 or values.size == 0:
         return None
     risen = values - np.minimum.accumulate(values) >= prominence

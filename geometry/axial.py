@@ -138,7 +138,7 @@ def pin_moments(
     """Yield (segment, load vector) of the moment of axial forces about each pin below the axis.
 
     The pin is fixed, so that a rotation w′ at the pin moves the segment along x by −d w′ against
-    the axial forces N. Their work is N d w′, equal to that of a constant moment N d at the pin.
+    the axial forces N. Their work N d w′ equals the work of a constant moment N d at the pin.
 
     Args:
         segments: segments with their axial forces.
@@ -173,7 +173,7 @@ def moving_force(
 def moving_force_places(
     segments: Sequence[Segment], joints: Sequence[Joint], segment: int
 ) -> set[float]:
-    """Return the x in m of a segment between which axial forces move along it."""
+    """Return the x in m on a segment at both ends of the paths of moving axial forces."""
     return {
         moving.x + moving.direction * extension
         for number, joint in enumerate(joints)
@@ -321,7 +321,9 @@ def _plain_weights(segment: Segment, gravity: float) -> Iterator[tuple[float, fl
 
 
 def _lock(joints: Sequence[Joint], number: int) -> Joint | None:
-    """Return the joint that carries a segment's axial force: with ``locked_at``, or the last."""
+    """Return the joint that carries a segment's axial force.
+
+    It is the joint with ``locked_at``; without this key, the last joint of the segment."""
     around = [joint for joint in joints if joint.inner == number]
     return max(around, key=lambda joint: (joint.locked_at is not None, joint.outer), default=None)
 

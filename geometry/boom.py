@@ -162,7 +162,7 @@ class Boom:
         ]
 
     def moving_intervals(self, segment: int) -> tuple[float, ...]:
-        """Return ascending x in m of a segment between which stations or axial forces move."""
+        """Return ascending x in m of the ends of paths of stations and axial forces."""
         places = {
             place[joint.inner == segment]
             for joint in self.joints
@@ -215,7 +215,7 @@ class Boom:
         return places
 
     def all_observations(self, of_ends: Sequence[Quantity]) -> list[Observation]:
-        """Return the observations of segment ends, then those of the boom.
+        """Return the observations of segment ends, then the boom's other observations.
 
         Names of the former are, for example, ``tip`` for a deflection and ``tip_rotation``.
         """

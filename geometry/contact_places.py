@@ -233,7 +233,7 @@ def pads(boom: Boom) -> list[Pad]:
                             outer=outer,
                             weight=weight,
                             sliding_direction="y" if boom.spatial and direction == "z" else "z",
-                            # The normal forces of both sides sum to that of the station.
+                            # Both sides share the normal force of the station.
                             normal_force=None
                             if normal_force is None
                             else normal_force * weight * (0.5 if side else 1.0),

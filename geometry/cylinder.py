@@ -170,7 +170,7 @@ def forces(boom: Boom) -> dict[str, str]:
         observations[name] = f"spring force of the cylinder {where}, positive where pressed"
         if one.spread > 0.0:
             observations[name.replace("force", "force_difference")] = (
-                f"spring force of the cylinder at positive y {where}, less that of the other"
+                f"spring force of the cylinder at positive y {where}, less the force of the other"
             )
     return observations
 

@@ -28,7 +28,7 @@ def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
     """Check that the inner segment of a joint fits with its play, if both sections are given.
 
     Raises:
-        BoomError: the segment does not fit; the message names an attribute of ``where``.
+        BoomError: the segment does not fit; the message begins with the joint ``where``.
     """
     if outer.section is None or inner.section is None:
         return
@@ -56,7 +56,7 @@ def check_room_at_extension(
     """Check that the inner segment of a flat joint fits with its play at an extension in m.
 
     Raises:
-        BoomError: the segment does not fit; the message names the drive ``where``.
+        BoomError: the segment does not fit; the message begins with the drive ``where``.
     """
     if outer.section is None or inner.section is None:
         return
@@ -104,7 +104,7 @@ def check_contact_faces(
         around: outer segment, if any.
 
     Raises:
-        BoomError: a face is missing, or wider than that of the outer segment.
+        BoomError: a face is missing, or wider than the face of the outer segment.
     """
     if segment.section is None:
         return

@@ -270,7 +270,7 @@ class Joint(BareJoint):
     def pads_of(
         self, direction: Direction, side: Side
     ) -> list[tuple[PadSize | None, float, float]]:
-        """Return (size, share of the side's force, shim in m) of each pad; side 0 means both."""
+        """Return (size, share of the side's force, shim in m) of each pad on a side; 0: on both."""
         if not self.pads:
             return [(self.pad, 1.0, 0.0)]
         here = [pad for pad in self.pads if pad.touches(direction, side)]

@@ -36,7 +36,7 @@ class PlatedMesh(SegmentMesh):
     def refined(self) -> PlatedMesh:
         """The mesh with each triangle divided into four, without lines.
 
-        Its first points are those of this mesh. Triangles 4k to 4k + 3 replace triangle k.
+        It begins with the points of this mesh. Triangles 4k to 4k + 3 replace triangle k.
         """
         corners = self.triangles
         edges = np.sort(corners[:, [[1, 2], [2, 0], [0, 1]]], axis=2).reshape(-1, 2)

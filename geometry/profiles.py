@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Common polygons: hexagons, octagons, and U-sections of folded plates with a flat top.
 
-Sizes are those of the mid-lines in m; y = z = 0 is the middle of their extent.
+Sizes of mid-lines are in m; y = z = 0 is the middle of their extent.
 """
 
 from __future__ import annotations
@@ -103,7 +103,7 @@ def u_section(
 def _mirrored(
     twice: Sequence[tuple[float, float]] | Array, thicknesses: Sequence[float]
 ) -> PolygonSection:
-    """Return the symmetric section with the given right half.
+    """Return the mirror-symmetric section of a right half.
 
     Args:
         twice: doubled (y, z) in m of the right half's corners (num_corners, 2), upwards.

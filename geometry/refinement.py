@@ -106,7 +106,7 @@ def _zones(
     stop_patches: Sequence[StopPatch],
     pads: Sequence[Pad],
 ) -> Iterator[_Zone]:
-    """Yield (low, high, size, growth) of each zone for the tolerance of calibration."""
+    """Yield (low, high, size, growth) of each zone for the ``CALIBRATION_TOLERANCE``."""
     segment = boom.segments[number]
     section = segment.widest
     lowest, high = section.bounds

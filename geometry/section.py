@@ -233,8 +233,9 @@ def rectangle(
 ) -> tuple[Plate, ...]:
     """Return the four plates of a rectangle.
 
-    Args: low, high: (y, z) in m of opposite corners of the mid-lines. bottom, right, top, left:
-        thicknesses in m.
+    Args:
+        low, high: (y, z) in m of opposite corners of the mid-lines.
+        bottom, right, top, left: thicknesses in m.
     """
     (y0, z0), (y1, z1) = low, high
     return (

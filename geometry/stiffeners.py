@@ -71,7 +71,7 @@ class Collar:
         return sum(2.0 * (strip.high - strip.low) for strip in self.strips(section))
 
     def is_symmetric(self, section: Section, axis: Direction) -> bool:
-        """Return whether the mirror images along an axis of its walls are its walls."""
+        """Return whether the collar is its own mirror image along an axis."""
         middles = np.array([section.plates[strip.wall].middle for strip in self.strips(section)])
         images = middles.copy()
         images[:, COMPONENT[axis] - 1] *= -1.0

@@ -218,7 +218,7 @@ def _always(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
 
 
 def _left(rows: Iterable[Array], bodies: list[_RigidBody]) -> Array:
-    """Return a basis (num_dofs, num_free) of the motions with rows · motion = 0."""
+    """Return a basis (num_dofs, num_free) of the motions that the rows leave free."""
     sizes = [(row, float(np.linalg.norm(row))) for row in rows]
     scaled = np.array([row / size for row, size in sizes if size > 0.0])
     motions = np.eye(bodies[-1].motions.stop)

@@ -46,8 +46,8 @@ def load_case(source: str | Path | Mapping[str, Any]) -> Case:
     ['outer', 'inner']
 
     Args:
-        source: path of the file; those in ``CASES`` come with the program. Or its tables by their
-            keys; CSV files that they name are looked for in the current folder.
+        source: path of a case file, for example in the folder ``CASES`` of the program; or the
+            tables of a case by their keys, with paths of CSV files relative to the current folder.
 
     Raises:
         BadInput: the file cannot be read, or its content is invalid.

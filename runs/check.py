@@ -320,7 +320,7 @@ def axial_forces(boom: Boom, static: Statics | None) -> Table:
         Column("axial force", [force for force, _ in extremes], ".4g", "kN"),
         Column("axial stress", [stress for _, stress in extremes], ".4g", "MPa"),
     ]
-    note = "Extreme values over all extensions; cylinder forces are those at t = 0."
+    note = "Extreme values over all extensions; cylinder forces at t = 0."
     notes = [note] if boom.cylinders else []
     return Table("Extreme axial forces, compression positive", columns, notes)
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-# Each command imports its own libraries: those of all commands take seconds to load.
+# Each command imports its own libraries, since all libraries together take seconds to load.
 from runs.process import ending, progress, ranks, terminal
 from runs.process.terminal import Terminal, printable
 

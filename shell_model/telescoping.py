@@ -84,10 +84,10 @@ class _SampledRows:
         return np.asarray(np.concatenate(rows).T)
 
     def moving_and_staying(self, comm: MPI.Comm, columns: Array) -> tuple[Mask, Mask]:
-        """Return two masks (num_extensions · num_moving,) of rows. Collective.
+        """Return masks (num_extensions · num_moving,) of moving and constant rows. Collective.
 
-        The first one marks rows that change on this segment, the second one rows that do not
-        change, at the first extension only.
+        On this segment, moving rows depend on the extension. Constant rows do not, and are
+        marked at the first extension only.
         """
         rows = columns.T.reshape(self.extensions.size, len(self.moving), -1)
         same = comm.allreduce((rows[0] == rows[-1]).all(axis=1), MPI.LAND)
@@ -257,8 +257,8 @@ class TelescopingShell:
     def _transfer_error(self, many: tuple[Array, Array, Array], few: tuple[Array, Array]) -> float:
         """Return the error of the response of outputs to pad forces.
 
-        It is relative to the geometric mean of both compliances. ``many`` is (ω², rows of pads,
-        rows of outputs) in all modes; ``few`` is (ω², shapes) of the selected modes.
+        It is relative to the geometric mean of both compliances. ``many`` has ω², the rows of pads
+        and the rows of outputs in all modes; ``few`` has ω² and the shapes of the kept modes.
         """
         omega2, rows, observed = many
         shifted, shapes = (1.0 / (one + squared(self._test)) for one in (omega2, few[0])), few[1]

@@ -19,7 +19,7 @@ from studies.reference_models.benchmarks import PUBLISHED, SHEAR_RIGID
 from studies.reference_models.plates import OBLIQUE, Patch, SupportedPlate, constant_strains
 from studies.reference_models.prismatic import ANGLE, BOX, PlainBox
 from studies.refined import Reference, Refined, refined_table
-from studies.study import Criterion, Piece, Plot, Progress, Proof, define_study
+from studies.study import Criterion, Piece, Plot, Progress, Verification, define_study
 
 # Thickness of the vibrating plates over their longer side.
 THIN, THICK = 0.001, 0.1
@@ -113,23 +113,23 @@ def torsion(sizes: Sizes) -> Iterator[Refined]:
         yield refined(f"torsion constant, {name}", "m⁴", sizes.torsion, found, reference)
 
 
-def exactness(box: PlainBox, sizes: Sizes) -> Iterator[Proof]:
+def exactness(box: PlainBox, sizes: Sizes) -> Iterator[Verification]:
     """Check cases that are exact up to round-off: patches under constant strain, a rotated box."""
     patch = Patch.of()
     criterion: Criterion = ("analytic", "the field that is held on its edges", 1.0e-11)
     for state in constant_strains():
         what = f"patch under constant {state.name} strain, oblique: largest error"
-        yield Proof(what, patch.error(state), 0.0, "", *criterion)
+        yield Verification(what, patch.error(state), 0.0, "", *criterion)
     straight, turned = (
         box.free_frequencies(sizes.box, sizes.frequencies, turn=turn) for turn in (None, OBLIQUE)
     )
     worst = int(np.abs(turned / straight - 1.0).argmax())
     what = f"box turned in space: frequency {worst + 1}, which changes most"
     criterion = ("analytic", "the same box along x", 1.0e-8)
-    yield Proof(what, float(turned[worst]), float(straight[worst]), "Hz", *criterion)
+    yield Verification(what, float(turned[worst]), float(straight[worst]), "Hz", *criterion)
 
 
-def drilling(box: PlainBox, y: float, sizes: Sizes) -> Iterator[Table | Proof]:
+def drilling(box: PlainBox, y: float, sizes: Sizes) -> Iterator[Table | Verification]:
     """Vary the drilling penalty of boxes up to 100 times its default, and of a twisted beam.
 
     Args:
@@ -159,7 +159,7 @@ def drilling(box: PlainBox, y: float, sizes: Sizes) -> Iterator[Table | Proof]:
         spread = float((np.ptp(values, axis=0) / np.abs(values[0])).max())
         criterion: Criterion = ("non-regression", f"the default tie, {scientific(default)}", 1.0e-3)
         what = f"{what}: spread over drilling ties from {first} to {last}"
-        yield Proof(what, spread, 0.0, "", *criterion)
+        yield Verification(what, spread, 0.0, "", *criterion)
     columns = {"what": "", "tie / (G t)": ".1g", "largest change from the default (%)": ".4f"}
     title = "Effect of the drilling tie"
     yield Table.of_rows("drilling", title, columns, rows, (DRILLING_NOTE,))
@@ -177,7 +177,7 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     known = published(sizes)
     progress("plates and torsion")
     found = [*known, *plates(sizes), *torsion(sizes)]
-    yield from (one.proof for one in found)
+    yield from (one.verification for one in found)
     progress("pinched cylinder with shear")
     dents = [benchmarks.pinched_cylinder(n) for n in sizes.cylinder]
     sheared = Refined("pinched cylinder with shear", "", known[1].sizes, dents)

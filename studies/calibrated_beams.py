@@ -24,7 +24,7 @@ from runs.case.schema import Case, Model
 from runs.report.tables import Cell, Table
 from studies.motions import build_all, friction_case, model_of, run_parallel, shell_of
 from studies.pads import with_pads
-from studies.study import Criterion, Piece, Progress, Proof, define_study
+from studies.study import Criterion, Piece, Progress, Verification, define_study
 from studies.working_load import Point, PointMotion, set_point
 
 # Permitted errors of the tip as fractions of its range, of first peaks, and of frequencies.
@@ -122,8 +122,8 @@ class ModelComparison:
                 seconds[name] / seconds[PLAIN],
             )
 
-    def proofs(self) -> Iterator[Proof]:
-        """Return the proofs of springs and of fields."""
+    def verifications(self) -> Iterator[Verification]:
+        """Return the verifications of springs and of fields."""
         for name, allowed, count in (
             (SPRUNG, SPRINGS, OF_SPRINGS),
             (WITH_FIELDS, FIELDED, OF_FIELDS),
@@ -138,7 +138,7 @@ class ModelComparison:
                  FREQUENCY),
             ):  # fmt: skip
                 criterion: Criterion = ("other code", "the shell that calibrates it", bar)
-                yield Proof(f"beam {name}, {self.where}: {what}", value, 0.0, "", *criterion)
+                yield Verification(f"beam {name}, {self.where}: {what}", value, 0.0, "", *criterion)
 
 
 def calibrated_beam(case: Case, model: Model, fields: bool) -> Model:
@@ -228,4 +228,4 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     yield summary_table(compared, sizes)
     for one in compared:
         yield point_table(one)
-        yield from one.proofs()
+        yield from one.verifications()

@@ -15,7 +15,7 @@ from runs.case.schema import Case
 from runs.pipeline.combinations import combination_states
 from runs.pipeline.fatigue import detail_damages
 from runs.pipeline.proofs import winter
-from studies.study import Criterion, Progress, Proof, define_study
+from studies.study import Criterion, Progress, Verification, define_study
 
 GRAVITY = 9.80665
 # Masses in kg, the hand force in N, and the factors of the combination "work" of the lift.
@@ -29,7 +29,7 @@ MINER: Criterion = ("external", "EN 1993-1-9, 7.1, by hand", 0.01)
 
 
 @define_study("combinations", "Combinations and proofs")
-def study(progress: Progress) -> Iterator[Proof]:
+def study(progress: Progress) -> Iterator[Verification]:
     """Compare the lift's combinations, its fatigue damage, and Winter's curve."""
     progress("the lift")
     case = case_file.load(str(CASES / "lift.toml"))
@@ -38,13 +38,13 @@ def study(progress: Progress) -> Iterator[Proof]:
     assert level is not None
     force = level.rests[0].cylinders["cylinder_force"]
     what = "cylinder force of the lift, level, with factors"
-    yield Proof(what, 1e-3 * force, 1e-3 * _cylinder_force(level.boom), "kN", *MOMENTS)
+    yield Verification(what, 1e-3 * force, 1e-3 * _cylinder_force(level.boom), "kN", *MOMENTS)
     progress("fatigue")
     yield from _damage(case)
     progress("Winter's curve")
     for slenderness, ratio, reduction in ((1.0, 1.0, 0.78), (2.0, 1.0, 0.445), (2.0, -1.0, 0.4725)):
         what = f"reduction of a wall, slenderness {slenderness:g}, stress ratio {ratio:g}"
-        yield Proof(what, float(winter(slenderness, ratio)), reduction, "", *WINTER)
+        yield Verification(what, float(winter(slenderness, ratio)), reduction, "", *WINTER)
 
 
 def _cylinder_force(boom: Boom) -> float:
@@ -59,7 +59,7 @@ def _cylinder_force(boom: Boom) -> float:
     return moment * hypot(along, up) / (2.4 * up + 0.25 * along)
 
 
-def _damage(case: Case) -> Iterator[Proof]:
+def _damage(case: Case) -> Iterator[Verification]:
     """Yield the damage at the station of the fly, by people who step in where the lift is level."""
     level = next(one for one in case.load_cases if one.name == "level")
     empty = level.model_copy(update={"name": "empty", "payload": 0.0, "loads": ()})
@@ -80,4 +80,4 @@ def _damage(case: Case) -> Iterator[Proof]:
     cycles = 5e6 * (0.737 * detail.category / size) ** slope
     cycles = cycles if size >= 0.405 * detail.category else inf
     what = "fatigue damage of the lift, station of the fly"
-    yield Proof(what, damage.sum, REPEATS / cycles, "", *MINER)
+    yield Verification(what, damage.sum, REPEATS / cycles, "", *MINER)

@@ -22,7 +22,7 @@ from runs.report.tables import Table
 from studies.motions import friction_case, gap_system, move, scale_mesh, shell_of
 from studies.pads import with_pads
 from studies.refined import Refined, refined_table
-from studies.study import Criterion, Piece, Progress, Proof, define_study
+from studies.study import Criterion, Piece, Progress, Verification, define_study
 
 # Permitted errors of the local compliance and of a wall under a pad.
 ALLOWED = 0.01
@@ -134,7 +134,7 @@ def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
     return [move(one, sizes.peak).first_peak()[1] for one in loaded]
 
 
-def plate_proofs(sizes: Sizes) -> Iterator[Proof]:
+def plate_verifications(sizes: Sizes) -> Iterator[Verification]:
     """Check a wall under a patch beside its edge."""
     from studies.reference_models.plates import FLANGE
 
@@ -145,7 +145,9 @@ def plate_proofs(sizes: Sizes) -> Iterator[Proof]:
     )
     for size in sizes.plate:
         what = f"simply supported plate under a patch beside its edge, mesh of {1e3 * size:g} mm"
-        yield Proof(what, NANO * FLANGE.shell(size), NANO * FLANGE.theory(), UNIT, *criterion)
+        yield Verification(
+            what, NANO * FLANGE.shell(size), NANO * FLANGE.theory(), UNIT, *criterion
+        )
 
 
 @define_study("contact-size", "Local compliance at contacts")
@@ -159,11 +161,11 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
         ALLOWED,
     )
     progress("plates")
-    yield from plate_proofs(sizes)
+    yield from plate_verifications(sizes)
     progress("support")
     values = [NANO * value for value in support_compliance(friction_case(), sizes.meshes)]
     what = "local compliance, elastic support, at 2 m"
-    yield Proof(what, values[default], values[-1], UNIT, *criterion)
+    yield Verification(what, values[default], values[-1], UNIT, *criterion)
     stations = [x for x, _ in build_boom(friction_case()).stations]
     rows, found = [], [Refined("elastic support, 2 m", UNIT, sizes.meshes, values)]
     for contact in contacts_of(friction_case(), sizes):
@@ -174,7 +176,7 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
         for x, values in zip(stations, local.T.tolist(), strict=True):
             found.append(Refined(f"{contact.name}, {x:g} m", UNIT, sizes.meshes, values))
             what = f"local compliance, {contact.name}, at {x:g} m"
-            yield Proof(what, values[default], values[-1], UNIT, *criterion)
+            yield Verification(what, values[default], values[-1], UNIT, *criterion)
     columns = {
         "pressed": "", "along the boom\n(m)": ".3g", "across\n(m)": ".3g",
         **{f"local compliance\nat {x:g} m ({UNIT})": ".2f" for x in stations},

@@ -30,7 +30,7 @@ from runs.report.figure_context import Figure
 from runs.report.formatting import fixed, number
 from runs.report.pages import page
 from runs.report.tables import Table, wide_console, write
-from studies.study import Plot, Proof, Study
+from studies.study import Plot, Study, Verification
 
 
 def draw(plot: Plot, folder: Path) -> Figure:
@@ -65,48 +65,48 @@ INTRODUCTION = """\
 <!-- SPDX-License-Identifier: LGPL-3.0-or-later -->
 # Verification
 
-Each row holds a value against a reference. *Analytic* is a formula; *external*, a published value;
-*other code*, another model or method of this project, or the limit of a refinement;
-*non-regression*, the value that an earlier release had. The order is the one observed as a mesh or
-a step refines. The command that measures all of them, draws their convergence and writes this
-table to `runs/out/convergence/verification.md` is
+Each row compares a value with a reference. The reference is a formula (*analytic*), a published
+value (*external*), another model or method of this project or the limit of a refinement (*other
+code*), or the value of an earlier release (*non-regression*). The order is the observed order of
+convergence with the mesh size or the step. This command computes all values, draws their
+convergence and writes this page to `runs/out/convergence/verification.md`:
 
     make convergence
 
-`make test` holds what can be had in seconds to the same references.
+`make test` compares the values that take seconds with the same references.
 """
 
 
-def proof_table(study: Study) -> Table:
-    """Return the proofs of one study as a table."""
+def verification_table(study: Study) -> Table:
+    """Return the verifications of one study as a table."""
     return Table.of_rows(
-        f"proofs-{study.name}",
+        f"verifications-{study.name}",
         study.title,
         ("what", "value", "reference", "error (%)", "allowed", "", "order", "kind", "source"),
-        [_row(proof) for proof in study.proofs],
+        [_row(verification) for verification in study.verifications],
     )
 
 
 def markdown(studies: Sequence[Study]) -> str:
-    """Return the page of all studies with proofs."""
-    proving = [study for study in studies if study.proofs]
-    return "\n".join([INTRODUCTION, *(proof_table(study).markdown() for study in proving)])
+    """Return the page of all studies with verifications."""
+    verified = [study for study in studies if study.verifications]
+    return "\n".join([INTRODUCTION, *(verification_table(study).markdown() for study in verified)])
 
 
-def _row(proof: Proof) -> tuple[str, ...]:
-    unit = f" {proof.unit}" if proof.unit else ""
+def _row(verification: Verification) -> tuple[str, ...]:
+    unit = f" {verification.unit}" if verification.unit else ""
     # The number of digits shows the error.
-    digits = 6 if proof.error < 1.0e-3 else 5
+    digits = 6 if verification.error < 1.0e-3 else 5
     return (
-        proof.what,
-        f"{number(proof.value, digits)}{unit}",
-        f"{number(proof.reference, digits)}{unit}",
-        number(100.0 * proof.error, 2),
-        number(100.0 * proof.allowed, 2),
-        "✓" if proof.holds else "✗",
-        fixed(proof.order, 2),
-        proof.kind,
-        proof.source,
+        verification.what,
+        f"{number(verification.value, digits)}{unit}",
+        f"{number(verification.reference, digits)}{unit}",
+        number(100.0 * verification.error, 2),
+        number(100.0 * verification.allowed, 2),
+        "✓" if verification.holds else "✗",
+        fixed(verification.order, 2),
+        verification.kind,
+        verification.source,
     )
 
 
@@ -169,9 +169,9 @@ def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
             for table in study.tables:
                 table.show(console)
             console.print(f"{study.title}: {seconds:.0f} s\n")
-    proving = [study for study in studies if study.proofs]
-    for study in proving:
-        proof_table(study).show(console)
+    verified = [study for study in studies if study.verifications]
+    for study in verified:
+        verification_table(study).show(console)
     tables = [table for study in studies for table in study.tables]
     write(folder, "convergence", TITLE, {one.name: one.data for one in studies}, tables)
     write_atomically(folder / "verification.md", markdown(studies))
@@ -180,7 +180,7 @@ def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
 
 
 def main() -> None:
-    """Run the studies on the command line, or all; return 1 if a proof does not hold."""
+    """Run the studies on the command line, or all; return 1 if a verification does not hold."""
     show_notices()
     console = wide_console()
     names = sys.argv[1:] or STUDIES
@@ -194,9 +194,14 @@ def main() -> None:
         print("protractile: the system has killed a study; run fewer at a time", file=sys.stderr)
         sys.exit(3)
     console.print(f"written to {OUT}")
-    failed = [proof for study in studies for proof in study.proofs if not proof.holds]
-    for proof in failed:
-        print(f"protractile: not proven: {proof.what}", file=sys.stderr)
+    failed = [
+        verification
+        for study in studies
+        for verification in study.verifications
+        if not verification.holds
+    ]
+    for verification in failed:
+        print(f"protractile: not verified: {verification.what}", file=sys.stderr)
     sys.exit(1 if failed else 0)
 
 
@@ -208,7 +213,9 @@ def _write_report(studies: Sequence[Study], folder: Path) -> None:
             title=TITLE,
             studies=studies,
             figures=drawn,
-            proofs={one.name: proof_table(one) for one in studies if one.proofs},
+            verifications={
+                one.name: verification_table(one) for one in studies if one.verifications
+            },
         )
     write_atomically(folder / "report.html", content)
 

@@ -21,7 +21,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.report.tables import Table
 from studies.motions import gap_system, model_of, without_friction
-from studies.study import Criterion, Piece, Progress, Proof, define_study
+from studies.study import Criterion, Piece, Progress, Verification, define_study
 
 # Booms, and their cases.
 BOOMS = {
@@ -102,10 +102,10 @@ def study(progress: Progress) -> Iterator[Piece]:
             residuals.append(float(swings[:, 1].max()))
             worst = 100.0 * float(swings[np.abs(swings[:, 0] - ratio).argmax(), 0])
             rows.append((name, 100.0 * ratio, *(100.0 * swings[:, 0])))
-            yield Proof(farthest, worst, 100.0 * ratio, "%", *criterion)
+            yield Verification(farthest, worst, 100.0 * ratio, "%", *criterion)
     residual = "energy residual of these swings, the largest"
     criterion = ("analytic", "conservation of energy", 1.0e-4)
-    yield Proof(residual, max(residuals), 0.0, "", *criterion)
+    yield Verification(residual, max(residuals), 0.0, "", *criterion)
     modes = {f"mode {mode}\n%": ".4g" for mode in range(1, MODES + 1)}
     columns = {"boom": "", "requested\n%": ".3g", **modes}
     yield Table.of_rows("damping", "Damping ratios of pressed booms", columns, rows, (NOTE,))

@@ -24,7 +24,7 @@ from runs.pipeline.motion_results import MotionAndStatics, evaluate_motion
 from runs.pipeline.run import run_case
 from runs.pipeline.static_results import Diagram, positions, static_result
 from studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
-from studies.study import Criterion, Progress, Proof, define_study
+from studies.study import Criterion, Progress, Verification, define_study
 
 # Stiffness of the paper's boom: N/m on both segments.
 OUTER, INNER = 83.16, 55.07
@@ -42,7 +42,7 @@ LEVERS: Criterion = ("analytic", "lever rule", EXACT)
 
 
 @define_study("design-results", "Design results")
-def study(progress: Progress) -> Iterator[Proof]:
+def study(progress: Progress) -> Iterator[Verification]:
     """Compare the paper's boom at rest and a cantilever in motion."""
     progress("the paper's boom at rest")
     answers = design_results_at_rest()
@@ -50,7 +50,7 @@ def study(progress: Progress) -> Iterator[Proof]:
         yield from _at_rest(name, answers.models[name])
     for held, force in zip(answers.reactions, support_forces(), strict=True):
         what = f"reaction at {held.x:g} m"
-        yield Proof(what, 1e-3 * held.force, 1e-3 * force, "kN", *LEVERS)
+        yield Verification(what, 1e-3 * held.force, 1e-3 * force, "kN", *LEVERS)
     progress("a cantilever")
     yield from _cantilever()
 
@@ -81,7 +81,7 @@ def support_forces() -> tuple[float, float]:
     return -OUTER * HEAD - tail - head - far, far
 
 
-def _at_rest(name: str, own: ModelDesignResults) -> Iterator[Proof]:
+def _at_rest(name: str, own: ModelDesignResults) -> Iterator[Verification]:
     (rest,) = own.static
     tail, head = station_forces()
     tilt = (PLAY + (abs(tail) + head) / STIFF) / (HEAD - TAIL)
@@ -91,10 +91,10 @@ def _at_rest(name: str, own: ModelDesignResults) -> Iterator[Proof]:
         CLOSE,
     )
     turned = 1e3 * rest.tilts[0].rotation
-    yield Proof(f"tilt of the joint, {name}", turned, 1e3 * tilt, "mrad", *criterion)
+    yield Verification(f"tilt of the joint, {name}", turned, 1e3 * tilt, "mrad", *criterion)
     for pressed, force in zip(rest.stations, (tail, head), strict=True):
         what = f"contact force at {pressed.x:g} m, {name}"
-        yield Proof(what, 1e-3 * pressed.force, 1e-3 * force, "kN", *LEVERS)
+        yield Verification(what, 1e-3 * pressed.force, 1e-3 * force, "kN", *LEVERS)
     at_foot, far = support_forces()
     x, s = ALONG_OUTER, TIP - ALONG_INNER
     outer, inner = rest.diagrams
@@ -106,7 +106,7 @@ def _at_rest(name: str, own: ModelDesignResults) -> Iterator[Proof]:
         (inner, ALONG_INNER, "moment", "kN m", -0.5 * INNER * s**2),
     ):
         found, named = 1e-3 * value_at(diagram, what, place), f"{what} at {place:g} m, {name}"
-        yield Proof(named, found, 1e-3 * force, unit, "analytic", "by hand", OF_PIECES)
+        yield Verification(named, found, 1e-3 * force, unit, "analytic", "by hand", OF_PIECES)
 
 
 def value_at(diagram: Diagram, what: str, place: float) -> float:
@@ -114,7 +114,7 @@ def value_at(diagram: Diagram, what: str, place: float) -> float:
     return float(np.interp(place, diagram.x, diagram.curves[what]))
 
 
-def _cantilever() -> Iterator[Proof]:
+def _cantilever() -> Iterator[Verification]:
     """Compare a cantilever: modes and static stress by elements, vibration in one coordinate."""
     arm = Segment.of_section("arm", 0.0, LENGTH, STEEL, BOX, supports=(CLAMP,), load=LOAD)
     boom = Boom((arm,), ())
@@ -124,14 +124,18 @@ def _cantilever() -> Iterator[Proof]:
     for number, root in ((1, 1.875104068711961), (2, 4.694091132974175)):
         mode = next(one for one in own.modes if one.number == number)
         what = f"cantilever, {mode.motion}, mode {number}"
-        yield Proof(what, mode.frequency, root**2 * rate, "Hz", "analytic", "Blevins 1979", CLOSE)
+        yield Verification(
+            what, mode.frequency, root**2 * rate, "Hz", "analytic", "Blevins 1979", CLOSE
+        )
     assert own.motion is not None
     moment = 0.5 * abs(LOAD) * LENGTH**2
     stress = moment * 0.5 * (BOX.height + BOX.flange) / BOX.second_moment_of_area
     (fibre,) = own.motion.fibres
     assert fibre.at_rest is not None
     criterion: Criterion = ("analytic", "M c/J, Navier 1826", CLOSE)
-    yield Proof("outer fibre of it at rest", 1e-6 * fibre.at_rest, 1e-6 * stress, "MPa", *criterion)
+    yield Verification(
+        "outer fibre of it at rest", 1e-6 * fibre.at_rest, 1e-6 * stress, "MPa", *criterion
+    )
     single = suddenly_loaded_results(
         boom, kantorovich_segments(boom, [1], "complete", rotary_inertia=False)
     )
@@ -139,7 +143,7 @@ def _cantilever() -> Iterator[Proof]:
     for peak in single.motion.peaks:
         assert peak.factor is not None
         what = f"dynamic factor of its {peak.what}, one coordinate, loaded suddenly"
-        yield Proof(what, peak.factor, 2.0, "", "analytic", "1 − cos ωt", CLOSE)
+        yield Verification(what, peak.factor, 2.0, "", "analytic", "1 − cos ωt", CLOSE)
 
 
 def suddenly_loaded_results(boom: Boom, segments: list[SegmentModel]) -> ModelDesignResults:

@@ -25,7 +25,7 @@ from runs.pipeline.models import MotionPlan
 from runs.report.tables import Table
 from studies.motions import STEP, friction_case, gap_system, scale_loads, set_duration, shell_of
 from studies.pads import with_pads
-from studies.study import Criterion, Piece, Progress, Proof, define_study
+from studies.study import Criterion, Piece, Progress, Verification, define_study
 
 # Permitted error of the tip as a fraction of its range.
 ALLOWED = 0.005
@@ -169,11 +169,11 @@ def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterato
     on = f"{where}, mesh of {sizes.mesh:g} m, {sizes.duration:g} s"
     method: Criterion = ("other code", METHOD, ALLOWED)
     tips = f"tip of the reduced shell off the unreduced one, part of its range, {on}"
-    yield Proof(tips, off[-1], 0.0, "", *method, order)
+    yield Verification(tips, off[-1], 0.0, "", *method, order)
     for run, bound in ((reduced, ENERGY_BOUND), (direct[-1], LOSS_BOUND)):
         what = f"energy residual of the {run.how} shell, {on}"
         conserved: Criterion = ("analytic", "conservation of energy", bound)
-        yield Proof(what, run.energy_residual, 0.0, "", *conserved)
+        yield Verification(what, run.energy_residual, 0.0, "", *conserved)
 
 
 @define_study("direct", "The reduction against the full order")

@@ -12,7 +12,7 @@ from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
-from studies.study import Criterion, Progress, Proof, define_study
+from studies.study import Criterion, Progress, Verification, define_study
 
 # Output step, time step and duration in s. A step is a tenth of the smallest 1/ω below.
 OUTPUT_STEP, STEP = 0.02, 2.0e-5
@@ -78,7 +78,7 @@ def masses(history: Ramp | Sine | PiecewiseLinear) -> GapSystem:
 
 
 @define_study("histories", f"Loads with histories, steps of {STEP:g} s")
-def study(progress: Progress) -> Iterator[Proof]:
+def study(progress: Progress) -> Iterator[Verification]:
     """Compare vibrations after kinked histories, and largest errors, with closed forms."""
     for what, history in KINKED.items():
         progress(what)
@@ -92,5 +92,5 @@ def study(progress: Progress) -> Iterator[Proof]:
         worst = max(np.abs(found[w] - expected[w]).max() / np.ptp(expected[w]) for w in OMEGAS)
         swing = f"{what}: swing left at {BOOM / (2.0 * np.pi):.2g} Hz"
         largest = f"{what}: largest error, 0 to {OMEGAS[-1] / (2.0 * np.pi):.0f} Hz, part of range"
-        yield Proof(swing, measured, exact, "mm", *DUHAMEL)
-        yield Proof(largest, float(worst), 0.0, "", *DUHAMEL)
+        yield Verification(swing, measured, exact, "mm", *DUHAMEL)
+        yield Verification(largest, float(worst), 0.0, "", *DUHAMEL)

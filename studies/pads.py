@@ -13,7 +13,7 @@ from geometry.arrays import Array
 from geometry.joint import PadSize
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from studies.study import Proof
+from studies.study import Verification
 
 
 def with_pads(case: Case, length: float, width: float) -> Case:
@@ -32,7 +32,9 @@ def upper_rows(system: GapSystem) -> Array:
     return np.asarray(at @ system.rows / at.sum(axis=1, keepdims=True))
 
 
-def pad_proofs(case: Case, size: tuple[float, float], system: GapSystem) -> Iterator[Proof]:
+def pad_verifications(
+    case: Case, size: tuple[float, float], system: GapSystem
+) -> Iterator[Verification]:
     """Check magnitude and place of a pressed pad's resultant.
 
     The value of its row for a rigid motion is the work of its unit force.
@@ -51,7 +53,7 @@ def pad_proofs(case: Case, size: tuple[float, float], system: GapSystem) -> Iter
          start + 0.5 * size[0], "m", "middle of the pad"),
     ):  # fmt: skip
         found = float(upper_rows(system)[0] @ rigid_motion(system, tail, tip))
-        yield Proof(what, found, expected, unit, "analytic", source, 1.0e-6)
+        yield Verification(what, found, expected, unit, "analytic", source, 1.0e-6)
 
 
 def rigid_motion(system: GapSystem, tail: float, tip: float) -> Array:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from runs.report.tables import Table
-from studies.study import Kind, Proof
+from studies.study import Kind, Verification
 
 # Safety factor of a grid convergence index of three or more grids (Roache 1998).
 SAFETY = 1.25
@@ -76,15 +76,17 @@ class Refined:
         return [abs(value / exact - 1.0) for value in self.values]
 
     @property
-    def proof(self) -> Proof:
-        """Return the proof of the finest mesh against the reference."""
+    def verification(self) -> Verification:
+        """Return the verification of the finest mesh against the reference."""
         assert self.reference is not None
         value, kind, source, allowed = self.reference
         order = self.order if math.isfinite(self.order) else None
-        return Proof(self.what, self.values[-1], value, self.unit, kind, source, allowed, order)
+        return Verification(
+            self.what, self.values[-1], value, self.unit, kind, source, allowed, order
+        )
 
-    def against_limit(self, what: str, size: float, finest: str, allowed: float) -> Proof:
-        """Return the proof of one mesh against the limit of refinement.
+    def against_limit(self, what: str, size: float, finest: str, allowed: float) -> Verification:
+        """Return the verification of one mesh against the limit of refinement.
 
         Args:
             what: the quantity.
@@ -100,7 +102,7 @@ class Refined:
         value = self.values[self.sizes.index(size)]
         source = "limit of its refinement (Richardson 1911)" if self.converges else finest
         order = self.order if self.converges else None
-        return Proof(what, value, self.best, self.unit, "other code", source, allowed, order)
+        return Verification(what, value, self.best, self.unit, "other code", source, allowed, order)
 
     @property
     def _ratio(self) -> float:

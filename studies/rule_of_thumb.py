@@ -43,7 +43,7 @@ from studies.calibrated_beams import (
 )
 from studies.motions import build_all, friction_case, model_of, shell_of
 from studies.pads import with_pads
-from studies.study import Criterion, Piece, Progress, Proof, define_study
+from studies.study import Criterion, Piece, Progress, Verification, define_study
 from studies.working_load import Point
 
 _DENSITY = 7850.0
@@ -427,16 +427,18 @@ def wall_table(found: Mapping[str, tuple[Array, Array]], sizes: Sizes) -> Table:
     )
 
 
-def proofs(found: Sequence[BoomErrors]) -> Iterator[Proof]:
-    """Return the proofs of the rule against the shells, and of springs."""
+def verifications(found: Sequence[BoomErrors]) -> Iterator[Verification]:
+    """Return the verifications of the rule against the shells, and of springs."""
     booms = f"{len(found)} booms"
     for name in (EULER, PLAIN):
         what = f"{name}: first tip peak's error over that of the rule of thumb, geometric mean of "
         mean = float(np.exp(np.log(ratios(found, name, tips=False)).mean()))
-        yield Proof(what + booms, mean, 1.0, "", "other code", "shells", MEAN_OFF)
+        yield Verification(what + booms, mean, 1.0, "", "other code", "shells", MEAN_OFF)
     worst = max(float(np.nanmax(one.peaks[SPRUNG])) for one in found)
     criterion: Criterion = ("other code", "the shell that calibrates it", PEAK)
-    yield Proof(f"beam {SPRUNG}: first tip peak, worst of {booms}", worst, 0.0, "", *criterion)
+    yield Verification(
+        f"beam {SPRUNG}: first tip peak, worst of {booms}", worst, 0.0, "", *criterion
+    )
 
 
 @define_study("rule-of-thumb", "A rule of thumb for beams")
@@ -456,7 +458,7 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     yield scatter_table(every, sizes)
     yield springs_table(found, sizes)
     yield wall_table(walls, sizes)
-    yield from proofs(every)
+    yield from verifications(every)
     worst = max(float(np.abs(plates / shell - 1.0).max()) for plates, shell in walls.values())
     what = f"compliance of walls under pads, worst of {2 * len(walls)} stations"
-    yield Proof(what, worst, 0.0, "", "other code", "shells", WALLS)
+    yield Verification(what, worst, 0.0, "", "other code", "shells", WALLS)

@@ -23,7 +23,7 @@ from geometry.load import Load
 from geometry.section import BoxSection
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
-from studies.study import Progress, Proof, define_study
+from studies.study import Progress, Verification, define_study
 
 STEEL = Material(2.1e11, 0.3, 7850.0)
 BOX = BoxSection(height=0.2, width=0.15, flange=0.006, web=0.006)
@@ -114,15 +114,15 @@ def column(
 
 
 @define_study("second_order", "Columns: buckling, swing and deflection")
-def study(progress: Progress) -> Iterator[Proof]:
+def study(progress: Progress) -> Iterator[Verification]:
     """Study every model."""
     for name, model in MODELS.items():
         progress(name)
         yield from _euler(name, model)
-        yield from (proof(name, model) for proof in (_greenhill, _swing, _berry))
+        yield from (verification(name, model) for verification in (_greenhill, _swing, _berry))
 
 
-def _euler(name: str, model: Model) -> Iterator[Proof]:
+def _euler(name: str, model: Model) -> Iterator[Verification]:
     source = "Euler 1744, shear by Engesser 1891" if model.in_shear else "Euler 1744"
     for case, (supports, part) in EULER.items():
         # A shear-flexible column has no closed form.
@@ -132,10 +132,10 @@ def _euler(name: str, model: Model) -> Iterator[Proof]:
         force = SHARE * reference
         found = model.factor(column(supports, force)) * force
         what = f"critical force of a {case} column, {name}"
-        yield Proof(what, found, reference, "N", "analytic", source, model.allowed)
+        yield Verification(what, found, reference, "N", "analytic", source, model.allowed)
 
 
-def _greenhill(name: str, model: Model) -> Proof:
+def _greenhill(name: str, model: Model) -> Verification:
     gravity = 9.80665
     mass = BOX.mass_per_length(STEEL.density)
     factor = model.factor(column((CLAMP,), 0.0, gravity))
@@ -143,10 +143,10 @@ def _greenhill(name: str, model: Model) -> Proof:
     what = f"ρ g A L³/(E J) of a column that buckles under its own weight, {name}"
     # Shear, which Greenhill neglects, takes 0.16 % here.
     allowed = max(model.allowed, 2e-3) if model.in_shear else model.allowed
-    return Proof(what, found, 7.8373474, "", "analytic", "Greenhill 1881", allowed)
+    return Verification(what, found, 7.8373474, "", "analytic", "Greenhill 1881", allowed)
 
 
-def _swing(name: str, model: Model) -> Proof:
+def _swing(name: str, model: Model) -> Verification:
     critical = model.critical(CRITICAL)
     free, held = (
         model.of(column((HINGE, END), force))[0].frequencies[0] for force in (0.0, SHARE * critical)
@@ -154,10 +154,10 @@ def _swing(name: str, model: Model) -> Proof:
     source = "√(1 − P/P_cr), Timoshenko and Gere 1961"
     what = f"first frequency of a hinged column under {SHARE:g} P_cr over that without, {name}"
     reference = float(np.sqrt(1.0 - SHARE))
-    return Proof(what, held / free, reference, "", "analytic", source, model.allowed)
+    return Verification(what, held / free, reference, "", "analytic", source, model.allowed)
 
 
-def _berry(name: str, model: Model) -> Proof:
+def _berry(name: str, model: Model) -> Verification:
     """Check the static tip deflection under a load Q across the tip.
 
     With k² = P/(c E J), c = 1 − P/(G A_s), the tip is at (Q/P) (tan(k L)/(c k) − L); without
@@ -175,4 +175,4 @@ def _berry(name: str, model: Model) -> Proof:
         tips.append(float(system.observers["tip"].row @ system.static_response(load.load)))
     what = f"tip deflection of a cantilever under {SHARE:g} P_cr over that without, {name}"
     source = "3 (tan u − u)/u³, Berry 1919, shear by Engesser 1891"
-    return Proof(what, tips[1] / tips[0], reference, "", "analytic", source, model.allowed)
+    return Verification(what, tips[1] / tips[0], reference, "", "analytic", source, model.allowed)

@@ -27,7 +27,7 @@ from shell_model.contact.wall_rows import CornerLines
 from shell_model.reduced_shell import reduce_boom
 from studies.reference_models.plates import STEEL
 from studies.reference_models.single_segment import compliances, shell_alone
-from studies.study import Criterion, Piece, Progress, Proof, define_study
+from studies.study import Criterion, Piece, Progress, Verification, define_study
 
 LAW = PowerContact(stiffness=1.0e9, exponent=1.0)
 
@@ -190,14 +190,16 @@ def study(progress: Progress) -> Iterator[Piece]:
         progress(f"{name}: a ring, and booms with and without collars")
         bars, shell = ring_of_bars(outer, RING), ring_of_shell(outer, RING, RING_MESH)
         what = f"{name}, ring of {1e3 * RING:g} mm pressed between its flats: compliance"
-        yield Proof(what, 1e6 * shell, 1e6 * bars, "1e-6 m/N", *frame)
+        yield Verification(what, 1e6 * shell, 1e6 * bars, "1e-6 m/N", *frame)
         plain = boom_of(outer, inner)
         beam = 1e3 * beam_peak(plain)
         peaks = [1e3 * shell_peak(boom) for boom in (plain, add_collars(plain, COLLAR))]
         over = [part for peak in peaks for part in (peak, 100.0 * (peak / beam - 1.0))]
         rows.append((name, beam, *over))
         elements: Criterion = ("other code", "Timoshenko elements", ALLOWED[name])
-        yield Proof(f"{name}s with collars: first peak of the tip", peaks[1], beam, "mm", *elements)
+        yield Verification(
+            f"{name}s with collars: first peak of the tip", peaks[1], beam, "mm", *elements
+        )
     progress("turned sections")
     yield from _turned()
     columns = {
@@ -207,7 +209,7 @@ def study(progress: Progress) -> Iterator[Piece]:
     yield Table.of_rows("sections", "Folded booms and their beams", columns, rows, (NOTE,))
 
 
-def _numbers() -> Iterator[Proof]:
+def _numbers() -> Iterator[Verification]:
     """Compare with closed forms, and with finite elements over the section."""
     sides, radius, wall = 240, 0.2, 1.0e-4
     turns = 2.0 * np.pi * np.arange(sides) / sides
@@ -219,19 +221,19 @@ def _numbers() -> Iterator[Proof]:
         ("shear area", tube.shear_area, np.pi * radius * wall, "m²"),
     ):
         what = f"polygon of {sides} plates: {what}"
-        yield Proof(what, value, reference, unit, "analytic", "thin tube", 1.0e-3)
+        yield Verification(what, value, reference, unit, "analytic", "thin tube", 1.0e-3)
     program = "finite elements, sectionproperties 3.10.2"
     for name, known in ELSEWHERE.items():
         for key, reference in zip(PROPERTIES, known, strict=True):
             what, value = f"{name}: {key.replace('_', ' ')}", getattr(SHAPES[name][0], key)
             unit = "m²" if key.endswith("shear_area") else "m⁴"
-            yield Proof(what, value, reference, unit, "external", program, 1.0e-3)
+            yield Verification(what, value, reference, unit, "external", program, 1.0e-3)
     _, height = shear_centre(SHAPES["U"][0].plates)
     what = "U: shear centre above the centroid"
-    yield Proof(what, 1e3 * height, 1e3 * CENTRE_OF_U, "mm", "external", program, 1.0e-2)
+    yield Verification(what, 1e3 * height, 1e3 * CENTRE_OF_U, "mm", "external", program, 1.0e-2)
 
 
-def _turned() -> Iterator[Proof]:
+def _turned() -> Iterator[Verification]:
     """Check that sections rotated by 90° or 180° move as upright ones do."""
     for name, (section, _) in SHAPES.items():
         upright = tip_of_shell(section, "z", ARM_MESH)
@@ -243,4 +245,6 @@ def _turned() -> Iterator[Proof]:
         for how, other, direction in turned:
             moved = tip_of_shell(other, direction, ARM_MESH)
             what = f"{name} {how} of a cantilever of shell"
-            yield Proof(what, 1e6 * moved, 1e6 * upright, "1e-6 m/N", "other code", "upright", 1e-6)
+            yield Verification(
+                what, 1e6 * moved, 1e6 * upright, "1e-6 m/N", "other code", "upright", 1e-6
+            )

@@ -33,7 +33,7 @@ from studies.reference_models.plates import STEEL
 from studies.reference_models.single_segment import natural_frequencies, shell_alone
 from studies.reference_models.solid import SolidFamily, assemble_solid, mesh_quarter
 from studies.refined import Refined, refined_table
-from studies.study import Criterion, Piece, Progress, Proof, define_study
+from studies.study import Criterion, Piece, Progress, Verification, define_study
 
 # Distances in m of the mid-lines, which are the same for all wall thicknesses.
 OUTER = (0.40, 0.30)
@@ -347,7 +347,7 @@ BAR = box("bar", 0.0, 2.0, (0.10, 0.08), 0.03)
 ROUND_OFF = 1.0e-8
 
 
-def solid_proofs() -> Iterator[Proof]:
+def solid_verifications() -> Iterator[Verification]:
     """Check mass, stretch, pure bending and a rod's lowest frequency."""
     section, steel, length = BAR.section, BAR.material, BAR.length
     assert section is not None
@@ -368,14 +368,16 @@ def solid_proofs() -> Iterator[Proof]:
          "E J of the hollow rectangle (Saint-Venant 1856)"),
     ):  # fmt: skip
         found = quadratic_form(matrix, motion.ravel()) / over
-        yield Proof(f"solid box: {what}", found, expected, unit, "analytic", source, ROUND_OFF)
+        yield Verification(
+            f"solid box: {what}", found, expected, unit, "analytic", source, ROUND_OFF
+        )
     # A lateral inertia slows a rod's waves (Rayleigh 1877, section 157; Love 1927, section 278).
     polar = section.polar_second_moment_of_area / section.area
     slowed = np.sqrt(1.0 + nu**2 * polar * (np.pi / length) ** 2)
     rod = 0.5 * np.sqrt(young / steel.density) / length / slowed
     criterion: Criterion = ("analytic", "c / 2L with lateral inertia (Love 1927)", 1.0e-4)
     found = float(natural_frequencies(stretched, 2)[1])
-    yield Proof("solid box: lowest frequency as a rod", found, float(rod), "Hz", *criterion)
+    yield Verification("solid box: lowest frequency as a rod", found, float(rod), "Hz", *criterion)
 
 
 def _solid(family: SymmetryClass) -> SolidFamily:
@@ -429,13 +431,13 @@ def refinements(comparisons: Sequence[Comparison]) -> Table:
     return refined_table("solid-index", "Both models on ever finer meshes", found, "edges × {:g}")
 
 
-def shell_proofs(thinnest: Comparison) -> Iterator[Proof]:
-    """Return the proofs of the shell of the thinnest walls against the solid."""
+def shell_verifications(thinnest: Comparison) -> Iterator[Verification]:
+    """Return the verifications of the shell of the thinnest walls against the solid."""
     walls, source = f"walls of {thinnest.walls}", "elasticity in space"
     for of in EVERY:
         shell, solid = thinnest.shell[of].best, thinnest.solid[of].best
         criterion: Criterion = ("other code", source, of.allowed)
-        yield Proof(f"{of.what}, {walls}", shell, solid, of.unit, *criterion)
+        yield Verification(f"{of.what}, {walls}", shell, solid, of.unit, *criterion)
 
 
 @define_study("solid", "Shells against solids")
@@ -443,8 +445,8 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Compare the shell with a solid, and the solid with formulas."""
     sizes = sizes or Sizes()
     progress("the solid against formulas")
-    yield from solid_proofs()
+    yield from solid_verifications()
     comparisons = compare(sizes, progress)
-    yield from shell_proofs(comparisons[0])
+    yield from shell_verifications(comparisons[0])
     yield error_table(comparisons)
     yield refinements(comparisons)

@@ -26,7 +26,7 @@ from runs.case.schema import Case
 from runs.pipeline.drives import critical_speed
 from runs.pipeline.models import MotionPlan, build
 from runs.report.tables import Table
-from studies.study import Criterion, Piece, Progress, Proof, define_study
+from studies.study import Criterion, Piece, Progress, Verification, define_study
 
 # m in kg, k in N/m, R in N, and the ratio of static friction to R.
 MASS, STIFFNESS, FRICTION, STICKING = 500.0, 1.0e5, 1000.0, 1.5
@@ -69,7 +69,7 @@ def _follow_drive(pulled: ElasticDrive, speed: float, time: Array) -> DriveMotio
     return move_segment(pulled, way, time, np.full(time.size, FRICTION))
 
 
-def _cycle() -> Iterator[Proof]:
+def _cycle() -> Iterator[Verification]:
     """Check ten cycles at a constant speed without damping."""
     omega, slack = np.sqrt(STIFFNESS / MASS), (STICKING - 1.0) * FRICTION / STIFFNESS
     radius, first = np.hypot(slack, SPEED / omega), STICKING * FRICTION / STIFFNESS / SPEED
@@ -89,10 +89,10 @@ def _cycle() -> Iterator[Proof]:
         ("energy not accounted for", told.energy_residual, 0.0, "", 1.0e-10),
     ):
         criterion: Criterion = ("analytic", CYCLE, allowed)
-        yield Proof(f"cycle: {what}", float(value), float(reference), unit, *criterion)
+        yield Verification(f"cycle: {what}", float(value), float(reference), unit, *criterion)
 
 
-def _critical(ratio: float) -> Proof:
+def _critical(ratio: float) -> Verification:
     """Check the speed below which sticking recurs, by bisection."""
     pulled = replace(ROPE, dashpot=2.0 * ratio * np.sqrt(STIFFNESS * MASS))
     expected = critical_speed(pulled, FRICTION)
@@ -103,10 +103,10 @@ def _critical(ratio: float) -> Proof:
         sticks = _follow_drive(pulled, middle, np.linspace(0.0, lasting, 2001)).results.sticks
         low, high = (middle, high) if sticks else (low, middle)
     criterion: Criterion = ("analytic", "the swing that just comes back to it", 1.0e-4)
-    return Proof(f"critical speed at ζ = {ratio:g}", high, expected, "m/s", *criterion)
+    return Verification(f"critical speed at ζ = {ratio:g}", high, expected, "m/s", *criterion)
 
 
-def _stiff() -> Proof:
+def _stiff() -> Verification:
     """Check the force of a drive of 1e9 N/m in the middle of an S-curve's first half."""
     way, time = SCurve(travel=2.0, duration=4.0), np.linspace(0.0, 1.0, 1001)
     pulled = ElasticDrive(MASS, 1.0e9, dashpot=0.2 * np.sqrt(1.0e9 * MASS))
@@ -114,7 +114,7 @@ def _stiff() -> Proof:
     asked = FRICTION + MASS * 0.25 * np.pi
     criterion: Criterion = ("analytic", "friction and m s̈ of the drive", 1.0e-4)
     force = float(found.series["drive_force"][-1])
-    return Proof("force of a stiff drive", force, float(asked), "N", *criterion)
+    return Verification("force of a stiff drive", force, float(asked), "N", *criterion)
 
 
 def _one_way(stiffness: float) -> list[float]:

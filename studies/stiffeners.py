@@ -23,7 +23,7 @@ from shell_model.segment.cross_section import Row, SectionNodes
 from shell_model.segment.solver import quadratic_form
 from studies.motions import friction_case
 from studies.reference_models.single_segment import compliances, natural_frequencies, shell_alone
-from studies.study import Criterion, Piece, Progress, Proof, define_study
+from studies.study import Criterion, Piece, Progress, Verification, define_study
 
 # Permitted errors: of the mesh, of walls beside a plate, and of a force on a short thick ring.
 ALLOWED = 0.01
@@ -214,7 +214,7 @@ def table(found: Sequence[Variant], stations: Sequence[float], sizes: Sizes) -> 
     )
 
 
-def proofs(boom: Boom, sizes: Sizes) -> Iterator[Proof]:
+def verifications(boom: Boom, sizes: Sizes) -> Iterator[Verification]:
     """Check stiffeners that are simple enough for a formula."""
     inner = boom.segments[1]
     section, material = inner.section, inner.material
@@ -224,7 +224,7 @@ def proofs(boom: Boom, sizes: Sizes) -> Iterator[Proof]:
     value = racking_stiffness(section, material, t, sizes.plate_mesh)
     shear = material.shear_modulus * t * section.width * section.height
     plate: Criterion = ("analytic", "G t b h of a plate in pure shear", ALLOWED)
-    yield Proof(what, value, shear, "N m", *plate)
+    yield Verification(what, value, shear, "N m", *plate)
     if section.flange != section.web:
         return
     young = material.youngs_modulus
@@ -235,7 +235,7 @@ def proofs(boom: Boom, sizes: Sizes) -> Iterator[Proof]:
     ):
         value = ring_flexibility(section, young, thickness, sizes.ring_mesh)
         frame = frame_flexibility(section, young, thickness)
-        yield Proof(f"flexibility of a ring {has}, per length", value, frame, "m²/N", *beams)
+        yield Verification(f"flexibility of a ring {has}, per length", value, frame, "m²/N", *beams)
 
 
 @define_study("stiffeners", "Collars and diaphragms")
@@ -251,4 +251,4 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
             found.append(measure(segment, what, stations, sizes))
     yield table(found, stations, sizes)
     progress("a diaphragm in pure shear, and rings")
-    yield from proofs(boom, sizes)
+    yield from verifications(boom, sizes)

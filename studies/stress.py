@@ -25,7 +25,7 @@ from shell_model.stress.stresses import ShellStress, wall_forces
 from studies.motions import friction_case, model_of
 from studies.reference_models.single_segment import at_rest, shell_alone
 from studies.refined import Refined, refined_table
-from studies.study import Criterion, Piece, Progress, Proof, define_study
+from studies.study import Criterion, Piece, Progress, Verification, define_study
 
 INNER = 1
 
@@ -161,12 +161,12 @@ def stresses(
     }
 
 
-def proofs(
+def verifications(
     default: InnerSegmentState,
     reduced: InnerSegmentState,
     near: Mapping[tuple[float, str], Refined],
     sizes: Sizes,
-) -> Iterator[Proof]:
+) -> Iterator[Verification]:
     """Check the default mesh against a beam, equilibrium, and the limit of the refinement.
 
     Check the reduced shell against the full one, too.
@@ -175,9 +175,9 @@ def proofs(
     for x in sizes.places:
         value, reference = (stress / 1.0e6 for stress in default.top(x))
         what = f"stress of the top at {x:g} m, {mesh}"
-        yield Proof(what, value, reference, "MPa", "analytic", "σ = M z / J", BEAM)
+        yield Verification(what, value, reference, "MPa", "analytic", "σ = M z / J", BEAM)
     what = f"shear force of the webs at {sizes.places[0]:g} m, {mesh}"
-    yield Proof(what, *default.shear(sizes.places[0]), "N", "analytic", "equilibrium", BEAM)
+    yield Verification(what, *default.shear(sizes.places[0]), "N", "analytic", "equilibrium", BEAM)
     unreduced: Criterion = ("other code", "the unreduced shell, of the same mesh", REDUCED)
     for x in default.boom.joints[0].stations:
         at = f"at the contact at {x:g} m"
@@ -185,7 +185,7 @@ def proofs(
         yield near[x, "patch"].against_limit(what, sizes.default, finest, PATCH)
         what = f"largest von Mises stress of a triangle {at}, reduced"
         reference = near[x, "triangle"].values[sizes.meshes.index(sizes.default)]
-        yield Proof(what, reduced.near(x)[0] / 1.0e6, reference, "MPa", *unreduced)
+        yield Verification(what, reduced.near(x)[0] / 1.0e6, reference, "MPa", *unreduced)
 
 
 @define_study("stress", "Stresses of the inner segment between its contacts")
@@ -204,4 +204,4 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     near = stresses(pressed, sizes)
     title = "Von Mises stress where the inner segment is pressed"
     yield refined_table("stress", title, list(near.values()), "{:g} m", (NOTE,))
-    yield from proofs(pressed[sizes.meshes.index(sizes.default)], reduced, near, sizes)
+    yield from verifications(pressed[sizes.meshes.index(sizes.default)], reduced, near, sizes)

@@ -16,12 +16,12 @@ Progress = Callable[[str], None]
 # Kind of reference: a measurement, a formula, a published value, another code, another theory of
 # this project, or an earlier value.
 Kind = Literal["measured", "analytic", "external", "other code", "non-regression"]
-# Last fields of a proof, which several may share: kind, source, and permitted error.
+# Last fields of a verification, which several may share: kind, source, and permitted error.
 Criterion = tuple[Kind, str, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Proof:
+class Verification:
     """Value beside its reference."""
 
     what: str  #: measured quantity, and the model
@@ -66,7 +66,7 @@ class Study:
     name: str  #: of its part of the files
     title: str  #: heading
     tables: Sequence[Table] = ()  #: measured values
-    proofs: Sequence[Proof] = ()  #: rows of docs/verification.md
+    verifications: Sequence[Verification] = ()  #: rows of docs/verification.md
     plots: Sequence[Plot] = ()  #: figures
 
     @property
@@ -75,22 +75,24 @@ class Study:
         return {table.name: table.data for table in self.tables}
 
 
-Piece = Table | Proof | Plot
+Piece = Table | Verification | Plot
 _Given = ParamSpec("_Given")
 
 
 def define_study(
     name: str, title: str
 ) -> Callable[[Callable[_Given, Iterable[Piece]]], Callable[_Given, Study]]:
-    """Make a study from a generator of tables, proofs and plots."""
+    """Make a study from a generator of tables, verifications and plots."""
 
     def define(parts: Callable[_Given, Iterable[Piece]]) -> Callable[_Given, Study]:
         @wraps(parts)
         def study(*args: _Given.args, **kwargs: _Given.kwargs) -> Study:
             found = list(parts(*args, **kwargs))
             tables = [part for part in found if isinstance(part, Table)]
-            proofs = [part for part in found if isinstance(part, Proof)]
-            return Study(name, title, tables, proofs, [p for p in found if isinstance(p, Plot)])
+            verifications = [part for part in found if isinstance(part, Verification)]
+            return Study(
+                name, title, tables, verifications, [p for p in found if isinstance(p, Plot)]
+            )
 
         return study
 

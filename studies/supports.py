@@ -24,7 +24,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Cylinder, Joint, Load, Segment, Support
 from geometry.section import BoxSection
 from studies.second_order import STEEL
-from studies.study import Criterion, Progress, Proof, define_study
+from studies.study import Criterion, Progress, Verification, define_study
 
 # Thick walls: the section has little distortion.
 BOX = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
@@ -96,14 +96,14 @@ def decrement(system: GapSystem, position: Array, period: float) -> float:
 
 
 @define_study("supports", "Hinges, cylinders, springs and dashpots")
-def study(progress: Progress) -> Iterator[Proof]:
+def study(progress: Progress) -> Iterator[Verification]:
     """Compare statics, frequencies and decrements of booms; forces and tips of beams and shells."""
     yield from _luffed(progress)
     yield from _turning(progress)
     yield from _swinging(progress)
 
 
-def _luffed(progress: Progress) -> Iterator[Proof]:
+def _luffed(progress: Progress) -> Iterator[Verification]:
     boom = Boom((_segment(),), (), (_PUSHED,), cylinders=(CYLINDER,))
     shear = STEEL.shear_modulus * BOX.shear_area
     for name, shear_stiffness, allowed in (
@@ -121,12 +121,12 @@ def _luffed(progress: Progress) -> Iterator[Proof]:
         what = f"hinge and inclined cylinder, {name}: "
         expected = -1e-3 * TIP_LOAD * LENGTH / lever(CYLINDER)
         bent = 1e3 * TIP_LOAD * tip_compliance(boom.segments[0], CYLINDER, shear_stiffness)
-        yield Proof(f"{what}its force", 1e-3 * force, expected, "kN", *LEVERS)
+        yield Verification(f"{what}its force", 1e-3 * force, expected, "kN", *LEVERS)
         criterion: Criterion = ("analytic", "Castigliano 1879", allowed)
-        yield Proof(f"{what}the tip", 1e3 * tip, bent, "mm", *criterion)
+        yield Verification(f"{what}the tip", 1e3 * tip, bent, "mm", *criterion)
 
 
-def _turning(progress: Progress) -> Iterator[Proof]:
+def _turning(progress: Progress) -> Iterator[Verification]:
     spring = Support(0.0, rotation_stiffness=ROTATION)
     # The closed form has no rotary inertia; a shell's walls have it.
     thick = replace(_segment(), supports=(spring,))
@@ -144,10 +144,10 @@ def _turning(progress: Progress) -> Iterator[Proof]:
         progress(f"a hinge that resists rotation, {name}")
         found = _MODELS[name](boom).frequencies[0]
         what = f"hinge with a spring against rotation, {name}: first frequency"
-        yield Proof(what, found, reference, "Hz", *criterion)
+        yield Verification(what, found, reference, "Hz", *criterion)
 
 
-def _swinging(progress: Progress) -> Iterator[Proof]:
+def _swinging(progress: Progress) -> Iterator[Verification]:
     """Compare rigid booms: r √(k / I) about the hinge, ζ = c r / 2√(k I), δ = 2πζ/√(1 − ζ²).
 
     On both stations of a joint a segment moves up and down: √(2k / m), ζ = c / √(2k m).
@@ -174,14 +174,14 @@ def _swinging(progress: Progress) -> Iterator[Proof]:
         ratio = 0.5 * DASHPOT * arm / np.sqrt(stiffness * effective)
         if not system.laws:
             name = f"rigid boom on a hinge and a {what}: frequency"
-            yield Proof(name, system.frequencies[0], omega / (2.0 * np.pi), "Hz", *LEVERS)
+            yield Verification(name, system.frequencies[0], omega / (2.0 * np.pi), "Hz", *LEVERS)
         # Rotation about the hinge, or vertical motion without one.
         rows = system.rows if system.laws else np.ones((1, 1))
         raised = np.linalg.lstsq(rows, np.full(len(rows), 1.0e-3), rcond=None)[0]
         found = decrement(system, raised, 2.0 * np.pi / omega)
         expected = 2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2)
         name = f"dashpot at a {what}, rigid boom: logarithmic decrement"
-        yield Proof(name, found, expected, "", "analytic", "an oscillator", DECREMENT)
+        yield Verification(name, found, expected, "", "analytic", "an oscillator", DECREMENT)
 
 
 _PUSHED = Load(0, "z", TIP_LOAD, LENGTH, Step())

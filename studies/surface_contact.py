@@ -27,10 +27,10 @@ from studies.motions import (
     shell_of,
     without_friction,
 )
-from studies.pads import pad_proofs, rigid_motion, with_pads
-from studies.study import Piece, Progress, Proof, define_study
+from studies.pads import pad_verifications, rigid_motion, with_pads
+from studies.study import Piece, Progress, Verification, define_study
 
-# Depth of the approaches of the proofs beyond the play, in m.
+# Depth of the approaches of the verifications beyond the play, in m.
 DEPTH = 1.0e-3
 DEFAULT_POINTS = (8, 4)
 
@@ -119,8 +119,8 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     )
     progress("first peaks")
     yield _peaks([*stations, *surfaces.values(), *softer], notes, sizes)
-    yield from _proofs(case, default.system)
-    yield from pad_proofs(case, sizes.pads[0], padded.system)
+    yield from _verifications(case, default.system)
+    yield from pad_verifications(case, sizes.pads[0], padded.system)
 
 
 def _upper_stiffness(system: GapSystem) -> float:
@@ -159,7 +159,7 @@ def _peaks(contacts: Sequence[ContactModel], notes: Sequence[str], sizes: Sizes)
     return Table.of_rows("surface", "Where the segments touch", columns, rows, notes)
 
 
-def _proofs(case: Case, system: GapSystem) -> Iterator[Proof]:
+def _verifications(case: Case, system: GapSystem) -> Iterator[Verification]:
     """Check the forces of approaches with a pressure that has a closed-form integral."""
     boom = build_boom(case)
     (joint,) = boom.joints
@@ -190,4 +190,4 @@ def _proofs(case: Case, system: GapSystem) -> Iterator[Proof]:
         ("contact rows of a surface without weight", weightless, 0.0, "",
          "Gauss's weights are positive", 0.0),
     ):  # fmt: skip
-        yield Proof(what, float(value), reference, unit, "analytic", source, allowed)
+        yield Verification(what, float(value), reference, unit, "analytic", source, allowed)

@@ -28,7 +28,7 @@ from studies.second_order import (
     STIFFNESS,
     Model,
 )
-from studies.study import Criterion, Kind, Progress, Proof, define_study
+from studies.study import Criterion, Kind, Progress, Verification, define_study
 
 ALPHA = 0.5
 HEAD = BoxSection(*(ALPHA * size for size in (BOX.height, BOX.width, BOX.flange, BOX.web)))
@@ -97,7 +97,7 @@ def critical() -> float:
 
 
 @define_study("taper", "Segments that taper")
-def study(progress: Progress) -> Iterator[Proof]:
+def study(progress: Progress) -> Iterator[Verification]:
     """Study every model."""
     for name, model in MODELS.items():
         progress(name)
@@ -106,12 +106,12 @@ def study(progress: Progress) -> Iterator[Proof]:
         found = system.observers["tip"].row @ system.static_response(system.excitations[0].load)
         criterion: Criterion = ("analytic", source, OF_SHELL if name == "shell" else CLOSE)
         what, bent = f"tip of a tapered cantilever, {name}", tip(model.in_shear)
-        yield Proof(what, 1e6 * float(found), 1e6 * bent, "1e-6 m/N", *criterion)
+        yield Verification(what, 1e6 * float(found), 1e6 * bent, "1e-6 m/N", *criterion)
         if name != ELEMENTS:
             yield from _swing_and_force(name, model)
 
 
-def _swing_and_force(name: str, model: Model) -> Iterator[Proof]:
+def _swing_and_force(name: str, model: Model) -> Iterator[Verification]:
     """Compare with closed forms; compare shear-flexible models with one another."""
     exact, sources = (frequency(), critical()), ("Kirchhoff 1879", "Dinnik 1929")
     kind: Kind = "analytic"
@@ -122,7 +122,7 @@ def _swing_and_force(name: str, model: Model) -> Iterator[Proof]:
         ("first frequency", "critical force"), _measured(model), exact, ("Hz", "N"), sources,
         strict=True,
     ):  # fmt: skip
-        yield Proof(f"{what} of it, {name}", found, expected, unit, kind, source, allowed)
+        yield Verification(f"{what} of it, {name}", found, expected, unit, kind, source, allowed)
 
 
 def _measured(model: Model) -> tuple[float, float]:

@@ -32,7 +32,7 @@ from studies.second_order import (
     STEEL,
     STIFFNESS,
 )
-from studies.study import Criterion, Progress, Proof, define_study
+from studies.study import Criterion, Progress, Verification, define_study
 
 INNER = BoxSection(height=0.16, width=0.11, flange=0.006, web=0.006)
 LAW = PowerContact(1e8, 1.0)
@@ -61,14 +61,16 @@ def column(force: float) -> Boom:
 
 
 @define_study("telescoping_column", "A column compressed over a growing length")
-def study(progress: Progress) -> Iterator[Proof]:
+def study(progress: Progress) -> Iterator[Verification]:
     """Study every model of beams."""
     for name, build in MODELS.items():
         progress(name)
-        yield from _proofs(name, build)
+        yield from _verifications(name, build)
 
 
-def _proofs(name: str, build: Callable[[Boom], list[SegmentModel]]) -> Iterator[Proof]:
+def _verifications(
+    name: str, build: Callable[[Boom], list[SegmentModel]]
+) -> Iterator[Verification]:
     in_shear = name == "shear-flexible elements"
     euler = 0.25 * np.pi**2 * STIFFNESS / END**2
     critical = euler / (1.0 + euler / SHEAR_STIFFNESS) if in_shear else euler
@@ -80,7 +82,7 @@ def _proofs(name: str, build: Callable[[Boom], list[SegmentModel]]) -> Iterator[
     pressed = f"pressed over {END:g} of its {LENGTH:g} m"
     what = f"critical force of a cantilever that is drawn to be {pressed}, {name}"
     found = factor * SHARE * critical
-    yield Proof(what, found, critical, "N", "analytic", source, ALLOWED)
+    yield Verification(what, found, critical, "N", "analytic", source, ALLOWED)
     if in_shear:
         return
     system = gap_system(boom, models)
@@ -92,7 +94,7 @@ def _proofs(name: str, build: Callable[[Boom], list[SegmentModel]]) -> Iterator[
         stiffness = system.at_time(time).stiffness[np.ix_(own, own)]
         head = float(row[own] @ np.linalg.solve(stiffness, row[own]))
         what = f"deflection of its head under {SHARE:g} P_cr over {x:g} m, {name}"
-        yield Proof(what, head, _bent(x, SHARE * critical), "m/N", *criterion)
+        yield Verification(what, head, _bent(x, SHARE * critical), "m/N", *criterion)
 
 
 def _bent(a: float, force: float) -> float:

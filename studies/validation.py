@@ -27,7 +27,7 @@ from shell_model.segment.forms import DRILLING_OF_CURVED
 from studies.reference_models.benchmarks import X, Y, Z, grid
 from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.static_shell import StaticShell, hold
-from studies.study import Kind, Piece, Progress, Proof, define_study
+from studies.study import Kind, Piece, Progress, Verification, define_study
 
 # DROPBEAR: the beam in m and kg, and what it is assumed to carry at its free end in kg.
 BEAM_LENGTH, BEAM_WIDTH, BEAM_THICKNESS = 0.501, 0.051, 0.00666
@@ -67,7 +67,7 @@ def study(progress: Progress) -> Iterator[Piece]:
         yield from rows()
 
 
-def moving_roller() -> Iterator[Proof]:
+def moving_roller() -> Iterator[Verification]:
     """Compare first frequencies over roller positions, x = offset + scale · voltage fitted."""
 
     def frequencies(parameters: Array) -> Array:
@@ -81,7 +81,7 @@ def moving_roller() -> Iterator[Proof]:
     offset, scale = fit.x
     for volt, value, reference in zip(VOLTS, frequencies(fit.x), MEASURED, strict=True):
         what = f"first frequency, roller at {1e3 * (offset + scale * volt):.0f} mm"
-        yield Proof(what, value, reference, "Hz", "measured", DROPBEAR, 0.02)
+        yield Verification(what, value, reference, "Hz", "measured", DROPBEAR, 0.02)
 
 
 def roller_frequency(x: float) -> float:
@@ -96,12 +96,12 @@ def roller_frequency(x: float) -> float:
     return _first_frequency(Boom((beam,), ()), 0.05, rotary_inertia=True)
 
 
-def boom_lift() -> Iterator[Proof]:
+def boom_lift() -> Iterator[Verification]:
     """Compare the frequency at most retraction, with a tip mass fitted at the least."""
     mass = brentq(lambda mass: lift_frequency(RETRACTED[0], mass) - CHART[0], 10.0, 2000.0)
     what = f"first frequency, {100 * RETRACTED[1]:g} % retracted, {mass:.0f} kg at the tip"
     value = lift_frequency(RETRACTED[1], mass)
-    yield Proof(what, value, CHART[1], "Hz", "other code", BOOM_LIFT, 0.05)
+    yield Verification(what, value, CHART[1], "Hz", "other code", BOOM_LIFT, 0.05)
 
 
 def lift_frequency(retracted: float, mass: float) -> float:
@@ -177,14 +177,14 @@ class Oscillators(NamedTuple):
         )
 
 
-def code_aster() -> Iterator[Proof]:
+def code_aster() -> Iterator[Verification]:
     """Compute SDND100, 102 and 104 of Code_Aster's manual of validation V5.01."""
     yield from released_slider()
     yield impact_pair()
     yield from rubbing_mass()
 
 
-def released_slider() -> Iterator[Proof]:
+def released_slider() -> Iterator[Verification]:
     """Compare the turning points of 1 kg on 1e4 N/m under 1 N of friction (SDND100)."""
     slider = Oscillators(1.0, 1.0e4, [0.0], 1.0).system(friction=1.0)
     half = np.pi / 100.0
@@ -193,10 +193,10 @@ def released_slider() -> Iterator[Proof]:
         reference = (-1.0) ** turn * (0.85 - 0.2 * turn)
         what = f"SDND100, turning point {turn} of a slider"
         source = "r₀ − 2 n μN/k, Code_Aster V5.01.100"
-        yield Proof(what, 1e3 * float(value), reference, "mm", "analytic", source, 1.0e-4)
+        yield Verification(what, 1e3 * float(value), reference, "mm", "analytic", source, 1.0e-4)
 
 
-def impact_pair() -> Proof:
+def impact_pair() -> Verification:
     """Compare one oscillator against a wall with two that collide (SDND102)."""
     wall, pair = PowerContact(5.76e7, 1.0), PowerContact(2.88e7, 1.0)
     one = Oscillators(25.0, 98696.0, [1.0], 10.0, 0.07).system(laws=[wall.upper().behind(5.0e-4)])
@@ -207,10 +207,10 @@ def impact_pair() -> Proof:
     single, mutual = (run["x0"].values for run in runs)
     value = float(np.abs(single - mutual).max() / np.ptp(single))
     what = "SDND102, one of two colliding oscillators off one against a wall, part of range"
-    return Proof(what, value, 0.0, "", "analytic", "symmetry, Code_Aster V5.01.102", 1.0e-6)
+    return Verification(what, value, 0.0, "", "analytic", "symmetry, Code_Aster V5.01.102", 1.0e-6)
 
 
-def rubbing_mass() -> Iterator[Proof]:
+def rubbing_mass() -> Iterator[Verification]:
     """Compare the mean power of wear from 4 to 12 s of 1 kg on a shaken plane (SDND104).
 
     It is the normal force, 10 N with μ = 0.1, times the speed of sliding.
@@ -221,10 +221,10 @@ def rubbing_mass() -> Iterator[Proof]:
         wear = float(loss[-1] - loss[400]) / 8.0 / 0.1
         what = f"SDND104, power of wear at {amplitude:g} m/s²"
         source = "stick and slip in turn, Code_Aster V5.01.104"
-        yield Proof(what, wear, reference, "W", "external", source, 5.0e-3)
+        yield Verification(what, wear, reference, "W", "external", source, 5.0e-3)
 
 
-def nafems() -> Iterator[Proof]:
+def nafems() -> Iterator[Verification]:
     """Compute FV12, FV32 and FV52 of NAFEMS R0015 by the shell.
 
     FV52's reference is of 4 × 4 × 1 bricks, within 2 %, which are held at their lower edges.
@@ -239,7 +239,9 @@ def nafems() -> Iterator[Proof]:
     ):  # fmt: skip
         for mode, (value, reference) in enumerate(zip(values, references, strict=True), start=1):
             what = f"{name}, elastic mode {mode}"
-            yield Proof(what, float(value), reference, "Hz", cast(Kind, kind), source, allowed)
+            yield Verification(
+                what, float(value), reference, "Hz", cast(Kind, kind), source, allowed
+            )
 
 
 def free_plate(edges: int = 32) -> Array:

@@ -254,7 +254,7 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
         reference = Reference(pressed.fitted, "external", "EN 1993-1-5, 6.4, a fit", 0.15)
         what = f"k_F of a patch load, a/h = {pressed.length / pressed.section.height:g}"
         found.append(_refined(what, sizes.box, values, reference))
-    yield from (one.proof for one in found)
+    yield from (one.verification for one in found)
     title = "Walls of shells that buckle, against known factors"
     yield refined_table("wall-buckling", title, found, "edges × {:g}", NOTES)
 

@@ -25,7 +25,7 @@ from runs.report.tables import Cell, Table
 from studies.mesh import peak_heights
 from studies.motions import friction_case, gap_system, move, run_parallel, scale_mesh, shell_of
 from studies.pads import with_pads
-from studies.study import Piece, Progress, Proof, define_study
+from studies.study import Piece, Progress, Verification, define_study
 
 # Permitted errors of the first peak, and of the tip as a part of its range.
 PEAK, TIP = 0.002, 0.02
@@ -140,7 +140,7 @@ class ContactResults:
         return float(changes[at]), points[at]
 
     @property
-    def proofs(self) -> list[Proof]:
+    def verifications(self) -> list[Verification]:
         """Proofs of first peaks, if any, and tips of the default mesh against half of all edges."""
         found = []
         for what, which, allowed in (("first tip peak", 0, PEAK), (TIP_OF_RANGE, -1, TIP)):
@@ -150,7 +150,7 @@ class ContactResults:
             value, point = self.worst(which)
             name = f"{what}, {self.touch.where}, worst of {compared} points ({point})"
             source = "all edges half as long"
-            found.append(Proof(name, value, 0.0, "", "other code", source, allowed))
+            found.append(Verification(name, value, 0.0, "", "other code", source, allowed))
         return found
 
 
@@ -251,4 +251,4 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     yield summary_table(contacts, sizes)
     for contact in contacts:
         yield point_table(contact)
-        yield from contact.proofs
+        yield from contact.verifications

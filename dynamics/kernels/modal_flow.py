@@ -36,8 +36,9 @@ class Flow(NamedTuple):
         time: (num_lengths,) h in s.
         omega2, damping: (num_modes,) ω² in 1/s² and c in 1/s.
         impulse, gain, ramp, drift: (num_lengths, num_modes) s in s, and r, p, u in s².
-        loss: (num_lengths, 6, num_modes) c ∫ dt of αα, αβ, ββ, αr, βr, rr over the step, with
-            v = α v₀ + β v̇₀ + r S/h; no columns without damping.
+        loss: (num_lengths, 6, num_modes) coefficients of the loss c ∫ v² dt with
+            v = α v₀ + β v̇₀ + r S/h: c ∫ αα dt, and likewise αβ, ββ, αr, βr, rr; no columns
+            without damping.
     """
 
     time: Array

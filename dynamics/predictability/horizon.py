@@ -92,7 +92,7 @@ class Horizons:
         times: horizons (num_relatives, num_shares) in s; NaN if the spread stays below the share.
         of_step: horizons (num_shares,) in s of a run with a finer step or tolerance.
         growth: line through ``times`` for each share.
-        step_change: ε whose horizon at the first share equals that of the finer step, by the first
+        step_change: ε with the same horizon at the first share as the finer step, by the first
             line; 0 if the finer step does not diverge, NaN without a line.
     """
 
@@ -185,7 +185,7 @@ def measure_horizons(
         progress(before + _STAGE * part)
 
     def measure(groups: Sequence[Sequence[EnsembleMember]], done: float) -> Array:
-        """Return the horizons (num_groups, num_shares) in s; ``done`` is the earlier progress."""
+        """Return the horizons (num_groups, num_shares) in s; ``done`` is the progress before it."""
         of_groups = np.full((len(groups), len(shares)), np.nan)
         for number, part in enumerate(_PARTS):
             left = [g for g in range(len(groups)) if np.isnan(of_groups[g]).any()]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Load cases and combinations: static cases that follow from a case by other keys and by factors.
+"""Load cases and combinations: static cases with changed keys and with factors on loads.
 
 The case of a combination has the masses of its load case. If the factor of a payload differs from
 the factor of the dead weight, a force at the tip, across and along the boom, adds the difference.

@@ -68,7 +68,7 @@ class TravelTable(CaseTable):
     def history(self, where: str) -> MotionLaw:
         """Return the history of the extension in m, with its shapers.
 
-        Arguments and errors are those of :meth:`unshaped`.
+        Arguments and errors as in :meth:`unshaped`.
         """
         law = self.unshaped(where)
         for frequency, damping in self.shaper:

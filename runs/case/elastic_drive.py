@@ -101,8 +101,7 @@ def _check_friction(where: str, joint: JointTable, drive: DriveTable) -> None:
     if given is not None and given < joint.friction:
         raise BoomError(
             f"{where}.static_friction",
-            f"must be at least that of sliding, the joint's friction of {joint.friction:g}, got "
-            f"{given:g}",
+            f"must be at least the joint's friction of sliding, {joint.friction:g}, got {given:g}",
         )
 
 

@@ -48,8 +48,8 @@ class HoistTable(TravelTable):
     mass: Annotated[Positive, In("kg")]
     """the mass in kg of the load"""
     stiffness: Annotated[Positive, In("N/m")] | None = None
-    """the stiffness in N/m of all falls of the rope together; that of area, modulus, length and
-    falls unless given"""
+    """the stiffness in N/m of all falls of the rope together; unless given, it follows from area,
+    modulus, length and falls"""
     area: Annotated[Positive, In("m^2")] | None = None
     """the metallic cross-section in m^2 of one fall"""
     modulus: Annotated[Positive, In("Pa")] | None = None

@@ -73,7 +73,7 @@ class PayloadTable(CaseTable):
     """the mass in kg"""
     gravity: Annotated[NotNegative, In("m/s^2")] | None = None
     """the acceleration of gravity in m/s^2 that acts on the payload alone from t = 0, 0 for none;
-    9.80665 unless given, or that of the table gravity"""
+    unless given, the acceleration of the table gravity, or 9.80665"""
     group: Group = "payload"
     """the group of its weight, whose factor combinations give; dead for a cage or a hook"""
 
@@ -93,7 +93,7 @@ class GroundAccelerationTable(HistoryTable):
 
 
 class LoadCaseTable(CaseTable):
-    """A load case of the boom at rest; its keys replace those of the case."""
+    """A load case of the boom at rest; its keys replace keys of the case."""
 
     name: Name
     """the name of the load case"""
@@ -101,12 +101,12 @@ class LoadCaseTable(CaseTable):
     """the luffing angle in degrees, in place of gravity.angle; the ground of cylinders turns with
     it about the foot"""
     extension: Annotated[dict[str, NotNegative], In("m")] = Field(default_factory=dict)
-    """inner segment = extension in m, in place of that of its joint"""
+    """inner segment = extension in m, in place of the joint's extension"""
     payload: Annotated[NotNegative, In("kg")] | None = None
-    """a mass in kg at the tip in addition to that of the table payload; it weighs along and across
-    the boom, as a load of the group payload"""
+    """a mass in kg at the tip in addition to the table payload; it weighs along and across the
+    boom, as a load of the group payload"""
     loads: Annotated[tuple[LoadTable, ...], Few] | None = Field(None, alias="load")
-    """the loads in place of all [[load]] of the case; those of the case unless given"""
+    """the loads in place of all [[load]] of the case; the loads of the case unless given"""
     axial: Annotated[tuple[AxialTable, ...], Few] | None = None
     """the forces along the boom in place of all [[axial]] of the case; those unless given"""
     base: Annotated[tuple[GroundAccelerationTable, ...], Few] | None = None
@@ -142,7 +142,7 @@ class FactorsTable(CaseTable):
     """the factor of loads of the group test"""
 
     def of(self, group: Group) -> float | None:
-        """Return the factor of a group; None if it is not given."""
+        """Return the factor on the loads of a group; None if it is not given."""
         numbers: tuple[float, ...] | None = getattr(self, group)
         return None if numbers is None else prod(numbers)
 

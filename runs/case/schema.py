@@ -203,8 +203,8 @@ class BucklingTable(CaseTable):
         tuple[tuple[NotNegative, Annotated[float, Field(strict=True, gt=0.0, le=1.0)]], ...],
         In("1", "1"),
     ] = ()
-    """pairs of a slenderness and the reduction of the strength there, for proofs; Winter's curve
-    and that of EN 1993-1-5 for shear unless given"""
+    """pairs of a slenderness and the reduction of the strength there, for proofs; unless given,
+    Winter's curve, and for shear the curve of EN 1993-1-5"""
 
 
 class LimitsTable(CaseTable):
@@ -245,7 +245,7 @@ class CaseHeading(CaseTable):
     units: SystemName = "SI"
     """the units of all numbers: SI, or mm, t and s with N and MPa ('mm-t-s', the same as 'N-mm')"""
     shown_units: SystemName | None = None
-    """the units in tables of check and in sweeps; those of the case unless given"""
+    """the units in tables of check and in sweeps; the units of the case unless given"""
 
 
 class Case(CaseKeys, CaseHeading):

@@ -55,7 +55,7 @@ class SegmentTable(CaseTable):
     """the table of the plates; unless given, a box is inferred from mass and second moment, with
     height_to_width or the space in the outer segment"""
     head_section: AnySection | None = None
-    """the table of the plates at the head, for a tapered segment, whose section is that at the
+    """the table of the plates at the head, for a tapered segment, whose section describes the
     tail; both have the same shape"""
     load: Annotated[Number, In("N/m")] = 0.0
     """the uniform load in N/m, positive upwards, applied at t = 0 and kept"""

@@ -56,7 +56,7 @@ def check_turning(case: Case, spatial: bool) -> None:
     """Check the data of slewing and luffing.
 
     Raises:
-        BoomError: a key is missing or contradicts another one, or the boom cannot turn so.
+        BoomError: a key is missing or contradicts another one, or the boom admits no turning.
     """
     for key, table in (("slew", case.slew), ("luff", case.luff)):
         if table is None:

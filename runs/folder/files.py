@@ -185,7 +185,7 @@ def _move_to_final_path(part: Path, folder: Path, file_names: Iterable[str]) -> 
     Args:
         part: the new folder.
         folder: the final path, at which an old folder may exist.
-        own: files for the manifest.
+        file_names: names of the files in the manifest.
     """
     lines = [f"{_digest(part / name)}  {name}\n" for name in sorted(file_names)]
     (part / MANIFEST).write_text("".join(lines), "utf-8")

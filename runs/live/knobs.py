@@ -92,7 +92,7 @@ class Knob:
 
 @dataclass(frozen=True)
 class Draft:
-    """Case with editable numeric values; inferred plates stay those of the file.
+    """Case with editable numeric values; inferred plates stay as in the file.
 
     Args:
         file: file of the case.

@@ -84,7 +84,7 @@ class ShellRuns:
             self._busy.release()
 
     def file(self, name: str) -> Path | None:
-        """Return the report or the viewer of the last run; None where there is none."""
+        """Return the report or the viewer of the last run; None without such a file."""
         if self._folder is None or name not in (REPORT, VIEWER):
             return None
         path = Path(self._folder.name) / "out" / name

@@ -57,7 +57,7 @@ SEGMENTS = 3
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Result of a rule; the fields are those of :class:`runs.paper.verdicts.Verdict`."""
+    """Result of a rule, with fields of :class:`runs.paper.verdicts.Verdict`."""
 
     verdict: Judgement
     why: str
@@ -125,8 +125,8 @@ def _s2(run: RunQuery) -> Finding:
 
 
 def _s3(run: RunQuery) -> Finding:
-    """Measure: share of the members that conform for six seconds, and of those that stratify
-    after them. Threshold: half of the members each, so that the paper's figure is typical.
+    """Measure: share of the members that conform for six seconds, and share of the members that
+    stratify later. Threshold: one half for both shares, so that the paper's figure is typical.
 
     Slow motions conform if every peak of all models with play is within 0.20 of the others, in
     height and, as a fraction of the period, in time. The paper itself calls 0.20 a divergence (S2).
@@ -207,8 +207,8 @@ def _s5(run: RunQuery) -> Finding:
     ratio, name = min((run.peak_height(model) / without, model.name) for model in models)
     return Finding(
         _above(ratio, FUNDAMENTAL, FUNDAMENTAL * PEAK_SCATTER),
-        f"First tip peak with play over the {1e3 * without:.1f} mm without; the smallest is that "
-        f"of {name!r}.",
+        f"First tip peak with play over the {1e3 * without:.1f} mm without; the smallest is in "
+        f"{name!r}.",
         ratio,
         FUNDAMENTAL,
         "times",
@@ -354,7 +354,7 @@ def _s10(run: RunQuery) -> Finding:
 
 
 def _s11(run: RunQuery) -> Finding:
-    """Measure: distance of the first tip peak of the longest series from that of beam elements, on
+    """Measure: distance between the first tip peaks of the longest series and of beam elements, on
     a boom of three segments or more. Threshold: 20 %, the part that the paper itself calls a
     divergence (S2): the description extends to more segments if it is as near to beam elements as
     with two.

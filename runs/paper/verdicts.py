@@ -153,7 +153,7 @@ def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> N
 def decisive(runs: Mapping[str, Sequence[Verdict]]) -> list[tuple[str, Verdict]]:
     """Return the run and the verdict that count for each statement.
 
-    They are those of the first run that decides the statement, or of the first run.
+    The first run that decides the statement counts; if no run decides it, the first run.
     """
     verdicts_by_id: dict[str, tuple[str, Verdict]] = {}
     for name, verdicts in runs.items():

@@ -2,7 +2,7 @@
 """Models with bonded contacts, without play.
 
 Contacts that are closed in the static state are bonded without play. At a station without closed
-contacts all contacts are bonded. Local compliance remains, for example that of a shell's walls.
+contacts all contacts are bonded. Local compliance, for example of a shell's walls, remains.
 """
 
 from __future__ import annotations

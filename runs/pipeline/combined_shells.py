@@ -2,8 +2,9 @@
 """Statics of all combinations of a case by a shell.
 
 Combinations with the same geometry share one reduced shell, which is reduced under unit loads of
-all of them and the largest axial forces. The geometric stiffness of each combination differs from
-that of the shell by the difference of the axial forces, taken with the deflections of the axes.
+all of them and the largest axial forces. The geometric stiffness of each combination is
+the geometric stiffness of the shell, corrected for the difference of the axial forces with the
+deflections of the axes.
 """
 
 from __future__ import annotations

@@ -164,7 +164,7 @@ class ModelEvaluation:
             static_bonded=[
                 state for state in other.static if _at_initial_extension(boom, state.time)
             ],
-            # Shapes are left out, since they hardly differ from those of the boom with play.
+            # Shapes are left out, since play hardly changes them.
             modes_bonded=[replace(mode, shapes=[]) for mode in other.modes],
         )
         if boom.driven:
@@ -182,7 +182,7 @@ class ModelEvaluation:
 def _bonded_model(
     boom: Boom, case: Case, model: Model, played: LoadedModel, equilibria: Mapping[float, Array]
 ) -> LoadedModel:
-    """Return the same model without play."""
+    """Return the model with bonded joints in place of play."""
     without = boom.bonded
     if (model_without_play := model.system_without_play(boom)) is not None:
         system = complete_system(

@@ -30,7 +30,7 @@ class Hoisting(Record):
         factor: this force over the weight of the load.
         by_class: factor φ₂,min + β₂ v of the hoisting class; None without its constants.
         swing_out, swing_aside: largest distances in m of the load from the tip, in the plane of the
-            boom and aside; None if it does not swing so.
+            boom and aside; None without a swing in this direction.
     """
 
     title = "Hoisting"

@@ -92,7 +92,7 @@ class StaticBeam(NamedTuple):
         elements = Elements(boom, _ELEMENTS)
         system = static_state(boom, elements).system
         lines_of_elements = lines(boom, elements.segments)
-        # The coordinates of wall springs come after those of the segments.
+        # The coordinates of wall springs come after the coordinates of the segments.
         basis = np.eye(lines_of_elements[0].rows["deflection"].shape[1], system.num_modes)
         along = with_cylinder_forces(
             boom, system, [line.transform(basis) for line in lines_of_elements]

@@ -34,7 +34,7 @@ from runs.pipeline.turning import pendulum_frequency, swing_cautions, turning_ca
 # Members whose tips differ by more than this fraction of the range have diverged.
 _DIVERGED = 0.2
 
-# Ratio of the frequency of a mode to that of a pendulum above which the mode belongs to the boom.
+# Ratio of a mode's frequency to the pendulum's frequency above which the mode belongs to the boom.
 _APART = 1.2
 
 # Relative error of a reduction or a mesh above which a caution is given.
@@ -290,7 +290,7 @@ def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
             yield (
                 f"caution: the walls of {name} carry the axial forces of the initial extension: "
                 "their stresses and utilisations neglect the change of axial forces by drives, "
-                "unlike those of outer fibres"
+                "unlike stresses of outer fibres"
             )
 
 

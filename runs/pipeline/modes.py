@@ -79,7 +79,7 @@ class Match:
 
 @dataclass(frozen=True, slots=True)
 class ModeComparison:
-    """Comparison of the modes of all models with those of a reference.
+    """Comparison of the modes of all models with the modes of a reference.
 
     Args:
         reference: name of the reference model.

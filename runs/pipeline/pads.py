@@ -104,7 +104,7 @@ def _pair_forces(joint: Joint, direction: Direction, law: ContactLaw, pushes: Ar
         joint: the joint of the pads.
         direction: direction of the forces.
         law: contact law of a station.
-        pushed: forces (num_pushes,) in N on the side with the larger force, negative for side −1.
+        pushes: forces (num_pushes,) in N on the side with the larger force, negative for side −1.
             The approach on this side determines the force on the opposite side.
     """
     laws, sides = [], []

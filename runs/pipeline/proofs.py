@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Proofs of strength, stability, deflection and fatigue for all combinations of a case.
 
-The stresses are those of outer fibres, from section forces of second order. Only the governing
-proof of each part of the boom is kept.
+The stresses are outer-fibre stresses from section forces of second order. Only the governing proof
+of each part of the boom is kept.
 """
 
 from __future__ import annotations

@@ -197,8 +197,8 @@ def _pads(case: Case, boom: Boom) -> Iterator[str]:
             if stiffness < bending:
                 yield (
                     f"the compliance of the contacts of {inner.name!r} in {model.name!r} is "
-                    f"{1.0 / stiffness:.3g} m/N, above that of the segment as a cantilever, "
-                    f"{1.0 / bending:.3g} m/N; check their stiffness"
+                    f"{1.0 / stiffness:.3g} m/N, above {1.0 / bending:.3g} m/N of the segment as a "
+                    "cantilever; check their stiffness"
                 )
 
 

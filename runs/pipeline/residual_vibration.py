@@ -51,7 +51,7 @@ class ResidualVibration(Record):
     title = "Residual vibration during telescoping"
     notes = (
         "Largest distance of the tip from its static position at the current extension and under "
-        "the current loads; beside it that of the same boom without telescoping.",
+        "the current loads; beside it the same distance for the boom without telescoping.",
     )
 
     tip: Annotated[

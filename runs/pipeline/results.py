@@ -90,7 +90,7 @@ class Results:
             what = "is a file" if folder.exists() else "does not exist"
             raise BadInput(str(folder), "folder", f"{what}; give the folder of a run")
         if name := find_damaged_file(folder):
-            what = f"is damaged, its SHA-256 is not that of {MANIFEST}; remove it, or run the case"
+            what = f"is damaged, its SHA-256 differs from {MANIFEST}; remove it, or run the case"
             raise BadInput(str(folder), name, f"{what} again")
         trajectories = _read(folder / TRAJECTORIES, read_netcdf)
         if "station" not in trajectories.dims:

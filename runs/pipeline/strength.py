@@ -219,7 +219,7 @@ def largest_stresses(
         segment: the segment.
         fibres: outer fibres of the segment.
         curves: section forces (num_times, num_places) in motion.
-        still: section forces (num_rests, num_places) in the static states.
+        forces_at_rest: section forces (num_rests, num_places) in the static states.
         time: (num_times,) in s.
     """
     largest, where = 0.0, (0, 0, 0)

@@ -173,7 +173,7 @@ def drive_moments(case: Case, boom: Boom, data: xr.Dataset) -> dict[str, tuple[A
 def crane_drives(case: Case, boom: Boom, data: xr.Dataset) -> CraneDrives | None:
     """Return the demand on the drives of a crane in a motion; None without such drives.
 
-    Arguments are those of :func:`drive_moments`.
+    Arguments as in :func:`drive_moments`.
     """
     results: dict[str, float] = {}
     steps = np.diff(data["time"].values)

@@ -268,7 +268,7 @@ def highest(values: Sequence[float] | Array) -> float:
 
 def initial_position_note(case: Case) -> str:
     """Return a note that x is the position at t = 0; empty without telescoping."""
-    return " Positions x are those of t = 0 and move with their segments." if case.driven else ""
+    return " Positions x are at t = 0 and move with their segments." if case.driven else ""
 
 
 def extension_note(case: Case, rests: Iterable[StaticResult]) -> str:

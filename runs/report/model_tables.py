@@ -337,7 +337,7 @@ def _springs(card: CalibrationCard, names: str, count: int) -> Table:
     )
     notes = (
         "In other programs, put each spring in series with the gap of its station. It represents "
-        "the local compliance of both walls, in addition to that of the beams above.",
+        "the local compliance of both walls, which the beams above do not have.",
     )
     title = f"Local springs of the stations, for {names}"
     return Table(title, columns, notes, f"calibrated-springs-{count}")

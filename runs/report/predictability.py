@@ -95,8 +95,8 @@ def _horizon_table(
     ]
     if ensembles.slow_below is not None:
         notes.append(
-            f"Slow peaks are peaks of the motion below {number(ensembles.slow_below)} Hz; common "
-            f"peaks are those that all members have."
+            f"Slow peaks are peaks of the motion below {number(ensembles.slow_below)} Hz. All "
+            "members have the common peaks."
         )
     return Table("Horizons", columns, notes, "horizons")
 
@@ -186,8 +186,8 @@ def _level_tables(reference: str, levels: Mapping[str, Comparison]) -> list[Tabl
         ),
     )
     later = (
-        f"Each model's slow peak less that of {reference}, ± both spreads together. * beyond them "
-        "in time or in height."
+        f"Slow peak of each model less the peak of {reference}, ± the sum of both spreads. *: the "
+        "difference in time or in height exceeds this sum."
     )
     every = f"All values of all members after the horizons: the model / {reference}."
     of = f"against {reference}"

@@ -304,7 +304,7 @@ def stick_slip_table(results: Results) -> Table | None:
     )
     notes = (
         "Force: against friction, weight and inertia. Sticks: number of stops during telescoping. "
-        "Slips: largest advance in one slip. Speed and acceleration are those of the segment. "
+        "Slips: largest advance in one slip. Speed and acceleration of the segment. "
         "The boom moves as with a rigid drive. Friction follows the mean contact force of each "
         "output step; "
         "where pads chatter faster, use a smaller output_step.",
@@ -382,7 +382,7 @@ def stress_table(results: Results) -> Table | None:
 
 
 def buckling_table(results: Results) -> Table | None:
-    """Return buckling factors of the walls of each segment; None unless the case asks for them."""
+    """Return buckling factors of the walls of each segment; None if not requested."""
     rows: list[Sequence[Cell]] = []
     for name, model_results in results.summary.design.models.items():
         shells = {

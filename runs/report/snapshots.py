@@ -77,7 +77,7 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
         views: scenes of its motion, see :meth:`Scene.views`.
         folder: folder of the files ``boom-WHEN.png``, ``overlap-WHEN.png`` (from the second joint
             on ``overlap-2-WHEN.png``), ``stress-WHEN.png``, in 3-D also ``boom-above-WHEN.png``.
-        times: times in s; those of :func:`characteristic_instants` unless given.
+        times: times in s; unless given, from :func:`characteristic_instants`.
 
     Returns:
         The paths of the files.
@@ -298,7 +298,7 @@ def start_rendering(
 def _collect_pictures(
     first: Future[None], drawn: Sequence[tuple[str, Future[list[Path]]]]
 ) -> list[tuple[str, list[Path]]]:
-    """Wait for all pictures, and return those of each shell."""
+    """Wait for all pictures, and return the pictures of each shell."""
     try:
         first.result(opengl.PROBE_SECONDS)
         return [(prefix, pictures.result()) for prefix, pictures in drawn]
@@ -386,7 +386,7 @@ def describe_one(results: Results, path: Path) -> Figure:
 
 
 def _instant(name: str, motion: xr.Dataset) -> tuple[str, str]:
-    """Return a text on the event of a picture, and one on the tip at that time."""
+    """Return two texts on a picture: its event, and the tip deflection at its time."""
     event = TITLES.get(name, name.replace("-", " "))
     instants = characteristic_instants(motion)
     if name in instants:

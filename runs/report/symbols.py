@@ -155,7 +155,7 @@ def abbreviate(value: float, unit: str) -> str:
 
 
 def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
-    """Yield the symbols of supports and stops, then those of masses, loads and axial forces."""
+    """Yield the symbols of supports, stops, masses, loads and axial forces, in this order."""
     yield from _support_symbols(boom)
     for index, segment in enumerate(boom.segments):
         given = case.segments[index]

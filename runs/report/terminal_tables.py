@@ -81,7 +81,7 @@ def print_models(results: Results, console: Console) -> None:
 
 
 def print_results(results: Results, console: Console) -> None:
-    """Print the governing results of each model, then the utilisations of the first main model."""
+    """Print the governing results of each model and the utilisations of the first main model."""
     if not results.summary.design.models:
         return
     tables = result_table(results), lateral_table(results), limit_table(results)

@@ -37,7 +37,7 @@ class VibrationCurve(NamedTuple):
     levels: dict[str, Array]
 
     def with_level(self, end: str) -> VibrationCurve:
-        """Return the curve at the speeds at which the level of an end is known."""
+        """Return the curve at those speeds for which the level of an end is available."""
         known = np.isfinite(self.levels[end])
         levels = {end: self.levels[end][known]}
         return VibrationCurve(self.speed[known], self.vibration[known], levels)

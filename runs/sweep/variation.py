@@ -127,7 +127,7 @@ def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
 
 
 def numbers(here: Any, steps: tuple[str | int, ...] = ()) -> Iterator[tuple[Place, float]]:
-    """Yield the numbers of tables and lists with their places, except those of curves."""
+    """Yield the numbers of tables and lists with their places, except numbers of curves."""
     if isinstance(here, Mapping):
         for key, value in here.items():
             if key not in _CURVES:

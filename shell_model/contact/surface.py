@@ -116,7 +116,7 @@ def _on_wall(
     section = boom.segments[joint.inner].section
     assert section is not None
     width, (start, end) = section.face(wall.normal, wall.side).width, boom.overlap(joint)
-    # Ratio of the stiffness of the whole wall to that of one station.
+    # Stiffness of the whole wall over the stiffness of one station.
     share = float(len(joint.stations))
     if options.stiffness is not None:
         area = width * (end - start)

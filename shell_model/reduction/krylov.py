@@ -56,7 +56,7 @@ class KrylovOptions:
 
     @property
     def tests(self) -> Sequence[float]:
-        """The frequencies in Hz between the shifts at which errors are measured, descending."""
+        """The frequencies in Hz at which errors are measured: between the shifts, descending."""
         shifts = np.sort(self.shifts)
         between = np.sqrt(shifts[:-1] * shifts[1:]) if shifts.size > 1 else shifts
         return [float(frequency) for frequency in between[::-1]]

@@ -40,8 +40,8 @@ class SymmetryClass(NamedTuple):
     def signs(self) -> Array:
         """The factors (4, 6) of components in each image (:func:`image_of`) relative to the cell.
 
-        Columns are the components of the displacement, a polar vector, then those of the rotation,
-        an axial vector.
+        The first columns are components of the displacement, a polar vector; the others are
+        components of the rotation, an axial vector.
         """
         signs = np.ones((4, 6))
         for axis, parity in ((1, self.y), (2, self.z)):

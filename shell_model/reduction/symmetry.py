@@ -112,7 +112,7 @@ class SymmetryCell:
 
 
 class _FreeMatrix(NamedTuple):
-    """Entries of a matrix, sorted by row, (num_entries,) each, and its diagonal."""
+    """Sparse matrix: entries (num_entries,) sorted by row, and the diagonal."""
 
     row: Indices
     column: Indices
@@ -170,7 +170,7 @@ class Job:
 
 
 class SymmetryReduction:
-    """Map between the distributed rows of a segment and those of its symmetry cell. Collective.
+    """Map from the distributed rows of a segment to the rows of its symmetry cell. Collective.
 
     Args:
         shell: shell of the whole segment.

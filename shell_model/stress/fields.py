@@ -125,11 +125,12 @@ def gather_fields(
     Returns:
         ``points`` (point, component) in m, ``triangles`` (triangle, corner), ``segment`` and
         ``wall`` (triangle), ``thickness`` (triangle) in m, ``modes`` (mode, point, component) in
-        1/√kg: the displacement in m is the sum of the modal coordinates times ``modes``. For
-        segment k, from 1 on, ``coordinates_k`` (own_k, mode) times the modal coordinates gives the
-        coordinates of the segment and the forces of its cylinders. These times ``stress_k`` (own_k,
-        triangle_k, stress) give its stresses in Pa. ``plate_k`` has the names of the plates that
-        ``wall`` numbers. Coordinates of other segments cause no stress and are not stored.
+        1/√kg: the displacement in m is the sum of the modal coordinates times ``modes``. Segment k,
+        from 1 on, has ``coordinates_k`` (own_k, mode), ``stress_k`` (own_k, triangle_k, stress) and
+        ``plate_k``. ``coordinates_k`` transforms the modal coordinates to the coordinates of the
+        segment, which include the forces of its cylinders. Their sum times ``stress_k`` is the
+        stress in Pa. ``plate_k`` has the plate names to which ``wall`` refers. Coordinates of other
+        segments cause no stress and are not stored.
     """
     moved = [
         vertex_displacements(shell, one.shapes) for shell, one in zip(shells, reduced, strict=True)

@@ -238,7 +238,9 @@ class ShellStress:
 
 
 def lines_around(spans: Array) -> Array:
-    """Return ascending x in m that no triangle crosses; ``spans`` are (num_triangles, 2) in m."""
+    """Return ascending x in m of mesh lines, which no triangle crosses.
+
+    ``spans`` (num_triangles, 2) has the smallest and the largest x of triangles in m."""
     first, last = np.sort(spans[:, 0]), np.sort(spans[:, 1])
     lines = np.unique(spans.round(6))
     started = np.searchsorted(first, lines - SAME_LINE)

@@ -25,7 +25,7 @@ from dynamics.kernels.compiled import LOOP
 from dynamics.kernels.terms import contact_energy, term_force, term_slope
 from dynamics.motion import Motion
 from dynamics.trajectory import Output, Trajectory
-from studies.study import Proof
+from studies.study import Verification
 
 # Rounds of gaps and friction within a step, and of gaps alone.
 ROUNDS, NEWTON = 8, 30
@@ -267,8 +267,8 @@ def amplitude_loss(root: complex) -> float:
     return 1.0 - float(abs(root) ** (2.0 * np.pi / np.angle(root)))
 
 
-def proofs() -> Iterator[Proof]:
-    """Return the proofs of period and amplitude of each scheme in ten steps a period."""
+def verifications() -> Iterator[Verification]:
+    """Return the verifications of period and amplitude of each scheme in ten steps a period."""
     phase = 2.0 * np.pi / PER_PERIOD
     for scheme in (NEWMARK, WILSON, CENTRAL):
         roots = measured_root(scheme, phase), textbook_root(scheme, phase)
@@ -284,7 +284,7 @@ def proofs() -> Iterator[Proof]:
             ("period longer by", periods),
             ("amplitude lost in a period", amplitudes),
         ):
-            yield Proof(f"{name}: {what}", value, reference, "%", "analytic", SOURCE, 1.0e-6)
+            yield Verification(f"{name}: {what}", value, reference, "%", "analytic", SOURCE, 1.0e-6)
 
 
 def _rotating_root(roots: object) -> complex:

@@ -14,7 +14,7 @@ from runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
 from runs.report.formatting import NONE, number
 from runs.report.tables import Cell, Table
 from studies.numerics_1997.samples import MEMBERS, MODES, PAPER_STEP, SERIES, ModelRun, Numerics
-from studies.numerics_1997.schemes import NEWMARK, WILSON, proofs
+from studies.numerics_1997.schemes import NEWMARK, WILSON, verifications
 from studies.numerics_1997.survey import (
     ABOUT,
     METHODS,
@@ -34,7 +34,7 @@ def study(progress: Progress) -> Iterator[Piece]:
     """Run both examples by every scheme with few modes, gaps iterated or lagged, three steps."""
     survey = Survey.of(progress)
     yield from tables(survey)
-    yield from proofs()
+    yield from verifications()
     yield from plots(survey)
 
 

@@ -168,7 +168,7 @@ theory = "euler-bernoulli"
          "extensions; leave modes out, or joint[1].drive"),
         ('theory = "timoshenko"',
          'theory = "timoshenko"\ncalibrated_by = { name = "fine", kind = "shell" }',
-         "model[3]: the springs of 'timoshenko' are those of the place where it rests, and cannot "
+         "model[3]: the springs of 'timoshenko' are valid at the initial extension, and cannot "
          "telescope; leave calibrated_by out, or joint[1].drive"),
         ('theory = "euler-bernoulli"', 'theory = "euler-bernoulli"\nbonded = true',
          "model[2]: 'beam-fe' is bonded, and cannot telescope; leave the model out, or "

@@ -58,8 +58,8 @@ def drawn_by(folder: Path, rope: str, **others: str) -> Case:
          "joint[1].drive.static_friction: without a stiffness the drive is stiff, and its "
          "segment neither sticks nor slips; give stiffness, or leave static_friction out"),
         (ROPE.replace("0.3", "0.1"),
-         "joint[1].drive.static_friction: must be at least that of sliding, the joint's friction "
-         "of 0.2, got 0.1"),
+         "joint[1].drive.static_friction: must be at least the joint's friction of sliding, "
+         "0.2, got 0.1"),
         (ROPE.replace("2e5", "1e12"),
          "joint[1].drive.stiffness: must be at most 2.17e+10 N/m for the 550.7 kg that it draws, "
          "got 1e+12 N/m; leave it out where the drive is stiff"),

@@ -74,14 +74,20 @@ def test_shear_deepens_a_dent(found: Study) -> None:
 
 
 def test_exact_values_are_met_for_any_drilling_tie(found: Study) -> None:
-    proofs = {proof.what: proof for proof in found.proofs}
-    assert proofs["torsion constant, box 100 × 60 × 1 mm, 2 edges"].holds
-    exact = [proof for proof in found.proofs if "patch" in proof.what or "turned" in proof.what]
+    verifications = {verification.what: verification for verification in found.verifications}
+    assert verifications["torsion constant, box 100 × 60 × 1 mm, 2 edges"].holds
+    exact = [
+        verification
+        for verification in found.verifications
+        if "patch" in verification.what or "turned" in verification.what
+    ]
     assert len(exact) == 4
-    assert all(proof.holds for proof in exact)
-    spreads = [proof for proof in found.proofs if "drilling" in proof.what]
+    assert all(verification.holds for verification in exact)
+    spreads = [
+        verification for verification in found.verifications if "drilling" in verification.what
+    ]
     assert len(spreads) == 3
-    assert all(proof.error > 0.0 and proof.holds for proof in spreads)
+    assert all(verification.error > 0.0 and verification.holds for verification in spreads)
     json.dumps(found.data, allow_nan=False)
     assert len(found.data["benchmarks"]) == 12
     assert len(found.data["drilling"]) == 15

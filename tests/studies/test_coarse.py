@@ -38,9 +38,9 @@ def test_pads_beside_the_webs_give_way_more() -> None:
     assert (of_pad > 10.0 * of_corner).all()
     peaks = [row["first tip peak\nload × 10 (mm)"] for row in found.data["contact-size"]]
     assert 350.0 < peaks[0] < 0.8 * peaks[1]
-    plates = [proof for proof in found.proofs if "plate" in proof.what]
+    plates = [verification for verification in found.verifications if "plate" in verification.what]
     assert len(plates) == 1
-    assert all(proof.holds for proof in plates)
+    assert all(verification.holds for verification in plates)
 
 
 DIRECT = direct.Sizes(
@@ -65,8 +65,8 @@ def test_tip_follows_the_unreduced_shell() -> None:
     assert 0.0 < fine[off_larger] < coarse[off_larger] < 0.2
     impulse = "contact impulse (N s)"
     assert fine[impulse] == pytest.approx(larger[impulse], rel=0.2)
-    assert len(found.proofs) == 6
-    assert all(proof.holds for proof in found.proofs)
+    assert len(found.verifications) == 6
+    assert all(verification.holds for verification in found.verifications)
 
 
 MESH = mesh.Sizes(meshes=(8.0, 4.0, 2.0), default=4.0, duration=0.9, frequencies=2, peaks=1)
@@ -84,8 +84,8 @@ def test_coarse_meshes_close_in() -> None:
     assert lowest[0] > lowest[1] > lowest[2]
     for what in ("local compliance at 9 m (m/N)", "local compliance at 10 m (m/N)"):
         assert values[what][0] < values[what][1] < values[what][2]
-    proofs = {proof.what: proof for proof in found.proofs}
-    frequency = proofs["natural frequency 1, default mesh"]
+    verifications = {verification.what: verification for verification in found.verifications}
+    frequency = verifications["natural frequency 1, default mesh"]
     assert frequency.holds
     assert frequency.value == lowest[1]
     assert frequency.order == pytest.approx(2.0, abs=0.5)
@@ -103,9 +103,9 @@ STIFFENERS = stiffeners.Sizes(
 def test_stiffeners_act_where_they_are() -> None:
     """Reference: analytic, a plate in shear, a ring, masses; each stiffens its own end alone."""
     found = stiffeners.study(silent, STIFFENERS)
-    for proof in found.proofs:
-        assert proof.holds, (proof.what, proof.error)
-    assert [proof.unit for proof in found.proofs] == ["N m", "m²/N", "m²/N"]
+    for verification in found.verifications:
+        assert verification.holds, (verification.what, verification.error)
+    assert [verification.unit for verification in found.verifications] == ["N m", "m²/N", "m²/N"]
 
     outer, collared, inner, banded, closed, both = found.data["variants"]
     mass, more = "mass (kg)", "one flange more (nm/N)"
@@ -146,8 +146,10 @@ def test_the_contact_has_no_stress_of_its_own_and_a_patch_has() -> None:
     """Reference: analytic away from contacts; near them refinement doubles the stress at a
     point."""
     found = stress.study(silent, STRESS)
-    assert all(proof.holds for proof in found.proofs)
-    beam = next(proof for proof in found.proofs if "top at 14 m" in proof.what)
+    assert all(verification.holds for verification in found.verifications)
+    beam = next(
+        verification for verification in found.verifications if "top at 14 m" in verification.what
+    )
     assert beam.error < 2.0e-3
     near = {
         row["quantity"]: [row[f"{size:g} m"] for size in STRESS.meshes]
@@ -168,8 +170,8 @@ SURFACE_CONTACT = surface_contact.Sizes(
 def test_a_surface_is_softer_than_webs_on_webs() -> None:
     """Reference: order of compliances; forces of known approaches are their integrals."""
     found = surface_contact.study(silent, SURFACE_CONTACT)
-    assert all(proof.holds for proof in found.proofs)
-    assert len(found.proofs) == 6
+    assert all(verification.holds for verification in found.verifications)
+    assert len(found.verifications) == 6
     rubbed = "first tip peak\nwith friction (mm)"
     peaks = {row["contact"]: row[rubbed] for row in found.data["surface"]}
     assert peaks["near webs"] == pytest.approx(177.5, rel=0.01)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Proofs with refined meshes, the report of the studies and the page of proofs."""
+"""Proofs with refined meshes, the report of the studies and the page of verifications."""
 
 import io
 import json
@@ -20,24 +20,26 @@ from runs.report.tables import Table
 from studies import convergence
 from studies.histories import response
 from studies.refined import Reference, Refined, refined_table
-from studies.study import Plot, Proof, Study
+from studies.study import Plot, Study, Verification
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "verification.md"
 
 
-def proof(value: float, allowed: float = 0.01) -> Proof:
-    return Proof("roof", value, 0.3024, "m", "external", "MacNeal and Harder 1985", allowed, 1.9)
+def verification(value: float, allowed: float = 0.01) -> Verification:
+    return Verification(
+        "roof", value, 0.3024, "m", "external", "MacNeal and Harder 1985", allowed, 1.9
+    )
 
 
 def test_a_proof_holds_within_its_bar() -> None:
-    assert proof(0.3024 * 1.009).holds
-    assert not proof(0.3024 * 1.011).holds
+    assert verification(0.3024 * 1.009).holds
+    assert not verification(0.3024 * 1.011).holds
     # Where the reference is zero, the value is the error.
-    assert not Proof("strain", 0.02, 0.0, "", "analytic", "rigid motion", 0.01).holds
+    assert not Verification("strain", 0.02, 0.0, "", "analytic", "rigid motion", 0.01).holds
 
 
 def test_page_of_proofs_marks_failures() -> None:
-    study = Study("shells", "Shells", proofs=[proof(0.3030), proof(0.4)])
+    study = Study("shells", "Shells", verifications=[verification(0.3030), verification(0.4)])
     lines = convergence.markdown([study]).splitlines()
     rows = [line for line in lines if line.startswith("| roof")]
     assert rows[0] == (
@@ -53,7 +55,7 @@ def test_studies_leave_a_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         tables=[
             Table.of_rows("roof", "Roof", {"mesh": "", "m": ".2f"}, [("fine", 0.3), ("no", None)])
         ],
-        proofs=[proof(0.3030)],
+        verifications=[verification(0.3030)],
         plots=[Plot("roof", "It settles", "h (m)", "error", {"roof": ([1, 2], [1, 4])}, "So.")],
     )
     monkeypatch.setattr(convergence, "run", lambda name: (study, 1.0))
@@ -166,8 +168,8 @@ def test_a_slow_order_leads_nowhere() -> None:
 def test_the_finest_is_held_against_its_reference() -> None:
     short = Refined("p", "m", [2.0, 1.0], [1.2, 1.1], Reference(1.0, "external", "known", 0.2))
     assert short.errors == pytest.approx([0.2, 0.1])
-    assert short.proof.holds
-    assert short.proof.order is None
+    assert short.verification.holds
+    assert short.verification.order is None
     long = Refined("q", "", [4.0, 2.0, 1.0], [1.4, 1.2, 1.1])
     first, second = refined_table("t", "T", [short, long], "h = {:g}").data
     assert (first["quantity"], first["h = 4"], first["h = 2"]) == ("p (m)", None, 1.2)

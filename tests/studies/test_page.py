@@ -16,7 +16,7 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from studies import direct, supports, taper, working_load
-from studies.convergence import STUDIES, proof_table
+from studies.convergence import STUDIES, verification_table
 from studies.motions import friction_case
 from studies.reference_models import plates
 from studies.study import Study
@@ -80,7 +80,7 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "sections": {"ring_of_shell": one, "beam_peak": one, "shell_peak": one, "tip_of_shell": one},
     "taper": {"MODELS": taper.MODELS | {"shell": replace(taper.MODELS["shear-flexible elements"])}},
 }  # fmt: skip
-# Studies without a proof have no section.
+# Studies without a verification have no section.
 PROVING = [name for name in STUDIES if name not in ("interpretations", "validation")]
 
 
@@ -117,6 +117,8 @@ def test_rows_are_those_of_the_study(name: str, monkeypatch: pytest.MonkeyPatch)
         monkeypatch.setattr(f"studies.{name}.{what}", surrogate)
     monkeypatch.setattr(plates.PressedPlate, "shell", one)
     study: Study = import_module(f"studies.{name}").study(lambda what: None)
-    assert sections()[study.title] == [row(cells) for cells in proof_table(study).rows]
+    assert sections()[study.title] == [row(cells) for cells in verification_table(study).rows]
     if not STAND_INS[name]:
-        assert [proof.what for proof in study.proofs if not proof.holds] == []
+        assert [
+            verification.what for verification in study.verifications if not verification.holds
+        ] == []

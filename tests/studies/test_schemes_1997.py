@@ -22,8 +22,8 @@ from studies.numerics_1997.schemes import (
     measured_root,
     oscillator,
     period_elongation,
-    proofs,
     textbook_root,
+    verifications,
 )
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "verification.md"
@@ -154,7 +154,11 @@ def test_the_lowest_modes_are_kept_in_their_order() -> None:
 
 
 def test_every_proof_holds_and_is_on_the_page() -> None:
-    """Reference: docs/verification.md, and the bars of the proofs."""
+    """Reference: docs/verification.md, and the bars of the verifications."""
     page = DOCUMENT.read_text(encoding="utf-8")
-    assert [proof.what for proof in proofs() if not proof.holds] == []
-    assert [proof.what for proof in proofs() if f"\n| {proof.what} |" not in page] == []
+    assert [verification.what for verification in verifications() if not verification.holds] == []
+    assert [
+        verification.what
+        for verification in verifications()
+        if f"\n| {verification.what} |" not in page
+    ] == []

@@ -41,9 +41,9 @@ from studies.solid import (
     error_table,
     order,
     refinements,
-    shell_proofs,
+    shell_verifications,
     slenderness_at,
-    solid_proofs,
+    solid_verifications,
 )
 
 BOX = BoxSection(height=0.40, width=0.30, flange=0.04, web=0.03)
@@ -368,9 +368,9 @@ def test_thick_walls_have_stiffer_corners_than_a_shell() -> None:
 @pytest.mark.slow
 def test_the_solid_stands_by_itself() -> None:
     """Reference: analytic. The rod's lateral inertia is twice what its frequency may err by."""
-    proofs = {proof.what: proof for proof in solid_proofs()}
-    assert all(proof.holds for proof in proofs.values())
-    rod = proofs["solid box: lowest frequency as a rod"]
+    verifications = {verification.what: verification for verification in solid_verifications()}
+    assert all(verification.holds for verification in verifications.values())
+    rod = verifications["solid box: lowest frequency as a rod"]
     without = 0.5 * np.sqrt(2.1e11 / 7850.0) / 2.0
     assert rod.allowed < 0.5 * (without / rod.reference - 1.0)
 
@@ -381,6 +381,8 @@ def test_tables_and_proofs_have_every_quantity() -> None:
     assert [row[0] for row in errors.rows] == [one.what for one in EVERY]
     assert errors.rows[0][1:3] == ("0.40", "−2.00")
     assert len(refinements(found).data) == 4 * len(EVERY)
-    proofs = list(shell_proofs(found[0]))
-    assert all(proof.holds for proof in proofs)
-    assert [proof.error for proof in proofs] == pytest.approx([0.004] * len(EVERY))
+    verifications = list(shell_verifications(found[0]))
+    assert all(verification.holds for verification in verifications)
+    assert [verification.error for verification in verifications] == pytest.approx(
+        [0.004] * len(EVERY)
+    )

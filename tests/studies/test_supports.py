@@ -12,8 +12,8 @@ from studies.supports import first_frequency, lever, study
 
 @pytest.mark.slow
 def test_every_value_meets_its_reference() -> None:
-    proofs = study(lambda what: None).proofs
-    assert [proof.what for proof in proofs if not proof.holds] == []
+    verifications = study(lambda what: None).verifications
+    assert [verification.what for verification in verifications if not verification.holds] == []
 
 
 def test_the_closed_forms_have_their_limits() -> None:

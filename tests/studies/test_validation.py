@@ -20,15 +20,17 @@ ROOT = Path(__file__).parents[2]
 @pytest.mark.parametrize("rows", [validation.released_slider, validation.rubbing_mass])
 def test_friction_follows_code_aster(rows: object) -> None:
     """Reference: analytic and external, Code_Aster V5.01.100 and 104; steps leave 3e-5."""
-    proofs = list(rows())  # type: ignore[operator]
-    assert [proof.what for proof in proofs if proof.error > 1.0e-4] == []
+    verifications = list(rows())  # type: ignore[operator]
+    assert [
+        verification.what for verification in verifications if verification.error > 1.0e-4
+    ] == []
 
 
 def test_the_roller_stiffens_the_beam_as_measured() -> None:
     """Reference: measured, DROPBEAR; without the roller 1.8751² and Rayleigh's 0.2427, to 1 %."""
-    proofs = list(validation.moving_roller())
-    assert len(proofs) == 6
-    assert max(proof.error for proof in proofs) < 0.012
+    verifications = list(validation.moving_roller())
+    assert len(verifications) == 6
+    assert max(verification.error for verification in verifications) < 0.012
     area = validation.BEAM_WIDTH * validation.BEAM_THICKNESS
     mass = validation.BEAM_STEEL.density * area * validation.BEAM_LENGTH
     bending = validation.BEAM_STEEL.youngs_modulus * area * validation.BEAM_THICKNESS**2 / 12.0
@@ -39,16 +41,16 @@ def test_the_roller_stiffens_the_beam_as_measured() -> None:
 
 def test_a_heavier_tip_slows_the_boom_lift() -> None:
     """Reference: external, 1.40 Hz of MathWorks' chart, and statics: 1/f² is linear in the mass."""
-    (proof,) = validation.boom_lift()
-    assert proof.error < 0.02
+    (verification,) = validation.boom_lift()
+    assert verification.error < 0.02
     light, middle, heavy = (validation.lift_frequency(0.05, 250.0 * k) ** -2 for k in (1, 2, 4))
     assert (heavy - middle) / (middle - light) == pytest.approx(2.0, rel=0.01)
 
 
 def test_colliding_oscillators_are_mirror_images() -> None:
     """Reference: analytic; the wall must be met for it to mean something."""
-    proof = validation.impact_pair()
-    assert proof.value < 1.0e-9
+    verification = validation.impact_pair()
+    assert verification.value < 1.0e-9
     pair = validation.Oscillators(25.0, 98696.0, [1.0], 10.0, 0.07).system()
     assert pair.damping == pytest.approx(2.0 * 0.07 * np.sqrt(98696.0 / 25.0))
 
@@ -65,7 +67,7 @@ def test_the_page_has_every_row() -> None:
     computed = [row for row in rows if len(row) == 9]
     assert {row[5] for row in computed} == {"✓"}
     cheap = [*validation.released_slider(), *validation.rubbing_mass(), validation.impact_pair()]
-    assert {proof.what for proof in cheap} < {row[0] for row in computed}
+    assert {verification.what for verification in cheap} < {row[0] for row in computed}
     compared = [row for row in rows if len(row) == 7 and row[0] != "motion"]
     assert {row[2] for row in compared} == {"time step", "Exudyn", "Siconos"}
     assert all(float(row[4]) <= float(row[1]) for row in compared)

@@ -26,14 +26,17 @@ def moved(tip: float, peak: float) -> PointMotion:
 
 
 def told(*peaks: float) -> list[tuple[str, float]]:
-    """Return text and value of a point's proofs for each peak, on two meshes, the finer one 1 m."""
+    """Return text and value of the verifications of each peak of a point, on two meshes."""
     points = [Point(1.0e-3 * i, 1.0) for i in range(len(peaks))]
     touch = ContactType("points", "webs", friction_case(), points, 1.0)
     meshes = {
         point: [moved(1.01, peak), moved(1.0, 1.0)]
         for point, peak in zip(points, peaks, strict=True)
     }
-    return [(proof.what, proof.value) for proof in ContactResults(touch, meshes).proofs]
+    return [
+        (verification.what, verification.value)
+        for verification in ContactResults(touch, meshes).verifications
+    ]
 
 
 def test_a_first_peak_is_proven_where_there_is_one() -> None:
@@ -57,13 +60,13 @@ def test_a_mesh_errs_more_under_more_load() -> None:
     change, force = "tip (% of range)", "largest pad force (kN)"
     assert 0.0 < light[change] < heavy[change] < 10.0
     assert heavy[force] > 3.0 * light[force]
-    assert [proof.what for proof in found.proofs] == [
+    assert [verification.what for verification in found.verifications] == [
         "first tip peak, near webs, worst of 2 points (14 mm, load × 10)",
         "tip, part of its range, near webs, worst of 2 points (14 mm, load × 10)",
         "tip, part of its range, in space, near webs, worst of 1 points (2 mm, load × 40)",
     ]
-    assert found.proofs[1].value == pytest.approx(0.01 * heavy[change])
+    assert found.verifications[1].value == pytest.approx(0.01 * heavy[change])
     (pressed,) = found.data["points-in-space"]
     assert pressed[force] > 10.0
-    assert found.proofs[2].value == pytest.approx(0.01 * pressed[change])
+    assert found.verifications[2].value == pytest.approx(0.01 * pressed[change])
     assert 0.0 < pressed[change] < 10.0

@@ -140,7 +140,7 @@ def test_a_flipped_bit_is_one_line(again: Path, name: str, command: str, refusal
     content[-40] ^= 1
     (again / name).write_bytes(content)
     assert refusal(command, again) == (
-        f"{name}: is damaged, its SHA-256 is not that of .manifest; remove it, or run the case "
+        f"{name}: is damaged, its SHA-256 differs from .manifest; remove it, or run the case "
         "again\n"
     )
     told = subprocess.run(

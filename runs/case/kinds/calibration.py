@@ -65,7 +65,7 @@ class CalibratedTable(BeamTable):
     def cannot_telescope(self) -> str | None:
         if self.calibrated_by is not None:
             return (
-                f"the springs of {self.name!r} are those of the place where it rests, and cannot "
+                f"the springs of {self.name!r} are valid at the initial extension, and cannot "
                 "telescope; leave calibrated_by out"
             )
         return super().cannot_telescope

@@ -212,7 +212,7 @@ class Shell(ModelTable):
         )
 
     def _check_contact(self, where: str, model_boom: ModelBoom) -> None:
-        """Check that the contact line suits the boom, and that no key is for another line."""
+        """Check that the contact line suits the boom, and that all keys apply to this line."""
         line = self.contact_line
         if model_boom.boom.spatial and line == "across":
             raise BoomError(
