@@ -27,7 +27,7 @@ THIN, THICK = 0.001, 0.1
 NOTES = (
     "Edges along a side of the symmetric part that is computed, over the width of the twisted "
     "beam, over a wall of a section in torsion. Order, limit and index of the three finest values.",
-    "The published dent of the cylinder is that of a shell without shear strain; with shear it is "
+    "The published dent of the cylinder belongs to a shell without shear strain; with shear it is "
     "3 % deeper, and has no limit under a force in a point. Facets near the force are smaller.",
     "Twisting moments fall to zero in a layer as wide as the wall is thick along free and simply "
     "held edges: the roof and the angle give way a little more as the mesh begins to see it.",
@@ -41,7 +41,7 @@ DRILLING_NOTE = (
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """Meshes as numbers of edges along a side, each twice the previous one, at least three."""
+    """Numbers of edges along a side on at least three meshes; each is twice the previous number."""
 
     roof: Sequence[int] = (4, 8, 16, 32, 64)
     cylinder: Sequence[int] = (12, 24, 48, 96)
@@ -58,7 +58,7 @@ class Sizes:
 def refined(
     what: str, unit: str, edges: Sequence[int], values: Sequence[float], reference: Reference
 ) -> Refined:
-    """Run a benchmark on meshes of given numbers of edges; sizes are relative to the finest."""
+    """Run a benchmark on several meshes; sizes are relative to the finest mesh."""
     sizes = [edges[-1] / n for n in edges]
     return Refined(f"{what}, {edges[-1]} edges", unit, sizes, values, reference)
 
@@ -114,7 +114,7 @@ def torsion(sizes: Sizes) -> Iterator[Refined]:
 
 
 def exactness(box: PlainBox, sizes: Sizes) -> Iterator[Verification]:
-    """Check cases that are exact up to round-off: patches under constant strain, a rotated box."""
+    """Compare cases with exact results: patches under constant strain, a rotated box."""
     patch = Patch.of()
     criterion: Criterion = ("analytic", "the field that is held on its edges", 1.0e-11)
     for state in constant_strains():
@@ -130,11 +130,11 @@ def exactness(box: PlainBox, sizes: Sizes) -> Iterator[Verification]:
 
 
 def drilling(box: PlainBox, y: float, sizes: Sizes) -> Iterator[Table | Verification]:
-    """Vary the drilling penalty of boxes up to 100 times its default, and of a twisted beam.
+    """Vary the drilling penalty of boxes and of a twisted beam, up to 100 times its default.
 
     Args:
         box: an outer segment.
-        y: place of contact with the inner segment in m from the middle.
+        y: lateral position in m of the contact with the inner segment.
         sizes: parameters of the study.
     """
     powers = 10.0 ** np.arange(sizes.decades + 1)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Accuracy of a beam that a shell calibrates, relative to that shell.
+"""Accuracy of a beam that a shell calibrates, relative to the shell.
 
 The study runs the paper's boom with friction over plays, and over loads up to ten times the
 paper's, with contact near webs and at pads. It compares textbook beams, the beam with springs, the
 beam with section fields, and shells with different numbers of coordinates. The reference is the
-shell of the same mesh, whose error is the subject of another study (``working_load``).
+shell of the same mesh, whose error another study measures (``working_load``).
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Sizes:
 def move_all(
     systems: Mapping[str, GapSystem], points: Sequence[Point], duration: float
 ) -> dict[str, list[PointMotion]]:
-    """Return each system's motions of a duration in s at all points."""
+    """Return the motions of each system at all points, with a duration in s."""
     return {
         name: run_parallel(
             partial(PointMotion.of, duration=duration),
@@ -90,11 +90,11 @@ class ModelComparison:
         return tip_errors(self.moved[name], self.moved[SHELL])
 
     def peak_errors(self, name: str) -> float:
-        """Return the worst error of all points that have a first peak."""
+        """Return the largest error of the first peak over all points that have one."""
         return float(np.nanmax(peak_errors(self.moved[name], self.moved[SHELL])))
 
     def frequencies_off(self, name: str, count: int) -> float:
-        """Return the worst relative error of the first frequencies with closed joints."""
+        """Return the largest relative error of the first frequencies with closed contacts."""
         # At rest without play all contacts are closed.
         point = self.points[0]._replace(play=0.0)
         pressed = [
@@ -177,7 +177,7 @@ def measure(case: Case, where: str, sizes: Sizes) -> ModelComparison:
 
 
 def summary_table(compared: Sequence[ModelComparison], sizes: Sizes) -> Table:
-    """Return a table with a row for every model and type of contact."""
+    """Return the table of largest errors, with a row for each model and type of contact."""
     columns = {
         "contact": "", "model": "", "coordinates": ".0f", "tip, worst\n(% of range)": ".2f",
         "tip, median\n(% of range)": ".2f", "worst at": "", "first peak,\nworst (%)": ".3f",
@@ -202,7 +202,7 @@ def summary_table(compared: Sequence[ModelComparison], sizes: Sizes) -> Table:
 
 
 def point_table(compared: ModelComparison) -> Table:
-    """Return a table of every point of one type of contact, a column for each model."""
+    """Return the table of errors at all points of a type of contact, a column for each model."""
     names = [name for name in compared.moved if name != SHELL]
     rows = zip(map(str, compared.points), *(100.0 * compared.off(n) for n in names), strict=True)
     return Table.of_rows(

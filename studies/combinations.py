@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Study of combinations and proofs against calculations by hand."""
+"""Study of combinations and proofs, compared with calculations by hand."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ MINER: Criterion = ("external", "EN 1993-1-9, 7.1, by hand", 0.01)
 
 @define_study("combinations", "Combinations and proofs")
 def study(progress: Progress) -> Iterator[Verification]:
-    """Compare the lift's combinations, its fatigue damage, and Winter's curve."""
+    """Compare combinations, fatigue damage and Winter's curve with calculations by hand."""
     progress("the lift")
     case = case_file.load(str(CASES / "lift.toml"))
     states = {one.combined.name: one for one in combination_states(case)}
@@ -48,7 +48,7 @@ def study(progress: Progress) -> Iterator[Verification]:
 
 
 def _cylinder_force(boom: Boom) -> float:
-    """Return the force of the cylinder in N of the level lift."""
+    """Return the cylinder force in N of the level lift, by moment equilibrium."""
     moment = boom.tip * (GRAVITY * (DEAD * CAGE + PAYLOAD * PEOPLE) + HANDS)
     for segment in boom.segments:
         weight = GRAVITY * segment.mass_per_length * segment.length
@@ -60,7 +60,7 @@ def _cylinder_force(boom: Boom) -> float:
 
 
 def _damage(case: Case) -> Iterator[Verification]:
-    """Yield the damage at the station of the fly, by people who step in where the lift is level."""
+    """Yield the fatigue damage at the station of the fly by people who enter the level lift."""
     level = next(one for one in case.load_cases if one.name == "level")
     empty = level.model_copy(update={"name": "empty", "payload": 0.0, "loads": ()})
     cycle = {"name": "people", "load_cases": ("empty", "level"), "repeats": REPEATS}

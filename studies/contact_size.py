@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Local compliance of walls under contacts of every size, on finer meshes and by plate theory.
+"""Local compliance of walls under contacts of several sizes, on finer meshes and by plate theory.
 
 The study uses the unreduced shells of the paper's boom with friction, under equal and opposite
 forces at a station (:mod:`shell_model.contact.local_compliance`). The first peak shows the effect
@@ -51,7 +51,7 @@ class Sizes:
 
 
 class Contact(NamedTuple):
-    """Contact: name, case, and length and width in m of the loaded area."""
+    """Type of contact: name, case, and length and width in m of the loaded area."""
 
     name: str
     case: Case
@@ -73,7 +73,7 @@ def contacts_of(case: Case, sizes: Sizes) -> list[Contact]:
 
 
 def station_compliances(contact: Contact, part: float) -> Array:
-    """Return the local compliance (num_stations,) in m/N with edges a multiple of the default."""
+    """Return the local compliance (num_stations,) in m/N for scaled edge lengths."""
     from shell_model.boom_shell import assemble_segments
     from shell_model.contact.local_compliance import full_compliance, local_compliance
     from shell_model.contact.rows import ShellContacts
@@ -94,8 +94,8 @@ def station_compliances(contact: Contact, part: float) -> Array:
 def support_compliance(case: Case, parts: Sequence[float]) -> list[float]:
     """Return the local compliance of the outer segment at its last support in m/N for each mesh.
 
-    The force of an elastic support acts on the walls, and half of it acts on the same walls in the
-    opposite direction on both sides, where all meshes have a line.
+    The force of an elastic support acts on the walls. Half of it acts in the opposite direction at
+    a mesh line of all meshes on either side of the support.
 
     Args:
         case: case of the boom.
@@ -135,7 +135,7 @@ def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
 
 
 def plate_verifications(sizes: Sizes) -> Iterator[Verification]:
-    """Check a wall under a patch beside its edge."""
+    """Compare a wall under a patch beside its edge with plate theory."""
     from studies.reference_models.plates import FLANGE
 
     criterion: Criterion = (
@@ -194,5 +194,5 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
         ),
     )
     title = "Local compliance on ever finer meshes"
-    note = "Edges are those of the default mesh, all of them longer or shorter by the same factor."
+    note = "All edges of the default mesh are longer or shorter by the same factor."
     yield refined_table("local-compliance", title, found, "edges × {:g}", (note,))

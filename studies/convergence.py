@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Verification of the models: ``python -m studies.convergence``.
 
-The studies cover benchmarks, meshes, steps and other models. Each prints its tables; together they
-write a report, and a page with every value and its reference.
+The studies cover benchmarks, meshes, steps and other models. The command prints their tables, and
+writes a report and a page with all values and references.
 """
 
 from __future__ import annotations
@@ -144,7 +144,7 @@ STUDIES = (
 
 
 def run(name: str) -> tuple[Study, float]:
-    """Run one study; return it and its time in s, and print its progress."""
+    """Run one study with printed progress; return the study and its time in s."""
     start = perf_counter()
     study: Study = import_module(f"studies.{name}").study(
         lambda what: print(f"{name}: {what} ...", flush=True)
@@ -153,7 +153,7 @@ def run(name: str) -> tuple[Study, float]:
 
 
 def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
-    """Run studies side by side, print their tables, and write them to a folder.
+    """Run studies in parallel, print their tables, and write them to a folder.
 
     Args:
         names: names of ``STUDIES``.

@@ -50,7 +50,7 @@ NOTE = (
 
 @dataclass(frozen=True, slots=True)
 class PressedBoom:
-    """Boom under its weight, at rest."""
+    """Boom at rest under its weight."""
 
     system: GapSystem  #: system under its weight, without damping and friction
     rest: Array  #: (num_modes,) in √kg·m
@@ -59,14 +59,14 @@ class PressedBoom:
 
     @classmethod
     def of(cls, system: GapSystem) -> PressedBoom:
-        """Create a boom without stops under a load whose numbers are its masses."""
+        """Create the boom without stops, under a load equal to the masses per length."""
         system = replace(without_friction(system), load=-GRAVITY * system.load)
         omega, shapes = closed_contact_modes(system)
         rest = equilibrium(system, system.load)
         return cls(system, rest, omega[:MODES], shapes[:, :MODES])
 
     def measured(self, ratio: float, mode: int) -> tuple[float, float]:
-        """Return a mode's ratio by the logarithmic decrement, and its energy residual."""
+        """Return the damping ratio by the logarithmic decrement, and the energy residual."""
         gaps = self.system.rows @ self.rest
         laws = list(zip(self.system.laws, gaps, strict=True))
         pressed = [float(law.force(gap)) != 0.0 for law, gap in laws]
@@ -89,7 +89,7 @@ class PressedBoom:
 
 @define_study("damping", "Damping ratios, requested and measured")
 def study(progress: Progress) -> Iterator[Piece]:
-    """Measure every boom and model at every ratio."""
+    """Compare measured and given damping ratios of all booms and models."""
     rows, residuals = [], []
     criterion: Criterion = ("analytic", "logarithmic decrement 2πζ/√(1 − ζ²)", 0.05)
     for (boom, file), model in product(BOOMS.items(), MODELS):

@@ -56,7 +56,7 @@ def study(progress: Progress) -> Iterator[Verification]:
 
 
 def design_results_at_rest() -> DesignResults:
-    """Return the design results of the paper's boom in a run too short for much motion."""
+    """Return the design results of the paper's boom from a very short run."""
     case = case_file.load(str(CASES / "coarse.toml"))
     time = case.time.model_copy(update={"duration": 0.01})
     models = tuple(model for model in case.models if model.name in MODELS)
@@ -68,14 +68,16 @@ def design_results_at_rest() -> DesignResults:
 
 
 def station_forces() -> tuple[float, float]:
-    """Return the forces at tail and head in N, upwards on the outer segment, by the lever rule."""
+    """Return the contact forces at tail and head in N by the lever rule.
+
+    They act on the outer segment, upwards where positive."""
     load = INNER * (TIP - TAIL)
     head = load * (0.5 * (TIP + TAIL) - TAIL) / (HEAD - TAIL)
     return load - head, head
 
 
 def support_forces() -> tuple[float, float]:
-    """Return the support forces of the outer segment at 0 and the far support in N, upwards."""
+    """Return the forces in N at both supports of the outer segment, upwards where positive."""
     tail, head = station_forces()
     far = -(0.5 * OUTER * HEAD**2 + tail * TAIL + head * HEAD) / SUPPORT
     return -OUTER * HEAD - tail - head - far, far
@@ -110,12 +112,12 @@ def _at_rest(name: str, own: ModelDesignResults) -> Iterator[Verification]:
 
 
 def value_at(diagram: Diagram, what: str, place: float) -> float:
-    """Return the value of a curve at a place in m."""
+    """Return the value of a curve at x in m."""
     return float(np.interp(place, diagram.x, diagram.curves[what]))
 
 
 def _cantilever() -> Iterator[Verification]:
-    """Compare a cantilever: modes and static stress by elements, vibration in one coordinate."""
+    """Compare a cantilever with closed forms: modes, static stress, and vibration of one mode."""
     arm = Segment.of_section("arm", 0.0, LENGTH, STEEL, BOX, supports=(CLAMP,), load=LOAD)
     boom = Boom((arm,), ())
     elements = finite_element_segments(boom, 0.2, "euler-bernoulli", rotary_inertia=False)
@@ -147,7 +149,7 @@ def _cantilever() -> Iterator[Verification]:
 
 
 def suddenly_loaded_results(boom: Boom, segments: list[SegmentModel]) -> ModelDesignResults:
-    """Return half a second of motion of a single-segment boom under a sudden load."""
+    """Return the design results of half a second of a single segment under a sudden load."""
     system, along = gap_system(boom.bonded, segments), lines(boom, segments)
     rest = positions(system)[0.0]
     static = [static_result(boom, system, along, 0.0, rest)]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Reduced shell against the unreduced one with another integrator.
+"""Reduced shell, compared with the unreduced shell and another integrator.
 
 The motion of the paper's boom with friction is regular. On one mesh, the study integrates all
 degrees of freedom by the generalised-α method with decreasing steps, and the reduced shell by the
 program's time step. A reduction with more coordinates separates the errors of reduction and
-integration. The cases are the paper's load with contact near webs, and ten times the load with
+integration. The cases are the paper's load with contact near webs, and ten times this load with
 pads.
 """
 
@@ -59,7 +59,7 @@ class Sizes:
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """Motion with one model and step."""
+    """Motion of one model with one step."""
 
     how: str  #: model and integrator
     unknowns: int  #: degrees of freedom, or modal coordinates
@@ -71,7 +71,7 @@ class Run:
 
 
 def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, progress: Progress) -> list[Run]:
-    """Return motions of the reduced shell, of one with more coordinates, then of the full shell.
+    """Return the motions of the reduced shell, a larger reduction, and the full shell by step.
 
     Args:
         case: planar case with prescribed normal forces and a model ``shell``.
@@ -123,7 +123,7 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, progress: Progress
 
 
 def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterator[Piece]:
-    """Compare all motions of a case with the reduced shell's and that with more coordinates.
+    """Compare all motions of a case with the reduced shell and with the larger reduction.
 
     Args:
         runs: results of :func:`runs_of`.
@@ -178,7 +178,7 @@ def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterato
 
 @define_study("direct", "The reduction against the full order")
 def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Compare all degrees of freedom of the paper's boom with few coordinates."""
+    """Compare the unreduced and the reduced shell of the paper's boom."""
     sizes = sizes or Sizes()
     case = friction_case()
     runs = runs_of(case, sizes.steps, sizes, progress)

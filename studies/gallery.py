@@ -96,7 +96,7 @@ def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
 
 
 def draw_speeds(runs: Path) -> Image.Image:
-    """Draw the factor φ₂ over the speed of hoisting, and the load's swing over that of slewing.
+    """Draw φ₂ over the hoisting speed, and the swing of the load over the slewing speed.
 
     Raises:
         BadInput: a sweep is missing.
@@ -199,10 +199,10 @@ def draw_sections(scene: Scene, instant: Instant, overlap: Overlap) -> Image.Ima
 
 
 def change_of_shape(scene: Scene, moved: Array, segment: int, x: float) -> tuple[Array, Array]:
-    """Return y and z in m once around a section, and its distortion, (num_points + 1, 2) each.
+    """Return y and z in m of a closed outline, and its distortion, (num_points + 1, 2) each.
 
-    The section's rigid motion is left out. ``moved`` (num_points, 3) is in m, x a
-    mesh line.
+    The rigid motion of the section is subtracted. ``moved`` (num_points, 3) are displacements in
+    m, ``x`` is the x of a mesh line in m.
     """
     assert scene.stress is not None
     walls = (scene.segment == segment) & (scene.stress.wall < len(scene.stress.plates[segment]))

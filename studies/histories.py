@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Responses to loads with histories, compared with closed forms for any position of kinks."""
+"""Responses to loads with histories, compared with closed forms."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ KINKED: Mapping[str, Ramp | PiecewiseLinear] = {
 
 
 def response(omega: float, history: Ramp | PiecewiseLinear, time: Array) -> Array:
-    """Return the closed form (num_time,) of 1 kg from rest under 1 N times a history.
+    """Return the displacement (num_times,) in m of 1 kg from rest under 1 N times a history.
 
-    The mass is on a spring ω² in N/m. The terms are a constant load from t = 0 on, and at each kink
-    a ramp by as much as the slope changes there.
+    The mass is on a spring of ω² N/m. The closed form is the sum of the responses to a constant
+    load from t = 0 on, and to a ramp at each kink with the change of slope at the kink.
 
     Args:
         omega: ω in rad/s, 0 without a spring.
-        history: history with kinks from t = 0 on.
+        history: piecewise linear history from t = 0 on.
         time: (num_times,) in s.
     """
     kinks = np.array(history.kinks)
@@ -63,7 +63,9 @@ def response(omega: float, history: Ramp | PiecewiseLinear, time: Array) -> Arra
 
 
 def masses(history: Ramp | Sine | PiecewiseLinear) -> GapSystem:
-    """Create a mass for each of ``OMEGAS`` under 1 N times a history, each observed by its ω."""
+    """Return a system of one mass for each of ``OMEGAS``, under 1 N times a history.
+
+    The name of an output is the ω of its mass."""
     n = len(OMEGAS)
     return GapSystem(
         omega2=np.square(OMEGAS),
@@ -79,7 +81,7 @@ def masses(history: Ramp | Sine | PiecewiseLinear) -> GapSystem:
 
 @define_study("histories", f"Loads with histories, steps of {STEP:g} s")
 def study(progress: Progress) -> Iterator[Verification]:
-    """Compare vibrations after kinked histories, and largest errors, with closed forms."""
+    """Compare vibrations under histories with kinks with closed forms."""
     for what, history in KINKED.items():
         progress(what)
         run = FixedStep(STEP)(Motion(masses(history), DURATION, OUTPUT_STEP))

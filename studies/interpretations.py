@@ -194,7 +194,7 @@ def survey(
 def _judge(
     interpretation: Interpretation, paper: Case, members: int, motions: Cache
 ) -> JudgedInterpretation:
-    """Run an interpretation and judge all statements except S9, which needs several ones.
+    """Run an interpretation and judge all statements except S9, which compares interpretations.
 
     Motions of other interpretations are reused, and new motions are added to them.
     """
@@ -258,7 +258,7 @@ def _first_peak(run: Results, model: str) -> float:
 
 
 def _largest_difference(run: Results, models: Sequence[str], since: float) -> float:
-    """Return the largest difference of two tips from a time in s on, as a part of the range."""
+    """Return the largest difference of two tips after a time in s, as a fraction of the range."""
     late = run.trajectories["time"].values >= since
     tips = [run.trajectories["tip"].sel(model=name).values for name in models]
     largest = max(float(np.abs(a - b)[late].max()) for a, b in combinations(tips, 2))
@@ -338,8 +338,8 @@ def finding_table(judged: Sequence[JudgedInterpretation]) -> Table:
             "decided where all agree; S3 says here that the models with play are more than "
             f"{100.0 * DIVERGENCE:g} % apart at some time from {STRATIFIED_FROM:g} s on. S4: the "
             "smallest rise of the first tip peak from model to model, without the shell. S5, S6: "
-            "ratios. S9: by how much the first tip peak of one exponent exceeds that of another.",
-            f"The peaks are those of {', '.join(MODELS)}.",
+            "ratios. S9: relative difference between the first tip peaks of two exponents.",
+            f"Peaks of {', '.join(MODELS)}.",
             f"The restored stiffness of n = 1 and 3/2 has the tangent of the quadratic law at "
             f"{PAD_FORCE / 1e3:g} kN; the literal one is {number(LITERAL)} for every n.",
             *conclude(judged),

@@ -42,7 +42,7 @@ class Sizes:
 
 @define_study("mesh", "Meshes of the paper's boom")
 def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Compare frequencies, flexibilities and tip peaks of the paper's boom on finer meshes."""
+    """Compare frequencies, compliances and tip peaks of the paper's boom on finer meshes."""
     sizes = sizes or Sizes()
     case = set_duration(friction_case(), sizes.duration)
     results = []
@@ -63,7 +63,7 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
 
 
 def peak_heights(motion: Trajectory) -> list[float]:
-    """Return heights in m of the tip's peaks by parabolas through the three highest outputs."""
+    """Return the heights of tip peaks in m, by parabolas through the three highest outputs."""
     tip = np.asarray(motion.data["tip"].values)
     places, _ = find_peaks(tip, prominence=0.2 * np.ptp(tip))
     before, top, after = tip[places - 1], tip[places], tip[places + 1]
@@ -74,7 +74,7 @@ def peak_heights(motion: Trajectory) -> list[float]:
 def _quantities(
     system: GapSystem, motion: Trajectory, sizes: Sizes
 ) -> dict[tuple[str, str], float]:
-    """Return the quantities and values by unit."""
+    """Return the values of one mesh by quantity and unit."""
     from shell_model.contact.local_compliance import compliance, local_compliance
 
     elastic = system.frequencies[system.frequencies > 0.0][: sizes.frequencies]

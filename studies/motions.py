@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Motion of the paper's example with friction, which several studies use.
+"""Motions of the paper's example with friction.
 
-It is regular, so that two runs can be compared pointwise.
+These motions are regular, so that two runs can be compared pointwise.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ SLOW = 5.0
 
 
 def friction_case() -> Case:
-    """Return the paper's example with friction, and the models from its series to the shell."""
+    """Return the paper's example with friction, with series, beam elements and a shell."""
     return case_file.load(str(CASE))
 
 
@@ -68,20 +68,20 @@ def model_of(case: Case, name: str) -> Model:
 
 
 def shell_of(case: Case) -> Shell:
-    """Return the shell by the name that the cases give it."""
+    """Return the shell of a case, whose name is ``shell``."""
     (shell,) = select_kind(Shell, [model_of(case, "shell")])
     return shell
 
 
 def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
-    """Return any model of a case as a gap system, with shells on this process alone."""
+    """Return the gap system of a model; this process alone reduces shells."""
     from mpi4py import MPI
 
     return build(case, boom, model, BuildContext(MPI.COMM_SELF)).system
 
 
 def build_all(case: Case, models: Mapping[str, Model]) -> dict[str, BuiltModel]:
-    """Return several models of a case, with each shell reduced once."""
+    """Return the gap systems of several models of a case; each shell is reduced once."""
     from mpi4py import MPI
 
     boom = build_boom(case)
@@ -100,20 +100,20 @@ def scale_mesh(shell: Shell, part: float) -> Shell:
 
 
 def trajectories(case: Case) -> list[Trajectory]:
-    """Return the motions of all models of a case, in their order, in parallel on the cores."""
+    """Return the motions of all models of a case, in its order, computed in parallel."""
     boom = build_boom(case)
     plans = [MotionPlan.of(gap_system(case, boom, m), case, m) for m in case.models]
     return run_parallel(lambda plan: plan.trajectory(lambda part: None), plans)
 
 
 def run_parallel(move: Callable[[_Task], _Found], tasks: Iterable[_Task]) -> list[_Found]:
-    """Return the result of each task, as many at a time as there are cores."""
+    """Return the results of tasks, which run in parallel on all cores."""
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return list(pool.map(move, tasks))
 
 
 def without_friction(system: GapSystem) -> GapSystem:
-    """Return the system with contact rows only."""
+    """Return the system without friction rows."""
     return replace(system, friction_rows=np.zeros((0, system.num_modes)), frictions=())
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Booms with slide pads, and the resultant of a pressed pad."""
+"""Booms with slide pads, and the resultant force of a pad."""
 
 from __future__ import annotations
 
@@ -17,14 +17,16 @@ from studies.study import Verification
 
 
 def with_pads(case: Case, length: float, width: float) -> Case:
-    """Return the case with pads of a size, in m, at all its joints."""
+    """Return the case with pads of a size in m at all joints."""
     pad = PadSize(length, width)
     joints = tuple(replace(joint, pad=pad) for joint in case.joints)
     return case.model_copy(update={"joints": joints})
 
 
 def upper_rows(system: GapSystem) -> Array:
-    """Return the mean approach (num_stations, num_modes) above each station, by point shares."""
+    """Return rows (num_stations, num_modes) of the mean approach above each station.
+
+    The mean is weighted by the contact laws of the points."""
     above = np.array(
         [sum(term.stiffness for term in law.terms if term.side > 0.0) for law in system.laws]
     )
@@ -35,9 +37,9 @@ def upper_rows(system: GapSystem) -> Array:
 def pad_verifications(
     case: Case, size: tuple[float, float], system: GapSystem
 ) -> Iterator[Verification]:
-    """Check magnitude and place of a pressed pad's resultant.
+    """Compare magnitude and position of a pad's resultant force with statics.
 
-    The value of its row for a rigid motion is the work of its unit force.
+    The row of a pad times a rigid motion is the work of the pad's unit force.
 
     Args:
         case: case with the pads.
@@ -57,7 +59,7 @@ def pad_verifications(
 
 
 def rigid_motion(system: GapSystem, tail: float, tip: float) -> Array:
-    """Return the rigid state (num_modes,) of the inner segment with its ends at heights in m."""
+    """Return the rigid motion (num_modes,) of the inner segment with its ends at heights in m."""
     free = np.flatnonzero(system.omega2 == 0.0)
     rows = np.array([system.observers[name].row[free] for name in ("tail", "tip")])
     state = np.zeros(system.num_modes)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Values on successively finer meshes, and their distance from the limit (Roache 1994)."""
+"""Convergence of values on successively finer meshes, and their extrapolation (Roache 1994)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Reference(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Refined:
-    """Quantity on successively finer meshes."""
+    """Values of a quantity on successively finer meshes."""
 
     what: str  #: name of the quantity
     unit: str  #: unit of the values; empty for a pure number, or if the source gives none
@@ -49,7 +49,7 @@ class Refined:
 
     @property
     def limit(self) -> float:
-        """Richardson's value at mesh size zero; NaN without an order."""
+        """Extrapolated value at mesh size zero (Richardson 1911); NaN without an order."""
         medium, fine = self.values[-2:]
         return fine + (fine - medium) / self._shrinking
 
@@ -66,12 +66,12 @@ class Refined:
 
     @property
     def best(self) -> float:
-        """Limit of refinement; the finest mesh's value without convergence."""
+        """Limit of refinement; without convergence, the value of the finest mesh."""
         return self.limit if self.converges else self.values[-1]
 
     @property
     def errors(self) -> list[float]:
-        """Error of each mesh, relative to the reference, or to the limit without one."""
+        """Error of each mesh, relative to the reference; without a reference, to the limit."""
         exact = self.limit if self.reference is None else self.reference.value
         return [abs(value / exact - 1.0) for value in self.values]
 
@@ -95,7 +95,7 @@ class Refined:
             allowed: permitted relative error.
 
         Raises:
-            ValueError: there is no limit for the comparison.
+            ValueError: the values do not converge.
         """
         if not self.converges and size == self.sizes[-1]:
             raise ValueError(f"{what}: the finest mesh would be held against itself")
@@ -120,8 +120,8 @@ def refined_table(
 
     Args:
         name, title, notes: name, title and notes of the table.
-        found: quantities on the same sizes, or on some of the finest.
-        mesh: name of a mesh of a size, "edges × {:g}" say.
+        found: quantities, with values on all sizes or only on the finest.
+        mesh: format of the name of a mesh size, such as "edges × {:g}".
     """
     sizes = max((one.sizes for one in found), key=len)
     columns = {

@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rule of thumb for a beam's error relative to the shell, and its scatter.
 
-The beam lacks a fraction δ of the tip's static deflection: that of shear and of the local
-compliance of walls. The model of a mass that falls through the play onto a spring gives the effect
-on the motion. With the ratio γ of the tip's free travel to its static deflection and s = √(2γ), the
-first peak has the error δ/√(1 + s²), and after n slow periods the tip by
+The beam lacks a fraction δ of the tip's static deflection: the deflections by shear and by the
+local compliance of walls. A mass that falls through the play onto a spring models the effect on the
+motion. γ is the ratio of the tip's free travel to its static deflection, and s = √(2γ). The first
+peak then has the relative error δ/√(1 + s²). After n slow periods, the error of the tip as a
+fraction of its range is
 
     δ (1/√(1 + s²) + n μ ψ)
     ψ = ½ (χ + s/(1 + s²)) / (s + χ),   μ = 2 (s + χ) √(1 + s²) / (s²/2 + 1 + √(1 + s²))
 
-where χ = π − arctan s, ψ is the part of δ by which the period is off, and μ the way that the tip
-makes at its highest speed in a period, over its range. Booms of other proportions than the paper's,
-with its friction, show the accuracy of the rule.
+with χ = π − arctan s. ψ is the relative error of the period over δ. μ is the period times the
+highest speed of the tip, over its range. The study measures the accuracy of the rule on booms of
+other proportions than the paper's, with the friction of the paper.
 """
 
 from __future__ import annotations
@@ -122,11 +123,11 @@ def boom_case(given: Proportions) -> Case:
 NEAR_WEBS = 0.20, 0.70
 # Excess of the bending frequency with springs, over its squared ratio to the flange's.
 FLANGES = 0.065
-# Excess of shear over that of Timoshenko's beam, as a part: it is not uniform over the webs.
+# Relative excess of the shear deflection over a Timoshenko beam: webs have non-uniform shear.
 UNEVEN = 0.09
 # A mode of the shell corresponds to the beam's if its frequency is as near, as a part.
 _NEAR = 0.15
-# Permitted geometric mean of measured errors over those of the rule, and of springs.
+# Permitted geometric mean of the ratios of measured errors to the rule, and error of springs.
 MEAN_OFF, PEAK = 0.25, 0.005
 # Permitted relative error of the compliance of walls under pads.
 WALLS = 0.08
@@ -162,7 +163,7 @@ class Rule:
 
     @classmethod
     def of(cls, given: Proportions, case: Case) -> Rule:
-        """Create the rule from the boom's beams without play, and statics."""
+        """Create the rule from the beams of the boom without play, and from their statics."""
         boom = build_boom(case)
         bonded = [
             model_of(case, name).system_without_play(boom)
@@ -176,7 +177,7 @@ class Rule:
         arm, weight = head - tail, inner.load * inner.length
 
         def normal_rows(x: float) -> Array:
-            """Return the forces (2,) in N of a unit force at x in m, down at the tail."""
+            """Return the contact forces (2,) in N at tail and head under a unit force at x in m."""
             return np.array([x - head, x - tail]) / arm
 
         pressed = weight * normal_rows(0.5 * inner.length) * normal_rows(inner.length)
@@ -204,11 +205,11 @@ class Rule:
         return float(np.sqrt(self.lever * point.play / (point.load * self.deflection)))
 
     def peak_error(self, name: str, point: Point) -> float:
-        """Return the error of the first peak, as a part of it."""
+        """Return the relative error of the first peak."""
         return self.missing_part(name) / float(np.hypot(1.0, self.swing(point)))
 
     def tip_error(self, name: str, point: Point, duration: float) -> float:
-        """Return the error of the tip within a duration in s, as a part of its range."""
+        """Return the error of the tip within a duration in s, as a fraction of its range."""
         s = self.swing(point)
         root, chi = float(np.hypot(1.0, s)), np.pi - float(np.arctan(s))
         periods = duration * np.pi * self.frequency / (s + chi)
@@ -218,7 +219,7 @@ class Rule:
 
 
 def station_compliances(given: Proportions, case: Case) -> Array:
-    """Return the compliance (2,) of tail and head in m/N, of both walls on one side."""
+    """Return the compliance (2,) in m/N of both segments' walls at tail and head, on one side."""
     if given.pad is not None:
         return np.diag(contact_compliance(build_boom(case)))[:: len(EACH_SIDE)]
     material = case.material
@@ -245,7 +246,7 @@ class BoomErrors:
 
 
 def flange_frequency(case: Case) -> float:
-    """Return the frequency in Hz of a strip of the inner segment's flange on the webs."""
+    """Return the frequency in Hz of a strip of the inner segment's flange that the webs support."""
     inner = build_boom(case).segments[1]
     box, material = inner.section, inner.material
     assert isinstance(box, BoxSection)
@@ -254,7 +255,7 @@ def flange_frequency(case: Case) -> float:
 
 
 def inner_bending(shell: GapSystem, beam: GapSystem) -> dict[str, float]:
-    """Return the first frequency of the free inner segment in Hz, whose mode moves the tip much."""
+    """Return the lowest frequency of the free inner segment in Hz whose mode moves the tip much."""
     own, shown = _moving_tip(beam), _moving_tip(shell)
     bending = min(own)
     near = {f: moves for f, moves in shown.items() if abs(f / bending - 1.0) < _NEAR}
@@ -262,7 +263,7 @@ def inner_bending(shell: GapSystem, beam: GapSystem) -> dict[str, float]:
 
 
 def _moving_tip(system: GapSystem) -> dict[float, float]:
-    """Return the tip amplitudes of the modes with large ones, by their frequencies in Hz."""
+    """Return the modes with large tip amplitudes: amplitude by frequency in Hz."""
     frequencies, moves = system.omega / (2.0 * np.pi), np.abs(system.observers["tip"].row)
     much = (frequencies > 0.0) & (moves > 0.1 * moves.max())
     return dict(zip(frequencies[much].tolist(), moves[much].tolist(), strict=True))
@@ -296,9 +297,9 @@ def measure(given: Proportions, sizes: Sizes) -> BoomErrors:
 
 
 def wall_compliances(given: Proportions, sizes: Sizes) -> tuple[Array, Array]:
-    """Return the compliance (2,) of tail and head in m/N under pads, of plates and of the shell.
+    """Return the compliance (2,) of tail and head in m/N under pads, by plates and by the shell.
 
-    A force presses the walls of both sides apart.
+    The load is a pair of forces that presses the walls of both segments apart.
     """
     case = boom_case(replace(given, pad=given.pad or PAD))
     walls = contact_compliance(build_boom(case))
@@ -311,7 +312,7 @@ def wall_compliances(given: Proportions, sizes: Sizes) -> tuple[Array, Array]:
 
 
 def ratios(found: Sequence[BoomErrors], name: str, tips: bool) -> Array:
-    """Return the errors of a beam over those of the rule (num_ratios,), of all booms and points."""
+    """Return the ratios (num_ratios,) of a beam's errors to the rule, for all booms and points."""
     pairs = [
         (
             off,
@@ -328,7 +329,7 @@ def ratios(found: Sequence[BoomErrors], name: str, tips: bool) -> Array:
 
 
 def boom_table(found: Mapping[str, BoomErrors], sizes: Sizes) -> Table:
-    """Return a table of δ of each boom's beams by the rule and by its shell without play."""
+    """Return a table of δ for each beam, by the rule and by the shell without play."""
     rows: list[Sequence[Cell]] = []
     for name, one in found.items():
         rule, given = one.rule, sizes.booms[name]
@@ -379,7 +380,7 @@ def scatter_table(found: Sequence[BoomErrors], sizes: Sizes) -> Table:
 
 
 def springs_table(found: Mapping[str, BoomErrors], sizes: Sizes) -> Table:
-    """Return a table of the errors with springs at the worst points, and the flanges' part."""
+    """Return a table of the largest errors with springs, with the share of the flanges."""
     rows: list[Sequence[Cell]] = []
     for name, one in found.items():
         bending, flange = one.bending[SHELL], flange_frequency(boom_case(sizes.booms[name]))
@@ -406,7 +407,7 @@ def springs_table(found: Mapping[str, BoomErrors], sizes: Sizes) -> Table:
 
 
 def wall_table(found: Mapping[str, tuple[Array, Array]], sizes: Sizes) -> Table:
-    """Return a table of the compliance of walls under pads, of plates and of the shell."""
+    """Return a table of the compliance of walls under pads, by plates and by the shell."""
     rows: list[Sequence[Cell]] = []
     for name, (plates, shell) in found.items():
         stations = zip(1.0e9 * plates, 1.0e9 * shell, 100.0 * (plates / shell - 1.0), strict=True)

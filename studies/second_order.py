@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Columns compared with known solutions: Euler's cases, Greenhill's, beam-columns, frequencies."""
+"""Columns, compared with Euler's cases, Greenhill's column, beam-columns and their frequencies."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ EULER: Mapping[str, tuple[tuple[Support, ...], float]] = {
     "clamped": ((CLAMP, FIXED), 4.0),
 }
 CRITICAL = np.pi**2 * STIFFNESS / LENGTH**2
-# Part of the critical force under which columns bend and vibrate; of that of the cantilever.
+# Axial force in bending and vibration, as a fraction of the cantilever's critical force.
 SHARE = 0.3
 
 
@@ -56,13 +56,13 @@ class Model:
     allowed: float  #: relative error
 
     def factor(self, boom: Boom) -> float:
-        """Return the critical factor of its axial force."""
+        """Return the buckling factor of the axial force."""
         _, factor = self.of(boom)
         assert factor is not None
         return factor
 
     def critical(self, euler: float) -> float:
-        """Return the critical force in N with shear, from Euler's (Engesser 1891)."""
+        """Return the critical force in N with shear, from the force without it (Engesser 1891)."""
         return euler / (1.0 + euler / SHEAR_STIFFNESS) if self.in_shear else euler
 
 
@@ -73,13 +73,13 @@ def elements(boom: Boom, theory: Theory = "euler-bernoulli") -> tuple[GapSystem,
 
 
 def series(boom: Boom) -> tuple[GapSystem, float | None]:
-    """Return the complete series."""
+    """Return the series with the complete base."""
     models = kantorovich_segments(boom, [TERMS], "complete", rotary_inertia=False)
     return gap_system(boom, models), critical_factor(boom, models)
 
 
 def shell(boom: Boom) -> tuple[GapSystem, float | None]:
-    """Return the box of plates, reduced."""
+    """Return the reduced shell of a box."""
     reduced = reduce_boom(boom, ShellOptions(mesh_size=MESH_SIZE), MPI.COMM_SELF)
     return reduced.system, reduced.critical_factor
 
@@ -100,9 +100,9 @@ def column(
     """Create a column under a uniform load of 1 N/m, or 1 N at a place.
 
     Args:
-        supports: supports of its ends.
-        force: axial force at its tip, in N.
-        gravity: acceleration along it, in m/s².
+        supports: supports of both ends.
+        force: axial force at the tip in N.
+        gravity: axial acceleration in m/s².
         point: x in m of the load.
     """
     alone = Segment.of_section("column", 0.0, LENGTH, STEEL, BOX, supports=supports)
@@ -115,7 +115,7 @@ def column(
 
 @define_study("second_order", "Columns: buckling, swing and deflection")
 def study(progress: Progress) -> Iterator[Verification]:
-    """Study every model."""
+    """Compare all models with closed forms."""
     for name, model in MODELS.items():
         progress(name)
         yield from _euler(name, model)

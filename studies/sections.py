@@ -113,25 +113,25 @@ def first_peak(system: GapSystem) -> float:
 
 
 def beam_peak(boom: Boom) -> float:
-    """Return the peak of Timoshenko elements."""
+    """Return the first peak of Timoshenko elements in m."""
     elements = finite_element_segments(boom, 0.25, "timoshenko", True)
     return first_peak(gap_system(boom, elements))
 
 
 def shell_peak(boom: Boom) -> float:
-    """Return the peak of shells."""
+    """Return the first peak of a shell in m."""
     options = ShellOptions(MESH_SIZE, contact_tolerance=TOLERANCE)
     return first_peak(reduce_boom(boom, options, MPI.COMM_WORLD).system)
 
 
 def ring_of_bars(section: Section, length: float) -> float:
-    """Return the compliance of a ring's top and bottom under forces on its corners, in m/N.
+    """Return the compliance in m/N of top and bottom of a ring under forces on the corners.
 
-    Plates as straight bars that stretch and bend without shear, rigidly joined, by their stiffness
-    matrices (Przemieniecki 1968).
+    Plates are rigidly joined bars with axial and bending stiffness, without shear (Przemieniecki
+    1968).
 
     Args:
-        section: one with a flat top and bottom.
+        section: section with a flat top and bottom.
         length: length of the ring in m.
     """
     count = len(section.plates)
@@ -161,7 +161,7 @@ def ring_of_bars(section: Section, length: float) -> float:
 
 
 def ring_of_shell(section: Section, length: float, size: float) -> float:
-    """Return the same of a shell with edges of a size in m."""
+    """Return this compliance of a shell with edges of a size in m."""
     segment = Segment.of_section("ring", 0.0, length, STEEL, section)
     shell, stretch = (
         shell_alone(segment, size),
@@ -210,7 +210,7 @@ def study(progress: Progress) -> Iterator[Piece]:
 
 
 def _numbers() -> Iterator[Verification]:
-    """Compare with closed forms, and with finite elements over the section."""
+    """Compare section properties with closed forms, and with finite elements over the section."""
     sides, radius, wall = 240, 0.2, 1.0e-4
     turns = 2.0 * np.pi * np.arange(sides) / sides
     corners = radius * np.column_stack([np.cos(turns), np.sin(turns)])
@@ -234,7 +234,7 @@ def _numbers() -> Iterator[Verification]:
 
 
 def _turned() -> Iterator[Verification]:
-    """Check that sections rotated by 90° or 180° move as upright ones do."""
+    """Check that rotations of sections by 90° or 180° do not change the motion."""
     for name, (section, _) in SHAPES.items():
         upright = tip_of_shell(section, "z", ARM_MESH)
         over = PolygonSection(tuple((y, -z) for y, z in section.corners), section.thicknesses)

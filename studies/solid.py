@@ -4,7 +4,7 @@
 A short pair of boxes has constant mid-lines and walls of increasing thickness. Every quantity of
 both models is the limit of refinement, so that only the error of the theory remains: walls of a
 shell meet at mid-lines, where a solid has corners. Both models use a quarter of the segment, and
-the same readings.
+the same measured displacements.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ FREQUENCY = "frequency"
 
 
 class Probe(NamedTuple):
-    """Reading of a segment, and force on it."""
+    """Displacement of a segment, and the force that does work on it."""
 
     what: str  #: its name
     family: SymmetryClass  #: symmetry class of the motions
@@ -57,12 +57,12 @@ class Probe(NamedTuple):
     read: Callable[[SectionNodes], Row]  #: of the section
 
     def row(self, outline: Callable[[float], SectionNodes]) -> Row:
-        """Return the row over all places; ``outline`` gives the section at x."""
+        """Return the sum of rows at all places; ``outline`` returns the outline at x in m."""
         return sum((weight * self.read(outline(x)) for x, weight in self.places.items()), Row())
 
 
 def pad_squeeze(outline: SectionNodes) -> Row:
-    """Return the increase of the flanges' distance under pads in the corners, in m."""
+    """Return the row of the distance of the flanges at pads in the corners, in m."""
     half = 0.5 * outline.section.size("y")
     rows = (
         side * weight * outline.flange_deflection(side, y)
@@ -94,9 +94,9 @@ class Quarter:
     rows: Mapping[str, Array]  #: name of a probe → (num_dofs,)
 
     def measure(self) -> dict[str, float]:
-        """Return the lowest elastic frequency in Hz under ``FREQUENCY``, and compliances by probe.
+        """Return the lowest elastic frequency in Hz, and the compliance of each probe.
 
-        Compliances are at ``SLOW``, in m/N or rad/(N·m). One factorisation serves both.
+        Compliances at the frequency ``SLOW`` are in m/N or rad/(N·m).
         """
         model = self.model
         solve = ShiftedSolver(model, SLOW)
@@ -266,7 +266,7 @@ class Comparison:
         return self.shell[what].best / self.solid[what].best - 1.0
 
     def slenderness(self, what: Quantity) -> float:
-        """Return wall thickness over the width of the box."""
+        """Return the ratio of wall thickness to the width of the box."""
         section = pair(self.wall)[what.segment].section
         assert section is not None
         return self.wall / section.size("y")
@@ -320,14 +320,14 @@ def _refined(
 
 
 def order(comparisons: Sequence[Comparison], what: Quantity) -> float:
-    """Return the power of the thickness in the shell's error, over the two thickest walls."""
+    """Return the exponent of the thickness in the shell's error, from the two thickest walls."""
     thin, thick = comparisons[-2:]
     growth = thick.error(what) / thin.error(what)
     return math.log(growth) / math.log(thick.wall / thin.wall) if growth > 0.0 else math.nan
 
 
 def slenderness_at(comparisons: Sequence[Comparison], what: Quantity, limit: float) -> str:
-    """Return the wall over width with a given error, on a power law between two walls."""
+    """Return the ratio of thickness to width with a given error, by a power law of two walls."""
     errors = [abs(one.error(what)) for one in comparisons]
     ratios = [one.slenderness(what) for one in comparisons]
     above = [error > limit for error in errors]
@@ -348,7 +348,7 @@ ROUND_OFF = 1.0e-8
 
 
 def solid_verifications() -> Iterator[Verification]:
-    """Check mass, stretch, pure bending and a rod's lowest frequency."""
+    """Compare mass, tension, pure bending and the lowest frequency of a rod with formulas."""
     section, steel, length = BAR.section, BAR.material, BAR.length
     assert section is not None
     stretched, bent = _solid(BREATHING), _solid(ALONG_Z)
@@ -391,13 +391,13 @@ LIMITS = (0.01, 0.02, 0.05)
 
 NOTES = (
     "Two boxes of 2 m, mid-lines 0.40 m x 0.30 m and 0.31 m x 0.21 m, walls t, b the width of the "
-    "box itself. Both models at Richardson's limit of three meshes. The order is that between the "
-    "two thickest walls.",
-    "A lowest frequency is that of the walls' own bending where walls are thin, and of the box as "
-    "a beam where they are thick.",
+    "box itself. Both models at Richardson's limit of three meshes. The order is between the two "
+    "thickest walls.",
+    "The lowest mode of a box with thin walls is bending of the walls; with thick walls it is "
+    "bending of the box as a beam.",
     "Both have the same mass. The shell lacks t_web h t_flange²/2 of the second moment, which is "
-    "of the order (t/h)²; and its walls bend from mid-line to mid-line, those of the solid from "
-    "corner to corner, which is of the order t/b.",
+    "of the order (t/h)²; and its walls bend from mid-line to mid-line. Walls of the solid "
+    "bend from corner to corner, a difference of the order t/b.",
 )
 
 
@@ -442,7 +442,7 @@ def shell_verifications(thinnest: Comparison) -> Iterator[Verification]:
 
 @define_study("solid", "Shells against solids")
 def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Compare the shell with a solid, and the solid with formulas."""
+    """Compare the shell with a solid, and the solid with closed forms."""
     sizes = sizes or Sizes()
     progress("the solid against formulas")
     yield from solid_verifications()

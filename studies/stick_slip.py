@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Drives of finite stiffness: cycles of stick and slip, and the lag of the segment.
+"""Elastic drives: cycles of stick-slip, and the effect of the lag on the motion of the boom.
 
-The motion across the boom follows the prescribed extension. A second run along the extension that
-the segment has reached shows the error.
+A model moves the boom with the commanded extension. A second run with the actual extension, which
+lags behind the command, shows the error.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ CYCLE = "sticking until the spring is taut, slipping on a circle"
 
 @define_study("stick_slip", "Elastic drives with stick and slip")
 def study(progress: Progress) -> Iterator[Piece]:
-    """Study cycles, critical speeds, the stiff limit, and the boom along its actual extension."""
+    """Compare cycles, critical speeds and a stiff drive with closed forms; measure the lag."""
     progress("a mass on a spring")
     yield from _cycle()
     yield from map(_critical, RATIOS)
@@ -70,7 +70,7 @@ def _follow_drive(pulled: ElasticDrive, speed: float, time: Array) -> DriveMotio
 
 
 def _cycle() -> Iterator[Verification]:
-    """Check ten cycles at a constant speed without damping."""
+    """Compare ten cycles at a constant speed without damping with the closed form."""
     omega, slack = np.sqrt(STIFFNESS / MASS), (STICKING - 1.0) * FRICTION / STIFFNESS
     radius, first = np.hypot(slack, SPEED / omega), STICKING * FRICTION / STIFFNESS / SPEED
     slipping = 2.0 / omega * (np.pi - np.arctan(slack * omega / SPEED))
@@ -93,7 +93,7 @@ def _cycle() -> Iterator[Verification]:
 
 
 def _critical(ratio: float) -> Verification:
-    """Check the speed below which sticking recurs, by bisection."""
+    """Compare the speed below which the segment sticks again, found by bisection."""
     pulled = replace(ROPE, dashpot=2.0 * ratio * np.sqrt(STIFFNESS * MASS))
     expected = critical_speed(pulled, FRICTION)
     low, high = 0.5 * expected, 2.0 * expected
@@ -107,7 +107,7 @@ def _critical(ratio: float) -> Verification:
 
 
 def _stiff() -> Verification:
-    """Check the force of a drive of 1e9 N/m in the middle of an S-curve's first half."""
+    """Compare the force of a drive of 1e9 N/m in the middle of the first half of an S-curve."""
     way, time = SCurve(travel=2.0, duration=4.0), np.linspace(0.0, 1.0, 1001)
     pulled = ElasticDrive(MASS, 1.0e9, dashpot=0.2 * np.sqrt(1.0e9 * MASS))
     found = move_segment(pulled, way, time, np.full(time.size, FRICTION))
@@ -118,7 +118,7 @@ def _stiff() -> Verification:
 
 
 def _one_way(stiffness: float) -> list[float]:
-    """Return a row of the table."""
+    """Return the lag and the errors of force and tip in percent for one stiffness."""
     case = _weighted_case(stiffness)
     boom = build_boom(case)
     plan = MotionPlan.of(build(case, boom, case.models[0]).system, case, case.models[0])
@@ -144,7 +144,7 @@ def _move(plan: MotionPlan) -> Trajectory:
 
 
 def _weighted_case(stiffness: float) -> Case:
-    """Return the paper's boom under its weight, at rest until a rope telescopes it."""
+    """Return the paper's boom under its weight; a rope telescopes it from rest."""
     case = reading.load(str(CASES / "drawn-out.toml"))
     masses = [one.mass_per_length or 0.0 for one in case.segments]
     rope = {

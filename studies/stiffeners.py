@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Effect of collars and diaphragms on the flexibility at the contacts of the boom's segments.
 
-A collar is at the head of the outer segment or the tail of the inner one. A diaphragm can close
-only the tail, since the inner segment slides through the head. Flexibilities are static, so that
-the mass of stiffeners has no effect. The outer segment has its supports, the inner one has two pins
-far from the joint, and the flexibility of the Timoshenko beam on the same supports is subtracted.
+A collar is at the head of the outer segment or at the tail of the inner segment. A diaphragm is
+possible only at the tail, since the inner segment slides through the head. Flexibilities are
+static, so that the mass of stiffeners has no effect. The outer segment has its supports, the inner
+segment has two pins far from the joint. The flexibility of the Timoshenko beam on the same supports
+is subtracted.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ class Sizes:
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """Segment with its stiffeners."""
+    """A segment with one set of stiffeners."""
 
     what: str  #: segment and its stiffeners
     mass: float  #: of all its plates in kg
@@ -66,7 +67,7 @@ class Variant:
 
 
 def stiffened_segments(boom: Boom, sizes: Sizes) -> tuple[dict[str, Segment], dict[str, Segment]]:
-    """Return each of two segments by its stiffeners, from none to all."""
+    """Return both segments with each set of stiffeners, from none to all."""
     outer, inner = boom.segments
     head, tail = (outer.end - sizes.collar, outer.end), (inner.start, inner.start + sizes.collar)
     outers, inners = {"nothing": outer}, {"nothing": inner}
@@ -83,7 +84,7 @@ def stiffened_segments(boom: Boom, sizes: Sizes) -> tuple[dict[str, Segment], di
 
 
 def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes) -> Variant:
-    """Return a segment's mass, flexibility at the stations, x in m, and lowest frequencies."""
+    """Return mass, flexibility at stations x in m, and lowest frequencies of a segment."""
     shell = shell_alone(segment, sizes.mesh, stations)
     held, standing = segment, shell
     if not segment.supports:
@@ -111,7 +112,7 @@ def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes
 
 
 def _timoshenko(segment: Segment, x: float) -> float:
-    """Return the deflection in m of an overhanging beam under 1 N at x, beside its two pins."""
+    """Return the deflection in m of an overhanging beam on two pins under 1 N at x."""
     section, material = segment.section, segment.material
     assert section is not None
     near, far = sorted((support.x for support in segment.supports), key=lambda pin: abs(pin - x))
@@ -121,9 +122,9 @@ def _timoshenko(segment: Segment, x: float) -> float:
 
 
 def racking(outline: SectionNodes) -> Row:
-    """Return the racking of the section: rotation of the webs less that of the flanges.
+    """Return the racking of the section: rotation of the webs less rotation of the flanges.
 
-    It is twice the twist, with the sign of the flanges reversed.
+    Its row is the row of twice the twist with the sign of the flanges reversed.
     """
     along_y = set(outline.dofs[:, 1].tolist())
     return Row({dof: (-2.0 if dof in along_y else 2.0) * w for dof, w in outline.twist().items()})
@@ -135,8 +136,8 @@ def racking_stiffness(
     """Return a diaphragm's contribution to the racking stiffness in N m per radian.
 
     Args:
-        section: section of a box one metre long, with the plate in its middle.
-        material: material of both.
+        section: section of a box of length 1 m, with the diaphragm in the middle.
+        material: material of box and diaphragm.
         thickness: thickness of the plate in m.
         size: size of the mesh in m.
     """
@@ -153,7 +154,7 @@ def ring_flexibility(section: BoxSection, young: float, collar: float, size: flo
 
     Args:
         section: section of a ring whose length is a twentieth of its perimeter.
-        young: Young's modulus in Pa; without Poisson's ratio plates bend as beams do.
+        young: Young's modulus in Pa; Poisson's ratio is 0, so that plates bend like beams.
         collar: thickness in m that is added all around.
         size: size of the mesh in m.
     """
@@ -171,7 +172,7 @@ def ring_flexibility(section: BoxSection, young: float, collar: float, size: flo
 
 
 def frame_flexibility(section: BoxSection, young: float, collar: float) -> float:
-    """Return the same of a frame of Timoshenko beams of the thickness t without Poisson's ratio.
+    """Return this compliance of a frame of Timoshenko beams with the thickness t of the plates.
 
     A flange is a shear-flexible beam of span b that carries P in its middle. The corner moment
     P b² / 8 (b + h) at its ends gives flange and web the same slope there. The webs shorten under
@@ -215,7 +216,7 @@ def table(found: Sequence[Variant], stations: Sequence[float], sizes: Sizes) -> 
 
 
 def verifications(boom: Boom, sizes: Sizes) -> Iterator[Verification]:
-    """Check stiffeners that are simple enough for a formula."""
+    """Compare stiffened boxes with formulas."""
     inner = boom.segments[1]
     section, material = inner.section, inner.material
     assert isinstance(section, BoxSection)

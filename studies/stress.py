@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Accuracy of stresses: compared with a beam away from contacts, by refinement near them.
+"""Accuracy of stresses: away from contacts against a beam, near contacts by mesh refinement.
 
 The inner segment of the paper's boom is in equilibrium under its load and contact forces, so that
 its moments and contact forces are statically determinate.
@@ -52,7 +52,7 @@ class Sizes:
 
 @dataclass(frozen=True, slots=True)
 class InnerSegmentState:
-    """Inner segment at rest between its contacts."""
+    """Static state of the inner segment under its load and contact forces."""
 
     boom: Boom  #: the paper's
     stress: ShellStress  #: of the segment alone, whose number there is 0
@@ -62,7 +62,7 @@ class InnerSegmentState:
         """Create the state from a static solution of the full shell.
 
         Args:
-            boom: with two stations.
+            boom: boom with two stations.
             size: size of the mesh in m.
         """
         segment = boom.segments[INNER]
@@ -83,7 +83,7 @@ class InnerSegmentState:
         """Create the same state from the coordinates of a run.
 
         Args:
-            boom: one with two stations.
+            boom: boom with two stations.
             size: size of the mesh in m.
         """
         shell = reduce_boom(boom, ShellOptions(size), MPI.COMM_SELF)
@@ -102,7 +102,7 @@ class InnerSegmentState:
         return cls(boom, ShellStress.at_rest(shell.meshes[INNER], modes.astype(np.float32)))
 
     def top(self, x: float) -> tuple[float, float]:
-        """Return mean σ_x over the width of the top in Pa, and the beam's value.
+        """Return the mean σ_x over the width of the top flange in Pa, and the value of a beam.
 
         σ = M z / J, with the mean of M over the row of elements that holds x.
         """
@@ -118,7 +118,7 @@ class InnerSegmentState:
         return float(found), moment * 0.5 * section.size("z") / section.second_moment_of_area
 
     def shear(self, x: float) -> tuple[float, float]:
-        """Return the shear force of the webs in N, and that of equilibrium."""
+        """Return the shear force of the webs in N, and the shear force from equilibrium."""
         segment = self.boom.segments[INNER]
         forces = wall_forces(self.stress, 0.0, 0, x)
         row = self.stress.row(0, x)
@@ -127,7 +127,7 @@ class InnerSegmentState:
         return found, segment.load * (segment.end - middle)
 
     def near(self, x: float) -> tuple[float, float]:
-        """Return the largest von Mises stress in the band round x, and that of a patch, in Pa."""
+        """Return the largest von Mises stress of a triangle and of a patch near x, in Pa."""
         found = stress_near_places(self.stress, [x], [self.boom.segments[INNER].name]).isel(time=0)
         return float(found["von_mises"].item()), float(found["von_mises_patch"].item())
 
@@ -135,8 +135,8 @@ class InnerSegmentState:
 def contact_forces(boom: Boom) -> dict[float, tuple[int, float]]:
     """Return side and strength in N of the contact forces on the inner segment by x.
 
-    They follow from its equilibrium. The load acts upwards, so that it presses upwards at the outer
-    segment's end, and downwards at its tail.
+    They follow from equilibrium. Under the upward load the segment presses upwards at the head of
+    the outer segment, and downwards at its own tail.
     """
     segment, (tail, head) = boom.segments[INNER], boom.joints[0].stations
     lift = segment.load * segment.length
@@ -148,7 +148,7 @@ def contact_forces(boom: Boom) -> dict[float, tuple[int, float]]:
 def stresses(
     pressed: Sequence[InnerSegmentState], sizes: Sizes
 ) -> dict[tuple[float, str], Refined]:
-    """Return x of each contact, and the largest von Mises stress of a triangle or patch near it."""
+    """Return x of each contact, and the largest stress of a triangle or a patch near it in Pa."""
     return {
         (x, what): Refined(
             f"largest {what} at {x:g} m",
@@ -167,9 +167,9 @@ def verifications(
     near: Mapping[tuple[float, str], Refined],
     sizes: Sizes,
 ) -> Iterator[Verification]:
-    """Check the default mesh against a beam, equilibrium, and the limit of the refinement.
+    """Compare the default mesh with a beam, with equilibrium and with the limit of refinement.
 
-    Check the reduced shell against the full one, too.
+    The reduced shell is compared with the full shell.
     """
     mesh, finest = (f"mesh of {size:g} m" for size in (sizes.default, sizes.meshes[-1]))
     for x in sizes.places:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Common form of a study: values beside their references, tables of numbers, curves."""
+"""Common form of a study: values with references, tables and curves."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ Criterion = tuple[Kind, str, float]
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """Value beside its reference."""
+    """Comparison of a computed value with a reference value."""
 
-    what: str  #: measured quantity, and the model
-    value: float  #: measured
+    what: str  #: quantity, and the model
+    value: float  #: computed value
     reference: float  #: exact or expected value, in the same unit
     unit: str  #: unit of both; empty for a pure number
     kind: Kind  #: kind of the reference
@@ -35,12 +35,12 @@ class Verification:
 
     @property
     def error(self) -> float:
-        """Error relative to the reference; the value itself if the reference is zero."""
+        """Relative error; the absolute value if the reference is zero."""
         return abs(self.value - self.reference) / (abs(self.reference) or 1.0)
 
     @property
     def holds(self) -> bool:
-        """Whether the error is within the permitted one."""
+        """Whether the error is at most the permitted error."""
         return self.error <= self.allowed
 
 
@@ -48,24 +48,24 @@ class Verification:
 class Plot:
     """Curves of one figure."""
 
-    name: str  #: of its file
+    name: str  #: name of the file
     title: str  #: line above the figure
     #: Labels with units.
     x: str
     y: str
     #: Label → abscissas and ordinates.
     curves: Mapping[str, tuple[Sequence[float], Sequence[float]]]
-    caption: str  #: sentences
-    logarithmic: bool = True  #: whether both axes are
+    caption: str  #: caption in sentences
+    logarithmic: bool = True  #: whether both axes are logarithmic
 
 
 @dataclass(frozen=True, slots=True)
 class Study:
     """Results of one study."""
 
-    name: str  #: of its part of the files
+    name: str  #: name in the output files
     title: str  #: heading
-    tables: Sequence[Table] = ()  #: measured values
+    tables: Sequence[Table] = ()  #: tables of values
     verifications: Sequence[Verification] = ()  #: rows of docs/verification.md
     plots: Sequence[Plot] = ()  #: figures
 

@@ -43,16 +43,16 @@ LEVERS: Criterion = ("analytic", "lever arms", EXACT)
 
 
 def lever(cylinder: Cylinder) -> float:
-    """Return the arm in m of a cylinder's line about a hinge on the axis at x = 0."""
+    """Return the lever arm in m of a cylinder about a hinge on the axis at x = 0."""
     along, up = cylinder.direction
     return cylinder.x * up + cylinder.depth * along
 
 
 def tip_compliance(segment: Segment, cylinder: Cylinder, shear_stiffness: float) -> float:
-    """Return m/N at the tip of a boom on a hinge at x = 0 and a cylinder (Castigliano 1879).
+    """Return the tip compliance in m/N of a boom on a hinge at x = 0 and a cylinder.
 
-    1 N at the tip takes L/r of the cylinder and L/r s_z − 1 = R of the hinge, and bends by R x up
-    to the lug, by L − x beyond it.
+    It follows from the strain energy (Castigliano 1879). Under 1 N at the tip, the cylinder carries
+    L/r and the hinge R = L/r s_z − 1. The bending moment is R x up to the lug and L − x beyond it.
 
     Args:
         segment: segment that starts at x = 0.
@@ -85,7 +85,7 @@ def first_frequency(segment: Segment, rotation_stiffness: float) -> float:
 
 
 def decrement(system: GapSystem, position: Array, period: float) -> float:
-    """Return the mean logarithmic decrement of successive maxima of the tip about zero."""
+    """Return the mean logarithmic decrement of successive maxima of the tip deflection."""
     tip = AdaptiveStep()(Motion(system, 8.5 * period, period / 500.0, position)).data["tip"].values
     before, at, after = tip[:-2], tip[1:-1], tip[2:]
     peaks = (at > before) & (at >= after)
@@ -97,7 +97,7 @@ def decrement(system: GapSystem, position: Array, period: float) -> float:
 
 @define_study("supports", "Hinges, cylinders, springs and dashpots")
 def study(progress: Progress) -> Iterator[Verification]:
-    """Compare statics, frequencies and decrements of booms; forces and tips of beams and shells."""
+    """Compare static states, frequencies and decrements of beams and shells with closed forms."""
     yield from _luffed(progress)
     yield from _turning(progress)
     yield from _swinging(progress)
@@ -148,9 +148,10 @@ def _turning(progress: Progress) -> Iterator[Verification]:
 
 
 def _swinging(progress: Progress) -> Iterator[Verification]:
-    """Compare rigid booms: r √(k / I) about the hinge, ζ = c r / 2√(k I), δ = 2πζ/√(1 − ζ²).
+    """Compare rigid booms on springs k and dashpots c with closed forms.
 
-    On both stations of a joint a segment moves up and down: √(2k / m), ζ = c / √(2k m).
+    A boom on a hinge has ω = r √(k/I), ζ = c r/2√(k I) and δ = 2πζ/√(1 − ζ²). A segment on both
+    stations of a joint, in vertical motion, has ω = √(2k/m) and ζ = c/√(2k m).
     """
     boom, stiffness = _segment(), CYLINDER.stiffness
     mass = boom.mass_per_length * LENGTH

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Contact over the whole overlap against contact at the stations, on the paper's boom.
+"""Contact over the whole overlap, compared with contact at the stations, on the paper's boom.
 
-Without friction the motion is chaotic after the first contacts, so that only the first peak is
-compared; with friction the tip is compared over the whole run.
+Without friction the motion is chaotic after the first contacts. So only the first peak is compared.
+With friction the tip is compared over the whole run.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Sizes:
 
 
 class ContactModel(NamedTuple):
-    """Contact: its name, the contacting parts, and its shell, with friction."""
+    """Type of contact: name, contacting parts, and a shell with this contact and friction."""
 
     name: str
     case: Case
@@ -124,7 +124,7 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
 
 
 def _upper_stiffness(system: GapSystem) -> float:
-    """Return the stiffness of all rows together that press up on the inner segment, in N/mⁿ."""
+    """Return the total stiffness in N/mⁿ of the contact rows below the inner segment."""
     return sum(term.stiffness for law in system.laws for term in law.terms if term.side > 0.0)
 
 
@@ -139,7 +139,9 @@ def _density(case: Case, system: GapSystem) -> float:
 
 
 def _peaks(contacts: Sequence[ContactModel], notes: Sequence[str], sizes: Sizes) -> Table:
-    """Return the tip's first peak without and with friction, and changes from the first contact."""
+    """Return the first tip peaks without and with friction, and their changes.
+
+    The changes are relative to the first type of contact."""
     both = np.array(
         [
             [move(one, sizes.peak).first_peak()[1] for one in (without_friction(of), of)]
@@ -160,7 +162,7 @@ def _peaks(contacts: Sequence[ContactModel], notes: Sequence[str], sizes: Sizes)
 
 
 def _verifications(case: Case, system: GapSystem) -> Iterator[Verification]:
-    """Check the forces of approaches with a pressure that has a closed-form integral."""
+    """Compare forces with closed-form integrals of the pressure."""
     boom = build_boom(case)
     (joint,) = boom.joints
     start, end = boom.overlap(joint)
@@ -170,7 +172,7 @@ def _verifications(case: Case, system: GapSystem) -> Iterator[Verification]:
     n, k = upper.exponent, upper.stiffness * len(joint.stations)
 
     def forces(tail: float, slope: float) -> Array:
-        """Return the forces on the inner segment at this height of its tail and this slope."""
+        """Return the contact forces on the inner segment for a height of its tail and a slope."""
         high = clearance + tail
         gaps = system.rows @ rigid_motion(system, high, high + slope * (boom.tip - start))
         return np.array([float(w.force(y)) for w, y in zip(system.laws, gaps, strict=True)])

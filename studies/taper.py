@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Cantilevers that taper to half of all their sizes, against solutions of truncated cones.
+"""Tapered cantilevers, compared with closed forms.
 
-All sizes of their section shrink alike, so that A ∝ ξ² and J ∝ ξ⁴ with ξ from 1 at the clamp to α.
+All dimensions of the section decrease linearly, so that A ∝ ξ² and J ∝ ξ⁴, with ξ = 1 at the clamp
+and ξ = α at the tip.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ CLOSE, OF_SHELL = 1.0e-4, 5.0e-3
 
 
 def arm(force: float = 0.0) -> Boom:
-    """Create the cantilever with 1 N across its tip, and a force in N along it."""
+    """Return the cantilever under 1 N across the tip and an axial force in N."""
     alone = Segment.of_section("arm", 0.0, LENGTH, STEEL, BOX, head_section=HEAD, supports=(CLAMP,))
     pressed = with_compression([alone], [], [Thrust(0, LENGTH, force)])
     return Boom(pressed, (), (Load(0, "z", 1.0, LENGTH, Step()),))
@@ -51,7 +52,7 @@ def arm(force: float = 0.0) -> Boom:
 def tip(in_shear: bool) -> float:
     """Return the tip compliance ∫ (L − x)²/(E J) dx = L³/(3 E J_0 α) in m/N.
 
-    Shear adds L/(G A_0 α).
+    Shear deflection adds L/(G A_0 α).
     """
     shear = LENGTH / (SHEAR_STIFFNESS * ALPHA) if in_shear else 0.0
     return LENGTH**3 / (3.0 * STIFFNESS * ALPHA) + shear
@@ -60,8 +61,9 @@ def tip(in_shear: bool) -> float:
 def frequency() -> float:
     """Return the first frequency in Hz (Kirchhoff 1879).
 
-    The mode is w = Z_2(2 λ √ξ)/ξ with Z of J, Y, I and K, whose k-th derivative is
-    ± λᵏ Z_{2+k}/ξ^(1+k/2); w = w′ = 0 at ξ = 1, w″ = (ξ⁴ w″)′ = 0 at ξ = α.
+    The mode is w = Z_2(2 λ √ξ)/ξ, where Z_2 combines the Bessel functions J, Y, I and K. The k-th
+    derivative has terms ± λᵏ Z_{2+k}/ξ^(1+k/2). The conditions are w = w′ = 0 at ξ = 1 and
+    w″ = (ξ⁴ w″)′ = 0 at ξ = α.
     """
 
     def determinant(eigenvalue: float) -> float:
@@ -86,10 +88,9 @@ def frequency() -> float:
 
 
 def critical() -> float:
-    """Return the critical force in N along the tip (Dinnik 1929).
+    """Return the critical axial force in N at the tip (Dinnik 1929).
 
-    The moment is M = P times the deflection from the tip's, which is ξ sin(u/α − u/ξ); its slope
-    at ξ = 1 is 0.
+    The deflection relative to the tip is ξ sin(u/α − u/ξ). Its slope is 0 at ξ = 1.
     """
     turned = 1.0 / ALPHA - 1.0
     u = brentq(lambda u: np.sin(u * turned) + u * np.cos(u * turned), 0.5 * np.pi, np.pi)
@@ -98,7 +99,7 @@ def critical() -> float:
 
 @define_study("taper", "Segments that taper")
 def study(progress: Progress) -> Iterator[Verification]:
-    """Study every model."""
+    """Compare all models with closed forms."""
     for name, model in MODELS.items():
         progress(name)
         source = "∫ (L − x)²/(E J) dx" + (" + ∫ dx/(G A_s)" if model.in_shear else "")
@@ -112,7 +113,7 @@ def study(progress: Progress) -> Iterator[Verification]:
 
 
 def _swing_and_force(name: str, model: Model) -> Iterator[Verification]:
-    """Compare with closed forms; compare shear-flexible models with one another."""
+    """Compare frequency and critical force with closed forms, or for shear with other models."""
     exact, sources = (frequency(), critical()), ("Kirchhoff 1879", "Dinnik 1929")
     kind: Kind = "analytic"
     if model.in_shear:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Cantilever under a compression that advances with a telescoping segment.
+"""Cantilever under an axial force that moves with a telescoping segment.
 
-A column that is compressed up to a and free of axial force beyond buckles as a column of the length
-a. Under a load across the head it bends as a beam-column up to a, and by the load alone beyond.
+If a column is in compression up to x = a, it buckles like a column of the length a. Under a
+transverse load at the head it bends as a beam-column up to a, and without axial force beyond a.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ MODELS: Mapping[str, Callable[[Boom], list[SegmentModel]]] = {
 
 
 def column(force: float) -> Boom:
-    """Return the cantilever, and the telescoping segment whose tail transfers a force in N."""
+    """Return the cantilever with a telescoping segment, whose tail transfers a force in N."""
     outer = Segment.of_section("column", 0.0, LENGTH, STEEL, BOX, supports=(CLAMP,))
     inner = Segment.of_section("drawn", START, START + LENGTH, STEEL, INNER)
     drive = Drive(SCurve(END - START, 1.0), ("inner", "outer"))
@@ -62,7 +62,7 @@ def column(force: float) -> Boom:
 
 @define_study("telescoping_column", "A column compressed over a growing length")
 def study(progress: Progress) -> Iterator[Verification]:
-    """Study every model of beams."""
+    """Compare all beam models with closed forms."""
     for name, build in MODELS.items():
         progress(name)
         yield from _verifications(name, build)
@@ -98,9 +98,9 @@ def _verifications(
 
 
 def _bent(a: float, force: float) -> float:
-    """Return m/N of the head under a load across it, with a force in N on the part up to a in m.
+    """Return the transverse compliance of the head in m/N, under an axial force in N up to a in m.
 
-    E J w″ = Q (L − x) + P (w(a) − w) up to a, with w(0) = w′(0) = 0; E J w″ = Q (L − x) beyond.
+    Up to a, E J w″ = Q (L − x) + P (w(a) − w) with w(0) = w′(0) = 0. Beyond a, E J w″ = Q (L − x).
     """
     k, beyond = np.sqrt(force / STIFFNESS), LENGTH - a
     at_a = (np.tan(k * a) / k + beyond / np.cos(k * a) - LENGTH) / force

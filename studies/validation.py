@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Study of measurements, published benchmarks and other programs.
 
-``docs/validation.md`` has its rows, and what cannot be computed, with the reasons.
+``docs/validation.md`` has its rows. It also lists results that cannot be computed, with reasons.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ SIDE, NAFEMS_STEEL = 10.0, Material(200.0e9, 0.3, 8000.0)
 
 @define_study("validation", "Measurements, published benchmarks and other programs")
 def study(progress: Progress) -> Iterator[Piece]:
-    """Compute all rows, the measured ones first."""
+    """Compute all rows, comparisons with measurements first."""
     for what, rows in (
         ("a measured beam on a moving roller", moving_roller),
         ("a boom lift", boom_lift),
@@ -68,7 +68,9 @@ def study(progress: Progress) -> Iterator[Piece]:
 
 
 def moving_roller() -> Iterator[Verification]:
-    """Compare first frequencies over roller positions, x = offset + scale · voltage fitted."""
+    """Compare first frequencies over roller positions, x = offset + scale · voltage.
+
+    Offset and scale are fitted."""
 
     def frequencies(parameters: Array) -> Array:
         return np.array([roller_frequency(x) for x in parameters[0] + parameters[1] * VOLTS])
@@ -97,7 +99,9 @@ def roller_frequency(x: float) -> float:
 
 
 def boom_lift() -> Iterator[Verification]:
-    """Compare the frequency at most retraction, with a tip mass fitted at the least."""
+    """Compare the frequency of the most retracted boom, with a fitted tip mass.
+
+    The tip mass is fitted at the least retraction."""
     mass = brentq(lambda mass: lift_frequency(RETRACTED[0], mass) - CHART[0], 10.0, 2000.0)
     what = f"first frequency, {100 * RETRACTED[1]:g} % retracted, {mass:.0f} kg at the tip"
     value = lift_frequency(RETRACTED[1], mass)
@@ -105,7 +109,7 @@ def boom_lift() -> Iterator[Verification]:
 
 
 def lift_frequency(retracted: float, mass: float) -> float:
-    """Return the first frequency (Hz), with overlaps part retracted and a tip mass (kg)."""
+    """Return the first frequency in Hz for a retraction of the overlaps and a tip mass in kg."""
     boxes = [
         (FOOT * length, BoxSection(*(FOOT * (size - wall) for size in sizes), *[FOOT * wall] * 2))
         for length, *sizes, wall in BOXES
@@ -143,7 +147,7 @@ def lift_frequency(retracted: float, mass: float) -> float:
 
 
 class Oscillators(NamedTuple):
-    """Masses on springs to a base that accelerates, in its frame."""
+    """Masses on springs to an accelerated base, in the frame of the base."""
 
     mass: float  #: of each in kg
     stiffness: float  #: of each in N/m
@@ -152,9 +156,9 @@ class Oscillators(NamedTuple):
     damping_ratio: float = 0.0
 
     def system(self, friction: float = 0.0, laws: Sequence[Gap] = ()) -> GapSystem:
-        """Return the masses with friction in N on the first, and laws on its approach.
+        """Return the system of masses, with friction in N on the first mass and its contact laws.
 
-        With a second mass the approach is that of both.
+        With a second mass the approach is the sum of both displacements.
         """
         n = len(self.accelerations)
         scale = 1.0 / np.sqrt(self.mass)
@@ -213,7 +217,7 @@ def impact_pair() -> Verification:
 def rubbing_mass() -> Iterator[Verification]:
     """Compare the mean power of wear from 4 to 12 s of 1 kg on a shaken plane (SDND104).
 
-    It is the normal force, 10 N with μ = 0.1, times the speed of sliding.
+    The power is the friction force, μ = 0.1 times 10 N, times the sliding speed.
     """
     for amplitude, reference in ((15.0, 15.2671), (1.5, 0.409062), (1.01, 2.26164e-4), (0.99, 0.0)):
         system = Oscillators(1.0, 0.0, [amplitude], 1.0).system(friction=1.0)
@@ -227,7 +231,7 @@ def rubbing_mass() -> Iterator[Verification]:
 def nafems() -> Iterator[Verification]:
     """Compute FV12, FV32 and FV52 of NAFEMS R0015 by the shell.
 
-    FV52's reference is of 4 × 4 × 1 bricks, within 2 %, which are held at their lower edges.
+    The reference of FV52 is a model of 4 × 4 × 1 bricks with fixed lower edges, within 2 %.
     """
     for name, values, kind, source, references, allowed in (
         ("FV12, free thin plate", free_plate(), "external", "NAFEMS R0015, closed form",
@@ -245,21 +249,21 @@ def nafems() -> Iterator[Verification]:
 
 
 def free_plate(edges: int = 32) -> Array:
-    """Return six elastic frequencies in Hz of a free plate of 0.05 m that moves across alone."""
+    """Return six elastic frequencies in Hz of a free plate of 0.05 m, in transverse motion."""
     shell = _plate(edges, 0.05)
     held = hold(shell.node_dofs[:, [X, Y]]) | hold(shell.rotation_dofs[:, [Z]])
     return natural_frequencies(shell.held(held), 9)[3:]
 
 
 def tapered_membrane(edges: int = 32) -> Array:
-    """Return six frequencies in Hz of a membrane 5 m wide where it is held, and 1 m at its end."""
+    """Return six frequencies in Hz of a membrane that tapers from 5 m at the support to 1 m."""
     shell = _plate(edges, 0.05, (5.0, 1.0))
     held = hold(shell.node_dofs[:, [Z]]) | hold(shell.rotation_dofs[:, [X, Y]])
     return natural_frequencies(shell.held(held | shell.hold_at(X, 0.0, [X, Y])), 6)
 
 
 def thick_plate(edges: int = 32) -> Array:
-    """Return five elastic frequencies in Hz of a plate of 1 m that is held across at its edges."""
+    """Return five elastic frequencies in Hz of a plate of 1 m with supported edges."""
     shell = _plate(edges, 1.0)
     held: dict[int, float] = {}
     for axis, place in ((X, 0.0), (X, SIDE), (Y, -0.5 * SIDE), (Y, 0.5 * SIDE)):
@@ -268,7 +272,7 @@ def thick_plate(edges: int = 32) -> Array:
 
 
 def _plate(edges: int, thickness: float, widths: tuple[float, float] = (SIDE, SIDE)) -> StaticShell:
-    """Return a plate on [0, SIDE], whose width goes from the first to the last one."""
+    """Return a plate on [0, SIDE], whose width changes linearly between two values."""
 
     def surface(x: Array, y: Array) -> Array:
         width = widths[0] + (widths[1] - widths[0]) * x
@@ -278,6 +282,6 @@ def _plate(edges: int, thickness: float, widths: tuple[float, float] = (SIDE, SI
 
 
 def _first_frequency(boom: Boom, length: float, rotary_inertia: bool) -> float:
-    """Return the lowest frequency in Hz of a boom by slender elements of a length in m."""
+    """Return the lowest frequency in Hz of a boom by Euler-Bernoulli elements of a length in m."""
     models = finite_element_segments(boom, length, "euler-bernoulli", rotary_inertia)
     return float(gap_system(boom, models).frequencies[0])

@@ -39,7 +39,7 @@ NOTES = (
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """Meshes as numbers of edges across a plate or a wall, each twice the one before."""
+    """Numbers of edges across a plate or a wall; each is twice the previous number."""
 
     plate: Sequence[int] = (8, 16, 32)
     box: Sequence[int] = (8, 16, 32)
@@ -48,14 +48,14 @@ class Sizes:
 
 @dataclass(frozen=True, slots=True)
 class LoadedPlate:
-    """Simply supported plate, 1 m wide, under membrane forces that are the same along it.
+    """Simply supported plate, 1 m wide, under membrane forces that are constant along its length.
 
     Args:
         name: label in tables.
         aspect: length over width.
-        forces: N_x, N_s, N_xs over π² D/b² at the lower and at the upper edge, linear between.
-        factor: k after the source.
-        source: of the factor.
+        forces: N_x, N_s, N_xs over π² D/b² at the lower and at the upper edge, linear in between.
+        factor: buckling coefficient k of the source.
+        source: author and year.
     """
 
     name: str
@@ -65,7 +65,7 @@ class LoadedPlate:
     source: str
 
     def shell(self, n: int, count: int = 1) -> Array:
-        """Return the lowest factors (count,) by the shell, n edges across the plate."""
+        """Return the lowest factors (count,) of the shell with n edges across the plate."""
         points, triangles = grid(rectangle(self.aspect, 1.0), round(n * self.aspect), n)
         shell = StaticShell(points, triangles, THIN, STEEL)
         held = hold(shell.node_dofs[:, [X, Y]]) | hold(shell.rotation_dofs[:, Z])
@@ -92,7 +92,7 @@ PLATES = (
 
 @dataclass(frozen=True, slots=True)
 class LoadedBox:
-    """Box between supports that keep the shape of its ends, under stresses along it.
+    """Box under axial stresses, on supports that keep the shape of its ends.
 
     Args:
         name: label in tables.
@@ -109,7 +109,7 @@ class LoadedBox:
     compression: float = 0.0
 
     def stress(self, y: Array, z: Array) -> Array:
-        """Return the stress along x (num_places,) in Pa at y and z (num_places,) in m."""
+        """Return the axial stress (num_places,) in Pa at y and z (num_places,) in m."""
         return self.bending * z - self.compression
 
     def supported(self, n: int) -> SegmentShell:
@@ -124,7 +124,7 @@ class LoadedBox:
     def pressed(self, n: int) -> tuple[SegmentShell, Array, Array]:
         """Return the shell, its loads (num_owned,) at both ends and its forces under these loads.
 
-        The ends keep their width, so that the stresses near them are not uniform.
+        The supports keep the width of the ends, so that stresses near the ends are not uniform.
         """
         shell = self.supported(n)
         start, end = (shell.row(shell.outline(x).mean_displacement(X)) for x in (0.0, self.length))
@@ -139,14 +139,14 @@ class LoadedBox:
         return np.outer(mesh.thickness * self.stress(y, z), [1.0, 0.0, 0.0])
 
     def strips(self, most: int = 12) -> float:
-        """Return the lowest factor by finite strips, in up to this number of half-waves."""
+        """Return the lowest factor by finite strips, over numbers of half-waves up to a maximum."""
         stress: StressField = self.stress
         return Strips.of(self.section, STEEL).lowest(self.length, range(1, most + 1), stress)
 
 
 @dataclass(frozen=True, slots=True)
 class PressedBox:
-    """Box between the same supports, pressed in the middle of both webs' upper edges.
+    """Box on the same supports, under patch loads in the middle of the upper edges of both webs.
 
     Args:
         section: its walls, with thick flanges.
@@ -159,9 +159,9 @@ class PressedBox:
     patch: float
 
     def shell(self, n: int) -> float:
-        """Return k_F = F h/(π² D) of a web by the shell, n edges over its height.
+        """Return k_F = F h/(π² D) of a web by a shell with n edges over its height.
 
-        Membrane forces are those of the shell under the load.
+        The shell under the load gives the membrane forces.
         """
         shell = _supported(self.section, self.length, n)
         middle, half = 0.5 * self.length, 0.5 * self.patch
@@ -173,12 +173,12 @@ class PressedBox:
 
     @property
     def fitted(self) -> float:
-        """k_F of EN 1993-1-5, 6.4 (1), which is a fit."""
+        """The coefficient k_F of EN 1993-1-5, 6.4 (1), a fitted formula."""
         return float(6.0 + 2.0 * (self.section.height / self.length) ** 2)
 
 
 def _supported(section: Section, length: float, n: int) -> SegmentShell:
-    """Return a box on supports at its ends, n edges across its widest wall, held along x."""
+    """Return a box on supports at its ends and along x, with n edges across its widest wall."""
     supports = Support(0.0), Support(length)
     segment = Segment.of_section("box", 0.0, length, STEEL, section, supports=supports)
     shell = shell_alone(segment, max(plate.length for plate in section.plates) / n)
@@ -211,9 +211,9 @@ BOXES = (
 # About as long as its walls and the column itself buckle alike.
 COLUMN = LoadedBox("column of box section", STOUT, 22.0 * 0.3, compression=_STRESS)
 
-# First factors of boxes with loads at their ends, by CalculiX 2.20 and the edges across a wall. It
-# took a tenth of the stress of the tube and five times that of the column: its search begins at a
-# factor of 1, and misses lower ones.
+# First factors of boxes with loads at their ends by CalculiX 2.20, by the number of edges across a
+# wall. It ran with a tenth of the stress of the tube and five times the stress of the column, since
+# it does not find factors below 1.
 CALCULIX = (
     (BOXES[0], {8: 0.7870369, 16: 0.7482351, 32: 0.7425086}),
     (COLUMN, {4: 6.954725, 8: 6.95531, 16: 6.955495}),

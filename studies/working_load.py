@@ -2,7 +2,7 @@
 """Mesh error of the default mesh under high contact forces.
 
 The study runs the paper's boom with friction and constant sections, over plays up to the paper's
-and loads up to ten times the paper's, which correspond to gravity. Each point is computed on the
+and loads up to ten times the paper's, the order of the weight. Each point is computed on the
 default mesh, and with all edges half and twice as long. One reduction serves all points of a mesh,
 since only contact laws and loads differ.
 """
@@ -35,7 +35,7 @@ HELD = 20
 
 
 class Point(NamedTuple):
-    """Play in m, and load over the paper's."""
+    """Point of the study: play in m, and load relative to the paper's load."""
 
     play: float
     load: float
@@ -45,7 +45,7 @@ class Point(NamedTuple):
 
     @classmethod
     def each(cls, plays: Sequence[float], loads: Sequence[float]) -> list[Point]:
-        """Return every play with every load."""
+        """Return the points of all combinations of plays and loads."""
         return [cls(*one) for one in product(plays, loads)]
 
 
@@ -68,7 +68,7 @@ class Sizes:
 
 @dataclass(frozen=True, slots=True)
 class PointMotion:
-    """Motion of a point."""
+    """Motion of one point of the study."""
 
     tip: Array  #: (num_times,) in m
     peaks: Array  #: (num_peaks,) heights of its first ones in m; NaN without it
@@ -77,7 +77,7 @@ class PointMotion:
 
     @classmethod
     def of(cls, system: GapSystem, duration: float, num_peaks: int = 1) -> PointMotion:
-        """Create the motion from rest, in s."""
+        """Create the motion from rest, with a duration in s."""
         begin = perf_counter()
         motion = move(system, duration)
         seconds = perf_counter() - begin
@@ -90,7 +90,7 @@ class PointMotion:
         return cls(tip, peaks, np.abs(means).max(axis=0), seconds)
 
     def tip_error(self, reference: PointMotion) -> float:
-        """Return the largest distance of the tip as a part of the reference's range."""
+        """Return the largest distance of the tip, as a fraction of the range of the reference."""
         return float(np.abs(self.tip - reference.tip).max() / np.ptp(reference.tip))
 
     def peak_errors(self, reference: PointMotion) -> Array:
@@ -98,10 +98,10 @@ class PointMotion:
         return np.asarray(np.abs(self.peaks / reference.peaks - 1.0))
 
     def changes(self, finer: PointMotion) -> Array:
-        """Return the relative changes (num_peaks + 2,) of this motion to that of a finer mesh.
+        """Return the relative changes (num_peaks + 2,) from this motion to a finer mesh.
 
-        They are those of the peaks, then of the stations' forces as parts of the largest, and of
-        the tip as a part of its range.
+        The first ones are changes of peaks. The last two are the change of station forces relative
+        to the largest force, and the change of the tip relative to its range.
         """
         forces = np.abs(self.forces - finer.forces).max() / finer.forces.max()
         return np.append(self.peak_errors(finer), [forces, self.tip_error(finer)])
@@ -127,11 +127,11 @@ class ContactResults:
 
     @property
     def changes(self) -> Array:
-        """Changes (num_points, num_peaks + 2) from the default mesh to the finest, or NaN."""
+        """Changes (num_points, num_peaks + 2) from the default to the finest mesh, or NaN."""
         return np.array([meshes[-2].changes(meshes[-1]) for meshes in self.moved.values()])
 
     def worst(self, which: int) -> tuple[float, Point]:
-        """Return the largest of a kind of changes over all points, and its point, or NaN."""
+        """Return the largest change of a kind over all points, and its point; or NaN."""
         changes = self.changes[:, which]
         points = list(self.moved)
         if np.isnan(changes).all():
@@ -155,13 +155,13 @@ class ContactResults:
 
 
 def set_point(system: GapSystem, point: Point) -> GapSystem:
-    """Return the system with another play and load in the same coordinates."""
+    """Return the system with the play and the load of a point, in the same coordinates."""
     laws = [law.scaled(0.0).behind(0.5 * point.play) for law in system.laws]
     return replace(system, laws=laws, load=point.load * system.load)
 
 
 def in_space(case: Case) -> Case:
-    """Return the case with play and half its load sideways, too."""
+    """Return the case in space: half of the load also acts sideways, with lateral play."""
     joints = tuple(replace(joint, lateral_play=joint.play) for joint in case.joints)
     segments = tuple(
         segment.model_copy(update={"lateral_load": 0.5 * segment.load}) for segment in case.segments

@@ -91,7 +91,7 @@ class Sizes:
 
 
 class Method(NamedTuple):
-    """Method for the motion of the series: row of the table, and function."""
+    """Integration method for the series: name in the table, and function."""
 
     solver: str
     tolerance: str  #: relative tolerance, or step, as text
@@ -105,12 +105,12 @@ def five_terms(case: Case) -> GapSystem:
 
 
 def off(tip: Array, exact: Array) -> float:
-    """Return the largest error of a tip (num_times,) as a fraction of the exact tip's range."""
+    """Return the largest error of a tip (num_times,) as a fraction of the exact range."""
     return float(np.abs(tip - exact).max() / np.ptp(exact))
 
 
 def errors(sizes: Sizes) -> Table:
-    """Measure errors and costs over the step, of models with regular motion by friction."""
+    """Measure errors and costs for several steps, on models with friction and regular motion."""
     case, rows = friction_case(), []
     boom = build_boom(case)
     for name in sizes.models:
@@ -149,7 +149,7 @@ def errors(sizes: Sizes) -> Table:
 
 
 def compare(case: Case, sizes: Sizes) -> Table:
-    """Compare the time step with generic solvers of at most the same error."""
+    """Compare the time step with generic solvers at the same error or less."""
     system = five_terms(case)
     motion, row = Motion(system, sizes.early, OUTPUT_STEP), system.observers["tip"].row
     rates, rows, failed = compiled_rates(system), [], []
@@ -195,7 +195,7 @@ def compare(case: Case, sizes: Sizes) -> Table:
 
 
 def ensembles(case: Case, sizes: Sizes) -> Table:
-    """Measure the cost of ensembles by threads."""
+    """Measure the cost of ensembles for several numbers of threads."""
     cores = len(os.sched_getaffinity(0))
 
     def run(whole: GapSystem, count: int, integrator: Integrator, threads: int) -> None:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Telescoped beams with play in Exudyn: ``python exudyn_beams.py < GIVEN.json``.
 
-It runs in an interpreter that has Exudyn and nothing of this project. It prints the tip over the
-output times and the wall seconds of each step.
+It runs in an interpreter with Exudyn and without this project. It prints the motion of the tip, and
+the wall seconds, for each step.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ ABSOLUTE = 1.0e-3
 
 
 def compiled_rates(system: GapSystem) -> Rates:
-    """Return t, (a, ȧ) → (ȧ, ä) of an undamped system, compiled with its data as constants."""
+    """Return the compiled function t, (a, ȧ) → (ȧ, ä) of an undamped system."""
     omega2, load, rows = system.omega2.copy(), system.load.copy(), system.rows.copy()
     terms = contact_terms(system.laws)
     n = system.num_modes
@@ -58,7 +58,7 @@ def compiled_rates(system: GapSystem) -> Rates:
 
 
 def array_rates(system: GapSystem) -> Rates:
-    """Return the rates in NumPy, for a generic solver; friction has the sign of the speed."""
+    """Return the function t, (a, ȧ) → (ȧ, ä) in NumPy; friction has the sign of the speed."""
     n = system.num_modes
     terms = contact_terms(system.laws)
     side, stiffness, onset, exponent = (
@@ -85,7 +85,7 @@ def array_rates(system: GapSystem) -> Rates:
 
 
 def generic(name: str, rates: Rates, num_states: int, duration: float, tolerance: float) -> Array:
-    """Return states (num_times, num_states) from rest by a scipy solver, at our output steps."""
+    """Return states (num_times, num_states) from rest by a scipy solver, at the output steps."""
     times = OUTPUT_STEP * np.arange(round(duration / OUTPUT_STEP) + 1)
     start = np.zeros(num_states)
     tolerances = {"rtol": tolerance, "atol": ABSOLUTE * tolerance}
@@ -96,10 +96,10 @@ def generic(name: str, rates: Rates, num_states: int, duration: float, tolerance
 
 
 def match_tolerance(error: Callable[[float], float], target: float) -> tuple[float | None, float]:
-    """Return the loosest of ``TOLERANCES`` with an error of at most ``target``, and the error.
+    """Return the largest of ``TOLERANCES`` with an error of at most ``target``, and the error.
 
-    Bisection assumes that the error decreases with the tolerance. If even the tightest ones have
-    larger errors, the result is None and the least error.
+    Bisection assumes that the error decreases with the tolerance. If all
+    tolerances have larger errors, the result is None and the smallest error.
 
     Args:
         error: function that returns the error of a tolerance.

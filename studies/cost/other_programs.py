@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The time step beside other programs for motions with contact, at equal error.
+"""The time step, compared with other programs for motions with contact at equal error.
 
-Each program runs a script of this folder in an interpreter of its own. A program that is not
-installed is left out, with the reason.
+Each program runs a script of this folder in a separate interpreter. Tables omit programs that are
+not installed, with the reason.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ SOFT = PowerContact(1.0e7, 1.0, damping=5.0)
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """Another program, and where it is."""
+    """Another program, and the path of its interpreter."""
 
     name: str
     module: str  #: of Python
@@ -50,7 +50,7 @@ class Program:
 
     @property
     def installed(self) -> bool:
-        """Whether the interpreter can import it."""
+        """Whether the interpreter can import the program."""
         try:
             command = [str(self.python), "-c", f"import {self.module}"]
             return subprocess.run(command, capture_output=True, check=False).returncode == 0
@@ -60,7 +60,7 @@ class Program:
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One motion in both programs."""
+    """One motion, computed by this program and by another program."""
 
     what: str
     program: Program
@@ -71,7 +71,7 @@ class Problem:
     exact: Array  #: the same, converged
 
     def off(self, places: Array) -> float:
-        """Return the largest error of places as a part of the range of the tip, the last one."""
+        """Return the largest error of positions, as a fraction of the range of the tip."""
         return float(np.abs(places - self.exact).max() / np.ptp(self.exact[:, -1]))
 
     def elsewhere(self) -> list[tuple[float, float, list[float]]]:
@@ -87,14 +87,14 @@ class Problem:
         return [(one["step"], self.off(np.array(one["places"])), [one["seconds"]]) for one in runs]
 
     def here(self, most: int, budget: float) -> list[tuple[float, float, list[float]]]:
-        """Return the same of the time step."""
+        """Return step, error and wall seconds of each run of the time step."""
         errors = [self.off(self.move(step)) for step in STEPS]
         seconds = time_in_turns([partial(self.move, step) for step in STEPS], most, budget)
         return list(zip(STEPS, errors, seconds, strict=True))
 
 
 def telescoped_beams() -> Problem:
-    """Return two beams of the paper without friction, until their motion becomes chaotic."""
+    """Return the beams of the paper without friction, up to the chaotic part of the motion."""
     duration, case = 0.3, friction_case()
     boom, (model,) = build_boom(case), select_kind(BeamElements, [model_of(case, "beam-fe")])
     system = without_friction(gap_system(case, boom, model))
@@ -133,7 +133,7 @@ def telescoped_beams() -> Problem:
 
 
 def ball_on_beam() -> Problem:
-    """Return a ball that falls on a cantilever, until its chatter decides when it leaves."""
+    """Return a ball that falls on a cantilever, up to the first lift-off after chatter."""
     duration, step = 0.03, 1.0e-6
     mass, stiffness = impacting_beam.beam(impacting_beam.ELEMENTS)
     height = impacting_beam.HEIGHT
@@ -166,10 +166,10 @@ PROBLEMS = {"telescoped beams": telescoped_beams, "ball on a beam": ball_on_beam
 
 
 def other_programs(most: int, budget: float, problems: Sequence[str] = tuple(PROBLEMS)) -> Table:
-    """Return the longest step of each program within each error, and its cost.
+    """Return the largest step of each program for each permitted error, and its cost.
 
     Args:
-        most, budget: repetitions of our runs, as of :func:`studies.cost.timing.time_in_turns`.
+        most, budget: repetitions of runs, as in :func:`studies.cost.timing.time_in_turns`.
         problems: names of the motions.
     """
     rows: list[Sequence[Cell]] = []
@@ -197,7 +197,7 @@ def _at_levels(
     ours: Sequence[tuple[float, float, list[float]]],
     theirs: Sequence[tuple[float, float, list[float]]],
 ) -> Iterator[Sequence[Cell]]:
-    """Yield a row of each program for each level that both reach."""
+    """Yield a row of each program for each level of error that both reach."""
     for level in LEVELS:
         found = [next((run for run in runs if run[1] <= level), None) for runs in (ours, theirs)]
         if found[0] is None or found[1] is None:

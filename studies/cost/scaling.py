@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Cost of a shell by its size and by ranks: ``python -m studies.cost.scaling``.
+"""Cost of a shell for several sizes and ranks: ``python -m studies.cost.scaling``.
 
-Every run has its own processes, so that peak memories are separate.
+Every run has separate processes, so that peak memories are separate.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ STAGES = ("mesh", "assembly", "rows", "reduction", "fields", "mesh error")
 # Stages with reported memory peaks.
 REMEMBERED = ("mesh", "assembly", "reduction", "fields")
 
-# Durations of the motions in s; the last is that of the goal.
+# Durations of the motions in s; the goal applies to the last.
 STEPS = (1.0e-4, 1.0e-5)
 
 
@@ -70,7 +70,7 @@ class Sizes:
 
 
 def measure(sizes: Sizes) -> Iterator[Table]:
-    """Measure the default mesh from plates to motion, by ranks; then finer meshes on most ranks."""
+    """Measure the default mesh on several numbers of ranks, then finer meshes on all ranks."""
     runs = [
         _measure_run(ranks, "move", name, sizes.default, sizes.duration)
         for ranks in sizes.ranks
@@ -109,7 +109,7 @@ def measure(sizes: Sizes) -> Iterator[Table]:
         {"what": "", "measured": ".3g", "goal": ".3g"},
         [
             ("power of the size with which wall time grows", wall, EXPONENT_GOAL),
-            ("the same of peak memory beyond that of idle processes", memory, None),
+            ("the same of peak memory beyond idle processes", memory, None),
             ("wall s of the largest", last["total_seconds"], seconds),
             ("peak GB of the largest", last["peaks"]["fields"], peak),
         ],
@@ -138,7 +138,7 @@ def _stages(name: str, title: str, runs: Sequence[Mapping[str, Any]], note: str)
 
 
 def _buckling(sizes: Sizes) -> Table:
-    """Return cost and lowest factor of the buckling of a bent segment, by size and by ranks."""
+    """Return cost and lowest factor of the buckling of a bent segment, for sizes and ranks."""
     rows = []
     for mesh in sizes.buckling:
         runs = [_measure_run(ranks, "buckle", mesh) for ranks in sizes.ranks]
@@ -160,7 +160,7 @@ def _buckling(sizes: Sizes) -> Table:
 
 
 def _exponent(sizes: Sequence[float], values: Sequence[float]) -> float:
-    """Return p of the power law values ~ sizesᵖ with the best fit."""
+    """Return the exponent p of the best fit values ~ sizesᵖ."""
     return float(np.polyfit(np.log(sizes), np.log(values), 1)[0]) if len(sizes) > 1 else math.nan
 
 
@@ -228,7 +228,7 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
 
 
 def _buckle(size: str) -> None:
-    """Buckle the walls of a bent segment; rank 0, which alone has the mesh, prints results."""
+    """Compute the buckling of the walls of a bent segment; rank 0 prints the results."""
     from mpi4py import MPI
 
     from geometry.boom import Boom
@@ -264,7 +264,7 @@ def _buckle(size: str) -> None:
 
 
 def _motion(system: GapSystem, duration: float, step: float) -> list[float]:
-    """Return step, seconds of a motion, nanoseconds of a step, contact changes, energy residual."""
+    """Return step in s, wall time in s, time of a step in ns, contact changes, residual."""
     # The first output compiles the loop.
     FixedStep(step)(Motion(system, 1.0e-3))
     start = perf_counter()

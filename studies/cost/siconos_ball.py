@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A ball that falls on a cantilever in Siconos: ``python siconos_ball.py < GIVEN.json``.
 
-It runs in an interpreter that has Siconos and nothing of this project. It prints ball and tip over
-the output times and the wall seconds of each step.
+It runs in an interpreter with Siconos and without this project. It prints the motion of ball and
+tip, and the wall seconds, for each step.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from siconos import kernel
 
 
 def move(given: dict[str, Any], step: float) -> dict[str, Any]:
-    """Return the places of ball and tip in m, and wall seconds, of a motion with a step in s.
+    """Return the positions of ball and tip in m, and wall seconds, of a motion with a step in s.
 
-    The scheme is that of Moreau and Jean, θ = ½, with the restitution 0.
+    The scheme is Moreau-Jean with θ = ½ and the restitution 0.
     """
     mass, stiffness = (np.array(given[name]) for name in ("mass", "stiffness"))
     n = len(mass)

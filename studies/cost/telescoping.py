@@ -44,7 +44,7 @@ _PAD = 0.1
 
 
 class Cost(NamedTuple):
-    """Processor time in s of a system, its number of modes, and the time of its motion."""
+    """Processor time in s for a system and for its motion, and the number of modes."""
 
     modes: int
     built: float
@@ -52,10 +52,10 @@ class Cost(NamedTuple):
 
 
 def telescoping(models: Sequence[str] = MODELS, duration: float = DURATION) -> Table:
-    """Return the processor time of telescoping motions, and of those at rest.
+    """Return the processor time of motions with telescoping and at a fixed extension.
 
     Args:
-        models: models of the case, and its ``shell``, which is left out where there is no FEniCSx.
+        models: models of the case; its ``shell`` is left out if FEniCSx is not installed.
         duration: duration of each motion in s.
     """
     asked = [name for name in models if name != "shell" or find_spec("dolfinx")]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Wall times of compared runs, measured in turns, and output of their tables."""
+"""Wall times of compared runs, measured in turns, and tables of results."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ NOISE = (
 def time_in_turns(
     runs: Sequence[Callable[[], object]], most: int, budget: float
 ) -> list[list[float]]:
-    """Return wall seconds of each run; all run once before any is repeated.
+    """Return wall seconds of each run. All runs take turns.
 
     Args:
         runs: functions to time.
-        most: largest number of repetitions of each.
+        most: largest number of repetitions of each run.
         budget: total wall time in s of one run's repetitions, beyond which it is not repeated.
     """
     seconds: list[list[float]] = [[] for _ in runs]
@@ -57,7 +57,7 @@ def write_tables(
     tables: Iterable[Table],
     console: Console,
 ) -> None:
-    """Print tables as they are made, and write them as NAME.json and NAME.md.
+    """Print tables one by one, and write them as NAME.json and NAME.md.
 
     Args:
         folder: created if missing.

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Examples of the paper, integrated by numerical methods of 1997 and by this program.
 
-The paper integrates beam elements by the modal technique in 4375 steps for 7 s, with gaps and
-friction as forces on a few modes. It does not state the scheme, the number of modes, or whether
-gaps were iterated: this study tries all combinations.
+The paper integrates beam elements by the modal technique in 4375 steps for 7 s, with contact and
+friction forces on a few modes. It does not state the scheme, the number of modes, or whether
+contact forces were iterated. This study tries all combinations.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ MEMBERS, RELATIVE, SEED = 4, 1.0e-9, 1
 
 @dataclass(frozen=True, slots=True)
 class Numerics:
-    """Numerical method of 1997 for modal equations."""
+    """Numerical method of 1997: scheme, step, and iterated or lagged contact forces."""
 
     scheme: Scheme  #: scheme of the steps
     iterated: bool  #: whether gaps and friction agree with the end of a step, or lag by one
@@ -55,7 +55,7 @@ class Numerics:
 
 
 def all_numerics() -> list[Numerics]:
-    """Return every combination of scheme, iterated or lagged gaps, and step."""
+    """Return all combinations of scheme, step, and iterated or lagged contact forces."""
     parts = product((NEWMARK, WILSON, CENTRAL), (True, False), STEPS)
     return [Numerics(*one) for one in parts]
 
@@ -74,7 +74,7 @@ class ModelRun:
 
     @classmethod
     def of(cls, run: Trajectory, put_in: float = 0.0, unconverged: float = 0.0) -> ModelRun:
-        """Create a run from a trajectory; without ``put_in`` by its own energy."""
+        """Create a run from a trajectory, and from the input energy ``put_in`` in J if given."""
         kinetic, strain, contact, work, *losses = (run.data[name].values for name in ENERGIES)
         present = kinetic + strain + contact + sum(losses)
         tip, head = (run.data[place].values for place in ("tip", "head"))
@@ -83,11 +83,11 @@ class ModelRun:
 
     @property
     def balance(self) -> Array:
-        """Unaccounted energy (num_times,) as a part of that put in, NaN after a finite motion."""
+        """Error of the energy balance (num_times,), relative to the input energy; or NaN."""
         return self.gained / self.put_in
 
     def at(self, time: Array) -> ModelRun:
-        """Return the run at other times in s."""
+        """Return the run interpolated at times in s."""
         curves = self.tip, self.head, self.gained
         tip, head, gained = (np.interp(time, self.time, curve) for curve in curves)
         return ModelRun(time, tip, head, gained, self.put_in, self.unconverged)
@@ -99,27 +99,27 @@ class ModelRun:
 
     @property
     def divergence_time(self) -> float:
-        """Time in s at which the energy gain exceeds all energy put in; infinite if never."""
+        """Time in s at which the energy gain exceeds the input energy; infinite if it does not."""
         gained = ~(self.balance < 1.0)
         return float(self.time[np.argmax(gained)]) if gained.any() else np.inf
 
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """Models with play by the same numerics, and the model without play."""
+    """Runs of the models with play by one numerical method, and of the model without play."""
 
     models: Sequence[ModelRun]  #: of ``SERIES`` and ``ELEMENTS``
     bonded: ModelRun  #: the elements without play, accurate with any numerics
 
     @property
     def elements(self) -> ModelRun:
-        """Finite elements with play."""
+        """Run of the finite elements with play."""
         return self.models[-1]
 
     def peaks(self, cutoff: float) -> tuple[float, float]:
-        """Return the distances of slow peaks up to six seconds and later (S3).
+        """Return the distances of slow peaks within six seconds and later (S3).
 
-        They are infinite and NaN if the energy of a model diverges.
+        If the energy of a model diverges, they are infinite and NaN.
         """
         if min(one.divergence_time for one in self.models) < np.inf:
             return np.inf, np.nan
@@ -129,18 +129,18 @@ class Sample:
         return float(apart[early].max(initial=0.0)), float(apart[~early].max(initial=0.0))
 
     def conforms_then_diverges(self, cutoff: float) -> bool:
-        """Return whether the sample shows S3."""
+        """Return whether the sample reproduces S3."""
         early, late = self.peaks(cutoff)
         return early <= DIVERGENCE < late
 
     def tip_distances(self) -> tuple[float, float]:
-        """Return the largest distance of two tips up to six seconds and after, by range (S7)."""
+        """Return the largest relative distance of two tips within six seconds and later (S7)."""
         distance = _largest_difference([one.tip for one in self.models])
         early = self.elements.time <= CONFORMITY
         return float(distance[early].max()), float(distance[~early].max())
 
     def stratifies(self) -> bool:
-        """Return whether the sample shows S7, by the rule on trajectories."""
+        """Return whether the sample reproduces S7 by the rule for regular motions."""
         early, late = self.tip_distances()
         head = float(_largest_difference([one.head for one in self.models]).max())
         without = min(
@@ -151,7 +151,7 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """Example of the paper."""
+    """Example of the paper with its models and accurate members."""
 
     case: Case  #: its file's
     systems: Mapping[str, GapSystem]  #: systems of its models by name
@@ -162,7 +162,7 @@ class Example:
 
     @classmethod
     def of(cls, case: Case, members: int) -> Example:
-        """Create an example with a number of accurately solved members."""
+        """Create an example with accurate solutions of several ensemble members."""
         boom = build_boom(case)
         names = (*SERIES, ELEMENTS, BONDED)
         systems = {name: gap_system(case, boom, model_of(case, name)) for name in names}
@@ -180,7 +180,7 @@ class Example:
         return cls(case, systems, cutoff, accurate)
 
     def samples(self, how: Numerics, modes: Sequence[int] = MODES) -> list[Sample]:
-        """Return a sample for each number of the elements' modes and each member."""
+        """Return a sample for each number of modes of the elements and each member."""
         accurate = self.accurate[0].models
         series = [
             (self.systems[name], run.put_in) for name, run in zip(SERIES, accurate, strict=False)
@@ -198,7 +198,7 @@ class Example:
         ]
 
     def with_accurate_series(self, samples: Sequence[Sample]) -> list[Sample]:
-        """Return the samples with accurate series, as by a general solver without a limit."""
+        """Return the samples with accurate series, as by a general solver with many steps."""
         members = [self.accurate[i % MEMBERS % len(self.accurate)] for i in range(len(samples))]
         return [
             replace(one, models=[*(run.at(one.elements.time) for run in series), one.elements])
@@ -207,14 +207,14 @@ class Example:
         ]
 
     def tip_error(self, run: ModelRun) -> float:
-        """Return the largest distance of the elements' tip from the accurate one, by its range."""
+        """Return the largest error of the elements' tip, as a fraction of the accurate range."""
         accurate = self.accurate[0].elements
         distance = np.abs(run.tip - np.interp(run.time, accurate.time, accurate.tip))
         return float(distance[run.time <= CONFORMITY].max() / np.ptp(accurate.tip))
 
 
 def factors(members: int) -> Array:
-    """Return the load factors (members,)."""
+    """Return the load factors (num_members,) of the ensemble."""
     return 1.0 + perturbations(members, RELATIVE, SEED)
 
 
@@ -227,5 +227,5 @@ def _move(
 
 
 def _largest_difference(curves: Sequence[Array]) -> Array:
-    """Return the largest difference (num_times,) of any two, as a part of the largest range."""
+    """Return the largest difference (num_times,) of any two tips over the largest range."""
     return np.asarray(np.ptp(np.array(curves), axis=0) / max(np.ptp(one) for one in curves))

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Step-by-step integration of modal equations by schemes of the 1990s.
 
-Newmark's average acceleration (1959), Wilson's θ (1973) and central differences are one family:
-the equation of motion holds θ steps ahead, and the acceleration of a step's end is on the line to
-there (Hilber and Hughes 1978). Forces of gaps and friction are loads of the modes: with the
-values of the last step, or iterated in each step until they agree with its end. The energy is not
-checked.
+Newmark's average acceleration (1959), Wilson's θ (1973) and central differences are one family
+(Hilber and Hughes 1978). The equation of motion holds θ steps ahead, and the acceleration is linear
+up to this time. Contact and friction forces are modal loads: with values of the previous step
+(lagged), or iterated until they agree with the end of the step. The energy is not checked.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ DIVERGED = 1.0e5
 
 @dataclass(frozen=True, slots=True)
 class Scheme:
-    """Scheme of the family."""
+    """Parameters of a scheme of the family."""
 
     name: str  #: name in the literature
     beta: float  #: of the displacement within a step, after Newmark (1959); γ is ½
@@ -51,7 +50,7 @@ CENTRAL = Scheme("central differences", 0.0)
 
 @dataclass(frozen=True, slots=True)
 class SchemeRun:
-    """Results of such a scheme."""
+    """Motion by one of these schemes."""
 
     trajectory: Trajectory  #: an output for each step, NaN after the last finite one
     finite_steps: int  #: steps until the motion is not finite
@@ -83,7 +82,7 @@ def integrate(motion: Motion, scheme: Scheme, iterated: bool) -> SchemeRun:
     Args:
         motion: motion of a system under constant loads without damping.
         scheme: scheme of the family.
-        iterated: whether gaps and friction agree with the end of a step, or lag by one.
+        iterated: True for forces at the end of the step, False for forces of the previous step.
     """
     system = motion.system
     n, h = motion.outputs, motion.output_step
@@ -132,7 +131,7 @@ def contact_forces(y: Array, terms: Terms, force: Array) -> None:
 
 @njit(**LOOP)
 def _fill_contact(gaps: Array, terms: Terms, forces: Array, energy: Array) -> None:
-    """Fill in contact forces and friction at gaps (num_times, num_rows)."""
+    """Store contact and friction forces of a run at gaps (num_times, num_rows)."""
     for k in range(len(gaps)):
         contact_forces(gaps[k], terms, forces[k])
         energy[k] = contact_energy(gaps[k], terms)
@@ -167,7 +166,7 @@ def _fill_motion(
     losses: Array,
     unconverged: Array,
 ) -> int:
-    """Fill in states, speeds and friction losses; return the number of finite steps."""
+    """Store states, velocities and friction losses of a run; return the number of finite steps."""
     omega2, load, rows, terms, slides, drag = system
     tau = theta * h
     reach = beta * tau**2
@@ -213,10 +212,10 @@ SOURCE = "roots of the amplification matrix, Bathe 1996"
 
 
 def textbook_root(scheme: Scheme, phase: float) -> complex:
-    """Return the root λ of a scheme's step for an oscillator without damping.
+    """Return the eigenvalue λ of the amplification matrix of an undamped oscillator.
 
-    Newmark's and the central differences' in closed form, Wilson's from his amplification matrix
-    (Bathe 1996, section 9.4).
+    Newmark's scheme and central differences have closed forms; Wilson's scheme has the matrix of
+    Bathe (1996, section 9.4).
 
     Args:
         scheme: one of the three.
@@ -237,7 +236,7 @@ def textbook_root(scheme: Scheme, phase: float) -> complex:
 
 
 def measured_root(scheme: Scheme, phase: float) -> complex:
-    """Return the root λ, measured from the motion of an oscillator."""
+    """Return the eigenvalue λ of the amplification matrix from a computed motion."""
     motion = Motion(oscillator(), STEPS * phase, phase, position=np.ones(1))
     way = integrate(motion, scheme, iterated=False).trajectory.states[:, 0]
     behind = np.stack([way[2:-1], way[1:-2], way[:-3]], axis=1)
@@ -258,17 +257,17 @@ def oscillator() -> GapSystem:
 
 
 def period_elongation(root: complex, phase: float) -> float:
-    """Return the relative increase of the period by a root."""
+    """Return the relative elongation of the period for an eigenvalue."""
     return float(phase / np.angle(root)) - 1.0
 
 
 def amplitude_loss(root: complex) -> float:
-    """Return the relative loss of amplitude in a period."""
+    """Return the relative loss of amplitude in a period for an eigenvalue."""
     return 1.0 - float(abs(root) ** (2.0 * np.pi / np.angle(root)))
 
 
 def verifications() -> Iterator[Verification]:
-    """Return the verifications of period and amplitude of each scheme in ten steps a period."""
+    """Return the verifications of period and amplitude of each scheme, at ten steps per period."""
     phase = 2.0 * np.pi / PER_PERIOD
     for scheme in (NEWMARK, WILSON, CENTRAL):
         roots = measured_root(scheme, phase), textbook_root(scheme, phase)
@@ -288,5 +287,5 @@ def verifications() -> Iterator[Verification]:
 
 
 def _rotating_root(roots: object) -> complex:
-    """Return the root of several with positive rotation."""
+    """Return the eigenvalue with a positive angle."""
     return complex(max(np.asarray(roots), key=lambda root: root.imag))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Numerical methods of 1997 that reproduce the paper's statements S3, S7, S8 and S10.
 
-The measures are those of :mod:`runs.paper.rules`. Beam elements are integrated by the modal
-technique, the series also by a general solver with at most 2000 steps.
+The measures follow :mod:`runs.paper.rules`. The modal technique integrates beam elements and the
+series; a general solver with at most 2000 steps also integrates the series.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ LARGEST_TIP = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Solved:
-    """Motion up to the last step of a solver."""
+    """Motion up to the last step of a general solver."""
 
     time: Array  #: (num_steps + 1,) in s
     #: (num_steps + 1, num_modes).
@@ -85,7 +85,7 @@ Way = tuple[str, float, str, bool]
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Outcome of a statement with numerical methods of 1997."""
+    """Results on one statement by numerical methods of 1997."""
 
     shown: bool  #: whether most runs with some numerics show it
     why: str  #: which, and in how many runs
@@ -93,7 +93,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Survey:
-    """Every run of both examples."""
+    """All runs of both examples."""
 
     #: The examples.
     without: Example
@@ -106,7 +106,7 @@ class Survey:
 
     @classmethod
     def of(cls, progress: Callable[[str], None]) -> Survey:
-        """Run all numerics."""
+        """Run all numerical methods on both examples."""
         progress("both examples solved accurately")
         free, frictional = (case_file.load(str(path)) for path in (WITHOUT, WITH))
         without, with_friction = Example.of(free, MEMBERS), Example.of(frictional, 1)
@@ -120,7 +120,7 @@ class Survey:
 
     @cached_property
     def outcomes(self) -> dict[str, Outcome]:
-        """Outcomes by statement."""
+        """Results on each statement."""
         free, frictional = (
             named(self.without, self.free),
             named(self.with_friction, self.frictional),
@@ -172,7 +172,7 @@ class Survey:
 def named(
     example: Example, samples: Mapping[Numerics, Sequence[Sample]]
 ) -> dict[str, Sequence[Sample]]:
-    """Return all models by the same numerics, and the elements alone, by their names."""
+    """Return the statements on all models and on the elements, with their names."""
     return {str(how): found for how, found in samples.items()} | {
         f"{how}, the series solved accurately": example.with_accurate_series(found)
         for how, found in samples.items()
@@ -180,12 +180,12 @@ def named(
 
 
 def diverges_near_7_s(sample: Sample) -> bool:
-    """Return whether the elements diverge at about the time of the paper's (S8)."""
+    """Return whether the elements diverge at about 7 s, as in the paper (S8)."""
     return abs(sample.elements.divergence_time - INTERVAL) <= ABOUT
 
 
 def reach(example: Example, friction: bool) -> dict[Way, float]:
-    """Return the end times of each general solver at each tolerance, for both series."""
+    """Return the end times in s that general solvers reach at each tolerance, for both series."""
     return {
         (method, tolerance, model, friction): float(
             solve(example.systems[model], INTERVAL, method, tolerance, SERIES_STEPS).time[-1]
@@ -195,12 +195,12 @@ def reach(example: Example, friction: bool) -> dict[Way, float]:
 
 
 def share(shows: Iterable[bool]) -> float:
-    """Return the share of results that show a statement."""
+    """Return the fraction of results that reproduce a statement."""
     return float(np.mean(list(shows)))
 
 
 def _most(samples: Mapping[str, Sequence[Sample]], shows: Callable[[Sample], bool]) -> Outcome:
-    """Return the numerics that show a statement most often."""
+    """Return the numerical method that reproduces a statement most often."""
     shares = {how: share(map(shows, found)) for how, found in samples.items()}
     best = max(shares, key=lambda how: shares[how])
     often = f"in {100.0 * shares[best]:.0f} % of runs"

@@ -31,7 +31,7 @@ POINTS = 1000  # of a curve in a figure
 
 @define_study("numerics-1997", TITLE)
 def study(progress: Progress) -> Iterator[Piece]:
-    """Run both examples by every scheme with few modes, gaps iterated or lagged, three steps."""
+    """Run both examples with all schemes, numbers of modes and steps, iterated or lagged."""
     survey = Survey.of(progress)
     yield from tables(survey)
     yield from verifications()
@@ -63,7 +63,7 @@ def outcome_table(survey: Survey) -> Table:
 
 
 def free_table(survey: Survey) -> Table:
-    """Return the table without friction: a row for each numerics, and an accurate one."""
+    """Return the table without friction: a row for each method and an accurate solution."""
     example = survey.without
     peak = np.mean([one.elements.first_peak for one in example.accurate])
     rows: list[Sequence[Cell]] = []
@@ -88,7 +88,7 @@ def free_table(survey: Survey) -> Table:
 
 
 def frictional_table(survey: Survey) -> Table:
-    """Return the table with friction: the same rows."""
+    """Return the table with friction, with the rows of :func:`free_table`."""
     rows: list[Sequence[Cell]] = []
     example = survey.with_friction
     for how, samples in (("solved accurately", example.accurate), *survey.frictional.items()):
@@ -139,7 +139,7 @@ def reach_table(survey: Survey) -> Table:
 
 
 def plots(survey: Survey) -> Iterator[Plot]:
-    """Plot the tip by both iterated schemes at the paper's step."""
+    """Yield plots of the tip by both iterated schemes at the paper's step."""
     for name, what, example, samples in (
         ("numerics-1997-free", "Without friction", survey.without, survey.free),
         ("numerics-1997-friction", "With friction", survey.with_friction, survey.frictional),
@@ -163,21 +163,21 @@ def plots(survey: Survey) -> Iterator[Plot]:
 
 
 def _energies(runs: Sequence[ModelRun]) -> tuple[str, str]:
-    """Return when the energy diverges, and the gain or loss otherwise."""
+    """Return text on the energy: the time of its divergence, or the gain or loss."""
     breaks = [run.divergence_time for run in runs]
     ends = [TO_PERCENT * run.balance[-1] for run in runs]
     return _span(breaks), _span([end for end in ends if end < TO_PERCENT])
 
 
 def _parting(peaks: Sequence[tuple[float, float]]) -> tuple[float, float, float]:
-    """Return medians of peak distances early and late, and the runs that show S3, in percent."""
+    """Return medians of peak distances before and after six seconds, and the share of S3, in %."""
     early, late = np.median(peaks, axis=0)
     shown = share(before <= DIVERGENCE < after for before, after in peaks)
     return TO_PERCENT * float(early), TO_PERCENT * float(late), TO_PERCENT * shown
 
 
 def _span(values: Sequence[float] | Array) -> str:
-    """Return the range from the smallest to the largest with two digits, of finite values."""
+    """Return the range of the finite values as text with two digits."""
     finite = [float(value) for value in values if np.isfinite(value)]
     if not finite:
         return NONE
@@ -187,6 +187,6 @@ def _span(values: Sequence[float] | Array) -> str:
 
 
 def _curve(time: Array, values: Array) -> tuple[list[float], list[float]]:
-    """Return a curve with as many points as are visible in a figure."""
+    """Return a curve with as many points as a figure can show."""
     shown = slice(None, None, max(1, time.size // POINTS))
     return time[shown].tolist(), values[shown].tolist()

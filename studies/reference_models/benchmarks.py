@@ -23,9 +23,9 @@ SHEAR_RIGID = 100.0
 
 
 class TwistedBeam(NamedTuple):
-    """Deflections of the middle of a pretwisted cantilever's tip along unit forces on it.
+    """Tip deflections of a pretwisted cantilever under unit forces.
 
-    One along the tip's width, one across it.
+    One force acts along the width of the tip, the other across it.
     """
 
     in_plane: float
@@ -33,7 +33,7 @@ class TwistedBeam(NamedTuple):
 
 
 class Published(NamedTuple):
-    """Published values of the functions of the same names."""
+    """Published values, with the names of the functions of this module."""
 
     scordelis_lo_roof: float
     pinched_cylinder: float
@@ -47,8 +47,8 @@ PUBLISHED = Published(0.3024, 1.8248e-5, 0.0940, TwistedBeam(5.4245e-3, 1.7532e-
 def grid(surface: Callable[[Array, Array], Array], n: int, m: int) -> tuple[Array, Indices]:
     """Return triangles between points on a surface, with alternating diagonals.
 
-    ``surface`` has (num, 3) places of parameters (num,) from 0 to 1, with n and m edges along.
-    Gives points ((n + 1)(m + 1), 3) and triangles (2 n m, 3).
+    ``surface`` returns positions (num, 3) for two parameters (num,) from 0 to 1. The grid has n and
+    m edges along them: points ((n + 1)(m + 1), 3) and triangles (2 n m, 3).
     """
     first, second = np.meshgrid(
         np.linspace(0.0, 1.0, n + 1), np.linspace(0.0, 1.0, m + 1), indexing="ij"
@@ -65,8 +65,8 @@ def grid(surface: Callable[[Array, Array], Array], n: int, m: int) -> tuple[Arra
 def scordelis_lo_roof(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
     """Return the sag of the middle of the free edges of a barrel vault under its own weight.
 
-    Scordelis and Lo (1964): radius 25, length 50, thickness 0.25, 40° to either side, on
-    diaphragms at its ends. A quarter of it, of n edges along each side.
+    Scordelis and Lo (1964): radius 25, length 50, thickness 0.25, half angle 40°, diaphragms at
+    both ends. The mesh is a quarter with n edges along each side.
     """
     radius, half_length, opening = 25.0, 25.0, np.radians(40.0)
 
@@ -89,12 +89,12 @@ def pinched_cylinder(
     """Return the displacement under two opposite forces of 1 on the middle of a cylinder.
 
     Radius 300, length 600, thickness 3, diaphragms at its ends (Flügge 1960; Belytschko et al.
-    1985). An eighth of it. The published value is that of a shell without shear strain, where a
-    force in a point makes a finite dent. With shear the dent grows without end as
-    ln(1/h) / (2π · 5/6 G t), 0.3 % of the value for each e-fold of h.
+    1985). The mesh is an eighth. The published value belongs to a shell without shear strain, in
+    which the deflection under a point force is finite. With shear it diverges as ln(1/h) / (2π ·
+    5/6 G t), by 0.3 % of the value for each factor e of h.
 
     Args:
-        n: edges along each side of the eighth, the smaller the nearer they are to the force.
+        n: number of edges along each side of the eighth; edges are shorter near the force.
         drilling, shear_correction: see ``forms.ShellForms``.
     """
     radius, half_length = 300.0, 300.0
@@ -117,7 +117,8 @@ def pinched_cylinder(
 def hemisphere(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
     """Return the displacement of the equator of a hemisphere under two pairs of forces of 2.
 
-    Radius 10, thickness 0.04, a hole of 18° at the pole. A quarter of it, of n edges each side.
+    Radius 10, thickness 0.04, a hole of 18° at the pole. The mesh is a quarter with n edges per
+    side.
     """
     radius, top = 10.0, np.radians(72.0)
 

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Finite strip method for the buckling of prismatic thin-walled members (Cheung 1976).
 
-A member between supports that keep the shape of its ends, and let them warp and turn, buckles in m
-half-waves along x: the displacement across x goes with sin(mπx/L), that along x with cos(mπx/L).
-Across a strip the displacements in its plane are linear, the deflection is cubic, and the plate is
-Kirchhoff's. The shell's mesh, interpolation and plate theory have no part in it.
+Supports keep the shape of the ends of a member, and permit warping and rotation. The member buckles
+in m half-waves along x: transverse displacements are proportional to sin(mπx/L), axial
+displacements to cos(mπx/L). Across a strip in-plane displacements are linear, the deflection is
+cubic, and the plate is a Kirchhoff plate. The method has no mesh, interpolation or plate theory of
+the shell.
 """
 
 from __future__ import annotations
@@ -27,11 +28,11 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 
 
 class Strips(NamedTuple):
-    """Strips of a closed section.
+    """Finite strips of a closed section.
 
     Args:
-        first, last: (num_strips, 2) places (y, z) of the edges in m; the last one of a strip is the
-            first one of the next.
+        first, last: (num_strips, 2) positions (y, z) of the edges in m; the last edge of a strip is
+            the first edge of the next strip.
         thickness: (num_strips,) in m.
         material: isotropic.
     """
@@ -43,7 +44,7 @@ class Strips(NamedTuple):
 
     @classmethod
     def of(cls, section: Section, material: Material, count: int = 12) -> Strips:
-        """Create strips of all plates of a section, a number of each plate."""
+        """Create strips of the plates of a section, with a number of strips per plate."""
         lines = np.concatenate(
             [np.linspace(plate.start, plate.end, count + 1)[:-1] for plate in section.plates]
         )
@@ -51,7 +52,7 @@ class Strips(NamedTuple):
         return cls(lines, np.roll(lines, -1, axis=0), walls, material)
 
     def factor(self, length: float, waves: int, stress: StressField) -> float:
-        """Return the lowest load factor in a number of half-waves over a length in m."""
+        """Return the lowest load factor for a number of half-waves over a length in m."""
         size = 4 * len(self.first)
         stiffness, geometric_stiffness = np.zeros((2, size, size))
         for i in range(len(self.first)):
@@ -68,14 +69,14 @@ class Strips(NamedTuple):
         return float(1.0 / inverse)
 
     def lowest(self, length: float, waves: Iterable[int], stress: StressField) -> float:
-        """Return the lowest load factor over some numbers of half-waves."""
+        """Return the lowest load factor over several numbers of half-waves."""
         return min(self.factor(length, m, stress) for m in waves)
 
     def _strip(self, i: int, k: float, stress: StressField) -> tuple[Array, Array]:
-        """Return stiffness and −K_G (8, 8) of a strip, over half its length.
+        """Return stiffness and −K_G (8, 8) of a strip, divided by half its length.
 
-        Its degrees of freedom are u along x, displacement along y and z, and the turn about x, of
-        both edges; k is mπ/L.
+        The degrees of freedom of each edge are the displacements along x, y and z, and the rotation
+        about x; k is mπ/L.
         """
         t, young, nu = self.thickness[i], self.material.youngs_modulus, self.material.poissons_ratio
         across = self.last[i] - self.first[i]
@@ -106,7 +107,7 @@ def _row(dof: int) -> Array:
 
 
 def _shapes(p: float, width: float) -> tuple[Array, Array, Array, Array, Array]:
-    """Return rows (8,) of u, v, w, w′ and w″ at the fraction p of a strip's width."""
+    """Return rows (8,) of u, v, w, w′ and w″ at a fraction p of the width of a strip."""
     u, v = ((1.0 - p) * _row(n) + p * _row(n + 4) for n in (0, 1))
     # Hermite's cubics: the turn about x is the slope of the deflection.
     w = np.zeros((3, 8))

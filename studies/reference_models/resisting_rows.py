@@ -140,7 +140,7 @@ def _excess(compliance: Array, free: Array, force: Array, change: float, j: int)
 
 @njit(**LOOP)
 def _answer(problem: Problem, force: Array, j: int) -> tuple[float, float]:
-    """Return the force of row j under those of the others, and its slope over its reading."""
+    """Return the force of row j for given other forces, and its slope over the displacement."""
     compliance, free, terms, bound, place = problem
     alone = free[j]
     for i in range(free.size):

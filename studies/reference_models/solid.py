@@ -40,8 +40,7 @@ class SolidMesh:
 
     Args:
         points: (num_points, 3) in m, x along the boom, the axis at y = z = 0.
-        hexahedra: (num_hexahedra, 8) point numbers; those of a cell run along x first, then along
-            y, then along z.
+        hexahedra: (num_hexahedra, 8) point numbers, in each cell along x first, then y, then z.
         planes: rising coordinates in m of the lattice's planes across x, y and z.
         layers: layers of hexahedra through each wall, an even number.
     """
