@@ -56,8 +56,8 @@ def beam_results(
     Raises:
         NumericsError: the beam has no equilibrium, or its motion cannot be computed.
     """
+    checked, built, stiffness = build_beam(checked, draft.case, draft.shells)
     case, boom, (model,) = checked.case, checked.boom, checked.case.models
-    built, stiffness = build_beam(checked, draft.case, draft.shells)
     loaded = LoadedModel.of(boom, model, built)
     duration = case.time.duration
     check_current()

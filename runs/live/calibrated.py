@@ -30,8 +30,10 @@ _LAST: dict[str, Calibration] = {}
 
 def build_beam(
     checked: CheckedCase, original: Case, shells: Sequence[Shell]
-) -> tuple[BuiltModel, str]:
-    """Return the case's only model, a beam, and a text on its stiffness.
+) -> tuple[CheckedCase, BuiltModel, str]:
+    """Return the case, its beam as built, and a text on the stiffness of the beam.
+
+    The beam of the case is a calibrated one if the cache has a shell for it.
 
     Args:
         checked: the checked case.
@@ -51,11 +53,16 @@ def build_beam(
         with suppress(ImportError):
             for same in (boom, build_boom(with_loads)):
                 if calibration := _stored(beam, by, beam.model_boom(same).boom):
-                    built = beam.build_calibrated(beam.model_boom(boom), calibration)
-                    system = complete_system(built.system, case, boom, built.lines)
-                    return replace(built, system=system), f"calibrated by {shell.name}"
+                    calibrated = CheckedCase(case.model_copy(update={"models": (beam,)}))
+                    # The property would build the same boom again.
+                    vars(calibrated)["boom"] = boom
+                    built = beam.build_calibrated(calibrated.model_boom(beam), calibration)
+                    built = replace(
+                        built, system=complete_system(built.system, case, boom, built.lines)
+                    )
+                    return calibrated, built, f"calibrated by {shell.name}"
     plain = build_on(checked.model_boom(model), case, model)
-    return plain, "of its sections;\nrun the shell to calibrate it"
+    return checked, plain, "of its sections;\nrun the shell to calibrate it"
 
 
 def _stored(beam: CalibratedTable, shell: Shell, boom: Boom) -> Calibration | None:

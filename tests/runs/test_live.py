@@ -14,9 +14,9 @@ import pytest
 
 from dynamics.equilibrium import equilibrium
 from runs import CASES
-from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
 from runs.case.messages import BadInput
+from runs.case.schema import Case
 from runs.folder.cache import Cache
 from runs.live import beam
 from runs.live.knobs import Draft
@@ -83,6 +83,32 @@ def test_number_outside_the_boom_is_named(draft: Draft) -> None:
     assert caught.value.key.startswith("joint[2]")
 
 
+def check_results(
+    draft: Draft,
+    changes: dict[str, float],
+    case: Case,
+    context: RunContext,
+    monkeypatch: pytest.MonkeyPatch,
+) -> dict[str, str]:
+    """Compare the results of the page with a run of a case; return the rows of the page at rest."""
+    kept: list[Any] = []
+    make = beam.summary_table
+    with monkeypatch.context() as patch:
+        patch.setattr(beam, "summary_table", lambda results: kept.append(results) or make(results))
+        checked = draft.beam(draft.changed(changes))
+        found = list(beam.beam_results(checked, draft, lambda: None))
+    assert [one["stage"] for one in found] == ["rest", "preview", "motion"]
+    run = run_case(case, "", context)
+    assert run is not None
+    run.evaluate()
+    own, other = kept[-1].summary, run.results.summary
+    assert own.models["beam"].first_peak == other.models["beam"].first_peak
+    assert own.design.models["beam"].static == other.design.models["beam"].static
+    assert own.design.models["beam"].motion == other.design.models["beam"].motion
+    assert own.pads == other.pads
+    return dict(found[0]["rows"])
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("path", [COARSE, CASES / "slew.toml"], ids=lambda path: path.stem)
 def test_the_beam_has_the_numbers_of_a_run(
@@ -91,22 +117,7 @@ def test_the_beam_has_the_numbers_of_a_run(
     """Reference: the same beam by a run of the case, at the tolerance of the page."""
     monkeypatch.setenv("PROTRACTILE_CACHE", str(tmp_path))
     draft = Draft.load(str(path))
-    checked = draft.beam(draft.changed({}))
-    kept: list[Any] = []
-    make = beam.summary_table
-    monkeypatch.setattr(
-        beam, "summary_table", lambda results: kept.append(results) or make(results)
-    )
-    found = list(beam.beam_results(checked, draft, lambda: None))
-    assert [one["stage"] for one in found] == ["rest", "preview", "motion"]
-    run = run_case(checked.case, "", RunContext())
-    assert run is not None
-    run.evaluate()
-    own, other = kept[-1].summary, run.results.summary
-    assert own.models["beam"].first_peak == other.models["beam"].first_peak
-    assert own.design.models["beam"].static == other.design.models["beam"].static
-    assert own.design.models["beam"].motion == other.design.models["beam"].motion
-    assert own.pads == other.pads
+    check_results(draft, {}, draft.beam(draft.changed({})).case, RunContext(), monkeypatch)
 
 
 @pytest.mark.slow
@@ -125,26 +136,27 @@ def test_beam_is_calibrated_by_a_shell_of_the_cache(
     (tmp_path / "lift.toml").write_text(text + shell, encoding="utf-8")
     draft = Draft.load(str(tmp_path / "lift.toml"))
 
-    def rows(changes: dict[str, float]) -> dict[str, str]:
-        case = draft.beam(draft.changed(changes))
-        return dict(next(beam.beam_results(case, draft, lambda: None))["rows"])
-
-    plain = rows({})
+    context = RunContext(MPI.COMM_SELF, cache=Cache.of_user())
+    plain = check_results(draft, {}, draft.beam(draft.changed({})).case, context, monkeypatch)
     assert plain["Stiffness of the beam"] == "of its sections;\nrun the shell to calibrate it"
     (made,) = draft.shells
-    context = BuildContext(MPI.COMM_SELF, cache=Cache.of_user())
-    build(draft.case, draft.boom, made, context)
-    for changes in ({}, {"payload.mass": 100.0, "joint[1].play": 0.004}):
-        found = rows(changes)
-        assert found["Stiffness of the beam"] == "calibrated by shell"
-        case = draft.changed(changes)
-        (own,) = draft.beam(case).case.models
-        model = own.model_copy(update={"calibrated_by": made, "contact": None})
-        built = build(case, build_boom(case), model, context)
-        rest = equilibrium(built.system, built.system.load_at(0.0))
-        tip = 1e3 * float(built.system.observers["tip"].row @ rest)
-        assert found[TIP] == fixed(tip, 1)
-        assert found[TIP] != plain[TIP]
+    tools = BuildContext(MPI.COMM_SELF, cache=context.cache)
+    build(draft.case, draft.boom, made, tools)
+    changed = {"payload.mass": 100.0, "joint[1].play": 0.004}
+    case = draft.beam(draft.changed({})).case
+    (plain_beam,) = case.models
+    model = plain_beam.model_copy(update={"calibrated_by": made, "contact": None})
+    calibrated = case.model_copy(update={"models": (model,)})
+    found = check_results(draft, {}, calibrated, context, monkeypatch)
+    assert found["Stiffness of the beam"] == "calibrated by shell"
+    assert found[TIP] != plain[TIP]
+    # The shell of the file calibrates the beam with another payload, too.
+    other = draft.beam(draft.changed(changed))
+    found = dict(next(beam.beam_results(other, draft, lambda: None))["rows"])
+    assert found["Stiffness of the beam"] == "calibrated by shell"
+    built = build(other.case, other.boom, model, tools)
+    rest = equilibrium(built.system, built.system.load_at(0.0))
+    assert found[TIP] == fixed(1e3 * float(built.system.observers["tip"].row @ rest), 1)
 
 
 @pytest.fixture(scope="module")
