@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A boom knows its places, and refuses with the key of the fault what cannot be one."""
+"""Booms and their parts, their fields, and numbers in messages."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -7,17 +7,26 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from dynamics.contact import PowerContact
 from geometry.boom import (
     Boom,
     BoomError,
+    Collar,
+    Cylinder,
+    Diaphragm,
     Load,
     Material,
+    Observation,
+    PadSize,
     PointMass,
+    SlidePad,
     Stop,
     Support,
 )
+from geometry.fields import Distance
+from geometry.typography import digits, join_words, with_minus_signs
 from geometry.walls import free_room
 
 # What changes of the outer segment, of the inner one and of the joint.
@@ -300,3 +309,65 @@ def test_boxes_that_fit_to_round_off_are_accepted(paper_boom: Boom) -> None:
     assert outer.section is not None
     assert inner.section is not None
     assert free_room(outer.section, inner.section)[0] == pytest.approx(14.0e-3, rel=1e-12)
+
+
+JACK = {"segment": 0, "x": 4.0, "ground": (1.0, -2.0), "stiffness": 1.0e7}
+
+
+@pytest.mark.parametrize(
+    ("part", "fields", "key", "message"),
+    [
+        (Support, {"x": 2.0, "stiffness": -5.0}, "stiffness", "greater than 0"),
+        (Support, {"x": 2.0, "dashpot": -1.0}, "dashpot", "greater than or equal to 0"),
+        (Support, {"x": 0.0, "rotation_stiffness": 0.0}, "rotation_stiffness", "greater than 0"),
+        (Support, {"x": "tip"}, "x", "a place"),
+        (PointMass, {"x": 19.0, "mass": 0.0}, "mass", "greater than 0"),
+        (Collar, {"span": (1.0, 2.0), "thickness": 0.0}, "thickness", "greater than 0"),
+        (Diaphragm, {"x": 1.0, "thickness": float("inf")}, "thickness", "a finite number"),
+        (Cylinder, JACK | {"dashpot": -1.0}, "dashpot", "greater than or equal to 0"),
+        (Cylinder, JACK | {"stiffness": 0.0}, "stiffness", "greater than 0"),
+        (Observation, {"name": "a/b", "segment": 0, "x": 1.0}, "name", "match pattern"),
+        (PadSize, {"length": 0.0, "width": 0.1}, "length", "greater than 0"),
+        (SlidePad, {"length": 0.1, "width": 0.1, "side": "above"}, "thickness", "required"),
+    ],
+)
+def test_impossible_numbers_are_refused(
+    part: type, fields: dict[str, Any], key: str, message: str
+) -> None:
+    with pytest.raises(ValidationError) as caught:
+        part(**fields)
+    (error,) = caught.value.errors()
+    assert error["loc"][0] == key
+    assert message in error["msg"]
+
+
+def test_a_boom_finds_the_places_of_its_parts(paper_boom: Boom) -> None:
+    outer, inner = paper_boom.segments
+    # Fields are typed as they are in a boom, with x in m; a user may give other places before.
+    arm = replace(
+        outer,
+        supports=(Support("tail"), Support(2.0)),  # type: ignore[arg-type]
+        collars=(Collar((Distance(head=0.5), "head"), 0.01),),  # type: ignore[arg-type]
+    )
+    stop = Stop("inner", Distance(head=1.0), 0.002, PowerContact(1.0e9))  # type: ignore[arg-type]
+    boom = Boom((arm, inner), paper_boom.joints, stops=(stop,))
+    assert boom.segments[0].supports == (Support(0.0), Support(2.0))
+    assert boom.segments[0].collars[0].span == (9.5, 10.0)
+    assert (boom.stops[0].segment, boom.stops[0].x) == (1, 18.0)
+
+
+def test_digits_never_need_an_exponent() -> None:
+    """Reference: by hand."""
+    shown = [digits(value) for value in (1023.4, 22.68, 0.0, -5.0, 1.0e6, 0.012345)]
+    assert shown == ["1020", "22.7", "0", "−5", "1000000", "0.0123"]
+    assert digits(123456.0, 4) == "123500"
+
+
+def test_minus_signs_are_no_hyphens() -> None:
+    """Reference: Unicode, MINUS SIGN."""
+    assert with_minus_signs("-1.5") == "\N{MINUS SIGN}1.5"
+
+
+def test_the_last_of_several_follows_an_and() -> None:
+    """Reference: by hand."""
+    assert [join_words("abc"[:count]) for count in (1, 2, 3)] == ["a", "a and b", "a, b and c"]

@@ -1,16 +1,26 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Each model is compared with its reference model; the differences equal stored values."""
+"""Comparisons of models with a reference, and their tables."""
 
+import re
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
 
+from dynamics.trajectory import PointwiseDifferences
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.schema import Case, StopTable
+from runs.pipeline.comparison import Distributions, PeakDifferences
 from runs.pipeline.model_quality import compare_models, reference_of
+from runs.pipeline.results import Results
+from runs.report.document import render
+from runs.report.model_tables import law_table, model_table, step_table
+from runs.report.pages import Addition
+from runs.report.predictability import comparison_tables, predictability_tables
+from tests.runs.summaries import model_summary, steps_for_peaks, summary_of
 
 COARSE = CASES / "coarse.toml"
 PRESSED = 4500.0, 5000.0
@@ -147,3 +157,149 @@ def test_a_model_alone_is_compared_with_nothing() -> None:
     data = trajectories(kantorovich_4=swing())
     case = case_of("kantorovich-4", friction=0.2)
     assert compare_models(case, data, members, CUTOFF) is None
+
+
+MODELS = ("kantorovich-4", "kantorovich-5", "beam-fe-bonded")
+
+
+def results(comparisons: Any = None, friction: float = 0.0, **changes: Any) -> Results:
+    """Ten seconds of two models with play and one without; ``changes`` to the first of them."""
+    case = case_file.select(case_file.load(str(COARSE)), "", MODELS, None)
+    rubbing = {"friction": friction, "normal_forces": (4500.0, 5000.0)}
+    joints = tuple(replace(joint, **rubbing) for joint in case.joints)
+    time = case.time.model_copy(update={"duration": 10.0})
+    models = {name: model_summary() for name in MODELS} | {MODELS[0]: model_summary(**changes)}
+    asked = {"members": 32, "relative": 1e-9, "seed": 1, "vary": "load", "slow_below": 1.67}
+    summary = summary_of(models, ensemble=asked, comparisons=comparisons)
+    case = case.model_copy(update={"time": time, "joints": joints})
+    return Results(case, xr.Dataset(), summary)
+
+
+ENSEMBLE = {
+    "energy_residual": 1e-4,
+    "horizons": {"0.01": 0.802, "0.2": None},
+    "slow_peaks": {
+        "time": [0.5469, 1.5906], "time_spread": [0.001, 0.022], "height": [0.1522, 0.14691],
+        "height_spread": [0.00019, 0.0068], "period": 1.0437, "period_spread": 0.021,
+    },
+}  # fmt: skip
+LEVELS = {
+    "pointwise": {"until": 0.802, "largest": 0.1829, "rms": 0.0793},
+    "peaks": {
+        "time": [-0.026, 0.004], "time_spread": [0.001, 0.024], "height": [-0.01542, 0.001],
+        "height_spread": [0.00023, 0.0075], "explained": [False, True],
+    },
+    "distributions": {
+        "since": 4.643, "range": [0.1681, 0.1757], "mean": [0.0995, 0.0807],
+        "deviation": [0.0478, 0.04], "distance": 0.199,
+    },
+}  # fmt: skip
+MEASURED = {
+    "relatives": [1e-12, 1e-6], "shares": [0.01, 0.2], "times": [[1.5, 6.0], [1.0, None]],
+    "of_step": [1.2, None], "rate": [27.63, None], "step_change": None,
+    "limits": ["step", "physics"],
+}  # fmt: skip
+
+
+def test_nothing_is_known_of_a_run_without_ensembles() -> None:
+    assert predictability_tables(results()) == []
+    assert comparison_tables(results()) == []
+    assert not any("horizon" in heading for heading in model_table(results()).headings)
+
+
+def test_horizons_and_slow_peaks_are_the_summary_s() -> None:
+    found = results(ensemble=ENSEMBLE)
+    horizons, peaks = predictability_tables(found)
+    assert horizons.rows == [("kantorovich-4", "0.80", "> 10", "2", "1.044 ± 0.021")]
+    assert "32 members, loads changed by up to 1 × 10⁻⁹" in horizons.notes[0]
+    assert peaks.headings == ("peak", "kantorovich-4")
+    assert peaks.rows == [
+        ("1", "0.547 ± 0.001 s\n152.20 ± 0.19 mm"),
+        ("2", "1.591 ± 0.022 s\n146.91 ± 6.80 mm"),
+    ]
+    table = model_table(found)
+    at = table.headings.index("horizon 1 %\ns")
+    assert [row[at : at + 2] for row in table.rows] == [("0.80", "> 10"), ("–", "–"), ("–", "–")]
+
+
+def test_an_ensemble_without_slow_peaks_has_horizons() -> None:
+    (horizons,) = predictability_tables(results(ensemble=ENSEMBLE | {"slow_peaks": None}))
+    assert horizons.rows == [("kantorovich-4", "0.80", "> 10", "–", "–")]
+
+
+def test_missing_peaks_make_no_table() -> None:
+    none: dict[str, Any] = {k: [] for k in ("time", "time_spread", "height", "height_spread")}
+    values = {key: [None, None] for key in ("range", "mean", "deviation")}
+    level = LEVELS | {
+        "peaks": none | {"explained": []},
+        "distributions": values | {"since": None, "distance": None},
+    }
+    nothing = ENSEMBLE | {"slow_peaks": none | {"period": None, "period_spread": None}}
+    found = results({"reference": "shell", "ensembles": {MODELS[0]: level}}, ensemble=nothing)
+    page = render(found, Addition(), [], [])
+    assert "Horizons" in page
+    assert "Distribution of the tip" in page
+    assert "– / –" not in page
+    assert not any("Slow peaks" in title for title in re.findall("<h3>.*</h3>", page))
+
+
+def test_growth_names_the_limit() -> None:
+    _, growth, _ = predictability_tables(results(ensemble=ENSEMBLE, horizons=MEASURED))
+    assert growth.headings[2:4] == ("change 1 × 10⁻¹²\ns", "change 1 × 10⁻⁶\ns")
+    assert growth.rows == [
+        ("kantorovich-4", "1 %", "1.50", "1.00", "1.20", "28", "the step"),
+        ("kantorovich-4", "20 %", "6.00", "–", "–", "–", "the motion"),
+    ]
+
+
+def test_comparison_levels_name_class_and_difference() -> None:
+    """Reference: the classes that measure, and the numbers by hand, in mm and ms."""
+    ensembles = {"kantorovich-4": LEVELS}
+    tables = comparison_tables(results({"reference": "shell", "ensembles": ensembles}))
+    for table, level in zip(
+        tables, (PointwiseDifferences, PeakDifferences, Distributions), strict=True
+    ):
+        assert level.scope in table.notes
+        assert "against shell" in table.title
+    pointwise, peaks, distributions = (table.rows for table in tables)
+    assert pointwise == [("kantorovich-4", "0.80", "18.29", "7.93")]
+    assert peaks == [
+        ("1", "−26 ± 1 ms\n−15.42 ± 0.23 mm *"),
+        ("2", "+4 ± 24 ms\n+1.00 ± 7.50 mm"),
+    ]
+    assert distributions == [
+        ("kantorovich-4", "4.64", "175.7 / 168.1", "80.7 / 99.5", "40.0 / 47.8", "0.199")
+    ]
+
+
+def test_a_whole_run_is_compared_with_friction() -> None:
+    whole = {"kantorovich-4": {"until": [5.0, 10.0], "largest": [0.1, 0.25], "rms": [0.05, 0.125]}}
+    (table,) = comparison_tables(results({"reference": "shell", "whole": whole}, friction=0.2))
+    assert "above the step error in the table of steps" in " ".join(table.notes)
+    assert table.headings[1:3] == ("largest difference\nto 5 s, %", "rms\nto 5 s, %")
+    assert table.rows == [("kantorovich-4", "10.00", "5.00", "25.00", "12.50")]
+
+
+def test_steps_for_peaks_are_counted_and_rated() -> None:
+    plain = step_table(results())
+    steps, changes = (
+        f"2{part}".replace(" ", "\N{NO-BREAK SPACE}") for part in (" 380 952", " 020")
+    )
+    assert plain.rows[0] == ("kantorovich-4", "4.2", steps, changes)
+    more = step_table(results(steps_for_peaks=steps_for_peaks(1500), step_error=0.0123))
+    assert [row[-2:] for row in more.rows] == [
+        ("1\N{NO-BREAK SPACE}500", "1.2"), ("–", "–"), ("–", "–"),
+    ]  # fmt: skip
+    assert "the first 3 of them within 1 %" in " ".join(more.notes)
+
+
+def test_contact_laws_are_those_of_the_models() -> None:
+    table = law_table(results())
+    assert table is not None
+    assert table.rows == [
+        (name, "inner in outer", "14.0", "k 1e+13, n 2", "168.9") for name in MODELS[:2]
+    ]
+    free = results()
+    joints = [replace(joint, bonded=True) for joint in free.case.joints]
+    bonded = free.case.model_copy(update={"joints": tuple(joints)})
+    assert law_table(Results(bonded, free.trajectories, free.summary)) is None

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A scene places points, shells' and beams' alike, where a picture is to show them."""
+"""The scene of a boom, its two-dimensional drawing and its viewer."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
 
 from dynamics.contact import PowerContact
 from dynamics.excitation import SCurve
@@ -18,9 +22,13 @@ from runs import CASES
 from runs.case.build import build_boom
 from runs.case.reading import load
 from runs.pipeline.model_output import BeamOutput, SegmentMotion
+from runs.report import theme
+from runs.report.boom_drawing import boom_sheet
 from runs.report.overlap_pictures import smooth_corners
 from runs.report.scene import Scene, round_scale
 from runs.report.snapshots import place_of_largest_force
+from runs.report.symbols import PAYLOAD, abbreviate, boom_symbols
+from runs.report.viewer import TRUNCATION, View, few_shapes, pack_view, symbol_lines
 from studies.gallery import change_of_shape
 from tests.runs.moving_segments import (
     BOOM,
@@ -278,3 +286,172 @@ def test_values_at_jumps_are_read_beyond_the_jump() -> None:
     (segment,) = output.segments
     assert segment.x.tolist() == [0.0, 1.0, 2.0]
     assert segment.read["moment"].tolist() == [[0.0, 0.0, 0.0], [0.0, 10.0, 0.0]]
+
+
+def drawn(name: str) -> Figure:
+    case = load(str(CASES / f"{name}.toml"))
+    with rc_context(theme.RC):
+        return boom_sheet(case, build_boom(case))
+
+
+def legend(sheet: Figure) -> list[str]:
+    return [text.get_text() for text in sheet.legends[0].get_texts()]
+
+
+def test_a_lift_stands_at_its_angle() -> None:
+    """Reference (analytic): a tip 15.7 m from the foot at 45 degrees is 11.10 m off and high."""
+    whole = drawn("lift").axes[0]
+    places = np.concatenate([line.get_xydata() for line in whole.lines])
+    for reference in ((11.1016, 11.1016), (1.2728, -0.2828)):
+        nearest = np.abs(places - reference).max(axis=1).min()
+        assert nearest < 0.11  # half the height of the fly
+
+
+def test_unequal_walls_are_labelled() -> None:
+    """Reference: the case files; the lift's last box has walls of one thickness."""
+
+    def sizes(name: str) -> list[str]:
+        texts = [text.get_text() for axes in drawn(name).axes for text in axes.texts]
+        return [text for text in texts if " × " in text]
+
+    boxes = ["300 × 220\nweb 5\nflange 6", "256 × 180\nweb 4\nflange 5", "218 × 146\n4"]
+    assert sizes("lift") == boxes
+    assert sizes("crane")[0] == "940 × 680\nweb 6\nflanges\n8, 10"
+
+
+def test_drawing_of_a_lift_labels_every_part() -> None:
+    """Reference: the case file."""
+    assert legend(drawn("lift")) == [
+        "slide pads", "support", "cylinder, 30 MN/m", "payload, 150 kg",
+        "1.595 kN down, perpendicular to the boom within 0.1 s", "play 3 mm",
+        "self-weight, g = 9.807 m/s²",
+    ]  # fmt: skip
+
+
+def test_boom_in_space_shows_lateral_loads() -> None:
+    """Reference: the case file; its gust is at most 1 times what its tables say."""
+    found = legend(drawn("inspection-arm"))
+    assert "sideways 4 mm" in found
+    assert any("N/m sideways at most, root" in text for text in found)
+
+
+@pytest.mark.parametrize("name", ["paper", "crane", "three-segments"])
+def test_sections_are_as_large_as_the_case_says(name: str) -> None:
+    """Reference: the boom's plates; patches of one panel have one scale."""
+    boom = build_boom(load(str(CASES / f"{name}.toml")))
+    panel = next(axes for axes in drawn(name).axes if axes.get_title("left").startswith("sections"))
+    assert panel.get_aspect() == 1.0
+    plates = [patch for patch in panel.patches if isinstance(patch, Polygon)]
+    assert len(plates) == sum(len(s.section.plates) for s in boom.segments if s.section)
+    first = boom.segments[0].section
+    assert first is not None
+    heights = np.concatenate([plate.get_xy()[:, 1] for plate in plates[: len(first.plates)]])
+    low, high = first.reach("z")
+    thickest = max(plate.thickness for plate in first.plates)
+    assert high - low < np.ptp(heights) < high - low + 1.01 * thickest
+
+
+def test_a_force_down_points_down() -> None:
+    """Reference: an arrow's head is at the place that it marks; on a boom that stands upright what
+    acts across it comes from the left, and a payload hangs all the same."""
+    case = load(str(CASES / "crane.toml"))
+    acts = {symbol.meaning: symbol for symbol in boom_symbols(case, build_boom(case))}
+    load_across = acts["24.52 kN down, perpendicular to the boom within 0.5 s"]
+    (_, tail), (_, head) = load_across.rotated(0.0).vertices[:2]
+    assert tail > head == 0.0
+    (x, z), _ = load_across.rotated(90.0).vertices[:2]
+    assert (x, z) == pytest.approx((-1.0, 0.0), abs=1e-12)
+    payload = acts["payload, 350 kg"]
+    assert payload.rotated(60.0) is PAYLOAD
+
+
+def test_amounts_are_read_at_a_glance() -> None:
+    """Reference: by hand."""
+    shown = [
+        abbreviate(30e6, "N/m"),
+        abbreviate(1595.0, "N"),
+        abbreviate(83.16, "N/m"),
+        abbreviate(-5e4, "N m"),
+    ]
+    assert shown == ["30 MN/m", "1.595 kN", "83.16 N/m", "−50 kN m"]
+
+
+FRAMES = TIME[::40]
+
+
+@pytest.fixture(scope="module")
+def shown() -> View:
+    return View.of_shell("shell", moving_scene(), FRAMES)
+
+
+def places(page: dict[str, Any]) -> np.ndarray:
+    """(num_frames, num_points, 3) as the page's script sums them."""
+    shapes = page["shapes"].astype(float)
+    return page["points"] + np.tensordot(np.array(page["parts"]), shapes, axes=1)
+
+
+def test_a_page_shows_the_drawn_places_and_stresses(shown: View) -> None:
+    """Reference: the scene's own places; 16 bits of each shape, 8 of the stress."""
+    page, scene = pack_view(shown, 0.0), shown.scene
+    expected = [scene.magnify(moved, page["magnified"]) for moved in scene.displacements(FRAMES)]
+    largest = float(np.abs(np.subtract(expected, expected[0])).max())
+    np.testing.assert_allclose(places(page), expected, atol=2.0 * TRUNCATION * largest)
+    assert 0.005 < (shown.stress > shown.end).mean() <= 0.01
+    colours = page["colors"] / 255.0 * page["end"]
+    clipped = np.minimum(shown.stress, shown.end)
+    np.testing.assert_allclose(colours, clipped, atol=shown.end / 500.0)
+
+
+def test_drives_move_segments_in_the_viewer(shown: View) -> None:
+    """Reference (analytic): the inner segment moves back along x by 2 m a second, the outer one
+    not; both bend as they do without a drive."""
+    out = Drive(SCurve(travel=-4.0, duration=2.0), carriers=("inner", "outer"))
+    boom = replace(BOOM, joints=(replace(BOOM.joints[0], drive=out),))
+    motion = moving_scene(extension=-2.0 * TIME).motion
+    driven = shown._replace(scene=replace(shown.scene, boom=boom, motion=motion))
+    page, before = pack_view(driven, 0.0), pack_view(shown, 0.0)
+    assert before["drawn"] == {}
+    assert page["drawn"] == {"inner": pytest.approx(-2.0 * FRAMES)}
+    if page["magnified"] != before["magnified"]:
+        pytest.fail("the reference is magnified otherwise")
+    shift = places(page) - places(before)
+    inner = shown.scene.owner == 1
+    expected = np.zeros_like(shift)
+    expected[:, inner, 0] = -2.0 * FRAMES[:, None]
+    np.testing.assert_allclose(shift, expected, atol=1e-4)
+
+
+def test_symbols_follow_the_boom_and_its_supports_stay(shown: View) -> None:
+    """Reference (analytic): the heads of the arrows are at the lower edge of the segment that they
+    load, in its plane of symmetry; hinges stand at 0 and 2 m."""
+    scene = shown.scene
+    scale = pack_view(shown, 0.0)["magnified"]
+    rest = scene.magnify(np.zeros_like(scene.points), scale)
+    by_color = {one.color: one for one in symbol_lines(scene, rest, np.eye(3), 0.0, scale)}
+    hinges, arrows = by_color[theme.INK], by_color[theme.FORCE]
+    assert (hinges.anchor == -1).all()
+    tops = hinges.offset[hinges.offset[:, 2] >= np.nanmax(hinges.offset[:, 2]) - 1e-9]
+    assert sorted(set(tops[:, 0].round(9))) == [0.0, 2.0]
+    assert set(scene.owner[arrows.anchor]) == {0, 1}
+    places = arrows.offset + rest[arrows.anchor]
+    heads = [places[arrows.anchor == near] for near in np.unique(arrows.anchor)]
+    edge = [np.nanmax(head[:, 2]) for head in heads]
+    np.testing.assert_allclose(edge, rest[np.unique(arrows.anchor), 2], atol=1e-9)
+    np.testing.assert_allclose(places[np.isfinite(places[:, 1]), 1], 0.0, atol=1e-9)
+
+
+def test_few_shapes_leave_little() -> None:
+    """Reference: the motion itself, of 3 shapes and a noise below what may be left."""
+    rng = np.random.default_rng(1)
+    moved = rng.standard_normal((40, 3)) @ rng.standard_normal((3, 300))
+    noise = 0.1 * TRUNCATION * np.abs(moved).max() * rng.uniform(-1.0, 1.0, moved.shape)
+    parts, shapes = few_shapes(moved + noise)
+    assert parts.shape == (40, 3)
+    assert np.abs(parts @ shapes - moved).max() < 2.0 * TRUNCATION * np.abs(moved).max()
+
+
+def test_a_slope_raises_points_and_shapes_alike(shown: View) -> None:
+    """Reference (analytic): at 90 degrees x points up, and z backwards."""
+    flat, risen = (places(pack_view(shown, angle)) for angle in (0.0, 90.0))
+    expected = np.stack([-flat[..., 2], flat[..., 1], flat[..., 0]], axis=-1)
+    np.testing.assert_allclose(risen, expected, atol=1e-3)

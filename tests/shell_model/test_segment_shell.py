@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The shell of one segment behaves as a beam where a beam is right."""
+"""The shell of a segment, and its supports."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from beam_model.component import natural_modes
 from beam_model.finite_element import Theory, finite_element_segment
+from geometry.boom import Direction, PointMass, Support
 from geometry.contact_places import ContactInterval
 from geometry.section import BoxSection
 from shell_model.contact.wall_rows import CornerLines
+from shell_model.reduction.krylov import KrylovOptions
+from shell_model.reduction.segment import reduce_segment
+from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import times
 from studies.reference_models.single_segment import natural_frequencies
@@ -124,3 +129,106 @@ def test_a_length_of_a_corner_gives_way_alike_on_any_mesh(box_shell: Shells) -> 
         lengths[length] = np.diff(values)
     assert (lengths[0.1][1:] < lengths[0.1][:-1] / 3.0).all()
     assert (lengths[1.0e-4][1:] > 0.7 * lengths[1.0e-4][:-1]).all()
+
+
+YOUNG, SHEAR = STEEL.youngs_modulus, STEEL.shear_modulus
+
+
+@pytest.mark.slow
+def test_a_clamped_box_bends_and_twists_as_a_cantilever(box_shell: Shells) -> None:
+    """Reference: analytic, L³/3EJ + L/GA along z and y, Bredt's L/GJ_t; shear is 0.5 %."""
+    shell = box_shell(0.25, supports=(Support(0.0, "clamped"),))
+    end = shell.outline(10.0)
+    bending = 10.0**3 / (3.0 * YOUNG)
+    expected = [
+        bending / BOX.second_moment_of_area + 10.0 / (SHEAR * BOX.shear_area),
+        bending / BOX.lateral_second_moment_of_area + 10.0 / (SHEAR * BOX.lateral_shear_area),
+        10.0 / (SHEAR * BOX.torsion_constant),
+    ]
+    rows = end.wall_deflection("z"), end.wall_deflection("y"), end.twist()
+    assert [compliance(shell, row) for row in rows] == pytest.approx(expected, rel=2.5e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("direction", ["z", "y"])
+def test_elastic_supports_give_way_by_their_reactions(
+    box_shell: Shells, direction: Direction
+) -> None:
+    """Reference: analytic, (4² + 5²) / k beyond rigid supports, from −4 and 5 times the force."""
+    springs = tuple(Support(x, stiffness=1.0e6) for x in (0.0, 2.0))
+    rigid, elastic = (
+        compliance(shell, shell.outline(10.0).wall_deflection(direction))
+        for shell in (box_shell(0.25, supports=HELD), box_shell(0.25, supports=springs))
+    )
+    assert elastic - rigid == pytest.approx(41.0e-6, rel=1.0e-3)
+
+
+@pytest.mark.slow
+def test_every_support_holds_the_twist(box_shell: Shells) -> None:
+    """Reference: analytic, Bredt, from the support at 2 m to the end."""
+    springs = tuple(Support(x, stiffness=1.0e6) for x in (0.0, 2.0))
+    for supports in (HELD, springs):
+        shell = box_shell(0.25, supports=supports)
+        expected = 8.0 / (SHEAR * BOX.torsion_constant)
+        assert compliance(shell, shell.outline(10.0).twist()) == pytest.approx(expected, rel=2.0e-3)
+
+
+def test_supports_leave_unheld_rigid_motions_free(box_shell: Shells) -> None:
+    """Reference: analytic: slide along x always but for a clamp, and both tilts about one pin."""
+    left = {
+        (): 6, (Support(0.0),): 3, (Support(0.0, stiffness=10.0),): 3, HELD: 1,
+        (Support(0.0, stiffness=10.0), Support(2.0)): 1, (Support(2.0, "clamped"),): 0,
+    }  # fmt: skip
+    for supports, count in left.items():
+        assert box_shell(0.5, supports=supports).rigid_motions().shape[1] == count
+
+
+def test_point_masses_have_mass_and_no_rotary_inertia(box_shell: Shells) -> None:
+    """Reference: analytic: 100 kg to translations, 70·3² + 30·5² kg·m² to pitch and yaw, none to
+    roll."""
+    masses = (PointMass(2.0, 70.0), PointMass(10.0, 30.0))
+    bare, loaded = (
+        np.array([motion @ times(shell.mass, motion[:, None])[:, 0] for motion in motions.T])
+        for shell, motions in (
+            (shell, shell.rigid_motions())
+            for shell in (box_shell(0.5), box_shell(0.5, masses=masses))
+        )
+    )
+    turned = 70.0 * 9.0 + 30.0 * 25.0
+    expected = [100.0, 100.0, 100.0, 0.0, turned, turned]
+    assert loaded - bare == pytest.approx(expected, rel=1.0e-9, abs=1.0e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("direction", ["z", "y"])
+@pytest.mark.parametrize("masses", [(), (PointMass(10.0, 200.0),)], ids=["bare", "tip mass"])
+def test_lowest_frequency_is_the_beams_in_each_plane(
+    box_shell: Shells, direction: Direction, masses: tuple[PointMass, ...]
+) -> None:
+    """Reference: other code, Timoshenko elements; 0.2 %, the second mode 1.3 %."""
+    shell = box_shell(0.25, supports=HELD, masses=masses)
+    push = shell.row(shell.outline(10.0).wall_deflection(direction))[:, None]
+    found = np.sqrt(reduce_segment(SymmetryReduction(shell), push, KrylovOptions(moments=2)).omega2)
+    beam = replace(box_segment("beam", 0.0, 10.0, BOX, supports=HELD), masses=masses)
+    elements = finite_element_segment(beam, 0.25, (), "timoshenko", rotary_inertia=True)
+    part = elements.components[direction]
+    expected = np.sqrt(natural_modes(part.stiffness, part.mass, 0).omega2)
+    assert found[0] == pytest.approx(expected[0], rel=4.0e-3)
+    assert found[1] == pytest.approx(expected[1], rel=2.0e-2)
+
+
+@pytest.mark.slow
+def test_twisting_frequency_is_bredts(box_shell: Shells) -> None:
+    """Reference: analytic, √(G J_t / ρ I_p) / 4l for 18 m; 0.3 % of distortion."""
+    box = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
+    shell = box_shell(0.25, length=20.0, supports=HELD, section=box)
+    push = shell.row(shell.outline(20.0).twist())[:, None]
+    found = np.sqrt(
+        reduce_segment(SymmetryReduction(shell), push, KrylovOptions(moments=2)).omega2[0]
+    )
+    inertia = STEEL.density * box.polar_second_moment_of_area
+    expected = np.sqrt(SHEAR * box.torsion_constant / inertia) * 2.0 * np.pi / (4.0 * 18.0)
+    assert found == pytest.approx(expected, rel=0.01)
+    # Bredt's torsion is not that of the four plates by themselves.
+    plates = 2.0 / 3.0 * (box.height + box.width) * box.web**3
+    assert plates < 0.02 * box.torsion_constant

@@ -1,14 +1,38 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Wall times are taken in turns, and shown with the digits that they have."""
+"""Timing of runs, and the benchmark of solvers."""
 
 import itertools
+import json
+from dataclasses import replace
 from functools import partial
+from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+from rich.console import Console
 
+from dynamics.integrator import FixedStep
+from dynamics.motion import Motion
+from runs.case import reading as case_file
 from runs.report.formatting import repeated
-from studies.cost import timing
+from studies.cost import other_programs, timing
+from studies.cost.bench import (
+    LEVELS,
+    PAPER,
+    Sizes,
+    bench,
+    five_terms,
+)
+from studies.cost.generic_solvers import (
+    SOLVERS,
+    array_rates,
+    compiled_rates,
+    generic,
+    match_tolerance,
+)
 from studies.cost.timing import MEASURABLE, time_in_turns
+from tests.other_codes import INSTALLED
 
 
 class Clock:
@@ -66,3 +90,113 @@ def test_short_runs_are_averaged(clock: Clock) -> None:
 def test_digits_follow_the_noise(values: tuple[float, ...], text: str) -> None:
     """Reference: half the range by hand; its first digit is the last shown."""
     assert repeated(values) == text
+
+
+SIZES = Sizes(
+    duration=0.2,
+    models=("kantorovich-5",),
+    regular=0.7,
+    steps=(1e-3, 5e-4),
+    converged=1e-5,
+    early=0.2,
+    levels=[(1e-3, ("LSODA", "odeint")), (1e-4, SOLVERS)],
+    most=2,
+    members=3,
+    shell_members=0,
+    telescoping=("kantorovich-5",),
+    problems=(),
+)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with the smallest benchmark."""
+    out = tmp_path_factory.mktemp("bench") / "out"
+    bench(SIZES, out, Console(quiet=True))
+    return out
+
+
+@pytest.fixture(scope="module")
+def data(folder: Path) -> Any:
+    return json.loads((folder / "bench.json").read_text(encoding="utf-8"))
+
+
+@pytest.mark.slow
+def test_generic_solvers_err_no_more_than_the_time_step(data: Any) -> None:
+    """Reference: other code, the time step of the same level; at most a hundred times as
+    accurate."""
+    entries = iter(data["solvers"])
+    for step, solvers in SIZES.levels:
+        ours = next(entries)
+        assert (ours["solver"], ours["tolerance"]) == ("time step", f"{step:g} s")
+        target = ours["tip off (of range)"]
+        for solver in solvers:
+            entry = next(entries)
+            assert entry["solver"] == solver
+            assert 0.01 * target < entry["tip off (of range)"] <= target
+            assert len(entry["wall s"]) == len(entry["over the time step"]) == 2
+            assert min(entry["wall s"]) > 0.0
+
+
+@pytest.mark.slow
+def test_the_levels_of_the_command() -> None:
+    """Shorter and shorter steps; every solver."""
+    steps = [step for step, _ in LEVELS]
+    assert steps == sorted(steps, reverse=True)
+    assert {name for _, names in LEVELS for name in names} == set(SOLVERS)
+
+
+def test_less_accurate_solver_is_named() -> None:
+    """Reference: by hand; a tolerance that errs by ten times itself, and one that always does."""
+    assert match_tolerance(lambda tolerance: 10.0 * tolerance, 1e-5) == pytest.approx((1e-6, 1e-5))
+    assert match_tolerance(lambda tolerance: 1.0, 0.5) == (None, 1.0)
+
+
+@pytest.mark.slow
+def test_every_table_is_complete(folder: Path, data: Any) -> None:
+    """Half the step errs less, and by friction the energy balances at each."""
+    coarse, fine, chosen = data["errors"]
+    assert [one["steps"] for one in (coarse, fine)] == [700, 1400]
+    assert 0.0 < fine["tip off (% of range)"] < coarse["tip off (% of range)"] < 1.0
+    assert chosen["tip off (% of range)"] < 0.1
+    assert max(one["energy residual"] for one in data["errors"]) < 1e-11
+    assert [cost["resisted by"] for cost in data["drawing"]] == ["nothing", "friction", "dashpots"]
+    for cost in data["drawing"]:
+        assert cost["times"] == pytest.approx(cost["drawn out s"] / cost["at rest s"])
+    assert {entry["ensemble"] for entry in data["ensembles"]} == {
+        "3 five-term series",
+        "3 five-term series, to a tolerance",
+    }
+    text = (folder / "bench.md").read_text(encoding="utf-8")
+    assert text.count("\n## ") == 5
+    for name in ("time step", *SOLVERS):
+        assert f"\n| {name} |" in text
+    assert sorted(path.name for path in folder.iterdir()) == ["bench.json", "bench.md"]
+
+
+def test_missing_program_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(other_programs, "OTHER_CODES", Path("missing"))
+    table = other_programs.other_programs(1, 1.0, ["telescoped beams"])
+    assert table.rows == []
+    assert table.notes[1:] == ["Exudyn is left out: not installed; make other-codes installs it."]
+
+
+@pytest.mark.slow
+@INSTALLED
+def test_exudyn_moves_telescoped_beams_alike() -> None:
+    """Reference: other code; its beams and its scheme err by 0.4 % of the range at this step."""
+    problem = replace(other_programs.telescoped_beams(), steps=[5.0e-5])
+    ((_, off, _),) = problem.elsewhere()
+    assert 1.0e-4 < off < 0.01
+
+
+@pytest.mark.slow
+def test_the_rates_are_those_of_the_series() -> None:
+    """Reference: other code, the time step, to 1e-5 of the tip's range."""
+    system = five_terms(case_file.load(str(PAPER)))
+    ours = FixedStep(2e-6)(Motion(system, 0.2))
+    for rates in (compiled_rates(system), array_rates(system)):
+        states = generic("DOP853", rates, 10, 0.2, 1e-11)
+        tip = states[:, :5] @ system.observers["tip"].row
+        np.testing.assert_allclose(tip, ours.data["tip"].values, atol=1e-5 * np.ptp(tip), rtol=0.0)
+    assert 0.05 < ours.first_contact < 0.19
