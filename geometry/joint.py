@@ -184,7 +184,7 @@ class BareJoint:
     """the coefficient of dry friction"""
     normal_forces: Annotated[tuple[Annotated[NotNegative, In("N")], ...], Few] = ()
     """the normal forces of friction in N at each station; unless given, in space the contact forces
-    of the other plane"""
+    of the other plane, and 0 in a flat boom with a drive, whose contacts press along the boom"""
     lateral_play: Annotated[NotNegative, In("m")] | None = None
     """the lateral play in m, the sum of left and right; it makes the boom move in space"""
     lateral_play_right: Annotated[NotNegative, In("m")] | None = None

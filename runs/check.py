@@ -269,8 +269,10 @@ def _clearances(joint: Joint) -> Iterator[str]:
 def _friction(joint: Joint) -> str:
     if joint.friction == 0.0:
         return "none"
-    forces = ", ".join(f"{force:g}" for force in joint.normal_forces)
-    return f"{joint.friction:g}, pressed by {f'{forces} N' if forces else 'the contacts'}"
+    forces = ", ".join(f"{force:g}" for force in joint.normal_forces) + " N"
+    return (
+        f"{joint.friction:g}, pressed by {forces if any(joint.normal_forces) else 'the contacts'}"
+    )
 
 
 def _models(case: Case, boom: Boom) -> Table:

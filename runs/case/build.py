@@ -193,8 +193,13 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
         drive = table.drive.drive(
             f"joint[{index + 1}]", table.stations, table.locked_at, (table.inner, tail)
         )
+    forces = table.normal_forces
+    if table.drive is not None and table.friction > 0.0 and not _is_spatial(case):
+        # The contacts press against sliding along the boom; nothing presses from the sides.
+        forces = forces or (0.0,) * len(table.stations)
+    changed = {"outer": outer, "inner": inner, "normal_forces": forces}
     joint = Joint(
-        **field_values(table, BareJoint) | {"outer": outer, "inner": inner},
+        **field_values(table, BareJoint) | changed,
         contact=table.law("z"),
         lateral_contact=None if table.lateral_play is None else table.law("y"),
         drive=drive,

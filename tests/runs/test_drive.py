@@ -248,11 +248,19 @@ def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
     _check_figures(draw(results, tmp_path))
 
 
+def test_friction_of_a_drive_in_a_flat_boom_acts_along_it_alone(tmp_path: Path) -> None:
+    """Reference: the same joint with normal forces of zero from the sides."""
+    path = case_file(tmp_path, "friction = 0.2 ", "normal_forces = [0.0, 0.0]\nfriction = 0.2 ")
+    boom = build_boom(load(str(CASES / "drawn-out.toml")))
+    assert boom.joints[0].friction == 0.2
+    assert boom.joints == build_boom(load(path)).joints
+
+
 def test_drive_works_against_axial_forces(tmp_path: Path) -> None:
     """Reference: analytic, half of 550.7 kg and a rope of 20 kN over 4 m."""
     path = Path(case_file(tmp_path, "duration = 7.0", "duration = 0.3"))
     text = path.read_text(encoding="utf-8").replace("time = 5.0", "time = 0.2")
-    text = text.replace("normal_forces = [0.0, 0.0]", "normal_forces = [0.0, 0.0]\nlocked_at = 1.0")
+    text = text.replace("friction = 0.2 ", "locked_at = 1.0\nfriction = 0.2 ")
     works = []
     for pressed in ("", "[gravity]\nacceleration = 10.0\nangle = 30.0\n[[axial]]\nforce = 2e4\n"):
         still = text.replace("[[joint]]", f"{pressed}\n[[joint]]")

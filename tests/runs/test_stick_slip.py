@@ -83,8 +83,8 @@ def test_slips_in_a_drive(tmp_path: Path, rope: str, message: str) -> None:
 
 def test_nothing_sticks_where_nothing_rubs(tmp_path: Path) -> None:
     """Reference: the line that a user reads."""
-    rubs = "friction = 0.2\nnormal_forces = [0.0, 0.0]            # nothing presses from the sides"
-    assert refusal(tmp_path, changed_text({"least_overlap = 1.0 }": ROPE, rubs: "#"})) == (
+    changes = {"least_overlap = 1.0 }": ROPE, "friction = 0.2 ": "# "}
+    assert refusal(tmp_path, changed_text(changes)) == (
         "joint[1].drive.static_friction: nothing rubs in the joint; give it friction, or leave "
         "static_friction out"
     )
