@@ -22,10 +22,14 @@ pytest.importorskip("dolfinx", reason="shells need FEniCSx")
 
 from mpi4py import MPI
 
-from runs.report.calculix import deck, write
+from runs.report.calculix import SpringRow, deck, write
+from shell_model.boom_shell import ShellOptions, segment_mesh
 from shell_model.buckling import buckling_modes
+from shell_model.reduced_shell import reduce_boom
+from shell_model.segment.segment_shell import assemble_segment
 from studies.wall_buckling import BOXES, CALCULIX, COLUMN, LoadedBox
 from tests.runs.case_texts import refused
+from tests.shell_model.test_second_order import column
 
 INSTALLED = pytest.mark.skipif(
     shutil.which("ccx") is None, reason="CalculiX is missing: apt install calculix-ccx"
@@ -77,6 +81,30 @@ def test_a_boom_rests_in_calculix_as_here(
         (cylinder,) = cylinders
         expected = system.observers["cylinder_force"].row @ rest
         assert -cylinder.stiffness * found["cylinder_force"] == pytest.approx(expected, rel=1e-3)
+
+
+@INSTALLED
+@pytest.mark.slow
+def test_axial_force_softens_a_boom_as_large_displacements_do_in_calculix(tmp_path: Path) -> None:
+    """Reference: other code, CalculiX with NLGEOM, which has no K_G of ours, under the weight and
+    40 % of Euler's force: 64 % more deflection than without this force.
+    """
+    boom, options = column(0.4), ShellOptions(mesh_size=0.2)
+    (arm,) = boom.segments
+    shell = assemble_segment(MPI.COMM_SELF, arm, segment_mesh(boom, 0, options))
+    end, (thrust,) = shell.outline(arm.end), arm.compression(np.array([arm.end - 1e-3]))
+    load = shell.own_load(("z",)) - thrust * shell.row(end.mean_displacement("x"))
+    tip = SpringRow("tip", {0: shell.row(end.mean_deflection())})
+    text = deck("column", [shell], [tip], [load])
+    found = []
+    for name, step in (("linear", "*STEP"), ("large", "*STEP, NLGEOM")):
+        path = tmp_path / f"{name}.inp"
+        path.write_text(text.replace("*STEP\n", f"{step}\n"), "utf-8")
+        found.append(readings(path)["tip"])
+    system = reduce_boom(boom, options, MPI.COMM_SELF).system
+    ours = system.observers["tip"].row @ system.static_response(system.load)
+    assert found[1] == pytest.approx(ours, rel=1e-3)
+    assert found[1] / found[0] > 1.6
 
 
 @INSTALLED
