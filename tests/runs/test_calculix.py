@@ -93,7 +93,7 @@ def test_axial_force_softens_a_boom_as_large_displacements_do_in_calculix(tmp_pa
     (arm,) = boom.segments
     shell = assemble_segment(MPI.COMM_SELF, arm, segment_mesh(boom, 0, options))
     end, (thrust,) = shell.outline(arm.end), arm.compression(np.array([arm.end - 1e-3]))
-    load = shell.own_load(("z",)) - thrust * shell.row(end.mean_displacement("x"))
+    load = shell.own_load(("z",)) - thrust * shell.row(end.mean_displacement(0))
     tip = SpringRow("tip", {0: shell.row(end.mean_deflection())})
     text = deck("column", [shell], [tip], [load])
     found = []
