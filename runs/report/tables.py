@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
+from rich.measure import Measurement
 from rich.table import Table as Grid
 from rich.text import Text
 
@@ -232,6 +233,10 @@ class Table:
             grid.add_column(heading, justify="right" if i else "left", no_wrap=whole)
         for row in self.rows:
             grid.add_row(*map(Text, row))
+        unlimited = console.options.update(max_width=WIDE)
+        # Otherwise rich would cut the words of headings in a narrow terminal.
+        if Measurement.get(console, unlimited, grid).minimum > console.width:
+            grid.padding = 0
         console.print(grid)
         for note in self.notes:
             console.print(Text(note))

@@ -29,6 +29,13 @@ def test_the_terminal_shows_cells_as_they_are() -> None:
     assert ["[b]", "–"] in lines
 
 
+def test_words_of_headings_are_whole_in_a_narrow_terminal() -> None:
+    """Reference: by hand. With three spaces between columns the table needs 35 characters."""
+    headings = ["contact", "dynamic", "factor", "mode"]
+    table = Table("", [Column(one, [1.0], ".2f") for one in headings])
+    assert printed(table.show, width=30).split()[:4] == headings
+
+
 @pytest.mark.parametrize(("letters", "crowded"), [(ROOMY - 4, False), (ROOMY - 3, True)])
 def test_wide_table_is_detected(letters: int, crowded: bool) -> None:
     """Reference: two columns, the longest line of each and two letters between them."""
