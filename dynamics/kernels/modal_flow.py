@@ -53,14 +53,18 @@ class Flow(NamedTuple):
 
 def modal_flow(system: GapSystem, times: Array) -> Flow:
     """Return the coefficients of a system's modes for steps of the lengths ``times`` in s."""
-    flows = [_flow_over(system.omega2, system.damping, time) for time in times.tolist()]
-    impulse, gain, ramp, drift, loss = (np.array(part) for part in zip(*flows, strict=True))
+    n = system.num_modes
     omega2, damping = (np.ascontiguousarray(part) for part in (system.omega2, system.damping))
-    return Flow(times, omega2, damping, impulse, gain, ramp, drift, loss)
+    tiled = np.tile([omega2, damping], times.size)
+    *coefficients, loss = _flow_over(tiled[0], tiled[1], np.repeat(times, n))
+    impulse, gain, ramp, drift = (part.reshape(times.size, n) for part in coefficients)
+    losses = np.zeros((times.size, 6, n if loss.size else 0))
+    losses[:] = loss.reshape(6, times.size, -1).swapaxes(0, 1)
+    return Flow(times, omega2, damping, impulse, gain, ramp, drift, losses)
 
 
-def _flow_over(omega2: Array, c: Array, time: float) -> tuple[Array, Array, Array, Array, Array]:
-    """Return s, r, p, u (num_modes,) and loss coefficients (6, num_modes) of one step."""
+def _flow_over(omega2: Array, c: Array, time: Array) -> tuple[Array, Array, Array, Array, Array]:
+    """Return s, r, p, u (num_modes,) and loss coefficients (6, num_modes) over times in s."""
     phase = np.sqrt(np.maximum(omega2, 0.0)) * time
     half = _sinc(0.5 * phase)
     impulse, gain = time * _sinc(phase), 0.5 * time**2 * half**2
@@ -69,7 +73,7 @@ def _flow_over(omega2: Array, c: Array, time: float) -> tuple[Array, Array, Arra
     loss = np.zeros((6, c.size if c.any() else 0))
     general = np.flatnonzero((c > 0.0) | (omega2 < 0.0))
     if general.size:
-        *coefficients, integrals = _damped_flow(omega2[general], c[general], time)
+        *coefficients, integrals = _damped_flow(omega2[general], c[general], time[general])
         for of_all, of_some in zip((impulse, gain, ramp, drift), coefficients, strict=True):
             of_all[general] = of_some
         if loss.size:
@@ -87,7 +91,7 @@ def _sinc(x: Array) -> Array:
     return np.divide(np.sin(x), x, out=np.ones(x.shape), where=x > 0.0)
 
 
-def _damped_flow(omega2: Array, c: Array, time: float) -> tuple[Array, Array, Array, Array, Array]:
+def _damped_flow(omega2: Array, c: Array, time: Array) -> tuple[Array, Array, Array, Array, Array]:
     """Return s, r, p, u (num_modes,) and loss integrals (6, num_modes) of damped or unstable modes.
 
     A power series of s'' = −c s' − ω² s solves a fraction of the step, which is then doubled.
@@ -118,23 +122,25 @@ def _damped_flow(omega2: Array, c: Array, time: float) -> tuple[Array, Array, Ar
     gram = t * np.einsum(
         "akm,bkm->abm", series, np.tensordot(series, weights, (1, 0)).swapaxes(1, 2)
     )
+    numbers = np.array([omega2, c, t, sine, gain, fall, drift])
     for doubling in range(int(doublings.max(initial=0.0))):
-        go = doubling < doublings
+        go = np.flatnonzero(doubling < doublings)
+        omega2, c, t, sine, gain, fall, drift = numbers[:, go]
         vv, aa = 1.0 - c * sine - omega2 * gain, 1.0 - omega2 * gain
         # Matrix of (v, v̇, S/h) over a fraction of the step: v = α v₀ + β v̇₀ + r S/h.
         zero, one = np.zeros(t.size), np.ones(t.size)
         onward = np.array(
             [[vv + c * sine, sine, gain], [-omega2 * sine, vv, sine], [zero, zero, one]]
         )
-        more = gram + np.einsum("kam,klm,lbm->abm", onward, gram, onward)
-        new_drift = 2.0 * drift + (t - omega2 * fall) * fall + gain**2 + t * fall
-        new_fall = fall + aa * fall + sine * gain + t * gain
-        new_rise = gain + aa * gain + sine**2
-        new_sine = sine * (aa + vv)
-        for old, new in ((drift, new_drift), (fall, new_fall), (gain, new_rise), (sine, new_sine)):
-            old[go] = new[go]
-        gram[..., go] = more[..., go]
-        t = np.where(go, 2.0 * t, t)
+        gram[..., go] += np.einsum("kam,klm,lbm->abm", onward, gram[..., go], onward)
+        numbers[2:, go] = (
+            2.0 * t,
+            sine * (aa + vv),
+            gain + aa * gain + sine**2,
+            fall + aa * fall + sine * gain + t * gain,
+            2.0 * drift + (t - omega2 * fall) * fall + gain**2 + t * fall,
+        )
+    *_, sine, gain, fall, drift = numbers
     pairs = gram[(0, 0, 1, 0, 1, 2), (0, 1, 1, 2, 2, 2)]
     return sine, gain, fall / time, drift / time**2, pairs
 

@@ -141,11 +141,16 @@ class MotionPlan:
         return cls(motion, FixedStep(step), load)
 
     def warm(self) -> None:
-        """Compile the time loop by a run to the first output, so that wall times exclude it."""
+        """Compile the time loop by a run to the first output, so that wall times exclude it.
+
+        All motions of a process share the compiled loop.
+        """
         from dynamics.kernels.compiled import compilation_lock
+        from dynamics.kernels.march import march
 
         with compilation_lock():
-            self.integrator(replace(self.motion, duration=self.motion.output_step))
+            if not march.signatures:
+                self.integrator(replace(self.motion, duration=self.motion.output_step))
 
     def trajectory(self, progress: Callable[[float], None] | None = None) -> Trajectory:
         """Return the integrated motion."""
