@@ -20,6 +20,8 @@ SWEEPS := $(patsubst %,runs/out/%-sweep/sweep.csv,drawn-out hoist slew)
 export OMP_NUM_THREADS ?= 1
 export OMPI_ALLOW_RUN_AS_ROOT := 1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
+# Runs and tests start many processes, each of which would compile all modules without bytecode.
+export PYTHONDONTWRITEBYTECODE :=
 
 RELEASE := $(shell . /etc/os-release && echo $$ID-$$VERSION_ID)
 FIND_DOLFINX := import importlib.util, sys; sys.exit(importlib.util.find_spec("dolfinx") is None)
@@ -69,9 +71,8 @@ validity: $(READY) ## where a beam may stand for the shell, over friction, play 
 
 other-codes: build/other-codes/ready ## OpenSees, sectionproperties and Exudyn, beside which tests hold results
 
-# Tests start some hundred processes, each of which would compile all modules without bytecode.
 test: $(READY) ## all tests
-	NUMBA_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 fuzz: $(READY) ## a thousand errors in cases, load files and command lines; each must give one line
 	$(BIN)/python -m tests.fuzz
