@@ -115,9 +115,10 @@ def _bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> tuple[int
     if len(changes) == 1:
         return changes[0]
     key, span = plan.variations[0].key, f"{bound.shown(min(values))} to {bound.shown(max(values))}"
+    passes, times = ("passes", f" {len(changes)} times") if changes else ("does not pass", "")
     what = (
-        f"{bound.quantity.title} passes it {len(changes)} times over {key}, from {span}; give "
-        f"values of {key} around one place where it does"
+        f"{bound.quantity.title} {passes} {bound.shown(bound.permitted)}{times} over {key}, where "
+        f"it is {span}; give values of {key} around one place where it does"
     )
     raise BadInput(plan.file, OPTION, what)
 

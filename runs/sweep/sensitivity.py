@@ -110,12 +110,12 @@ def print_influences(
     top = data.head(MOST_ROWS)
     columns = [Column("1 % more of", list(top.index))]
     columns += [
-        Column(one.title.replace(" ", "\n"), top[one.name].tolist(), ".2f", "%")
+        Column(one.title.replace(" ", "\n"), (TO_PERCENT * top[one.name]).tolist(), ".2f")
         for one in QUANTITIES
         if one.name in SHOWN and one.name in top
     ]
     notes = [f"Refused with 1 % more or less: {join_words(refused)}."] if refused else []
     if len(data) > len(top):
         notes.append(f"{len(data) - len(top)} more numbers are in {CSV}.")
-    title = f"Change of results by 1 % of each number: {case.models[0].name}"
+    title = f"Change of results in % by 1 % of each number: {case.models[0].name}"
     Table(title, columns, notes, "sensitivity").show(console)

@@ -88,9 +88,9 @@ def test_a_bound_on_no_side_is_refused(capsys: pytest.CaptureFixture[str]) -> No
     """Reference: analytic, static tips of lengths of 3 and 5 m."""
     assert protractile("--vary", LENGTHS, "--until", "tip_at_rest<0.5", "--out", "out") == 2
     assert capsys.readouterr().err == (
-        "protractile: case.toml: --until: tip at rest passes it 0 times over segment[1].length, "
-        f"from {1e3 * static_tip(3.0):.4g} mm to {1e3 * static_tip(5.0):.4g} mm; give values of "
-        "segment[1].length around one place where it does\n"
+        "protractile: case.toml: --until: tip at rest does not pass 500 mm over segment[1].length, "
+        f"where it is {1e3 * static_tip(3.0):.4g} mm to {1e3 * static_tip(5.0):.4g} mm; give "
+        "values of segment[1].length around one place where it does\n"
     )
 
 
@@ -112,4 +112,4 @@ def test_changes_are_those_of_closed_forms(capsys: pytest.CaptureFixture[str]) -
             assert table.loc[key, name] == pytest.approx(change, rel=1e-4, abs=1e-9)
     assert table.index[0] == "segment[1].length"
     assert table.loc["damping.modal", "decay_time"] == pytest.approx(-1.0, rel=2e-4)
-    assert "Change of results by 1 % of each number: beam" in capsys.readouterr().out
+    assert "Change of results in % by 1 % of each number: beam" in capsys.readouterr().out
