@@ -400,14 +400,14 @@ def _largest(view: OverlapView, time: float) -> str:
     triangle = int(np.where(np.isin(segment, view.numbers), stress, 0.0).argmax())
     x, _, _ = view.stress.centroids[triangle]
     return (
-        f"maximum of a single element: {digits(TO_MEGA * float(stress[triangle]))} MPa at "
+        f"single element: {digits(TO_MEGA * float(stress[triangle]))} MPa, "
         f"x = {x:.2f} m ({view.scene.boom.segments[int(segment[triangle])].name}, "
         f"{view.stress.wall_name(triangle)} wall)"
     )
 
 
 def _ring_largest(sheet: Sheet, view: OverlapView, places: Array, values: Array) -> str:
-    """Mark the largest smoothed stress of the visible walls with a ring; return its legend."""
+    """Mark the largest smoothed stress of the visible walls with a circle; return its legend."""
     scene = view.scene
     shown = view.behind & np.isin(scene.segment, view.numbers)
     triangle = int(np.where(shown, values.max(axis=1), 0.0).argmax())
@@ -417,7 +417,7 @@ def _ring_largest(sheet: Sheet, view: OverlapView, places: Array, values: Array)
     sheet.ring(float(x), float(y), largest)
     segment = scene.boom.segments[int(scene.segment[triangle])]
     place = f"x = {view.stress.centroids[triangle][0]:.2f} m ({segment.name})"
-    return f"circle: smoothed maximum {largest} at {place}"
+    return f"circle: smoothed maximum {largest}, {place}"
 
 
 def _coarse(view: OverlapView) -> str:

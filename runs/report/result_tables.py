@@ -159,7 +159,9 @@ def mode_table(results: Results) -> Table | None:
         Column(name, [frequencies.get(way) for way in rows], ".4g", "Hz")
         for name, frequencies in of.items()
     ]
-    notes = ("Contacts that are closed in the static state at t = 0 remain closed, others open.",)
+    notes = (
+        "Contacts that are closed in the static state at t = 0 remain closed, other contacts open.",
+    )
     return Table("Modes in the static state at t = 0", columns, notes, "modes")
 
 
