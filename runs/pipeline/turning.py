@@ -139,13 +139,16 @@ def shaper_lines(case: Case, system: GapSystem, rest: Array | None) -> Iterator[
 def drive_moments(case: Case, boom: Boom, data: xr.Dataset) -> dict[str, tuple[Array, Array]]:
     """Return moment (num_times,) in N·m and power in W of slewing and of luffing, by key.
 
-    The boom counts as rigid. A load on a rope acts by the computed rope force and swing.
+    It is empty for a boom that does neither. The boom counts as rigid. A load on a rope acts by the
+    computed rope force and swing.
 
     Args:
         case: a checked case.
         boom: boom of the case.
         data: trajectory of a model.
     """
+    if case.slew is None and case.luff is None:
+        return {}
     frame, time, last = frame_motion(case, boom.segments), data["time"].values, len(boom.segments)
     total = np.zeros((2, time.size))
     for number, segment in enumerate(boom.segments):
