@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from rich.console import Console
 
 from runs.client import show
+from runs.pipeline.combinations import combination_tables
 from runs.pipeline.pad_walls import rigid_wall_note
 from runs.pipeline.results import Results
 from runs.pipeline.utilisation import utilisations
@@ -82,10 +83,12 @@ def print_models(results: Results, console: Console) -> None:
 
 def print_results(results: Results, console: Console) -> None:
     """Print the governing results of each model and the utilisations of the first main model."""
-    if not results.summary.design.models:
+    design = results.summary.design
+    if not design.models:
         return
     tables = result_table(results), lateral_table(results), limit_table(results)
-    for table in (*filter(None, tables), *record_tables(results)):
+    largest = [*combination_tables(design.combinations, results.case)][:1]
+    for table in (*filter(None, tables), *record_tables(results), *largest):
         table.show(console)
     for line in filter(None, (play_effect(results), utilisation_verdict(results))):
         text = f"{results.main_models[0]}: {line[0].lower()}{line[1:]}"

@@ -16,6 +16,7 @@ from geometry.walls import free_room
 from runs import CASES
 from runs.case import toml
 from runs.case.build import build_boom
+from runs.case.kinds.finite_element import BeamElements
 from runs.case.kinds.shell import Shell
 from runs.case.messages import BadInput
 from runs.case.reading import load, select
@@ -24,6 +25,13 @@ from tests.runs.bad_edits import BAD_EDITS
 from tests.runs.case_texts import refused
 from tests.runs.coarse_case import COARSE
 from tests.touching import contact_laws
+
+
+def test_beam_elements_are_shear_flexible_unless_the_case_says_otherwise(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(COARSE.replace('theory = "euler-bernoulli"\n', ""), "utf-8")
+    theories = {model.theory for model in load(str(path)).models if isinstance(model, BeamElements)}
+    assert theories == {"timoshenko"}
 
 
 @pytest.fixture
