@@ -63,8 +63,8 @@ class BoomModes:
             modes = group.modes()
             geometric = group.geometric_stiffness
             if geometric.any():
-                taken = modes.shapes.T @ geometric @ modes.shapes
-                softer, combination = soften_modes(modes.omega2, taken)
+                softening = modes.shapes.T @ geometric @ modes.shapes
+                softer, combination = soften_modes(modes.omega2, softening)
                 modes = Modes(softer, modes.shapes @ combination)
             columns = slice(first, first + modes.omega2.size)
             first = columns.stop

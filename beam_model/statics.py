@@ -104,8 +104,8 @@ class Elements:
 
 def static_theory(boom: Boom) -> Theory:
     """Return the beam theory for statics: Timoshenko if all segments have sections."""
-    known = all(segment.section is not None for segment in boom.segments)
-    return "timoshenko" if known else "euler-bernoulli"
+    all_have_sections = all(segment.section is not None for segment in boom.segments)
+    return "timoshenko" if all_have_sections else "euler-bernoulli"
 
 
 def static_state(
@@ -162,7 +162,7 @@ def telescoping_system(boom: Boom) -> GapSystem:
 
 
 def net_reactions(boom: Boom, reactions: Sequence[NodeReaction]) -> list[NodeReaction]:
-    """Return the reactions at joints as forces between segments, others as forces of the ground.
+    """Return the forces between segments at joints, and the reactions of the ground elsewhere.
 
     Args:
         boom: boom at rest.
@@ -201,10 +201,14 @@ def _reactions(
         for row in (modes.displacement(number, x, "z"), modes.rotation(number, x, "z"))
     ]
     load = component.load.copy()
-    for given in boom.loads:
+    for applied_load in boom.loads:
         # The history of a load that ends before t = 0 is not callable.
-        if given.segment == number and given.direction == "z" and callable(given.history):
-            load += given.history(np.array([time]))[0] * given.push(component.member)
+        if (
+            applied_load.segment == number
+            and applied_load.direction == "z"
+            and callable(applied_load.history)
+        ):
+            load += applied_load.history(np.array([time]))[0] * applied_load.push(component.member)
     stiffness = component.stiffness - component.geometric_stiffness
     left = (stiffness @ np.array(bent) - load).reshape(-1, 2)
     return [

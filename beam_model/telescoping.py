@@ -54,7 +54,7 @@ def moving_axial_forces(
         return np.array([members[segment].at(plane, x) for plane in boom.directions])
 
     nodes = np.concatenate([models[segment].components[plane].breaks for plane in boom.directions])
-    breaks = _between(boom, drive.reach, [direction * (nodes - start)])
+    breaks = _extensions_between(boom, drive.reach, [direction * (nodes - start)])
     return [MovingAxialForce(axial.force, RowTable.interpolate(rows, breaks))]
 
 
@@ -91,10 +91,12 @@ def _breaks(boom: Boom, models: Sequence[SegmentModel], group: TelescopingStatio
     for stop in boom.stops:
         if drives_below(boom.joints, stop.segment) == group.joints:
             passed += [stop.x - c.breaks for c in models[stop.segment].components.values()]
-    return _between(boom, group.reach, passed)
+    return _extensions_between(boom, group.reach, passed)
 
 
-def _between(boom: Boom, reach: tuple[float, float], passed: Sequence[Array]) -> list[float]:
+def _extensions_between(
+    boom: Boom, reach: tuple[float, float], passed: Sequence[Array]
+) -> list[float]:
     """Return the extensions in m within a range, and both ends of the range."""
     low, high = reach
     extensions = np.unique(np.clip(np.concatenate([reach, *passed]), low, high))

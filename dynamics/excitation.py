@@ -337,11 +337,11 @@ class Stroke:
         """
         after = np.asarray(time) - self.start
         since = np.array([after, after - self.duration + self.ramp])
-        begun, done = since > 0.0, since > self.ramp
+        active, full = since > 0.0, since > self.ramp
         if order == 1:
-            rise = np.where(done, 1.0, since / self.ramp * begun) if self.ramp else 1.0 * begun
+            rise = np.where(full, 1.0, since / self.ramp * active) if self.ramp else 1.0 * active
         else:
-            rise = (begun & ~done) / self.ramp
+            rise = (active & ~full) / self.ramp
         return np.asarray(np.sign(self.travel) * self.speed * (rise[0] - rise[1]))
 
     def _integrate_ramp(self, after: Array) -> Array:

@@ -251,6 +251,6 @@ class HangingLoad:
                 data[name] = "time", values, {"units": "m", "length": self.pendulum.length}
         return Trajectory(data, motion.states)
 
-    def _coordinates(self, known: Container[str]) -> int:
+    def _coordinates(self, outputs: Container[str]) -> int:
         """Return the number of coordinates of the load, from the outputs of the boom."""
-        return 1 if self.pendulum is None else 2 + ("tip_lateral" in known)
+        return 1 if self.pendulum is None else 2 + ("tip_lateral" in outputs)

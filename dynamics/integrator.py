@@ -169,7 +169,7 @@ class AdaptiveStep:
         pilot = Integration.begin(motion)
         pilot.advance(0, outputs, fewest, pilot.state, pilot.part(0, outputs))
         scale = error.scale(pilot.output.states)
-        substeps, made, total = min(max(_FIRST, fewest), most), list[int](), 0.0
+        substeps, steps_of_windows, total = min(max(_FIRST, fewest), most), list[int](), 0.0
         for first, last in _windows(motion, window):
             allowed = self.tolerance * (last - first) / outputs
             part = run.part(first, last)
@@ -184,13 +184,15 @@ class AdaptiveStep:
                 substeps *= 2
             for kept, reached in zip(run.state, state, strict=True):
                 kept[...] = reached
-            made.append(substeps)
+            steps_of_windows.append(substeps)
             total += step_error
             if step_error < _COARSEN_BELOW * limit:
                 substeps = max(fewest, substeps // 2)
             if progress is not None:
                 progress(last / outputs)
-        return run.trajectory(tuple(made), window, total / scale if scale > 0.0 else 0.0)
+        return run.trajectory(
+            tuple(steps_of_windows), window, total / scale if scale > 0.0 else 0.0
+        )
 
     def like(self, trajectory: Trajectory) -> StepSchedule:
         """Return the integrator with the steps of a trajectory, so that only data differ."""

@@ -120,8 +120,8 @@ class MovingForce:
 def joint_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:
     """Return the axial force in N that a joint carries; 0 if its inner segment has another lock."""
     inner = joints[number].inner
-    taken = _lock(joints, inner) is joints[number]
-    return segments[inner].compression.transferred if taken else 0.0
+    is_lock = _lock(joints, inner) is joints[number]
+    return segments[inner].compression.transferred if is_lock else 0.0
 
 
 def foot_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:

@@ -252,10 +252,12 @@ def contact_centres(boom: Boom, joint: Joint) -> dict[float, tuple[float, ...]]:
     """Return the x in m of the centres of pads normal to z, by x of the station in m."""
     overlap = boom.overlap(joint)
     sizes = [size for side in _SIDES for size, _, _ in joint.pads_of("z", side)]
-    known = boom.segments[joint.inner].section is not None
+    has_section = boom.segments[joint.inner].section is not None
     return {
         x: tuple(
-            sorted({0.5 * sum(size.span(x, overlap)) if size and known else x for size in sizes})
+            sorted(
+                {0.5 * sum(size.span(x, overlap)) if size and has_section else x for size in sizes}
+            )
         )
         for x in joint.stations
     }

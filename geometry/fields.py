@@ -118,15 +118,15 @@ class Distance:
 End = Literal["tail", "head"]
 
 
-def _place(given: Any) -> Any:
+def _place(value: Any) -> Any:
     """Validate a number or a distance. A union type would have unreadable messages."""
-    if isinstance(given, Distance):
-        return given
-    if is_number(given):
-        if not math.isfinite(given):
+    if isinstance(value, Distance):
+        return value
+    if is_number(value):
+        if not math.isfinite(value):
             raise PydanticKnownError("finite_number")
-        return float(given)
-    distances = {given: 0.0} if isinstance(given, str) else given
+        return float(value)
+    distances = {value: 0.0} if isinstance(value, str) else value
     if isinstance(distances, Mapping) and len(distances) == 1:
         ((end, distance),) = distances.items()
         if end in get_args(End) and is_number(distance) and 0.0 <= distance < math.inf:
@@ -134,9 +134,9 @@ def _place(given: Any) -> Any:
     raise PydanticCustomError("place", "a place")
 
 
-def is_number(given: Any) -> bool:
+def is_number(value: Any) -> bool:
     """Return whether a value is a number; booleans are not."""
-    return isinstance(given, int | float) and not isinstance(given, bool)
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 class _AnyPlace:
@@ -173,9 +173,9 @@ def resolve_distances(part: _Part, tail: float, head: float) -> _Part:
     # Type hints cannot restrict a type variable to dataclasses.
     resolved: dict[str, Any] = {}
     for field in fields(part):  # type: ignore[arg-type]
-        given = getattr(part, field.name)
-        if isinstance(given, Distance):
-            resolved[field.name] = at(given, tail, head)
-        elif isinstance(given, tuple) and any(isinstance(one, Distance) for one in given):
-            resolved[field.name] = tuple(at(one, tail, head) for one in given)
+        value = getattr(part, field.name)
+        if isinstance(value, Distance):
+            resolved[field.name] = at(value, tail, head)
+        elif isinstance(value, tuple) and any(isinstance(one, Distance) for one in value):
+            resolved[field.name] = tuple(at(one, tail, head) for one in value)
     return replace(part, **resolved) if resolved else part  # type: ignore[type-var]

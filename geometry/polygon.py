@@ -70,7 +70,7 @@ class PolygonSection(Section):
         corners = self._upwards[0] - np.array(self.centroid)
         for axis in self.mirrors:
             # Meshes require that mirror images are exactly equal.
-            image = _mirrored(corners, axis)
+            image = _mirror(corners, axis)
             corners = 0.5 * (corners + image[_partners(corners, image)])
         return _plates(corners, self._upwards[1])
 
@@ -132,8 +132,8 @@ class PolygonSection(Section):
         directions: list[Direction] = []
         for axis in COMPONENT:
             places = np.vstack([corners, middles])
-            partners = _partners(places, _mirrored(places, axis))
-            beside = np.linalg.norm(_mirrored(places, axis)[partners] - places, axis=1)
+            partners = _partners(places, _mirror(places, axis))
+            beside = np.linalg.norm(_mirror(places, axis)[partners] - places, axis=1)
             alike = thicknesses[partners[len(corners) :] - len(corners)] == thicknesses
             if beside.max() < _SAME * np.abs(corners).max() and alike.all():
                 directions.append(axis)
@@ -282,7 +282,7 @@ def _double_enclosed_area(corners: Array) -> float:
     return float(corners[:, 0] @ after[:, 1] - corners[:, 1] @ after[:, 0])
 
 
-def _mirrored(places: Array, axis: Direction) -> Array:
+def _mirror(places: Array, axis: Direction) -> Array:
     return np.asarray(places * [-1.0 if axis == one else 1.0 for one in COMPONENT])
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Common polygons: hexagons, octagons, and U-sections of folded plates with a flat top.
 
-Sizes of mid-lines are in m; y = z = 0 is the middle of their extent.
+Sizes refer to mid-lines and are in m. The origin y = z = 0 is in the middle of height and width.
 """
 
 from __future__ import annotations
@@ -34,7 +34,9 @@ def hexagon(
     """
     if not flat < width:
         raise SectionError(f"flat must be below the width of {width:g} m, got {flat:g}")
-    return _mirrored([(flat, -height), (width, 0.0), (flat, height)], [bottom, web, web, top])
+    return _mirror_right_half(
+        [(flat, -height), (width, 0.0), (flat, height)], [bottom, web, web, top]
+    )
 
 
 def octagon(
@@ -60,7 +62,7 @@ def octagon(
         )
     flat, upright = width - 2.0 * chamfer, height - 2.0 * chamfer
     right = [(flat, -height), (width, -upright), (width, upright), (flat, height)]
-    return _mirrored(right, [bottom, web, web, web, top])
+    return _mirror_right_half(right, [bottom, web, web, web, top])
 
 
 def u_section(
@@ -97,10 +99,10 @@ def u_section(
     y = 0.5 * width - radius + corner * np.sin(turned)
     z = -0.5 * height + radius - corner * np.cos(turned)
     right = np.vstack([2.0 * np.column_stack([y, z]), [width, height]])
-    return _mirrored(right, [bottom, *[bottom] * facets, web, top])
+    return _mirror_right_half(right, [bottom, *[bottom] * facets, web, top])
 
 
-def _mirrored(
+def _mirror_right_half(
     twice: Sequence[tuple[float, float]] | Array, thicknesses: Sequence[float]
 ) -> PolygonSection:
     """Return the mirror-symmetric section of a right half.

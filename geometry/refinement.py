@@ -135,7 +135,7 @@ def _zones(
 
 
 def _walls(boom: Boom, number: int) -> Iterator[float]:
-    """Yield the x in m at which forces act in the plane of walls, and of stiffeners."""
+    """Yield the x in m of forces in the plane of walls, and of stiffeners."""
     segment = boom.segments[number]
     yield from (support.x for support in segment.supports)
     yield from (mass.x for mass in segment.masses)

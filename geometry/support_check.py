@@ -44,9 +44,11 @@ def check_supported(boom: Boom) -> None:
     """
     _check_depths(boom)
     bodies = _bodies(boom)
-    left = _left([*_always(boom, bodies), *_one_way(boom, bodies)], bodies)
-    for body in _free(bodies, left):
-        if np.abs(left[body.motions][:_FLAT]).max() > _ROUND_OFF:
+    free = _free_motions(
+        [*_two_way_restraints(boom, bodies), *_one_way_restraints(boom, bodies)], bodies
+    )
+    for body in _segments_in_motion(bodies, free):
+        if np.abs(free[body.motions][:_FLAT]).max() > _ROUND_OFF:
             raise BoomError(
                 body.key,
                 f"nothing holds {body.segment.name!r}: give it two supports, a hinge and a "
@@ -70,17 +72,17 @@ def check_contacts_at_rest(boom: Boom) -> None:
         BoomError: the loads lift a segment off its stops.
     """
     bodies = _bodies(boom)
-    left = _left(_always(boom, bodies), bodies)
-    if not left.size:
+    free = _free_motions(_two_way_restraints(boom, bodies), bodies)
+    if not free.size:
         return
     from scipy.optimize import nnls
 
     pushes = [body.load for body in bodies]
     pushes += [push for _, push in pin_moments(boom.segments, boom.joints, bodies)]
-    load = sum(pushes, np.zeros(len(left))) @ left
-    _, unbalanced = nnls((np.array(_one_way(boom, bodies)) @ left).T, -load)
+    load = sum(pushes, np.zeros(len(free))) @ free
+    _, unbalanced = nnls((np.array(_one_way_restraints(boom, bodies)) @ free).T, -load)
     if unbalanced > _ROUND_OFF * np.linalg.norm(load):
-        body = next(_free(bodies, left))
+        body = next(_segments_in_motion(bodies, free))
         raise BoomError(
             body.key,
             f"the loads of t = 0 lift {body.segment.name!r} off its one-way supports, and nothing "
@@ -185,7 +187,7 @@ def _bodies(boom: Boom) -> list[_RigidBody]:
     return [_RigidBody(boom, number) for number in range(len(boom.segments))]
 
 
-def _one_way(boom: Boom, bodies: list[_RigidBody]) -> list[Array]:
+def _one_way_restraints(boom: Boom, bodies: list[_RigidBody]) -> list[Array]:
     """Return the load vectors of one-sided stops."""
     return [
         -stop.sides[0] * bodies[stop.segment].unit_load_vector(stop.x, "z")
@@ -194,7 +196,7 @@ def _one_way(boom: Boom, bodies: list[_RigidBody]) -> list[Array]:
     ]
 
 
-def _always(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
+def _two_way_restraints(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
     """Yield the rows of restraints that act in both directions."""
     for body in bodies:
         for support in body.segment.supports:
@@ -217,7 +219,7 @@ def _always(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
             yield bodies[stop.segment].unit_load_vector(stop.x, "z")
 
 
-def _left(rows: Iterable[Array], bodies: list[_RigidBody]) -> Array:
+def _free_motions(rows: Iterable[Array], bodies: list[_RigidBody]) -> Array:
     """Return a basis (num_dofs, num_free) of the motions that the rows leave free."""
     sizes = [(row, float(np.linalg.norm(row))) for row in rows]
     scaled = np.array([row / size for row, size in sizes if size > 0.0])
@@ -228,6 +230,6 @@ def _left(rows: Iterable[Array], bodies: list[_RigidBody]) -> Array:
     return np.asarray(turned[int(np.count_nonzero(bound > _ROUND_OFF * bound[0])) :].T)
 
 
-def _free(bodies: list[_RigidBody], left: Array) -> Iterator[_RigidBody]:
+def _segments_in_motion(bodies: list[_RigidBody], free: Array) -> Iterator[_RigidBody]:
     """Yield the segments that take part in free motions."""
-    return (body for body in bodies if np.abs(left[body.motions]).max(initial=0.0) > _ROUND_OFF)
+    return (body for body in bodies if np.abs(free[body.motions]).max(initial=0.0) > _ROUND_OFF)

@@ -37,9 +37,9 @@ def join_words(parts: Iterable[str]) -> str:
 MOST_CHOICES = 12
 
 
-def choices(known: Sequence[str]) -> str:
+def choices(names: Sequence[str]) -> str:
     """Return names as "'a', 'b' or 'c'"; if there are many, the first of them."""
-    if len(known) > MOST_CHOICES:
-        return f"{', '.join(repr(name) for name in known[:MOST_CHOICES])} or another of its kind"
-    quoted = [repr(name) for name in known]
+    if len(names) > MOST_CHOICES:
+        return f"{', '.join(repr(name) for name in names[:MOST_CHOICES])} or another of its kind"
+    quoted = [repr(name) for name in names]
     return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"

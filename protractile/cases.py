@@ -58,7 +58,7 @@ def load_case(source: str | Path | Mapping[str, Any]) -> Case:
 
 
 def check(case: Case) -> Check:
-    """Return what ``protractile check`` prints: tables, static state, stresses, cautions.
+    """Return the output of ``protractile check``: tables, static state, stresses, cautions.
 
     A notebook shows its tables, ``print`` its text; ``frames`` are its tables for pandas.
 
@@ -131,7 +131,7 @@ def run_case(
     """
     chosen = reading.select(case, _CASE, models)
     path = None if folder is None else prepare(str(folder), _CASE)
-    run = run_models(chosen, _CASE, RunContext(_alone(chosen), cache=Cache.of_user()))
+    run = run_models(chosen, _CASE, RunContext(_single_rank(chosen), cache=Cache.of_user()))
     assert run is not None
     run.evaluate()
     if path is not None:
@@ -248,7 +248,7 @@ def frequencies(
 
     plan = points.plan(_CASE, _options(vary or {}), models, None, whole=case)
     cases = [point.case for point in plan.points]
-    results = frequencies.measure(cases, _alone(cases[0]), Cache.of_user())
+    results = frequencies.measure(cases, _single_rank(cases[0]), Cache.of_user())
     return frequencies.gather(plan, results)
 
 
@@ -259,7 +259,7 @@ def _options(vary: Mapping[str, Sequence[float]]) -> list[str]:
     ]
 
 
-def _alone(case: Case) -> MPI.Intracomm | None:
+def _single_rank(case: Case) -> MPI.Intracomm | None:
     """Return the communicator of this process, which a shell needs; None for beams."""
     if not any(model.needs_shell for model in case.models):
         return None

@@ -121,7 +121,7 @@ class Check:
 
 
 def print_check(declared: CheckedCase, console: Console) -> None:
-    """Print what :func:`check_case` finds."""
+    """Print the tables and sentences of :func:`check_case`."""
     check_case(declared).show(console)
 
 
@@ -129,8 +129,8 @@ def check_case(declared: CheckedCase) -> Check:
     """Return the tables and sentences that ``check`` prints."""
     case, boom, preview = declared.case, declared.boom, Preview(declared)
     static = statics(case, boom)
-    shown = boom if static is None else static.with_play.boom
-    beam = None if static is None else StaticBeam.of(case, shown)
+    boom_with_laws = boom if static is None else static.with_play.boom
+    beam = None if static is None else StaticBeam.of(case, boom_with_laws)
     extremes = [] if beam is None else beam.extremes(case.system)
     panels = [] if beam is None else weakest_at_rest(beam)
     tables = [
@@ -145,7 +145,7 @@ def check_case(declared: CheckedCase) -> Check:
         _damping_ratios(preview),
         *([_reactions(static.with_play, case.system)] if static else []),
         *([_cylinders(static.with_play, case.system)] if static else []),
-        static_table(case, shown, extremes),
+        static_table(case, boom_with_laws, extremes),
         panel_table(panels, case.system),
         *combination_tables(combination_results(case), case),
     ]
@@ -159,7 +159,7 @@ def check_case(declared: CheckedCase) -> Check:
     lines += [
         *actions.series_notes(case),
         *proportion_cautions(case, boom),
-        *([] if beam is None else bulge_cautions(_BEAMS, beam.rests[0], shown)),
+        *([] if beam is None else bulge_cautions(_BEAMS, beam.rests[0], boom_with_laws)),
         *overload_cautions(extremes, boom),
         *panel_cautions(panels, case.system),
         *stick_slip_cautions(drives, case.system),
@@ -184,11 +184,11 @@ def _beam_name(model: Model) -> str:
 
 def _segments(case: Case, boom: Boom) -> Table:
     column, segments, boxes = partial(_of, case.system), boom.segments, []
-    for given, segment in zip(case.segments, segments, strict=True):
+    for table, segment in zip(case.segments, segments, strict=True):
         box = "unknown" if segment.section is None else _size(segment.section)
         if segment.head_section is not None:
             box += f" to\n{_size(segment.head_section)}"
-        inferred = given.section is None and segment.section is not None
+        inferred = table.section is None and segment.section is not None
         boxes.append(f"{box}, inferred" if inferred else box)
     columns = [
         Column("segment", [one.name for one in segments]),
@@ -374,12 +374,15 @@ def _buckling(declared: CheckedCase) -> Table:
 def _damping_ratios(preview: Preview) -> Table:
     """Return the total damping ratios of the first modes of each model, with closed contacts."""
     case, boom = preview.checked.case, preview.checked.boom
-    given = [*case.damping.model_dump().values(), *(s.viscous_damping for s in boom.segments)]
-    given += [joint.dashpot for joint in boom.joints]
-    given += [cylinder.dashpot for cylinder in boom.cylinders]
-    given += [support.dashpot for segment in boom.segments for support in segment.supports]
+    coefficients = [
+        *case.damping.model_dump().values(),
+        *(s.viscous_damping for s in boom.segments),
+    ]
+    coefficients += [joint.dashpot for joint in boom.joints]
+    coefficients += [cylinder.dashpot for cylinder in boom.cylinders]
+    coefficients += [support.dashpot for segment in boom.segments for support in segment.supports]
     rows: list[tuple[str, ...]] = []
-    for model in case.models if any(given) else ():
+    for model in case.models if any(coefficients) else ():
         beam = model.surrogate(boom).beam if model.needs_shell else model.coarsen(boom)
         # Some booms have fewer modes.
         cells = zip_longest(range(SHOWN_MODES), _ratios(preview, model, beam), fillvalue="")

@@ -204,10 +204,10 @@ def snapshot(
             times = sorted(set(time)) if time else None
             motion = Path(folder) / TRAJECTORIES
             with snapshots.start_rendering(results, shells, motion, part, times) as gather:
-                drawn = gather()
+                names_of_pictures = gather()
         except RenderingUnavailable as reason:
             raise BadInput(folder, snapshots.SNAPSHOTS, f"cannot be made: {reason}") from None
-    for name in drawn:
+    for name in names_of_pictures:
         print(printable(str(Path(folder) / snapshots.SNAPSHOTS / name)))
     return 0
 
@@ -473,10 +473,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
         with terminal.flush_output():
             status = command.main(arguments, prog_name="protractile", standalone_mode=False)
     except Exception as error:
-        known = ranks.explain(error)
-        if known is None:
+        explanation = ranks.explain(error)
+        if explanation is None:
             raise
-        ending.fail(*known, None)
+        ending.fail(*explanation, None)
     sys.exit(status or 0)
 
 

@@ -90,7 +90,7 @@ def buckling_modes(shell: Shell, forces: Array, count: int) -> BucklingModes:
     """
     if shell.rigid_motions().shape[1]:
         raise NumericsError("the shell has a rigid motion, and cannot buckle; add a support")
-    if not _compressed(forces):
+    if not _has_compression(forces):
         return BucklingModes(np.zeros(0), np.zeros((shell.free.size, 0)))
     geometric_stiffness = _geometric_stiffness(shell, forces)
     solver = SLEPc.EPS().create(shell.comm)
@@ -123,7 +123,7 @@ def buckling_modes(shell: Shell, forces: Array, count: int) -> BucklingModes:
     return BucklingModes(1.0 / inverse[pressed], (shapes / largest)[:, pressed])
 
 
-def _compressed(forces: Array) -> bool:
+def _has_compression(forces: Array) -> bool:
     """Return whether a principal membrane force is compressive anywhere, beyond round-off."""
     n_x, n_s, n_xs = forces.T
     least = 0.5 * (n_x + n_s) - np.hypot(0.5 * (n_x - n_s), n_xs)

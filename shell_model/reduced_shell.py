@@ -46,9 +46,9 @@ class ReducedShell:
         num_dofs: number of degrees of freedom before the reduction.
         fields: displacements and stresses of all modes on rank 0, see
             :func:`shell_model.stress.fields.gather_fields`.
-        errors: reduction errors, the maximum over the segments: ``contact_compliance`` as a
-            fraction of the local compliance, NaN without contacts; ``readings``, relative;
-            ``frequency_limit_in_hz``, up to which natural frequencies are accurate.
+        errors: largest reduction errors of all segments: ``contact_compliance``, relative to the
+            local compliance, NaN without contacts; ``readings``, the relative error of outputs such
+            as the tip; ``frequency_limit_in_hz``, up to which natural frequencies are accurate.
         local_compliance: local compliances (num_rows,) of the contacts in m/N, see
             :func:`shell_model.contact.local_compliance.local_compliance`.
         mesh_error: largest relative discretisation error of the local compliance; NaN without

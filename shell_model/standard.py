@@ -32,7 +32,7 @@ def standard_boom(boom: Boom) -> Boom:
         joints=joints,
         loads=tuple(
             replace(load, magnitude=float(load.magnitude != 0.0), history=Step())
-            if _changing(load)
+            if _is_varying(load)
             else load
             for load in boom.loads
         ),
@@ -52,7 +52,7 @@ def with_plays_and_loads(shell: ReducedShell, boom: Boom) -> ReducedShell:
     # Rows of stops, and all rows of 3-D booms, already have their clearances.
     more += [(0.0, 0.0)] * (len(system.stations) - len(more))
     factors = np.array([_own_load(segment) for segment in boom.segments])
-    changing = [load for load in boom.loads if _changing(load)]
+    changing = [load for load in boom.loads if _is_varying(load)]
     opened = replace(
         system,
         laws=[
@@ -83,7 +83,7 @@ def _unit_segment(segment: Segment) -> Segment:
     return replace(segment, load=segment.load / unit, lateral=lateral)
 
 
-def _changing(load: Load) -> bool:
+def _is_varying(load: Load) -> bool:
     """Return whether a load acts after t = 0."""
     return not isinstance(load.history, ReleasedLoad | InitialImpulse)
 

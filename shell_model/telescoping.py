@@ -83,7 +83,7 @@ class _SampledRows:
         rows = [one.evaluate_rows(self.moving, read) for one in self.touching[::step]]
         return np.asarray(np.concatenate(rows).T)
 
-    def moving_and_staying(self, comm: MPI.Comm, columns: Array) -> tuple[Mask, Mask]:
+    def moving_and_constant_rows(self, comm: MPI.Comm, columns: Array) -> tuple[Mask, Mask]:
         """Return masks (num_extensions · num_moving,) of moving and constant rows. Collective.
 
         On this segment, moving rows depend on the extension. Constant rows do not, and are
@@ -161,8 +161,8 @@ class TelescopingShell:
             self.reduced.append(self._with_few_modes(number, segment, columns))
         # Springs represent the residual response, without axial forces.
         free = [replace(one, geometric=0.0 * one.geometric) for one in self.reduced]
-        self._apart = BoomCoordinates(full.comm, full.shells, free, ())
-        self._rows = [sampled.rows(self._apart) for sampled in self._sampled]
+        self._segment_coordinates = BoomCoordinates(full.comm, full.shells, free, ())
+        self._rows = [sampled.rows(self._segment_coordinates) for sampled in self._sampled]
         self._springs = [springs(*self._residuals(k)) for k in range(len(self._sampled))]
 
     def compliance_error(self, contacts: int) -> Array:
@@ -170,7 +170,7 @@ class TelescopingShell:
         sigma, errors = squared(self._test), np.zeros(contacts)
         for k, sampled in enumerate(self._sampled):
             omega2, pulls = self._springs[k]
-            parts = (self._rows[k], self._apart.omega2), (pulls, omega2)
+            parts = (self._rows[k], self._segment_coordinates.omega2), (pulls, omega2)
             reduced = sum(rows**2 @ (1.0 / (of + sigma)) for rows, of in parts)
             whole = np.einsum("wjj->wj", self._compliance(k, "tested"))
             off = np.abs(whole - reduced).max(axis=0)
@@ -227,7 +227,7 @@ class TelescopingShell:
 
         bounds = np.cumsum([sampled.count for sampled in self._sampled])[:-1]
         masks = [
-            sampled.moving_and_staying(self._full.comm, part)
+            sampled.moving_and_constant_rows(self._full.comm, part)
             for sampled, part in zip(self._sampled, np.split(columns, bounds, axis=1), strict=True)
         ]
         moving, staying = (np.concatenate(which) for which in zip(*masks, strict=True))
@@ -271,7 +271,7 @@ class TelescopingShell:
 
     def _residuals(self, k: int) -> tuple[Array, Array]:
         """Return compliance and inertia of sampled rows, without the part of the modes."""
-        rows, shifted = self._rows[k], self._apart.omega2 + squared(SLOW)
+        rows, shifted = self._rows[k], self._segment_coordinates.omega2 + squared(SLOW)
         compliance, inertia = (rows / shifted**power @ rows.swapaxes(1, 2) for power in (1, 2))
         return self._compliance(k, "compliance") - compliance, self._compliance(
             k, "inertia"

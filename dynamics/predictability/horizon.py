@@ -66,14 +66,14 @@ class Growth:
     @classmethod
     def fit(cls, relatives: Array, times: Array) -> Growth:
         """Fit a line to horizons T (num,) in s over ln ε by least squares, without NaN horizons."""
-        known = np.isfinite(times)
-        if known.sum() < 2:
+        finite = np.isfinite(times)
+        if finite.sum() < 2:
             return cls(np.nan, np.nan, np.nan)
-        logs = np.log(relatives[known])
-        slope, start = np.polyfit(logs, times[known], 1)
-        scatter = float(np.sqrt(np.mean((times[known] - slope * logs - start) ** 2)))
+        logs = np.log(relatives[finite])
+        slope, start = np.polyfit(logs, times[finite], 1)
+        scatter = float(np.sqrt(np.mean((times[finite] - slope * logs - start) ** 2)))
         # A slope within twice its standard error may result from scatter by chance.
-        if not slope < -2.0 * scatter / (np.sqrt(known.sum()) * np.std(logs)):
+        if not slope < -2.0 * scatter / (np.sqrt(finite.sum()) * np.std(logs)):
             return cls(np.nan, np.nan, scatter)
         return cls(float(-1.0 / slope), float(start), scatter)
 
@@ -116,10 +116,10 @@ class Horizons:
         limits: list[Literal["step", "physics", "nothing"]] = []
         for of_step, of_data in zip(self.of_step, self.times[-1], strict=True):
             sooner = of_step < np.nan_to_num(of_data, nan=np.inf)
-            known = np.isfinite(self.step_change)
+            has_growth = np.isfinite(self.step_change)
             if np.isnan(of_step) and np.isnan(of_data):
                 limits.append("nothing")
-            elif self.step_change > largest if known else sooner:
+            elif self.step_change > largest if has_growth else sooner:
                 limits.append("step")
             else:
                 limits.append("physics")

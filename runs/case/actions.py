@@ -42,22 +42,24 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
             "payload.gravity",
             "the table gravity is given, by which the payload weighs too; leave one of them out",
         )
-    given = [_load(f"load[{number}]", table) for number, table in enumerate(case.loads, start=1)]
+    all_loads = [
+        _load(f"load[{number}]", table) for number, table in enumerate(case.loads, start=1)
+    ]
     last = len(segments) - 1
     if case.payload is not None and case.gravity is None:
         weight = -case.payload.mass * _payload_gravity(case.payload)
         if weight < 0.0:
-            given.append(Load(last, "z", weight, segments[last].end, Step()))
+            all_loads.append(Load(last, "z", weight, segments[last].end, Step()))
     if case.gravity is not None:
-        given += _inertia_loads(-case.gravity.across, "z", Step(), segments)
+        all_loads += _inertia_loads(-case.gravity.across, "z", Step(), segments)
     for number, base in enumerate(case.base, start=1):
         history = build_history(f"base[{number}]", base)
-        given += _inertia_loads(-base.acceleration, base.direction, history, segments)
+        all_loads += _inertia_loads(-base.acceleration, base.direction, history, segments)
     for name, velocity in case.start.velocity.items():
-        given += _initial_momentum(
+        all_loads += _initial_momentum(
             segment_index("start.velocity", name, segments), velocity, segments
         )
-    return tuple(given)
+    return tuple(all_loads)
 
 
 def _initial_momentum(
@@ -70,18 +72,18 @@ def _initial_momentum(
         ("z", velocity.z, velocity.turn),
         ("y", velocity.y, velocity.lateral_turn),
     )
-    given: list[Load] = []
+    impulses: list[Load] = []
     for direction, speed, turn in planes:
         if speed or turn:
             there = (speed - turn * x0) * segment.mass_per_length
-            given.append(Load(index, direction, there, None, InitialImpulse(), inertial=True))
-            given += [
+            impulses.append(Load(index, direction, there, None, InitialImpulse(), inertial=True))
+            impulses += [
                 Load(index, direction, (speed + turn * (p.x - x0)) * p.mass, p.x, InitialImpulse())
                 for p in segment.masses
             ]
         if turn:
-            given.append(AngularAcceleration(index, direction, turn, None, InitialImpulse()))
-    return given
+            impulses.append(AngularAcceleration(index, direction, turn, None, InitialImpulse()))
+    return impulses
 
 
 def _inertia_loads(
@@ -196,8 +198,8 @@ def _load(where: str, table: LoadTable) -> Load:
     acts = table.segment, table.direction, table.magnitude, table.x, _load_history(where, table)
     if table.moment and table.x is None:
         raise BoomError(f"{where}.x", "missing; it is the x in m at which the moment acts")
-    for key, given in (("from", table.start), ("to", table.end)):
-        if given is not None and table.x is not None:
+    for key, bound in (("from", table.start), ("to", table.end)):
+        if bound is not None and table.x is not None:
             raise BoomError(f"{where}.{key}", "x is given; leave one of them out")
     if table.moment:
         return Moment(*acts)

@@ -206,19 +206,19 @@ def _choose_columns(
         return [0, 1], [1.0, 1.0], False
     heading = headings[0]
     cells = [_split_heading(cell) for cell in heading.cells]
-    known = [name for name, _ in cells]
+    column_names = [name for name, _ in cells]
     if names is None:
-        if len(known) > 2:
-            what = f"has {len(known)} columns in line {heading.line}"
+        if len(column_names) > 2:
+            what = f"has {len(column_names)} columns in line {heading.line}"
             raise _FileError(what, "name two of them")
         chosen = [0, 1]
     else:
         wanted = [_split_heading(name)[0] for name in names]
         for name in wanted:
-            if (count := known.count(name)) != 1:
+            if (count := column_names.count(name)) != 1:
                 what = f"has {count} columns {shorten(name)!r} in line {heading.line}"
                 raise _FileError(what, "name columns that it has once")
-        chosen = [known.index(name) for name in wanted]
+        chosen = [column_names.index(name) for name in wanted]
     for row in headings:
         row.check_columns(chosen, names)
     of_units = headings[-1]

@@ -74,17 +74,17 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
             given as payload.
     """
     table = table or _PLAIN
-    given: Mapping[str, Any] = {
+    replacements: Mapping[str, Any] = {
         key: getattr(case if getattr(table, key) is None else table, key)
         for key in ("loads", "axial", "base")
     }
     plain = case.model_copy(
         update={
-            **given,
+            **replacements,
             "gravity": _gravity(case, table),
             "payload": _payload(case, table),
             "joints": _joints(case, table),
-            "cylinders": tuple(_turned(case, table)),
+            "cylinders": tuple(_luffed_cylinders(case, table)),
             **dict.fromkeys(("hoist", "slew", "luff")),
             "load_cases": (),
             "combinations": (),
@@ -176,7 +176,7 @@ def _joints(case: Case, table: LoadCaseTable) -> tuple[Any, ...]:
     )
 
 
-def _turned(case: Case, table: LoadCaseTable) -> Iterator[Cylinder]:
+def _luffed_cylinders(case: Case, table: LoadCaseTable) -> Iterator[Cylinder]:
     """Yield the cylinders in coordinates of the luffed boom, in which their ground rotates."""
     turn = 0.0
     if table.angle is not None and case.gravity is not None:

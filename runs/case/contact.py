@@ -69,8 +69,8 @@ def _check_law(table: ContactTable, of_power: Sequence[str]) -> None:
     """
     tables = [key for key in ("force_table", "force_file") if getattr(table, key)]
     pad = table.elastic_pads_key if isinstance(table, JointTable) else None
-    given = pad or next(iter(tables), None)
-    if given is None:
+    superfluous_key = pad or next(iter(tables), None)
+    if superfluous_key is None:
         if table.stiffness is None and getattr(table, "pad", None) is not None:
             what = {"what": PAD_WITHOUT_STIFFNESS}
             raise error_at(table, PydanticCustomError("unsuitable", "{what}", what), "pad")
@@ -80,7 +80,7 @@ def _check_law(table: ContactTable, of_power: Sequence[str]) -> None:
     others = tables if pad else tables[1:]
     keys = others + [key for key in of_power if getattr(table, key) is not None]
     if keys:
-        raise superfluous_error(table, given, *keys)
+        raise superfluous_error(table, superfluous_key, *keys)
 
 
 Forces = Annotated[

@@ -32,8 +32,12 @@ def convert_to_si(case: Case) -> Case:
             [] if model.contact is None else [model.contact.exponent_of("stiffness")]
         )
         models.append(_convert(model, system, next(iter([*contact_exponents, *laws]), None) or 2.0))
-    shown = {"units": "SI", "shown_units": case.shown_units or case.units, "models": tuple(models)}
-    converted: Case = _convert(case, system).model_copy(update=shown)
+    changes = {
+        "units": "SI",
+        "shown_units": case.shown_units or case.units,
+        "models": tuple(models),
+    }
+    converted: Case = _convert(case, system).model_copy(update=changes)
     return converted
 
 

@@ -84,16 +84,16 @@ class TravelTable(CaseTable):
         Raises:
             BoomError: keys contradict one another, or a key is missing.
         """
-        given = [key for key in _HISTORY_KEYS if getattr(self, key) is not None]
-        if not given:
+        keys = [key for key in _HISTORY_KEYS if getattr(self, key) is not None]
+        if not keys:
             raise BoomError(
                 f"{where}.time",
                 f"missing; it is {self.meaning('time')}, or give speed, table or file",
             )
-        if len(given) > 1:
-            raise BoomError(f"{where}.{given[1]}", f"{given[0]} is given; leave one of them out")
+        if len(keys) > 1:
+            raise BoomError(f"{where}.{keys[1]}", f"{keys[0]} is given; leave one of them out")
         if self.ramp and self.speed is None:
-            raise BoomError(f"{where}.ramp", f"{given[0]} is given; only a speed has a ramp")
+            raise BoomError(f"{where}.ramp", f"{keys[0]} is given; only a speed has a ramp")
         for key, seconds in (("time", self.time), ("ramp", self.ramp)):
             if seconds and seconds < _MIN_TIME:
                 what = f"must be at least {_MIN_TIME:g} s, got {seconds:g} s"

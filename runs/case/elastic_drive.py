@@ -81,8 +81,8 @@ def check_elastic_drives(case: Case, boom: Boom) -> None:
 
 
 def _check_rigid(where: str, drive: DriveTable) -> None:
-    given = {"dashpot": drive.dashpot, "static_friction": drive.static_friction}
-    for key, value in given.items():
+    values = {"dashpot": drive.dashpot, "static_friction": drive.static_friction}
+    for key, value in values.items():
         if value:
             raise BoomError(
                 f"{where}.{key}",
@@ -92,16 +92,17 @@ def _check_rigid(where: str, drive: DriveTable) -> None:
 
 
 def _check_friction(where: str, joint: JointTable, drive: DriveTable) -> None:
-    given = drive.static_friction
-    if given is not None and joint.friction == 0.0:
+    coefficient = drive.static_friction
+    if coefficient is not None and joint.friction == 0.0:
         raise BoomError(
             f"{where}.static_friction",
             "nothing rubs in the joint; give it friction, or leave static_friction out",
         )
-    if given is not None and given < joint.friction:
+    if coefficient is not None and coefficient < joint.friction:
         raise BoomError(
             f"{where}.static_friction",
-            f"must be at least the joint's friction of sliding, {joint.friction:g}, got {given:g}",
+            f"must be at least the joint's friction of sliding, {joint.friction:g}, got "
+            f"{coefficient:g}",
         )
 
 

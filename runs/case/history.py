@@ -50,9 +50,11 @@ def build_history(where: str, table: HistoryTable) -> History:
         BoomError: keys contradict one another, or the table is invalid.
     """
     keys = ("ramp", "frequency", "half_sine", "table")
-    given = [key for key in keys if getattr(table, key) is not None]
-    if len(given) > 1:
-        raise BoomError(f"{where}.{given[1]}", f"{given[0]} is given; leave one of them out")
+    present_keys = [key for key in keys if getattr(table, key) is not None]
+    if len(present_keys) > 1:
+        raise BoomError(
+            f"{where}.{present_keys[1]}", f"{present_keys[0]} is given; leave one of them out"
+        )
     if table.ramp is not None:
         return Ramp(table.ramp)
     if table.frequency is not None:

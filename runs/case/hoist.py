@@ -154,8 +154,8 @@ def hanging_load(case: Case, boom: Boom) -> HangingLoad | None:
     table = case.hoist
     if table is None or case.gravity is None or table.dropped:
         return None
-    given = table.travel is not None or table.table is not None
-    history = table.history("hoist") if given else None
+    has_winch = table.travel is not None or table.table is not None
+    history = table.history("hoist") if has_winch else None
     gravity = case.gravity.acceleration
     return HangingLoad(
         table.mass,

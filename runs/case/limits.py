@@ -60,9 +60,9 @@ def error_at(table: Any, kind: str | PydanticCustomError, *keys: str) -> Validat
     return validation_error(table, kind, *(((key,), getattr(table, key)) for key in keys))
 
 
-def superfluous_error(table: Any, given: str, *keys: str) -> ValidationError:
+def superfluous_error(table: Any, key: str, *keys: str) -> ValidationError:
     """Return the validation error at keys that contradict or repeat another key."""
-    what = {"what": f"{given} is given; leave one of them out"}
+    what = {"what": f"{key} is given; leave one of them out"}
     return error_at(table, PydanticCustomError("unsuitable", "{what}", what), *keys)
 
 
@@ -82,10 +82,10 @@ MOST_SEGMENTS, MOST_MODELS, MOST_FACETS = 20, 50, 20
 MOST_TIMES = 100_000
 
 
-def _check_modes(given: Any) -> Any:
+def _check_modes(value: Any) -> Any:
     """Check a number of modes or ``auto``. A union type would give two messages."""
-    if given == "auto" or (isinstance(given, int) and not isinstance(given, bool) and given > 0):
-        return given
+    if value == "auto" or (isinstance(value, int) and not isinstance(value, bool) and value > 0):
+        return value
     raise PydanticCustomError("modes", "a whole number above 0, or 'auto'")
 
 
@@ -101,11 +101,11 @@ Modes = Annotated[
 LEAST_CONTACT_TOLERANCE = 1.0e-3
 
 
-def _check_contact_tolerance(given: Any) -> Any:
+def _check_contact_tolerance(value: Any) -> Any:
     """Check a fraction or ``any``. A union type would give two messages instead of one."""
-    number = isinstance(given, float) and LEAST_CONTACT_TOLERANCE <= given < 1.0
-    if given == "any" or number:
-        return given
+    number = isinstance(value, float) and LEAST_CONTACT_TOLERANCE <= value < 1.0
+    if value == "any" or number:
+        return value
     raise PydanticCustomError(
         "contact_tolerance",
         "a number from {least} to below 1, or 'any'",

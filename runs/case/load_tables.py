@@ -113,9 +113,9 @@ class LoadCaseTable(CaseTable):
     """the accelerations of the ground in place of all [[base]] of the case; those unless given"""
 
 
-def _factor(given: Any) -> Any:
+def _factor(value: Any) -> Any:
     """Return a plain number as a tuple of one factor."""
-    return (given,) if is_number(given) else given
+    return (value,) if is_number(value) else value
 
 
 # The numbers whose product is the factor.

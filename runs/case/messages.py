@@ -202,18 +202,18 @@ def _field(location: Sequence[int | str]) -> FieldInfo:
 
 def _unknown_key(location: Sequence[int | str]) -> str:
     table, key = _table(location), str(location[-1])
-    known = list(names_of(table))
+    keys = list(names_of(table))
     if table is AxialTable and key in HistoryTable.model_fields:
         return "an axial force is constant; give it at its largest, or one [[load_case]] per value"
     use = _SYNONYMS.get(key.lower(), "")
     if "." in use:
         return f"unknown key; use {use}"
-    if use in known:
+    if use in keys:
         return f"unknown key; use {use}, {describe(fields_of(table)[names_of(table)[use]])}"
-    near = get_close_matches(shorten(key), known, n=1)
+    near = get_close_matches(shorten(key), keys, n=1)
     if near:
         return f"unknown key; the nearest known one is {near[0]}"
-    return f"unknown key; known ones are {', '.join(known)}"
+    return f"unknown key; known ones are {', '.join(keys)}"
 
 
 def _kinds() -> str:

@@ -131,11 +131,13 @@ def select(
     """
     chosen = case.models
     if models is not None:
-        known = [model.name for model in case.models]
+        model_names = [model.name for model in case.models]
         for name in models:
-            if name not in known:
+            if name not in model_names:
                 raise BadInput(
-                    path, "--models", f"{name!r} is not a model of the case; give {choices(known)}"
+                    path,
+                    "--models",
+                    f"{name!r} is not a model of the case; give {choices(model_names)}",
                 )
         chosen = tuple(model for model in case.models if model.name in models)
     if mesh_size is not None:
@@ -164,8 +166,10 @@ def select(
                 "--members",
                 f"must be from 2 to {MOST_MEMBERS}, or 0 for no ensembles, got {members}",
             )
-        given = {} if ensemble is None else ensemble.model_dump()
-        ensemble = EnsembleTable.model_validate({**given, "members": members}) if members else None
+        ensemble_keys = {} if ensemble is None else ensemble.model_dump()
+        ensemble = (
+            EnsembleTable.model_validate({**ensemble_keys, "members": members}) if members else None
+        )
     selected = case.model_copy(update={"models": chosen, "ensemble": ensemble})
     if members:
         try:
@@ -203,8 +207,8 @@ def _read(path: str) -> dict[str, object]:
 def _rename_keys(tables: Mapping[str, object]) -> None:
     """Replace the former key ``tied`` of joints and models by ``bonded``, with a notice."""
     for key in ("joint", "model"):
-        given = tables.get(key)
-        for table in given if isinstance(given, list) else ():
+        value = tables.get(key)
+        for table in value if isinstance(value, list) else ():
             if isinstance(table, dict) and "tied" in table:
                 table.setdefault("bonded", table.pop("tied"))
                 _NOTICES.warning("the key tied of [[%s]] is read as bonded, its new name", key)
@@ -261,9 +265,9 @@ def _read_tables(case: Case, path: str) -> Case:
     load_cases = [
         one.model_copy(
             update={
-                key: resolve_histories(f"load_case[{i}].{shown}", given)
-                for key, shown in (("loads", "load"), ("base", "base"))
-                if (given := getattr(one, key)) is not None
+                key: resolve_histories(f"load_case[{i}].{file_key}", loads_of_case)
+                for key, file_key in (("loads", "load"), ("base", "base"))
+                if (loads_of_case := getattr(one, key)) is not None
             }
         )
         for i, one in enumerate(case.load_cases, start=1)

@@ -67,10 +67,10 @@ class UsualRange(NamedTuple):
             if 0.0 < limit < np.inf
         ]
         label = "" if self.unit == "1" else f" {system.label(self.unit)}"
-        given = system.of(self.value, self.unit)
-        text = f"{self.what} is {given:.5g}{label}, usual is {' '.join(limits)}{label}"
+        displayed = system.of(self.value, self.unit)
+        text = f"{self.what} is {displayed:.5g}{label}, usual is {' '.join(limits)}{label}"
         for name in _LIKELY_UNITS.get(self.unit, ()):
-            meant = given * Unit.of(name).factor
+            meant = displayed * Unit.of(name).factor
             if self.least <= meant <= self.most:
                 return f"{text}; if it is in {name}, give {system.of(meant, self.unit):.5g}{label}"
         return f"{text}; check the number and its unit"

@@ -133,9 +133,9 @@ class VelocityTable(CaseTable):
     """the x in m of the point with these velocities; the segment's start unless given"""
 
 
-def _velocity(given: Any) -> Any:
+def _velocity(value: Any) -> Any:
     """Return a plain number as the velocity along z."""
-    return {"z": float(given)} if is_number(given) else given
+    return {"z": float(value)} if is_number(value) else value
 
 
 Velocity = Annotated[

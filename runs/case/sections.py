@@ -131,11 +131,11 @@ class UTable(_FoldedTable):
     """the number of flat plates in each bend, which touch its circle"""
 
 
-def _shape(given: Any) -> str:
+def _shape(value: Any) -> str:
     """Return the shape of a section's table; the default is a box."""
-    if isinstance(given, Mapping):
-        return str(given.get("shape", "box"))
-    return str(getattr(given, "shape", "box"))
+    if isinstance(value, Mapping):
+        return str(value.get("shape", "box"))
+    return str(getattr(value, "shape", "box"))
 
 
 SHAPES: Mapping[str, type[ShapeTable]] = {

@@ -16,9 +16,9 @@ from runs.case.limits import CaseTable, error_at, superfluous_error
 from runs.case.sections import AnySection
 
 
-def _support(given: Any) -> Any:
+def _support(value: Any) -> Any:
     """Return a plain x as the table of a pinned support at x."""
-    return {"x": given} if isinstance(given, str) or is_number(given) else given
+    return {"x": value} if isinstance(value, str) or is_number(value) else value
 
 
 _Support = Annotated[

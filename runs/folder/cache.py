@@ -74,8 +74,8 @@ class Cache:
 
         Without a home folder it gives a notice and returns None.
         """
-        if given := os.environ.get(VARIABLE):
-            return cls(Path(given))
+        if path := os.environ.get(VARIABLE):
+            return cls(Path(path))
         try:
             caches = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
         except RuntimeError:

@@ -126,7 +126,7 @@ def scratch_folder(path: Path) -> Iterator[Path]:
     try:
         if not path.parent.exists():
             path.parent.mkdir(parents=True, exist_ok=True)
-        _remove_left(path)
+        _remove_leftovers(path)
         with ExitStack() as stack:
             for scratch in (unlocked, part):
                 remove = partial(shutil.rmtree, scratch, ignore_errors=True)
@@ -170,7 +170,7 @@ def _exchange_path(path: Path) -> Path:
     return path.with_name(f".{path.name[:50]}.away")
 
 
-def _remove_left(path: Path) -> None:
+def _remove_leftovers(path: Path) -> None:
     """Remove the hidden folders of killed processes beside a path."""
     for left in path.parent.glob(f"{escape(_hidden(path))}*"):
         # A locked folder belongs to a running process.

@@ -77,7 +77,9 @@ def _stored(beam: CalibratedTable, shell: Shell, boom: Boom) -> Calibration | No
 
     name, cache = key([*shell.content(boom)]), Cache.of_user()
     if name not in _LAST and cache is not None and (stored := cache.load(name, ReducedShell)):
-        made = with_plays_and_loads(stored, boom)
+        loaded_shell = with_plays_and_loads(stored, boom)
         _LAST.clear()
-        _LAST[name] = calibrate(boom, made.system, made.probe_responses, beam.segments)
+        _LAST[name] = calibrate(
+            boom, loaded_shell.system, loaded_shell.probe_responses, beam.segments
+        )
     return _LAST.get(name)

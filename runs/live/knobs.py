@@ -180,7 +180,7 @@ class Draft:
         unit, system = self._unit(place), self.case.system
         ranges, text = (
             [self._range(*self._numbers[one]) for one in keys],
-            _described(self.case, place),
+            _description(self.case, place),
         )
         low, high = max(one[0] for one in ranges), min(one[1] for one in ranges)
         in_unit = [system.of(one, unit or "1") for one in (value, low, high)]
@@ -200,7 +200,7 @@ class Draft:
         if not (math.isfinite(low) and math.isfinite(high)):
             ends = sorted((_LEAST * value, _MOST * value))
             if place.steps[0] == "joint":
-                ends = self._fitting(place, value, *ends)
+                ends = self._range_that_fits(place, value, *ends)
             low, high = max(low, ends[0]), min(high, ends[1])
         for usual in usual_ranges(self.case, self.boom):
             # The numbers of a joint range over all that fits.
@@ -210,7 +210,7 @@ class Draft:
                     high = usual.most
         return low, high
 
-    def _fitting(self, place: Place, value: float, low: float, high: float) -> list[float]:
+    def _range_that_fits(self, place: Place, value: float, low: float, high: float) -> list[float]:
         """Return the range in which a number of a joint fits the segments, or the given range."""
         joint = self.boom.joints[int(place.steps[1])]
         outer, inner = (self.boom.segments[number] for number in (joint.outer, joint.inner))
@@ -294,7 +294,7 @@ def _field(case: Case, place: Place) -> Any:
     return field
 
 
-def _described(case: Case, place: Place) -> str:
+def _description(case: Case, place: Place) -> str:
     field = _field(case, place)
     return "" if field is None else describe(field)
 

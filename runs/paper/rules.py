@@ -260,11 +260,13 @@ def _s7(run: RunQuery) -> Finding:
     run.last_until(INTERVAL)
     models = run.with_play()
     early = run.time <= CONFORMITY
-    apart = {place: _apart(run, models, place) for place in ("tip", "head")}
+    apart = {place: _largest_differences(run, models, place) for place in ("tip", "head")}
     conform = float(apart["tip"][early].max())
     later = float(apart["tip"][~early].max())
     without = run.bonded()
-    bonded = min(float(_apart(run, [model, without], "tip").max()) for model in models)
+    bonded = min(
+        float(_largest_differences(run, [model, without], "tip").max()) for model in models
+    )
     head = float(apart["head"].max())
     return Finding(
         _all_of(
@@ -411,7 +413,7 @@ def _share(shows: Mask) -> tuple[float, float]:
     return float(shows.mean()), 1.0 / float(np.sqrt(shows.size))
 
 
-def _apart(run: RunQuery, models: Sequence[Model], place: str) -> Array:
+def _largest_differences(run: RunQuery, models: Sequence[Model], place: str) -> Array:
     """Return the largest difference (num_times,) of any two models, as a fraction of the range."""
     curves = np.array([run.curve(model, place) for model in models])
     return np.asarray(np.ptp(curves, axis=0) / max(map(_range, curves)))

@@ -59,7 +59,7 @@ class Verdict:
 def addition(case: Case, verdicts: Sequence[Verdict]) -> Addition:
     """Return the verdicts as additions to the report of a run."""
     judged = [verdict.verdict for verdict in verdicts]
-    known = evidence(case)
+    anchors = evidence(case)
     figures = {"tip": 8, "head": 9} if case.regular else {"tip": 6, "head": 7}
     remarks = {
         f"figure-{place}": f"The counterpart of Fig. {number} of the paper."
@@ -74,7 +74,7 @@ def addition(case: Case, verdicts: Sequence[Verdict]) -> Addition:
         "verdicts": verdicts,
         "marks": MARKS,
         "counts": {kind: judged.count(kind) for kind in MARKS},
-        "evidence": {verdict.id: known[verdict.id] for verdict in verdicts},
+        "evidence": {verdict.id: anchors[verdict.id] for verdict in verdicts},
     }
     written = {FILE: as_json([asdict(verdict) for verdict in verdicts])} if verdicts else {}
     return Addition(

@@ -104,8 +104,10 @@ def combination_states(case: Case, moving: bool = True) -> list[CombinationState
 
 def combination_results(case: Case) -> list[CombinationResult]:
     """Return the results of combinations at rest; none without load cases and combinations."""
-    given = case.load_cases or case.combinations
-    return [one.result for one in combination_states(case, moving=False)] if given else []
+    has_combinations = case.load_cases or case.combinations
+    return (
+        [one.result for one in combination_states(case, moving=False)] if has_combinations else []
+    )
 
 
 def combination_tables(

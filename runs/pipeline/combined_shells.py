@@ -31,7 +31,7 @@ from runs.pipeline.model_output import force_places
 from runs.pipeline.panels import weakest_panels
 from runs.pipeline.section_forces import with_cylinder_forces
 from runs.pipeline.strength import wall_stresses
-from runs.pipeline.wall_buckling import buckled_shell
+from runs.pipeline.wall_buckling import buckle_shell
 
 
 def shell_states(case: Case, model: Shell, context: BuildContext) -> list[CombinationState]:
@@ -61,7 +61,7 @@ def shell_states(case: Case, model: Shell, context: BuildContext) -> list[Combin
             if context.comm.rank == 0
         ]
         if case.buckling is not None:
-            states = _buckled(case, shared, states, model, built, context)
+            states = _with_buckling(case, shared, states, model, built, context)
         states_by_number |= dict(zip(numbers, states, strict=False))
     return [states_by_number[number] for number in sorted(states_by_number)]
 
@@ -160,7 +160,7 @@ def _state(
     return CombinationState(combined, beam, wall_stresses(boom, stresses))
 
 
-def _buckled(
+def _with_buckling(
     case: Case,
     shared: Sequence[Boom],
     states: Sequence[CombinationState],
@@ -191,7 +191,7 @@ def _buckled(
             shell = with_plays_and_loads(built.shell, shared[1 + governing])
             extensions = dict.fromkeys(range(len(shared[0].joints)), 0.0)
             state = StaticState.from_fields(built.shell.fields, shell.system, position, extensions)
-    buckled = buckled_shell(shared[0], model, built, state, case.buckling.modes, context.comm)
+    buckled = buckle_shell(shared[0], model, built, state, case.buckling.modes, context.comm)
     if buckled is not None:
         states[governing] = states[governing]._replace(buckling=buckled.segments)
     return states

@@ -93,8 +93,8 @@ class Preview:
         Raises:
             NumericsError: there is no equilibrium to start from.
         """
-        for known, motion in self._motions:
-            if known == beam:
+        for earlier_beam, motion in self._motions:
+            if earlier_beam == beam:
                 return motion
         case, model_boom = self.checked.case, self.checked.model_boom(model)
         motion = initial_motion(build_on(model_boom, case, beam).system, case)

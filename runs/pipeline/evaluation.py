@@ -57,8 +57,12 @@ class LoadedModel(NamedTuple):
     @classmethod
     def of(cls, boom: Boom, model: Model, built: BuiltModel) -> LoadedModel:
         """Return a built model with its lines."""
-        system, shown = built.system.gather_loads(), boom.bonded if model.bonded else boom
-        return cls(shown, system, with_cylinder_forces(shown, system, model.lines(boom, built)))
+        system, boom_of_model = built.system.gather_loads(), boom.bonded if model.bonded else boom
+        return cls(
+            boom_of_model,
+            system,
+            with_cylinder_forces(boom_of_model, system, model.lines(boom, built)),
+        )
 
     def at_rest(
         self,

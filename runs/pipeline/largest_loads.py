@@ -148,8 +148,8 @@ class StaticBeam(NamedTuple):
         extremes += self._at_stations(system)
         for name in rests[0].cylinders:
             values = [rest.cylinders[name] for rest in rests]
-            shown = name.replace("_", " ")
-            extremes.append(_static_extreme(shown, shown, "N", rests, values))
+            label = name.replace("_", " ")
+            extremes.append(_static_extreme(label, label, "N", rests, values))
         return extremes
 
     def foot_extremes(self, system: System) -> Iterator[StaticExtreme]:

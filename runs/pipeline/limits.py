@@ -59,10 +59,10 @@ class LimitCheck:
 
 def case_limits(table: LimitsTable | None) -> list[Limit]:
     """Return the limits of a case."""
-    given = {} if table is None else table.model_dump(exclude_none=True)
+    values = {} if table is None else table.model_dump(exclude_none=True)
     least = LimitsTable.LEAST
     return [
-        Limit(one, given[one.name], one.name in least) for one in QUANTITIES if one.name in given
+        Limit(one, values[one.name], one.name in least) for one in QUANTITIES if one.name in values
     ]
 
 

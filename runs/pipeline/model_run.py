@@ -37,7 +37,7 @@ from runs.pipeline.summary import (
     ModelSummary,
     StationSpring,
 )
-from runs.pipeline.wall_buckling import buckled_shell, farthest_state
+from runs.pipeline.wall_buckling import buckle_shell, farthest_state
 from shell_model.stages import Stages
 
 # Loaded wall of the outer segment, by direction and sign of the force of the inner segment.
@@ -121,7 +121,7 @@ def run_model(
         with stages.stage("buckling"):
             joined = model.model_boom(boom).boom
             state = farthest_state(joined, case, built) if comm.rank == 0 else None
-            buckling = buckled_shell(joined, model, built, state, case.buckling.modes, comm)
+            buckling = buckle_shell(joined, model, built, state, case.buckling.modes, comm)
     with members.rank_executor(comm if case.ensemble else None) as executor:
         if not context.first_rank:
             return None

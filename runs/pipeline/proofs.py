@@ -320,23 +320,23 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
     beam = states[0].beam
     assert beam is not None
     boom = beam.boom
-    asked = {name for state in states for name in state.combined.combination.proofs}
+    requested_proofs = {name for state in states for name in state.combined.combination.proofs}
     steels = [one.name for one in boom.segments if one.yield_strength is None]
-    if steels and asked & {"yield", "plate"}:
+    if steels and requested_proofs & {"yield", "plate"}:
         names = ", ".join(steels)
         yield f"No proof: yield and plate buckling of {names}, without yield strength."
     pressures = any(one.utilisation is not None for one in beam.rests[0].stations)
-    if "pad" in asked and boom.joints and not pressures:
+    if "pad" in requested_proofs and boom.joints and not pressures:
         yield "No proof: pads, without allowable_pressure."
-    if "cylinder" in asked and any(one.capacity is None for one in boom.cylinders):
+    if "cylinder" in requested_proofs and any(one.capacity is None for one in boom.cylinders):
         yield "No proof: cylinder, without capacity."
     pins = [one.foot.pin for one in boom.segments if one.foot is not None]
     pins += [one.pin for one in boom.cylinders]
-    if "pin" in asked and not any(pins):
+    if "pin" in requested_proofs and not any(pins):
         yield "No proof: pins, without the table pin."
     if not case.spectra:
         yield "No proof: fatigue, without [[spectrum]]."
-    if "deflection" not in asked:
+    if "deflection" not in requested_proofs:
         yield "No proof: deflection, which no combination lists."
     elif case.limits is None or case.limits.tip_at_rest is None:
         yield "No proof: deflection, without limits.tip_at_rest."

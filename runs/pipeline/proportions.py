@@ -203,8 +203,8 @@ def _pads(case: Case, boom: Boom) -> Iterator[str]:
 
 
 def _meshes(case: Case, boom: Boom) -> Iterator[str]:
-    known = [segment for segment in boom.segments if segment.section is not None]
-    sections = [segment.section_at(x) for segment in known for x in segment.ends]
+    with_section = [segment for segment in boom.segments if segment.section is not None]
+    sections = [segment.section_at(x) for segment in with_section for x in segment.ends]
     walls = (plate.length for section in sections for plate in section.plates)
     narrowest = min(walls, default=np.inf)
     for model in case.models:
@@ -300,8 +300,11 @@ def _constant_loads(boom: Boom) -> Iterator[tuple[float, float]]:
 
 def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
     """Yield cautions on loads that repeat a load or a weight, and on masses in place of forces."""
-    given = boom.loads[: len(case.loads)]
-    repeatable: tuple[tuple[str, Sequence[Any]], ...] = (("load", given), ("axial", case.axial))
+    loads_of_case = boom.loads[: len(case.loads)]
+    repeatable: tuple[tuple[str, Sequence[Any]], ...] = (
+        ("load", loads_of_case),
+        ("axial", case.axial),
+    )
     for name, tables in repeatable:
         for number, table in enumerate(tables):
             if table in tables[:number]:
@@ -326,7 +329,7 @@ def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
                 f"segment[{len(boom.segments)}].masses: the {payload.mass:g} kg of the payload "
                 "are at the tip once more; leave one of them out"
             )
-    for number, (table, load) in enumerate(zip(case.loads, given, strict=True), start=1):
+    for number, (table, load) in enumerate(zip(case.loads, loads_of_case, strict=True), start=1):
         if load.direction == "y" or table.moment or not isinstance(load.history, Step | Ramp):
             continue
         segment, where = boom.segments[load.segment], f"load[{number}].magnitude"

@@ -159,8 +159,8 @@ class Results:
     @property
     def play(self) -> PlayEffect | None:
         """The effect of play in the reference model."""
-        known = (one for one in self.summary.design.play if one.numbers)
-        return next((one for one in known if one.model == self.reference), None)
+        effects = (one for one in self.summary.design.play if one.numbers)
+        return next((one for one in effects if one.model == self.reference), None)
 
     @cached_property
     def main_models(self) -> list[str]:
@@ -191,11 +191,11 @@ class Results:
         from runs.report.tables import Column, Table
 
         frame = self.quantities
-        shown = [one for one in QUANTITIES if one.name in frame.index]
-        columns = [Column("", [f"{one.title}, {one.shown_unit}" for one in shown])]
+        quantities = [one for one in QUANTITIES if one.name in frame.index]
+        columns = [Column("", [f"{one.title}, {one.shown_unit}" for one in quantities])]
         for name in self.summary.models:
             values = frame[name].astype(float)
-            cells = [one.factor * values[one.name] for one in shown]
+            cells = [one.factor * values[one.name] for one in quantities]
             columns.append(Column(name, [x if x == x else None for x in cells], ".4g"))
         return Table(self.case.title, columns)._repr_html_()
 

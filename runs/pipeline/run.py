@@ -198,9 +198,11 @@ def _attempt_all(
     with ThreadPoolExecutor(1) as thread:
         moving = {m.name: thread.submit(attempt, m) for m in models if not m.needs_shell}
         try:
-            made = {model.name: attempt(model) for model in models if model.needs_shell}
+            shell_runs = {model.name: attempt(model) for model in models if model.needs_shell}
         except BaseException:
             # After an interrupt, remaining beams are cancelled.
             thread.shutdown(cancel_futures=True)
             raise
-        return {m.name: made[m.name] if m.needs_shell else moving[m.name].result() for m in models}
+        return {
+            m.name: shell_runs[m.name] if m.needs_shell else moving[m.name].result() for m in models
+        }

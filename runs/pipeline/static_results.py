@@ -214,11 +214,11 @@ def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]
         system: gap system of a model, whose ``load`` includes all constant loads.
         duration: duration of the motion in s.
     """
-    known = instants(system, duration)
+    earlier_times = instants(system, duration)
     equilibria: dict[float, Array] = {}
     for time in extended_instants(system, duration):
         with suppress(*NUMERICAL_ERRORS), np.errstate(all="ignore"):
-            if time not in known:
+            if time not in earlier_times:
                 equilibria[time] = equilibrium_at(system, time)
     return equilibria
 

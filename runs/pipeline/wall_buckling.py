@@ -63,7 +63,7 @@ class BuckledShell:
     shapes: xr.Dataset | None
 
 
-def buckled_shell(
+def buckle_shell(
     boom: Boom,
     model: Shell,
     built: BuiltModel,

@@ -74,9 +74,9 @@ def when_interrupted(work: Callable[[], object]) -> Iterator[None]:
 
 def launched_rank() -> int | None:
     """Return the rank that a launcher has given this process; None without a launcher."""
-    given = (os.environ.get(name, "") for name in _LAUNCHERS)
+    ranks = (os.environ.get(name, "") for name in _LAUNCHERS)
     # Values that are not numbers are ignored.
-    return next((int(number) for number in given if number.isdecimal()), None)
+    return next((int(number) for number in ranks if number.isdecimal()), None)
 
 
 def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:

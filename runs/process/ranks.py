@@ -102,8 +102,8 @@ def end_all_ranks_on_error(comm: MPI.Comm | None) -> Iterator[None]:
     except Exception as error:
         if comm is None or comm.size == 1:
             raise
-        known = explain(error)
-        ending.fail(*(known or (traceback.format_exc(), 1)), comm)
+        explanation = explain(error)
+        ending.fail(*(explanation or (traceback.format_exc(), 1)), comm)
 
 
 def _check_temporary_folder(file: str) -> None:

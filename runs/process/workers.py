@@ -29,14 +29,14 @@ _RANK_PREFIXES = ("OMPI_", "PMIX_", "PMI_")
 class _SignalProofPool(ProcessPoolExecutor):
     """Pool of processes that ignore signals to the process group, such as Ctrl-C."""
 
-    def submit(self, work: Callable[..., Any], /, *given: Any, **named: Any) -> Future[Any]:
+    def submit(self, work: Callable[..., Any], /, *positional: Any, **named: Any) -> Future[Any]:
         """Submit work. A process that starts for it inherits the signal mask and the variables."""
         signals = {signal.SIGINT, signal.SIGTERM}
         signal.pthread_sigmask(signal.SIG_BLOCK, signals)
         outside = {name: os.environ[name] for name in _WORKER_VARIABLES if name in os.environ}
         os.environ.update(_WORKER_VARIABLES)
         try:
-            return super().submit(work, *given, **named)
+            return super().submit(work, *positional, **named)
         finally:
             for name in _WORKER_VARIABLES:
                 del os.environ[name]

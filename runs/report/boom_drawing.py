@@ -77,20 +77,20 @@ class Panel:
         """The transform from x and z in m to coordinates of the panel."""
         return Affine2D().scale(1.0, self.larger).rotate_deg(self.angle)
 
-    def outline(self, corners: Sequence[tuple[float, float]] | Array, **given: Any) -> None:
+    def outline(self, corners: Sequence[tuple[float, float]] | Array, **style: Any) -> None:
         """Draw a filled polygon from the x and z of its corners in m."""
-        self.axes.add_patch(Polygon(self.turn.transform(np.array(corners)), closed=True, **given))
+        self.axes.add_patch(Polygon(self.turn.transform(np.array(corners)), closed=True, **style))
 
-    def line(self, places: Sequence[Sequence[float] | Array] | Array, **given: Any) -> None:
+    def line(self, places: Sequence[Sequence[float] | Array] | Array, **style: Any) -> None:
         """Draw a line through x and z in m."""
-        self.axes.plot(*self.turn.transform(np.array(places)).T, **given)
+        self.axes.plot(*self.turn.transform(np.array(places)).T, **style)
 
     def draw_symbol(self, symbol: Symbol) -> None:
         """Draw the symbol of a support or load at its places."""
         places = [(x, symbol.z(self.boom, x)) for x in symbol.places]
         size = SIGN if len(places) == 1 else SMALL
-        shown = marker_style(symbol.rotated(self.angle), symbol.color, size)
-        self.line(places, clip_on=False, zorder=5, **shown)
+        style = marker_style(symbol.rotated(self.angle), symbol.color, size)
+        self.line(places, clip_on=False, zorder=5, **style)
         corners = np.asarray(symbol.path.vertices)
         centred = corners - 0.5 * (corners.min(axis=0) + corners.max(axis=0))
         in_legend = marker_style(Sign(centred, symbol.path.codes), symbol.color, SMALL)
@@ -228,8 +228,8 @@ def _draw_along(panel: Panel, symbols: Sequence[Symbol]) -> None:
     axes.spines["left"].set_visible(False)
     axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 2, 5, 10]))
     axes.set_xlabel("x along the boom (m)", fontsize=10.0)
-    drawn = f", heights × {larger:g}" if larger > 1.0 else ""
-    axes.set_title(f"along the boom{drawn}", fontsize=10.0)
+    exaggeration = f", heights × {larger:g}" if larger > 1.0 else ""
+    axes.set_title(f"along the boom{exaggeration}", fontsize=10.0)
 
 
 def _draw(panel: Panel, symbols: Sequence[Symbol]) -> None:

@@ -102,8 +102,8 @@ class BoomView:
     def draw_marks(self, sheet: Sheet, places: Array) -> str:
         """Draw the symbols of supports and loads on a sheet, and return their legend."""
         scene, axes = self.scene, sheet.picture
-        shown = [symbol for symbol in scene.symbols if len(symbol.places) == 1]
-        for symbol in shown:
+        symbols = [symbol for symbol in scene.symbols if len(symbol.places) == 1]
+        for symbol in symbols:
             (x,) = symbol.places
             around = self.rest.points if symbol.grounded else places
             place, _ = scene.at(around, symbol.segment, x, symbol.z(scene.boom, x))
@@ -121,7 +121,7 @@ class BoomView:
             sheet.show_once(*axes.plot(*rod.T, linewidth=4.0, **black))
             rod[0] = rod.mean(axis=0)
             sheet.show_once(*axes.plot(*rod.T, linewidth=9.0, **black))
-        kinds = [str(symbol.kind) for symbol in shown]
+        kinds = [str(symbol.kind) for symbol in symbols]
         return join_words(dict.fromkeys(kinds + ["cylinders"] * bool(cylinders))) if kinds else ""
 
 

@@ -36,7 +36,7 @@ def render_buckling(
     scene = views[0]
     if scene.buckling is None or times is not None:
         return []
-    data, drawn = scene.buckling, []
+    data, paths = scene.buckling, []
     with rc_context(theme.PAGE_RC):
         for segment, factor in zip(
             data["buckled"].values.tolist(), data["buckling_factor"].values.tolist(), strict=True
@@ -45,15 +45,15 @@ def render_buckling(
                 data["buckling_segment"].values == segment
             ]
             used, triangles = np.unique(point_numbers, return_inverse=True)
-            drawn.append(folder / f"buckling-{segment + 1}.png")
+            paths.append(folder / f"buckling-{segment + 1}.png")
             _draw(
                 f"{scene.boom.segments[segment].name}: buckling factor {number(factor)}",
                 data["buckling_points"].values[used],
                 triangles.reshape(-1, 3).astype(np.int32),
                 data["buckling_shape"].values[used].astype(float),
-                drawn[-1],
+                paths[-1],
             )
-    return drawn
+    return paths
 
 
 def _draw(heading: str, points: Array, triangles: Numbers, shape: Array, path: Path) -> None:

@@ -173,9 +173,9 @@ def _axis(name: str, panel: int) -> str:
 def extremes(values: Array, stretches: int) -> np.ndarray[Any, np.dtype[np.intp]]:
     """Return the indices (num_kept,), ascending, of the extreme samples of each interval."""
     ends = np.linspace(0, values.size, stretches + 1).astype(int)
-    known = np.nan_to_num(values)
+    finite = np.nan_to_num(values)
     kept = {
-        start + int(extreme(known[start:end]))
+        start + int(extreme(finite[start:end]))
         for start, end in pairwise(ends)
         for extreme in (np.argmin, np.argmax)
     }

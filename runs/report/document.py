@@ -51,7 +51,7 @@ def render(
     texts, proofs = tables_by_part(results), results.summary.design.proofs
     pictures = {part: [figure for figure in figures if figure.part == part] for part in PARTS}
     pictures |= {"snapshots": [*snapshots]}
-    shown = [
+    numbered_things = [
         *_numbered("Table", chain(*texts.values())),
         *_numbered("Figure", chain(*pictures.values())),
     ]
@@ -65,14 +65,14 @@ def render(
         duration=f"{results.case.time.duration:g}",
         cautions=results.summary.cautions,
         remarks=addition.remarks,
-        labels={thing.anchor: label for thing, label in shown},
+        labels={thing.anchor: label for thing, label in numbered_things},
         colors={name: strokes[name].color for name in names},
         adds=play_effect(results),
         of=results.play.model if results.play else "",
         strength=utilisation_verdict(results),
         proved="" if proofs is None else proofs.governing(results.case.system),
         deviation=deviation_note(results),
-        quality=[known.line for known in results.summary.design.quality_notes],
+        quality=[note.line for note in results.summary.design.quality_notes],
         viewer=viewer,
         charts=pack_charts(charts) if charts else "",
         plotly=pack_plotly() if charts else "",

@@ -135,8 +135,8 @@ class FigureContext:
     def curve(self, name: str, values: Array, panel: int = 0, **more: Any) -> Curve:
         """Return the curve of a model for a chart, with values in the unit of the axis."""
         stroke = self.strokes[name]
-        dashes, shown = CHART_DASHES[stroke.linestyle], name in self.main_models
-        return Curve(self.labels[name], values, stroke.color, dashes, shown, panel, **more)
+        dashes, visible = CHART_DASHES[stroke.linestyle], name in self.main_models
+        return Curve(self.labels[name], values, stroke.color, dashes, visible, panel, **more)
 
     def plot(
         self, axes: Axes, values: Mapping[str, Array], panel: int = 0, linewidth: float = 1.5

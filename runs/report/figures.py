@@ -82,14 +82,14 @@ def draw(results: Results, folder: Path, helper: Executor | None = None) -> list
             content = pickle.dumps(results)
             for figures in reversed(FIGURES):
                 there[figures] = helper.submit(_draw_in_helper, figures, content, folder)
-    drawn: list[Figure] = []
+    finished_figures: list[Figure] = []
     for figures in FIGURES:
         with suppress(BrokenExecutor):
             if figures in there and not there[figures].cancel():
-                drawn += there[figures].result()
+                finished_figures += there[figures].result()
                 continue
-        drawn += _draw_some(figures, results, folder)
-    return drawn
+        finished_figures += _draw_some(figures, results, folder)
+    return finished_figures
 
 
 def _draw_in_helper(figures: Draw, results: bytes, folder: Path) -> list[Figure]:
@@ -103,17 +103,17 @@ def _draw_some(figures: Draw, results: Results, folder: Path) -> list[Figure]:
 
 def draw_in_folder(results: Results, folder: Path, helper: Executor | None = None) -> list[Figure]:
     """Draw the figures into the folder of a run, and remove figures of other data."""
-    figures, known = folder / FOLDER, folder / FIGURE_DIGEST
+    figures, digest_file = folder / FOLDER, folder / FIGURE_DIGEST
     figure_digest = _figure_digest(results, folder)
     figures.mkdir(exist_ok=True)
-    if not known.is_file() or known.read_text(encoding="utf-8") != figure_digest:
+    if not digest_file.is_file() or digest_file.read_text(encoding="utf-8") != figure_digest:
         shutil.rmtree(figures)
         figures.mkdir()
-    drawn = draw(results, figures, helper)
-    for earlier in set(figures.iterdir()) - {figure.path for figure in drawn}:
+    new_figures = draw(results, figures, helper)
+    for earlier in set(figures.iterdir()) - {figure.path for figure in new_figures}:
         earlier.unlink()
-    write_atomically(known, figure_digest)
-    return drawn
+    write_atomically(digest_file, figure_digest)
+    return new_figures
 
 
 def _figure_digest(results: Results, folder: Path) -> str:

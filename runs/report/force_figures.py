@@ -41,14 +41,14 @@ def first_contacts(run: FigureContext) -> list[Figure]:
     if not _has_contacts(run):
         return []
     end = run.first_peak_window
-    shown = run.time <= end
+    in_window = run.time <= end
     stations = run.stations()
     sheet, panels = run.over_time(len(stations), 1.3 + 2.0 * len(stations), end)
     curves = []
     for i, (axes, station) in enumerate(zip(panels, stations, strict=True)):
         for name in run.with_play:
             mean = running_mean(run, run.result(name, "contact_force")[:, i] * TO_KILO)
-            run.line(axes, name, run.time[shown], mean[shown], linewidth=1.3)
+            run.line(axes, name, run.time[in_window], mean[in_window], linewidth=1.3)
             curves.append(run.curve(name, mean, i))
         axes.set(title=station, ylabel="force (kN)")
         widen_limits(axes)
@@ -71,19 +71,21 @@ def contact_peaks(run: FigureContext) -> list[Figure]:
     middle = np.array([run.time[part].mean() for part in bins])
     stations = run.stations()
     sheet, panels = run.over_time(len(stations), 1.3 + 2.0 * len(stations), share_y=True)
-    drawn = []
+    curves_in_kn = []
     for i, (axes, station) in enumerate(zip(panels, stations, strict=True)):
         for name in run.with_play:
             force = np.abs(run.result(name, "contact_force_peak")[:, i])
             largest = np.array([highest(force[part]) for part in bins])
             largest[~(largest > LEAST_FORCE)] = np.nan
-            drawn.append(largest * TO_KILO)
+            curves_in_kn.append(largest * TO_KILO)
             run.line(axes, name, middle, largest * TO_KILO, linewidth=1.1, marker="o")
         axes.set(title=station, ylabel="force (kN)")
-    _log_scale(panels, np.concatenate(drawn))
+    _log_scale(panels, np.concatenate(curves_in_kn))
     peaks = [run.summary[name].peak_contact_force for name in run.with_play]
-    known = [peak for peak in peaks if peak is not None]
-    title = "Peak contact forces" + (f": up to {max(known) * TO_KILO:.0f} kN" if known else "")
+    largest_peaks = [peak for peak in peaks if peak is not None]
+    title = "Peak contact forces" + (
+        f": up to {max(largest_peaks) * TO_KILO:.0f} kN" if largest_peaks else ""
+    )
     caption = (
         f"Largest contact force at each station in every {run.time[-1] / len(bins):.2g} s, "
         "upwards or downwards, on a logarithmic scale. Forces below "
@@ -129,10 +131,10 @@ def _has_contacts(run: FigureContext) -> bool:
 
 def _log_scale(panels: Sequence[Axes], values: Array) -> None:
     """Set a common logarithmic scale for all panels, with enough labels within a decade."""
-    known = values[np.isfinite(values)]
-    if known.size == 0:
+    finite = values[np.isfinite(values)]
+    if finite.size == 0:
         return
-    low, high = known.min() / LOG_MARGIN, known.max() * LOG_MARGIN
+    low, high = finite.min() / LOG_MARGIN, finite.max() * LOG_MARGIN
     decades = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1.0)
     for steps in ((1.0, 2.0, 5.0), (1.0, 3.0), (1.0,)):
         labels = np.outer(decades, steps).ravel()
@@ -140,7 +142,7 @@ def _log_scale(panels: Sequence[Axes], values: Array) -> None:
         if labels.size <= MOST_LABELS:
             break
     if labels.size < 2:
-        labels = np.unique([known.min(), known.max()])
+        labels = np.unique([finite.min(), finite.max()])
     for axes in panels:
         axes.set_yscale("log")
         axes.set_ylim(low, high)
@@ -164,9 +166,12 @@ def hoisting(run: FigureContext) -> list[Figure]:
     if "rope_force" not in run.data:
         return []
     forces = _model_results(run, "rope_force", TO_KILO)
-    shown = {"rope force (kN)": forces, "height (mm)": _model_results(run, "load_height", TO_MILLI)}
+    panels = {
+        "rope force (kN)": forces,
+        "height (mm)": _model_results(run, "load_height", TO_MILLI),
+    }
     swings = {"swing_out": "swing in plane (m)", "swing_aside": "swing aside (m)"}
-    shown |= {
+    panels |= {
         label: _model_results(run, key, 1.0) for key, label in swings.items() if key in run.data
     }
     weight = TO_KILO * run.data["rope_force_peak"].attrs["weight"]
@@ -177,11 +182,11 @@ def hoisting(run: FigureContext) -> list[Figure]:
     )
     largest = farthest([farthest(force) for force in forces.values()])
     title = f"Hoisting: rope force up to {fixed(largest, 1)} kN"
-    return [_draw_panels(run, "hoist", shown, ", ".join(shown), title, caption)]
+    return [_draw_panels(run, "hoist", panels, ", ".join(panels), title, caption)]
 
 
 def _stick_slip(run: FigureContext, suffix: str, inner: str) -> Figure:
-    shown = {
+    panels = {
         "force of the drive (kN)": _model_results(run, f"drive_force{suffix}", TO_KILO),
         "speed (m/s)": _model_results(run, f"extension_speed{suffix}", 1.0),
     }
@@ -197,12 +202,12 @@ def _stick_slip(run: FigureContext, suffix: str, inner: str) -> Figure:
     )
     title = f"Drive of {inner}: sticks {sticks} times, slips by up to {TO_MILLI * slip:.2g} mm"
     return _draw_panels(
-        run, f"stick-slip{suffix}", shown, "force (kN), speed (m/s)", title, caption
+        run, f"stick-slip{suffix}", panels, "force (kN), speed (m/s)", title, caption
     )
 
 
 def _drive(run: FigureContext, suffix: str, inner: str) -> Figure:
-    shown = {
+    panels = {
         heading: {
             name: running_mean(run, values)
             for name, values in _model_results(run, f"{result}{suffix}", TO_KILO).items()
@@ -212,7 +217,9 @@ def _drive(run: FigureContext, suffix: str, inner: str) -> Figure:
             ("power (kW)", "drive_power"),
         )
     }
-    force = farthest([farthest(values) for values in shown["force against friction (kN)"].values()])
+    force = farthest(
+        [farthest(values) for values in panels["force against friction (kN)"].values()]
+    )
     caption = (
         f"Above: force of the drive of {inner!r} against the friction of its pads, the "
         f"coefficient times their contact forces. Below: its power, including contact forces on "
@@ -220,7 +227,7 @@ def _drive(run: FigureContext, suffix: str, inner: str) -> Figure:
         f"Means over {TO_MILLI * FORCE_WINDOW:g} ms."
     )
     title = f"Drive of {inner}: up to {fixed(force, 2)} kN against friction"
-    return _draw_panels(run, f"drive{suffix}", shown, "force (kN), power (kW)", title, caption)
+    return _draw_panels(run, f"drive{suffix}", panels, "force (kN), power (kW)", title, caption)
 
 
 def _model_results(run: FigureContext, result: str, unit: float) -> dict[str, Array]:
@@ -230,18 +237,18 @@ def _model_results(run: FigureContext, result: str, unit: float) -> dict[str, Ar
 def _draw_panels(
     run: FigureContext,
     stem: str,
-    shown: Mapping[str, Mapping[str, Array]],
+    quantities: Mapping[str, Mapping[str, Array]],
     heading: str,
     title: str,
     caption: str,
 ) -> Figure:
     """Draw several results in all models, with a panel for each."""
-    sheet, panels = run.over_time(len(shown), 1.2 + 2.0 * len(shown))
+    sheet, panels = run.over_time(len(quantities), 1.2 + 2.0 * len(quantities))
     curves = []
-    for panel, (axes, (label, values)) in enumerate(zip(panels, shown.items(), strict=True)):
+    for panel, (axes, (label, values)) in enumerate(zip(panels, quantities.items(), strict=True)):
         axes.set_ylabel(label)
         curves += run.plot(axes, values, panel, linewidth=1.0)
-    chart = Chart(run.time, heading, curves, list(shown))
+    chart = Chart(run.time, heading, curves, list(quantities))
     return run.finish(sheet, panels[0], stem, title, caption, chart=chart)
 
 

@@ -187,11 +187,11 @@ def lateral_peak_table(results: Results) -> Table | None:
     columns = [Column("model", list(models))]
     for place, way in (("tip", "up"), ("tip_lateral", "sideways")):
         peaks = [model.first_peak[place] for model in models.values()]
-        shown = [_first_peak(peak, duration) for peak in peaks]
+        first_peaks = [_first_peak(peak, duration) for peak in peaks]
         other = models[reference].first_peak[place].height
         columns += [
-            Column(way, [time for time, _ in shown], ".3f", "s"),
-            Column(way, [height for _, height in shown], ".1f", "mm"),
+            Column(way, [time for time, _ in first_peaks], ".3f", "s"),
+            Column(way, [height for _, height in first_peaks], ".1f", "mm"),
             Column(
                 f"{way}, off {reference}",
                 [_relative_difference(p.height, other) for p in peaks],

@@ -58,13 +58,13 @@ def close_up(run: FigureContext) -> list[Figure]:
     if not any(run.summary[name].first_peak[place].time for name in run.models):
         return []
     end = run.first_peak_window
-    shown = run.time <= end
+    in_window = run.time <= end
     sheet, (axes,) = run.over_time(1, 3.9, end)
     contacts, peakless = [], []
     circle: dict[str, Any] = {"mfc": "white", "ms": 7, "mew": 1.6}
     for name in run.models:
         deflection = TO_MILLI * run.result(name, place)
-        run.line(axes, name, run.time[shown], deflection[shown])
+        run.line(axes, name, run.time[in_window], deflection[in_window])
         color = run.strokes[name].color
         contact = run.summary[name].first_contact
         if contact and contact <= end:
@@ -163,8 +163,8 @@ def _members(run: FigureContext, axes: Axes, name: str, place: str) -> None:
     axes.fill_between(run.time, low, high, color=color, alpha=shade, linewidth=0, zorder=1)
     for share, dashes in zip(SHARES, (":", "--"), strict=True):
         ensemble = run.summary[name].ensemble
-        if ensemble and (known := ensemble.horizon(share)) is not None:
-            axes.axvline(known, color=color, linestyle=dashes, linewidth=0.9)
+        if ensemble and (horizon := ensemble.horizon(share)) is not None:
+            axes.axvline(horizon, color=color, linestyle=dashes, linewidth=0.9)
 
 
 def _band(run: FigureContext, name: str, place: str) -> tuple[Array, Array] | None:
@@ -281,9 +281,9 @@ def energies(run: FigureContext) -> list[Figure]:
     """Draw the energies of the last model with play."""
     name = (run.with_play or run.models)[-1]
     columns = dict(zip(DRIVEN_ENERGIES, _energies(run, name).T, strict=False))
-    drawn = columns.pop("drive_work", None)
-    work = columns.pop("work") + (0.0 if drawn is None else drawn)
-    of = "work of loads" if drawn is None else "work of loads and drives"
+    drive_work = columns.pop("drive_work", None)
+    work = columns.pop("work") + (0.0 if drive_work is None else drive_work)
+    of = "work of loads" if drive_work is None else "work of loads and drives"
     held = {energy: columns.pop(energy) for energy in STORED}
     lost = {energy: values for energy, values in columns.items() if values.any()}
     parts = held | lost
@@ -336,8 +336,8 @@ def residuals(run: FigureContext) -> list[Figure]:
 
 def _energies(run: FigureContext, name: str) -> Array:
     """Return energies (num_times, num_energies) in J by :func:`dynamics.energy.energy_residual`."""
-    known = [energy for energy in DRIVEN_ENERGIES if energy in run.data]
-    return np.array([run.result(name, energy) for energy in known]).T
+    names = [energy for energy in DRIVEN_ENERGIES if energy in run.data]
+    return np.array([run.result(name, energy) for energy in names]).T
 
 
 def _energy_name(energy: str) -> str:

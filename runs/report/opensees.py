@@ -83,7 +83,7 @@ def script(
     """
     _check(case, model_boom)
     boom = model_boom.boom
-    touching = _touching(boom)
+    touching = _contact_points(boom)
     stiff = boom if calibration is None else with_stiffnesses(boom, calibration.segments)
     parts = [_part(stiff, number, model, touching) for number in range(len(boom.segments))]
     data = {
@@ -138,7 +138,7 @@ def _check(case: Case, model_boom: ModelBoom) -> None:
             )
 
 
-def _touching(boom: Boom) -> list[tuple[int, float]]:
+def _contact_points(boom: Boom) -> list[tuple[int, float]]:
     """Return segment and x in m of each contact point."""
     places = [(stop.segment, stop.x) for _, stop in boom.numbered_stops]
     for pad in pads(boom):
@@ -302,8 +302,8 @@ def exported(case: Case, file: str, name: str | None = None) -> BeamElements:
     if not of:
         raise BadInput(file, "--model", "must be beam elements with play, and there are none")
     if name is not None and name not in of:
-        known = choices(list(of))
-        raise BadInput(file, "--model", f"{name!r} is no beam elements with play; give {known}")
+        names = choices(list(of))
+        raise BadInput(file, "--model", f"{name!r} is no beam elements with play; give {names}")
     return of[name or [*of][-1]]
 
 

@@ -409,8 +409,8 @@ def _largest(view: OverlapView, time: float) -> str:
 def _ring_largest(sheet: Sheet, view: OverlapView, places: Array, values: Array) -> str:
     """Mark the largest smoothed stress of the visible walls with a circle; return its legend."""
     scene = view.scene
-    shown = view.behind & np.isin(scene.segment, view.numbers)
-    triangle = int(np.where(shown, values.max(axis=1), 0.0).argmax())
+    visible = view.behind & np.isin(scene.segment, view.numbers)
+    triangle = int(np.where(visible, values.max(axis=1), 0.0).argmax())
     corner = int(values[triangle].argmax())
     x, y = view.camera(places).project(places[scene.triangles[triangle, corner]])
     largest = f"{digits(TO_MEGA * float(values[triangle, corner]))} MPa"

@@ -164,10 +164,10 @@ def _draw_panels(
     caption: str,
 ) -> list[Figure]:
     """Draw a panel for each quantity that is not zero; nothing if all are zero."""
-    if not (shown := _nonzero_quantities(lines)):
+    if not (quantities := _nonzero_quantities(lines)):
         return []
-    sheet, panels = new_sheet(len(shown), 1.2 + 1.4 * len(shown))
-    for axes, what in zip(panels, shown, strict=True):
+    sheet, panels = new_sheet(len(quantities), 1.2 + 1.4 * len(quantities))
+    for axes, what in zip(panels, quantities, strict=True):
         heading, factor = _PANELS[what]
         for name, each in lines.items():
             for line in each.get(what, ()):
@@ -190,12 +190,12 @@ def chart_along(lines: Mapping[str, Mapping[str, Sequence[Line]]]) -> Chart:
     Args:
         lines: lines of each quantity by the names of their sources, see :func:`rest_lines`.
     """
-    shown = _nonzero_quantities(lines)
+    quantities = _nonzero_quantities(lines)
     ends = [
         edge(line.x)
         for edge in (np.min, np.max)
         for each in lines.values()
-        for line in each.get(shown[0], ())
+        for line in each.get(quantities[0], ())
     ]
     curves = [
         Curve(
@@ -206,11 +206,11 @@ def chart_along(lines: Mapping[str, Mapping[str, Sequence[Line]]]) -> Chart:
             panel=number,
             at=line.x,
         )
-        for number, what in enumerate(shown)
+        for number, what in enumerate(quantities)
         for name, each in lines.items()
         for line in each.get(what, ())
     ]
-    titles = [_PANELS[what][0] for what in shown]
+    titles = [_PANELS[what][0] for what in quantities]
     return Chart(np.sort(ends)[[0, -1]], "", curves, titles, along="x along the boom (m)")
 
 

@@ -90,7 +90,7 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
     for t in when.values():
         if not begin <= t <= end:
             raise ValueError(f"time must be between {begin:g} and {end:g} s, got {t:g}")
-    drawn: list[Path] = []
+    paths: list[Path] = []
     with rc_context(theme.PAGE_RC):
         assert views[0].stress is not None
         scale = StressScale.of(views[0].stress, when.values())
@@ -109,9 +109,9 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
                 pictures[f"stress{joint}"] = draw_stress(seen, instants, scale, overlap)
             for kind, several in pictures.items():
                 for name, picture in zip(when, several, strict=True):
-                    drawn.append(folder / f"{kind}-{name}.png")
-                    picture.save(drawn[-1])
-    return drawn
+                    paths.append(folder / f"{kind}-{name}.png")
+                    picture.save(paths[-1])
+    return paths
 
 
 def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Path]:
@@ -267,7 +267,7 @@ def start_rendering(
     beside = workers.workers(1, opengl.silence_stderr) if helper is None else nullcontext(helper)
     with TemporaryDirectory(dir=folder) as easel, beside as pool:
         first = pool.submit(opengl.render_test_picture)
-        drawn = []
+        futures = []
         for number, path in enumerate(sorted(shells)):
             place = Path(easel) / str(number)
             place.mkdir()
@@ -275,12 +275,12 @@ def start_rendering(
                 future = pool.submit(
                     render_files, render, path, trajectories, results.case, place, times
                 )
-                drawn.append((path.name.removesuffix(FIELDS), future))
+                futures.append((path.name.removesuffix(FIELDS), future))
 
         def gather() -> list[str]:
             pictures = {
                 f"{prefix}{picture.name}": picture
-                for prefix, several in _collect_pictures(first, drawn)
+                for prefix, several in _collect_pictures(first, futures)
                 for picture in several
             }
             (folder / SNAPSHOTS).mkdir(exist_ok=True)
@@ -296,12 +296,12 @@ def start_rendering(
 
 
 def _collect_pictures(
-    first: Future[None], drawn: Sequence[tuple[str, Future[list[Path]]]]
+    first: Future[None], futures: Sequence[tuple[str, Future[list[Path]]]]
 ) -> list[tuple[str, list[Path]]]:
     """Wait for all pictures, and return the pictures of each shell."""
     try:
         first.result(opengl.PROBE_SECONDS)
-        return [(prefix, pictures.result()) for prefix, pictures in drawn]
+        return [(prefix, pictures.result()) for prefix, pictures in futures]
     except TimeoutError:
         raise opengl.timeout_error() from None
     except BrokenProcessPool:

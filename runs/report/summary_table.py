@@ -153,15 +153,15 @@ def utilisation_verdict(results: Results, model: str | None = None) -> str:
     categories the text is empty.
     """
     model = model or results.main_models[0]
-    known = [one for one in utilisations(results, model).values() if one.value is not None]
-    if not known:
+    governing = [one for one in utilisations(results, model).values() if one.value is not None]
+    if not governing:
         return ""
-    known.sort(key=lambda one: one.value or 0.0, reverse=True)
-    used = "; ".join(map(str, known))
-    return f"Utilisation {used}. No safety factor is included.{_not_given(results, model)}"
+    governing.sort(key=lambda one: one.value or 0.0, reverse=True)
+    used = "; ".join(map(str, governing))
+    return f"Utilisation {used}. No safety factor is included.{_missing_strengths(results, model)}"
 
 
-def _not_given(results: Results, model: str) -> str:
+def _missing_strengths(results: Results, model: str) -> str:
     """Return a text on missing strengths of steel and of loaded pads."""
     steels = [one.name for one in results.boom.segments if one.yield_strength is None]
     pressed = (pad for pad in results.summary.pads if pad.model == model and pad.force > 0.0)
@@ -276,8 +276,12 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
 
 def _span(values: Iterable[float | None]) -> str:
     """Return text with minimum and maximum in MPa; empty without values."""
-    known = sorted({TO_MEGA * value for value in values if value is not None})
-    return f"{' to '.join(map(number, dict.fromkeys((known[0], known[-1]))))} MPa" if known else ""
+    millions = sorted({TO_MEGA * value for value in values if value is not None})
+    return (
+        f"{' to '.join(map(number, dict.fromkeys((millions[0], millions[-1]))))} MPa"
+        if millions
+        else ""
+    )
 
 
 def _farthest(results: ModelDesignResults, tip: Array) -> str:

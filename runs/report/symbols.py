@@ -158,12 +158,12 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
     """Yield the symbols of supports, stops, masses, loads and axial forces, in this order."""
     yield from _support_symbols(boom)
     for index, segment in enumerate(boom.segments):
-        given = case.segments[index]
-        if given.load:
-            yield _spread(boom, index, segment.ends, given.load, "z", "")
-        if given.lateral_load:
-            yield _spread(boom, index, segment.ends, given.lateral_load, "y", "")
-        for one in given.masses:
+        segment_table = case.segments[index]
+        if segment_table.load:
+            yield _spread(boom, index, segment.ends, segment_table.load, "z", "")
+        if segment_table.lateral_load:
+            yield _spread(boom, index, segment.ends, segment_table.lateral_load, "y", "")
+        for one in segment_table.masses:
             yield _mass(index, at(one.x, *segment.ends), f"mass, {number(one.mass, 4)} kg")
     if case.payload is not None:
         payload = f"payload, {number(case.payload.mass, 4)} kg"

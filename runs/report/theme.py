@@ -112,9 +112,9 @@ def strokes(models: Sequence[str], bonded: Sequence[str]) -> dict[str, Stroke]:
         bonded: names of models without play, whose curves are grey and dashed.
     """
     with_play = [name for name in models if name not in bonded]
-    drawn = {name: Stroke(PLAY_FREE, "--") for name in bonded}
+    strokes_of_models = {name: Stroke(PLAY_FREE, "--") for name in bonded}
     for i, name in enumerate(with_play):
         # If the palette is too short, its colours are repeated with dashes.
         again, color = divmod(i, len(PALETTE))
-        drawn[name] = Stroke(PALETTE[color], ("-", "-.", ":")[again % 3])
-    return {name: drawn[name] for name in models}
+        strokes_of_models[name] = Stroke(PALETTE[color], ("-", "-.", ":")[again % 3])
+    return {name: strokes_of_models[name] for name in models}

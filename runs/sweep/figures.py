@@ -79,13 +79,13 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
     strokes = _strokes(data, bonded)
     with matplotlib.rc_context(theme.RC):
         if len(keys) == 2:
-            for quantity in _changing(data):
+            for quantity in _varying_quantities(data):
                 _map(data, quantity, keys, folder)
             return
         for count, there in enumerate(_at_ends(data, keys[1:]), start=1):
             part = data.sel(there)
             # Nothing to draw if all points failed.
-            if changing := _changing(part):
+            if changing := _varying_quantities(part):
                 sheet, panels = _lines(data[keys[0]], _model_lines(part, changing, strokes))
                 for axes, quantity in zip(panels, changing, strict=True):
                     axes.set_yscale("log" if quantity.logarithmic else "linear")
@@ -112,9 +112,9 @@ def _at_ends(data: xr.Dataset, keys: Sequence[str]) -> Iterator[dict[str, float]
         yield dict(zip(keys, values, strict=True))
 
 
-def _changing(data: xr.Dataset) -> list[Metric]:
+def _varying_quantities(data: xr.Dataset) -> list[Metric]:
     """Return the quantities that change, or all available ones if none changes."""
-    known = [one for one in CHARTED if np.isfinite(data[one.name].values).any()]
+    available = [one for one in CHARTED if np.isfinite(data[one.name].values).any()]
 
     def changes(one: Metric) -> bool:
         values = data[one.name]
@@ -122,7 +122,7 @@ def _changing(data: xr.Dataset) -> list[Metric]:
         spans = (values.max(keys) - values.min(keys)).values
         return bool(np.nanmax(spans) > SAME * np.nanmax(np.abs(values.values)))
 
-    return [one for one in known if changes(one)] or known
+    return [one for one in available if changes(one)] or available
 
 
 def in_display_units(data: xr.Dataset) -> xr.Dataset:
@@ -131,12 +131,12 @@ def in_display_units(data: xr.Dataset) -> xr.Dataset:
     for name, along in data.coords.items():
         unit = along.attrs.get("units", "")
         largest = float(np.abs(along.values).max()) if unit in {*_LARGE, *_SMALL} else 0.0
-        for known, fits in ((_LARGE, largest.__ge__), (_SMALL, largest.__lt__)):
-            bound, factor, shown = known.get(unit, (0.0, 0.0, ""))
-            if shown and largest and fits(bound):
+        for units, fits in ((_LARGE, largest.__ge__), (_SMALL, largest.__lt__)):
+            bound, factor, display_unit = units.get(unit, (0.0, 0.0, ""))
+            if display_unit and largest and fits(bound):
                 # Values are rounded to readable numbers.
                 values = np.array([float(f"{factor * value:.12g}") for value in along.values])
-                coordinates[name] = (along.dims, values, {**along.attrs, "units": shown})
+                coordinates[name] = (along.dims, values, {**along.attrs, "units": display_unit})
     return data.assign_coords(coordinates)
 
 
@@ -150,7 +150,7 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
     data = in_display_units(data)
     (key,) = (str(dim) for dim in data.dims if dim not in ("model", "joints", "mode"))
     colors = {name: one.color for name, one in _strokes(data, ()).items()}
-    shown = {
+    lines_of_modes = {
         f"mode {mode} (Hz)": {
             f"{name}, joints {joints}": (
                 data["frequency"].sel(model=name, joints=joints, mode=mode).values,
@@ -162,7 +162,7 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
         for mode in data["mode"].values
     }
     with matplotlib.rc_context(theme.RC):
-        sheet, panels = _lines(data[key], shown)
+        sheet, panels = _lines(data[key], lines_of_modes)
         for axes in panels:
             # Margins follow from a range that includes zero, so that they do not clip an almost
             # constant line.
@@ -182,15 +182,15 @@ def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
     """
     data = in_display_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
-    known = [one for one in DISTANCES if np.isfinite(data[one.name].values).any()]
+    available = [one for one in DISTANCES if np.isfinite(data[one.name].values).any()]
     with matplotlib.rc_context(theme.RC):
         if len(keys) > 1:
-            for quantity in known:
+            for quantity in available:
                 _distance_maps(data, quantity, keys, reference, folder)
-        elif known:
-            floor = {one.name: np.maximum(data[one.name], _LEAST / one.factor) for one in known}
-            shown = _model_lines(data.assign(floor), known, _strokes(data, ()))
-            sheet, panels = _lines(data[keys[0]], shown)
+        elif available:
+            floor = {one.name: np.maximum(data[one.name], _LEAST / one.factor) for one in available}
+            lines_of_models = _model_lines(data.assign(floor), available, _strokes(data, ()))
+            sheet, panels = _lines(data[keys[0]], lines_of_models)
             for axes in panels:
                 for level in LEVELS:
                     axes.axhline(level, color=theme.INK, linewidth=0.8, linestyle=":")
@@ -218,11 +218,11 @@ def _model_lines(
 
 
 def _lines(
-    along: xr.DataArray, shown: Mapping[str, Mapping[str, tuple[Array, theme.Stroke]]]
+    along: xr.DataArray, lines_of_panels: Mapping[str, Mapping[str, tuple[Array, theme.Stroke]]]
 ) -> tuple[Sheet, list[Axes]]:
     """Return a sheet with a panel of lines for each quantity, and with a legend."""
-    sheet, panels = new_sheet(len(shown), 1.2 + 1.8 * len(shown))
-    for axes, (title, lines) in zip(panels, shown.items(), strict=True):
+    sheet, panels = new_sheet(len(lines_of_panels), 1.2 + 1.8 * len(lines_of_panels))
+    for axes, (title, lines) in zip(panels, lines_of_panels.items(), strict=True):
         for label, (values, stroke) in lines.items():
             (line,) = axes.plot(along.values, values, marker="o", markersize=4.0, label=label)
             line.set(color=stroke.color, linestyle=stroke.linestyle)
@@ -239,8 +239,8 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
     values = quantity.factor * data[quantity.name].transpose("model", *keys[::-1])
     permitted = _permitted(data, quantity)
     failed = data["failed"].transpose("model", *keys[::-1])
-    known = np.isfinite(values.values).any(axis=(1, 2))
-    names = [str(name) for name in values["model"].values[known]]
+    has_values = np.isfinite(values.values).any(axis=(1, 2))
+    names = [str(name) for name in values["model"].values[has_values]]
     sheet, panels = new_sheet(len(names), 1.4 + 2.4 * len(names))
     low, high = float(values.min()), float(values.max())
     for axes, name in zip(panels, names, strict=True):
@@ -267,11 +267,11 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
         axes.grid(visible=False)
         axes.label_outer()
     sheet.colorbar(mesh, ax=panels, label=f"{quantity.title} ({quantity.shown_unit})", aspect=40)
-    left_out = [str(name) for name in values["model"].values[~known]]
+    left_out = [str(name) for name in values["model"].values[~has_values]]
     remarks = [
-        *([f"grey: no {quantity.title}"] if values[known].isnull().any() else []),
+        *([f"grey: no {quantity.title}"] if values[has_values].isnull().any() else []),
         *([] if permitted is None else [f"red, dotted: limit of {permitted:.4g}"]),
-        *(["×: the numerics failed"] if failed[known].values.any() else []),
+        *(["×: the numerics failed"] if failed[has_values].values.any() else []),
         *([f"without any: {', '.join(left_out)}"] if left_out else []),
     ]
     sheet.supxlabel("; ".join(remarks), x=0.02, ha="left", fontsize=9.0)
@@ -289,13 +289,15 @@ def _distance_maps(
     *before, x, y = keys
     parts = [data.sel(there) for there in _at_ends(data, before)]
     values = quantity.factor * data[quantity.name]
-    known = [name for name in values["model"].values if np.isfinite(values.sel(model=name)).any()]
+    model_names = [
+        name for name in values["model"].values if np.isfinite(values.sel(model=name)).any()
+    ]
     width = theme.WIDTH + (len(parts) - 1) * _COLUMN
-    sheet = Sheet(figsize=(width, 1.4 + 2.2 * len(known)))
+    sheet = Sheet(figsize=(width, 1.4 + 2.2 * len(model_names)))
     theme.Canvas(sheet)
-    grid = sheet.subplots(len(known), len(parts), sharex=True, sharey=True, squeeze=False)
+    grid = sheet.subplots(len(model_names), len(parts), sharex=True, sharey=True, squeeze=False)
     for part, column in zip(parts, grid.T, strict=True):
-        for axes, name in zip(column, known, strict=True):
+        for axes, name in zip(column, model_names, strict=True):
             _scale_axis(axes, "x", data[x])
             _scale_axis(axes, "y", data[y])
             off = quantity.factor * part[quantity.name].sel(model=name).transpose(y, x)

@@ -91,16 +91,16 @@ def print_ranges(data: xr.Dataset, plan: Plan, console: Console) -> None:
     """Print each model's range of results, differences of models, and admissible speeds."""
     keys = [variable.name for variable in data.coords.values() if variable.name != "model"]
     by_name = {quantity.name: quantity for quantity in QUANTITIES}
-    shown, residual = [by_name[name] for name in SHOWN], by_name["energy_residual"]
+    quantities, residual = [by_name[name] for name in SHOWN], by_name["energy_residual"]
     rows = []
     for name in data["model"].values:
         values = data.sel(model=name)
-        ranges = [_range(values[quantity.name], quantity) for quantity in shown]
+        ranges = [_range(values[quantity.name], quantity) for quantity in quantities]
         worst = number(float(values[residual.name].max()), 1)
         rows.append((str(name), *ranges, worst, _where_largest(values["tip_amplitude"], keys)))
     # Headings are narrow, so that 80 columns suffice.
     headings = [
-        *(f"{quantity.title} {quantity.shown_unit}" for quantity in shown),
+        *(f"{quantity.title} {quantity.shown_unit}" for quantity in quantities),
         residual.title,
         "farthest at",
     ]

@@ -221,9 +221,9 @@ def infer_plates(case: Case) -> Plates:
         SectionTable(
             height=section.height, width=section.width, flange=section.flange, web=section.web
         )
-        if given.section is None and isinstance(section, BoxSection)
+        if table.section is None and isinstance(section, BoxSection)
         else None
-        for given, section in zip(case.segments, sections, strict=True)
+        for table, section in zip(case.segments, sections, strict=True)
     ]
 
 

@@ -38,9 +38,9 @@ class VibrationCurve(NamedTuple):
 
     def with_level(self, end: str) -> VibrationCurve:
         """Return the curve at those speeds for which the level of an end is available."""
-        known = np.isfinite(self.levels[end])
-        levels = {end: self.levels[end][known]}
-        return VibrationCurve(self.speed[known], self.vibration[known], levels)
+        finite = np.isfinite(self.levels[end])
+        levels = {end: self.levels[end][finite]}
+        return VibrationCurve(self.speed[finite], self.vibration[finite], levels)
 
 
 def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
@@ -53,14 +53,14 @@ def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
     for name in data["model"].values:
         one = data.sel(model=name)
         vibration = one["residual_vibration"].values
-        known = np.isfinite(vibration) & np.isfinite(one["drive_speed"].values)
-        speed = one["drive_speed"].values[known]
+        finite = np.isfinite(vibration) & np.isfinite(one["drive_speed"].values)
+        speed = one["drive_speed"].values[finite]
         if vibration.ndim > 1 or np.unique(speed).size < 2:
             continue
         order = np.argsort(speed)
-        ends = {end: one[end].values[known][order] for end in _ENDS}
+        ends = {end: one[end].values[finite][order] for end in _ENDS}
         levels = {end: level for end, level in ends.items() if np.isfinite(level).any()}
-        curves[str(name)] = VibrationCurve(speed[order], vibration[known][order], levels)
+        curves[str(name)] = VibrationCurve(speed[order], vibration[finite][order], levels)
     return curves
 
 

@@ -96,8 +96,8 @@ def run_points(
         for i, point in enumerate(points)
         if outcomes[i] is None
     }
-    done = len(points) - len(futures)
-    progress("sweep", stage, done / len(points))
+    finished = len(points) - len(futures)
+    progress("sweep", stage, finished / len(points))
     try:
         # An interrupt ends the processes, whose results are not needed.
         with when_interrupted(end):
@@ -105,8 +105,8 @@ def run_points(
                 i = futures[future]
                 outcomes[i] = outcome = future.result()
                 kept.store(names[i], outcome)
-                done += 1
-                progress("sweep", stage, done / len(points))
+                finished += 1
+                progress("sweep", stage, finished / len(points))
     except BrokenProcessPool:
         raise MemoryError("the system has killed a process of the sweep") from None
     finally:

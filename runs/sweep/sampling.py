@@ -140,7 +140,7 @@ def show(results: dict[str, pd.DataFrame], plan: Plan, console: Console) -> None
     for model, frame in results.items():
         rows = [
             (f"{one.title} ({one.shown_unit})", *(one.factor * row).tolist())
-            for one, row in _shown(frame)
+            for one, row in _main_statistics(frame)
         ]
         forms = {"": ""} | dict.fromkeys(("mean", "sd"), ".4g")
         forms |= {f"{100.0 * part:g} %": ".4g" for part in QUANTILES}
@@ -148,7 +148,7 @@ def show(results: dict[str, pd.DataFrame], plan: Plan, console: Console) -> None
         Table.of_rows("sampling", title, forms, rows).show(console)
 
 
-def _shown(results: pd.DataFrame) -> Iterator[tuple[Metric, pd.Series[float]]]:
+def _main_statistics(results: pd.DataFrame) -> Iterator[tuple[Metric, pd.Series[float]]]:
     """Yield the statistics of the main results that scatter."""
     table = scatter(results)
     for one in QUANTITIES:
@@ -158,13 +158,13 @@ def _shown(results: pd.DataFrame) -> Iterator[tuple[Metric, pd.Series[float]]]:
 
 def _draw(results: dict[str, pd.DataFrame], path: Path) -> None:
     """Draw the cumulative distribution of each main result."""
-    shown = {one: None for frame in results.values() for one, _ in _shown(frame)}
+    metrics = {one: None for frame in results.values() for one, _ in _main_statistics(frame)}
     strokes = theme.strokes(list(results), [])
     with matplotlib.rc_context(theme.RC):
-        sheet, _ = new_sheet(1, 0.9 + 1.7 * max(1, len(shown)))
+        sheet, _ = new_sheet(1, 0.9 + 1.7 * max(1, len(metrics)))
         sheet.clear()
-        panels = sheet.subplots(max(1, len(shown)), 1, squeeze=False)[:, 0]
-        for axes, one in zip(panels, shown, strict=False):
+        panels = sheet.subplots(max(1, len(metrics)), 1, squeeze=False)[:, 0]
+        for axes, one in zip(panels, metrics, strict=False):
             for model, frame in results.items():
                 if one.name in frame:
                     axes.ecdf(

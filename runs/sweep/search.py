@@ -37,7 +37,7 @@ def parse_bound(text: str, plan: Plan) -> Limit:
     Raises:
         BadInput: the text is invalid, or the plan has several keys or models.
     """
-    known = {one.name: one for one in QUANTITIES}
+    quantities = {one.name: one for one in QUANTITIES}
     match = _BOUND.fullmatch(text)
     try:
         if match is None:
@@ -46,8 +46,8 @@ def parse_bound(text: str, plan: Plan) -> Limit:
     except ValueError:
         what = f"{text!r} is not understood; give QUANTITY<NUMBER or QUANTITY>NUMBER"
         raise BadInput(plan.file, OPTION, what) from None
-    if match[1] not in known:
-        what = f"{match[1]!r} is no quantity of a sweep; give {choices([*known])}"
+    if match[1] not in quantities:
+        what = f"{match[1]!r} is no quantity of a sweep; give {choices([*quantities])}"
         raise BadInput(plan.file, OPTION, what)
     for several, what, remedy in (
         (plan.variations, "keys vary", "give one --vary"),
@@ -55,7 +55,7 @@ def parse_bound(text: str, plan: Plan) -> Limit:
     ):
         if len(several) != 1:
             raise BadInput(plan.file, OPTION, f"{len(several)} {what}; {remedy}")
-    quantity = known[match[1]]
+    quantity = quantities[match[1]]
     si = scale(value, plan.points[0].case.system.size(quantity.unit))
     return Limit(quantity, si, least=match[2] == ">")
 

@@ -83,7 +83,7 @@ class _PadReadings:
 
     def across(self, side: Side) -> Iterator[_Point]:
         """Yield contact points over the width of a face of the inner section. Collective."""
-        width = self._touching.face("z", side).width
+        width = self._inner_section.face("z", side).width
         across, shares = gauss(-0.5 * width, 0.5 * width, 8)
         for y, share in zip(across[across > 0.0], 2.0 * shares[across > 0.0], strict=True):
             rows = []
@@ -99,7 +99,7 @@ class _PadReadings:
     def over_patch(self, patch: Patch, side: Side, half: int) -> Reading:
         """Return the mean of u − w over a patch, on which the pressure is uniform. Collective."""
         x, along = gauss(patch.start, patch.end, _POINTS)
-        near, far = patch.across(self._touching.face(self.pad.direction, side))
+        near, far = patch.across(self._inner_section.face(self.pad.direction, side))
         y, over = gauss(half * near, half * far, _POINTS)
         places = np.column_stack([np.repeat(x, y.size), np.tile(y, x.size)])
         weights = np.outer(along, over).ravel()
@@ -111,7 +111,7 @@ class _PadReadings:
         return self._approach(*rows)
 
     @property
-    def _touching(self) -> Section:
+    def _inner_section(self) -> Section:
         """Return the section of the inner segment at the pad."""
         inner = self.walls[self.pad.joint.inner].segment
         return inner.section_at(self.pad.x + self.pad.travel[0])

@@ -161,8 +161,8 @@ def without_stiff_modes(comm: MPI.Comm, reduced: ReducedSegment, rows: Array) ->
     """
     gains = np.array([exact_product(comm, row, reduced.shapes) for row in rows.T])
     elastic = reduced.omega2 > 0.0
-    given = gains[:, elastic] ** 2 / reduced.omega2[elastic]
-    above = np.cumsum(given[:, ::-1], axis=1)[:, ::-1]
+    compliances = gains[:, elastic] ** 2 / reduced.omega2[elastic]
+    above = np.cumsum(compliances[:, ::-1], axis=1)[:, ::-1]
     shares = (above / above[:, :1]).max(axis=0)
     left = int(np.count_nonzero(shares >= STIFF))
     kept = int(np.count_nonzero(~elastic)) + left

@@ -67,10 +67,12 @@ class BoomCoordinates:
         if geometric.any():
             # Transform to the modes under the axial forces of the segments.
             tied = np.eye(self.omega2.size) if self._combination is None else self._combination
-            taken = tied.T @ geometric @ tied
+            softening = tied.T @ geometric @ tied
             held = not (self.omega2 == 0.0).any()
-            self.critical_factor = buckling_factor(np.diag(self.omega2), taken) if held else None
-            self.omega2, turn = comm.bcast(soften_modes(self.omega2, taken))
+            self.critical_factor = (
+                buckling_factor(np.diag(self.omega2), softening) if held else None
+            )
+            self.omega2, turn = comm.bcast(soften_modes(self.omega2, softening))
             self._combination = tied @ turn
 
     def row(self, reading: Reading) -> Array:

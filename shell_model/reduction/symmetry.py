@@ -354,7 +354,7 @@ def run_collectively(comm: MPI.Comm, work: Callable[[], _Result]) -> _Result:
 
 
 def _distribute(comm: MPI.Comm, jobs: Sequence[Job], roots: Sequence[int]) -> Iterator[Job | None]:
-    """Send the jobs of rank 0 to their ranks; yield each job there and None elsewhere."""
+    """Send the jobs of rank 0 to other ranks; yield a job on its rank, None on the others."""
     for number, root in enumerate(roots):
         if comm.rank == 0 and root != 0:
             comm.send(jobs[number], root)

@@ -44,18 +44,20 @@ def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float])
     Raises:
         ValueError: a time lies outside the run.
     """
-    known = np.asarray(fields["time"].values, dtype=float)
+    output_times = np.asarray(fields["time"].values, dtype=float)
     for t in times:
-        if not known[0] <= t <= known[-1]:
-            raise ValueError(f"time must be between {known[0]:g} and {known[-1]:g} s, got {t:g}")
-    steps = np.unique([np.abs(known - t).argmin() for t in times])
+        if not output_times[0] <= t <= output_times[-1]:
+            raise ValueError(
+                f"time must be between {output_times[0]:g} and {output_times[-1]:g} s, got {t:g}"
+            )
+    steps = np.unique([np.abs(output_times - t).argmin() for t in times])
     shell, model = ShellStress.from_fields(fields), str(fields.attrs["model"])
     segment = (fields["segment"].values + 1).astype(np.int32)
     modes, states = fields["modes"].values, fields["state"].values[steps]
     digits = len(str(steps.size - 1))
     written = []
     for number, (state, stress) in enumerate(
-        zip(states, shell.instants(known[steps].tolist()), strict=True)
+        zip(states, shell.instants(output_times[steps].tolist()), strict=True)
     ):
         path = folder / f"{model}-{number:0{digits}}.vtu"
         moved = np.tensordot(state, modes, axes=1).astype(np.float32)
@@ -63,12 +65,12 @@ def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float])
             fields["points"].values,
             [("triangle", fields["triangles"].values)],
             point_data={"displacement (m)": moved},
-            cell_data={"segment": [segment], **_named(stress)},
+            cell_data={"segment": [segment], **_stresses_by_name(stress)},
         ).write(path, compression=None)
         written.append(path)
     root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
     collection = ElementTree.SubElement(root, "Collection")
-    for t, path in zip(known[steps], written, strict=True):
+    for t, path in zip(output_times[steps], written, strict=True):
         ElementTree.SubElement(collection, "DataSet", timestep=f"{t:.9g}", part="0", file=path.name)
     ElementTree.indent(root)
     listing = folder / f"{model}.pvd"
@@ -76,7 +78,7 @@ def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float])
     return [*written, listing]
 
 
-def _named(stress: Stress) -> dict[str, list[npt.NDArray[np.float32]]]:
+def _stresses_by_name(stress: Stress) -> dict[str, list[npt.NDArray[np.float32]]]:
     """Return the von Mises stresses and stress components of triangles, by name."""
     components = np.concatenate([stress.membrane, stress.bending], axis=1)
     return {f"von Mises, {face} (Pa)": [stress.von_mises(face)] for face in FACES} | {

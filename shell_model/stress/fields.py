@@ -162,7 +162,7 @@ def gather_fields(
             ),
             **_axial_stress(boom, meshes),
             "modes": (("mode", "point", "component"), modes),
-            **_own_stresses(boom, meshes, stresses, coordinates, system),
+            **_segment_stresses(boom, meshes, stresses, coordinates, system),
         },
         coords={
             "stress": list(COMPONENTS),
@@ -187,7 +187,7 @@ def vertex_displacements(shell: SegmentShell, shapes: Array) -> _Numbers | None:
     return moved.reshape(-1, shapes.shape[1])
 
 
-def _along(segment: Segment, mesh: PlatedMesh, force: Callable[[Array], Array]) -> Array:
+def _axial_stress_of(segment: Segment, mesh: PlatedMesh, force: Callable[[Array], Array]) -> Array:
     """Return the axial stress (num_triangles,) in Pa of a normal force in N as a function of x.
 
     The force acts on the walls, and spreads over the thickness of collars.
@@ -200,13 +200,13 @@ def _axial_stress(boom: Boom, meshes: Sequence[PlatedMesh]) -> dict[str, _Variab
     if not boom.compressed:
         return {}
     stresses = [
-        -_along(segment, mesh, segment.compression)
+        -_axial_stress_of(segment, mesh, segment.compression)
         for segment, mesh in zip(boom.segments, meshes, strict=True)
     ]
     return {"axial_stress": (("triangle",), np.concatenate(stresses), {"units": "Pa"})}
 
 
-def _own_stresses(
+def _segment_stresses(
     boom: Boom,
     meshes: Sequence[PlatedMesh],
     stresses: Sequence[Modes | None],
@@ -221,7 +221,7 @@ def _own_stresses(
     variables: dict[str, _Variable] = {}
     for number, coordinates_of_segment in enumerate(np.split(every, np.cumsum(sizes)[:-1])):
         k, stress = number + 1, modes[number]
-        for force, cylinder_stress in _pushed(boom, number, meshes[number]):
+        for force, cylinder_stress in _cylinder_stresses(boom, number, meshes[number]):
             coordinates_of_segment = np.concatenate(
                 [coordinates_of_segment, system.observers[force].row[None]]
             )
@@ -232,7 +232,7 @@ def _own_stresses(
     return variables
 
 
-def _pushed(boom: Boom, number: int, mesh: PlatedMesh) -> Iterator[tuple[str, Modes]]:
+def _cylinder_stresses(boom: Boom, number: int, mesh: PlatedMesh) -> Iterator[tuple[str, Modes]]:
     """Yield the name of each cylinder force on a segment, and its axial stress in Pa per N.
 
     Stresses are (1, num_triangles, 6).
@@ -242,5 +242,5 @@ def _pushed(boom: Boom, number: int, mesh: PlatedMesh) -> Iterator[tuple[str, Mo
         if cylinder.segment == number:
             stress = np.zeros((1, len(mesh.triangles), len(COMPONENTS)), dtype=np.float32)
             pull = partial(cylinder.normal_force, foot=segment.foot)
-            stress[0, :, COMPONENTS.index("membrane_x")] = _along(segment, mesh, pull)
+            stress[0, :, COMPONENTS.index("membrane_x")] = _axial_stress_of(segment, mesh, pull)
             yield force_name(k), stress

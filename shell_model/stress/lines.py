@@ -38,7 +38,7 @@ def _line(shell: ShellStress, fields: xr.Dataset, boom: Boom, number: int) -> Li
     acting = {support.x for support in boom.segments[number].supports}
     cuts = band_boundaries(shell.spans[triangles], sorted(acting.union(boom.stations_of(number))))
     band = np.searchsorted(cuts, shell.centroids[triangles, 0]) - 1
-    moved = _moved(shell, fields, triangles, band, cuts.size - 1)
+    moved = _mean_deflections(shell, fields, triangles, band, cuts.size - 1)
     corners = fields["points"].values[fields["triangles"].values[triangles]]
     part = band * len(shell.plates[number]) + shell.wall[triangles]
     reaches = _reaches(corners, part)
@@ -81,7 +81,7 @@ def band_boundaries(spans: Array, places: Sequence[float]) -> Array:
     return np.array(cuts)
 
 
-def _moved(
+def _mean_deflections(
     shell: ShellStress, fields: xr.Dataset, triangles: Indices, band: Indices, num_bands: int
 ) -> tuple[Array, Array, Array]:
     """Return the mean deflections along y and z, and the twist, (num_bands, num_modes) each."""

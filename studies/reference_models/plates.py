@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Flat plates with known solutions: under constant strain, vibrating, pressed on a patch."""
+"""Flat plates with known solutions: constant strain, vibration, load on a patch."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ OBLIQUE = np.asarray(Rotation.from_rotvec([0.7, -1.1, 0.4]).as_matrix())
 
 
 def rigidities(thickness: float) -> tuple[float, float]:
-    """Return D in N m and S = 5/6 G t in N/m of a plate of steel, t in m."""
+    """Return the bending stiffness D in N·m and S = 5/6 G t in N/m of a steel plate, t in m."""
     bending = STEEL.youngs_modulus * thickness**3 / (12.0 * (1.0 - STEEL.poissons_ratio**2))
     return bending, SHEAR_CORRECTION * STEEL.shear_modulus * thickness
 
 
 def rectangle(length: float, width: float) -> Field:
-    """Return places (num, 3) in m on [0, length] × [0, width], of parameters from 0 to 1."""
+    """Return positions (num, 3) in m on [0, length] × [0, width] for parameters from 0 to 1."""
     return lambda x, y: np.stack([length * x, width * y, np.zeros_like(x)], axis=1)
 
 
@@ -58,15 +58,15 @@ class ConstantStrain:
 
     @property
     def couple(self) -> Array:
-        """Couple (3,) in N m/m² that balances the state: e3 × Q, Q the shear force."""
+        """Couple (3,) in N·m/m² in equilibrium with the state: e3 × Q with the shear force Q."""
         q1, q2 = rigidities(PATCH_THICKNESS)[1] * self.shear
         return np.array([-q2, q1, 0.0])
 
 
 def constant_strains() -> list[ConstantStrain]:
-    """Return three states with every membrane, bending and shear strain at once.
+    """Return three states that together include all membrane, bending and shear strains.
 
-    Bending is u_z = −κ_xx x²/2 − κ_yy y²/2 − κ_xy x y with normals that stay normal.
+    Bending is u_z = −κ_xx x²/2 − κ_yy y²/2 − κ_xy x y; normals remain perpendicular to the surface.
     """
     none, strain = np.zeros((2, 2)), 1.0e-3 * np.array([[1.0, 0.4], [0.4, -0.7]])
     spin, tilt = 6.0e-4, np.array([3.0e-4, -5.0e-4])
@@ -122,7 +122,7 @@ class Patch:
 
     @classmethod
     def of(cls, n: int = 4) -> Patch:
-        """Create a patch with n edges along each side, inner points shifted by a fifth of one."""
+        """Create a patch with n edges along each side and shifted inner points."""
 
         def surface(x: Array, y: Array) -> Array:
             inside = (np.abs(x - 0.5) < 0.5 - ON_LINE) & (np.abs(y - 0.5) < 0.5 - ON_LINE)
@@ -168,9 +168,9 @@ class Patch:
 
 @dataclass(frozen=True, slots=True)
 class SupportedPlate:
-    """Rectangular plate of steel on hard simple supports, a by b by t in m.
+    """Rectangular steel plate of a by b by t in m on hard simple supports.
 
-    Deflections of the edges and rotations along them are zero.
+    At the edges, deflections and rotations about the normal of the edge are zero.
     """
 
     length: float
@@ -178,7 +178,7 @@ class SupportedPlate:
     thickness: float
 
     def frequencies(self, n: int, count: int) -> Array:
-        """Return the lowest frequencies (count,) in Hz of the shell, n edges along each side."""
+        """Return the lowest frequencies (count,) in Hz of a shell with n edges along each side."""
         # The drilling tie and the wall's inertia have frequencies of their own, from
         # √(12 DRILLING G/ρ)/(2π t) on: in a thick plate a soft tie comes too near.
         shell = StaticShell(
@@ -202,7 +202,7 @@ class SupportedPlate:
     def mindlin(self, count: int) -> Array:
         """Return the lowest frequencies (count,) in Hz (Mindlin 1951).
 
-        With k² = (mπ/a)² + (nπ/b)² and the slope along the wave, ω² is the lower root of
+        With k² = (mπ/a)² + (nπ/b)², ω² is the lower root of
         (S k² − ρt ω²)(D k² + S − ρt³/12 ω²) = S² k², S = 5/6 G t.
         """
         t, k2 = self.thickness, self._wave_numbers2()
@@ -226,7 +226,7 @@ class SupportedPlate:
 
 @dataclass(frozen=True, slots=True)
 class PressedPlate:
-    """Plate of steel on [0, length] × [0, width] on hard simple supports, pressed across.
+    """Steel plate on [0, length] × [0, width] on hard simple supports, under a load on a patch.
 
     Args:
         length, width: length and width in m.
@@ -241,10 +241,10 @@ class PressedPlate:
     end: tuple[float, float]
 
     def shell(self, size: float) -> float:
-        """Return the mean deflection of the patch by the shell under a spread unit force, in m/N.
+        """Return the mean deflection of the patch in m/N under a uniform unit force, by the shell.
 
         Args:
-            size: edge length in m, of which sides and places of the patch are whole multiples.
+            size: edge length in m; sides and patch corners are at whole multiples of it.
         """
         sides = (self.length, self.width)
         points, triangles = grid(rectangle(*sides), *(round(side / size) for side in sides))
@@ -261,10 +261,9 @@ class PressedPlate:
         return float(load @ shell.solve(held, load))
 
     def theory(self, terms: int = 400) -> float:
-        """Return the same as a double series of sines (Navier 1823).
+        """Return this deflection as a double sine series (Navier 1823).
 
-        It includes the shear of Reissner and Mindlin, whose plate bends alike between such
-        supports.
+        It includes shear deflection, which adds to the bending deflection on these supports.
         """
         plate, shear = rigidities(self.thickness)
         waves = np.pi * np.arange(1, terms + 1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Prismatic members of flat walls: torsion of open and closed sections, and boxes."""
+"""Prismatic members with flat walls: torsion of open and closed sections, and boxes."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from studies.reference_models.static_shell import StaticShell, hold
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """Walls between corners, along x from 0.
+    """Member with flat walls between corners, along x from 0.
 
     Args:
-        corners: (y, z) in m of the wall's mid-line, one after another; the axis of twist, y = z =
-            0, is the shear centre.
-        closed: whether the last corner is joined to the first.
+        corners: (y, z) in m of the corners of the mid-line in order; the shear centre, about which
+            the member twists, is y = z = 0.
+        closed: True if a wall connects the last corner with the first.
         thickness: thickness of the walls in m.
         length: length in m.
     """
@@ -62,7 +62,7 @@ class Member:
         return np.array([*self.corners, *last])
 
     def mesh(self, n: int, m: int) -> tuple[Array, Indices]:
-        """Return points (num_points, 3) in m, triangles: n edges across each wall, m along."""
+        """Return points (num_points, 3) in m and triangles: n edges across walls, m along x."""
         line = self._line
         count = n * (len(line) - 1)
 
@@ -82,11 +82,11 @@ class Member:
         return points, triangles
 
     def torsion_constant(self, n: int, m: int) -> float:
-        """Return J in m⁴ of the shell: torque over G times the rate of twist of its middle half.
+        """Return J in m⁴ of the shell: torque over G times the rate of twist of the middle half.
 
-        The ends turn as stiff sections that are free to warp; the rate is read a quarter of the
-        length away from them, so that their bent walls have no part in it. n edges over the width
-        of each wall, m along it, a multiple of four.
+        End sections rotate without distortion and are free to warp. The rate of twist is measured
+        between the quarter points, away from local bending at the ends. The mesh has n edges across
+        each wall and m along x, a multiple of four.
         """
         shell = StaticShell(*self.mesh(n, m), self.thickness, STEEL)
         turn = np.cross([1.0, 0.0, 0.0], shell.nodes)
@@ -115,10 +115,10 @@ BOX = Member([(-0.03, -0.05), (0.03, -0.05), (0.03, 0.05), (-0.03, 0.05)], True,
 
 @dataclass(frozen=True, slots=True)
 class PlainBox:
-    """Box of steel along x from 0.
+    """Steel box along x from 0.
 
     Args:
-        section: its plates.
+        section: section of the box.
         length: length in m.
     """
 
@@ -137,8 +137,8 @@ class PlainBox:
         Args:
             size: target edge length in m.
             drilling: see ``forms.ShellForms``.
-            turn: (3, 3) rotation of the box in space.
-            breaks: mesh lines beside the ends.
+            turn: rotation matrix (3, 3) of the box.
+            breaks: x in m of mesh lines, in addition to the ends.
         """
         lines = {"start": 0.0, "end": self.length, **(breaks or {})}
         mesh = mesh_segment(self.section, lines, size)
@@ -149,18 +149,18 @@ class PlainBox:
     def free_frequencies(
         self, size: float, count: int, drilling: float = DRILLING, turn: Array | None = None
     ) -> Array:
-        """Return the lowest elastic frequencies (count,) in Hz, see :meth:`shell`."""
+        """Return the lowest elastic frequencies (count,) in Hz; arguments as in :meth:`shell`."""
         free = self.shell(size, drilling, turn).held({})
         return np.asarray(natural_frequencies(free, 6 + count)[6:])
 
     def compliance(
         self, size: float, supports: Sequence[float], x: float, y: float, drilling: float = DRILLING
     ) -> float:
-        """Return the compliance in m/N of the top flange at x along z, on the points ±y.
+        """Return the vertical compliance in m/N of the top flange at x, at the points ±y.
 
         Args:
             size: target edge length in m.
-            supports: where the outline is held against y and z.
+            supports: x in m at which the outline is fixed along y and z.
             x, y: x and y in m.
             drilling: see ``forms.ShellForms``.
         """

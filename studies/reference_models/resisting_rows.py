@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Forces of contact and friction of one implicit step, to round-off.
+"""Contact and friction forces of one implicit step, accurate to round-off.
 
 Rows that resist read z = free − C p, with their forces p and the compliance C that the step gives
 them. A contact row follows its law, p = F(z), with F as in (4) of Rusiński and Wyciślok (1997); a
@@ -38,11 +38,11 @@ class ResistingRows:
     Args:
         laws: laws of the contact rows, without damping.
         frictions: frictions of the rows that follow, with prescribed normal forces.
-        compliance: (num_rows, num_rows) C in m/N, of the readings at the time of the forces.
-        onward: factor of a change of that reading over the whole step.
+        compliance: (num_rows, num_rows) C in m/N, for displacements at the time of the forces.
+        onward: ratio of the displacement over the whole step to the displacement at this time.
 
     Attributes:
-        readings: (num_rows,) at the end of the step, in m.
+        readings: displacements (num_rows,) of the rows in m at the end of the step.
         friction_loss: dissipated energy so far, in J.
     """
 
@@ -61,13 +61,13 @@ class ResistingRows:
         self.friction_loss = 0.0
 
     def forces(self, free: Array) -> Array:
-        """Return the forces (num_rows,) of the next step in N, positive against a positive reading.
+        """Return the forces (num_rows,) of the next step in N, opposed to positive displacements.
 
         Args:
-            free: (num_rows,) readings without these forces, in m.
+            free: displacements (num_rows,) of the rows in m without these forces.
 
         Raises:
-            NumericsError: they are not found.
+            NumericsError: the iteration does not converge.
         """
         forces, friction = self._forces, slice(self._contacts, None)
         problem = self._compliance, free, self._terms, self._bound, self._place
@@ -90,7 +90,7 @@ class ResistingRows:
 def resist(problem: Problem, force: Array) -> bool:
     """Improve ``force`` (num_rows,) in N until it solves the problem; False if it does not.
 
-    It is positive against a positive reading, and first a guess.
+    A force is positive if it opposes a positive displacement. The initial values are a guess.
     """
     compliance, free, _, _, _ = problem
     n = free.size
@@ -131,7 +131,7 @@ def _defect(problem: Problem, force: Array, left: Array, slope: Array) -> float:
 
 @njit(**LOOP)
 def _excess(compliance: Array, free: Array, force: Array, change: float, j: int) -> float:
-    """Return a change of row j's force, as a multiple of one that is round-off."""
+    """Return a change of the force of row j, as a multiple of its round-off."""
     reach = abs(free[j])
     for k in range(free.size):
         reach += abs(compliance[j, k] * force[k])

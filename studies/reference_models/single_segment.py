@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Single segment as a shell: its static compliance and natural frequencies."""
+"""Static compliance and natural frequencies of a single segment as a shell."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ STATIC = 0.01
 
 
 def shell_alone(segment: Segment, size: float, places: Sequence[float] = ()) -> SegmentShell:
-    """Return the shell on this process, with edges of a size in m, and mesh lines.
+    """Return the shell of a segment on this process, with an edge length in m.
 
-    The lines are at its ends, supports and stiffeners, and at places x in m.
+    It has mesh lines at ends, supports and stiffeners, and at additional x in m.
     """
     assert segment.section is not None
     plates = diaphragm_breaks(segment)
@@ -41,7 +41,7 @@ def shell_alone(segment: Segment, size: float, places: Sequence[float] = ()) -> 
 
 
 def at_rest(shell: SegmentShell, forces: Array) -> Array:
-    """Return displacements (num_dofs, num_forces) under forces of the same shape in N."""
+    """Return static displacements (num_dofs, num_forces) under forces of the same shape in N."""
     solve = ShiftedSolver(shell, STATIC)
     moved = solve(forces)
     solve.destroy()
@@ -49,7 +49,7 @@ def at_rest(shell: SegmentShell, forces: Array) -> Array:
 
 
 def compliances(shell: SegmentShell, *rows: Row) -> list[float]:
-    """Return the compliance of each row's own reading under a unit force, in m/N."""
+    """Return the compliance (num_rows,) of each row under its unit force in m/N."""
     forces = np.column_stack([shell.row(row) for row in rows])
     moved = at_rest(shell, forces)
     return [
@@ -59,17 +59,17 @@ def compliances(shell: SegmentShell, *rows: Row) -> list[float]:
 
 
 def natural_frequencies(shell: Shell, count: int) -> Array:
-    """Return the lowest natural frequencies in Hz, rising, with rigid motions. Collective.
+    """Return the lowest natural frequencies in Hz, ascending, with rigid motions. Collective.
 
-    Shift-and-invert at a negative shift: K − σ M is then positive definite also for a free
-    segment, and held degrees of freedom, at infinite frequency, stay out of the way.
+    The method is shift-and-invert with a negative shift σ, so that K − σ M is positive definite for
+    a free segment, too. Fixed degrees of freedom have infinite frequencies.
 
     Args:
         shell: the full model.
         count: number of frequencies.
 
     Raises:
-        NumericsError: fewer converged.
+        NumericsError: fewer frequencies converge.
     """
     shift = -((2.0 * np.pi * 5.0) ** 2)
     solver = SLEPc.EPS().create(shell.comm)

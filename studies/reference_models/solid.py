@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Solid model of a symmetry class of a segment's motions, the reference of the shell.
 
-It has the same interface as a symmetry class of a shell. Where a shell's reading takes the
-displacement of a wall's mid-surface, the solid gives the mean over the wall's thickness; at a
-corner, the mean over the square in which two walls meet. A force is spread the same way.
+It has the same interface as a symmetry class of a shell. In place of a displacement of the
+mid-surface of a wall, the solid has the mean over the thickness; at a corner it has the mean over
+the square that two walls share. A force is distributed in the same way.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class SolidMesh:
     Args:
         points: (num_points, 3) in m, x along the boom, the axis at y = z = 0.
         hexahedra: (num_hexahedra, 8) point numbers, in each cell along x first, then y, then z.
-        planes: rising coordinates in m of the lattice's planes across x, y and z.
+        planes: ascending coordinates in m of the lattice planes normal to x, y and z.
         layers: layers of hexahedra through each wall, an even number.
     """
 
@@ -65,16 +65,17 @@ def mesh_quarter(
         section: mid-lines and thicknesses.
         places: x in m at which there must be mesh planes; the smallest and the largest are the
             ends of the segment.
-        along: edge lengths in m along x, about: at the places, where forces and supports act, and
-            the largest away from them.
-        around: largest edge length in m around the section, about; edges grow to it from the
-            corners, where they are as long as the wall is thick.
+        along: approximate edge lengths in m along x: at the places of forces and supports, and far
+        from
+            them.
+        around: approximate largest edge length in m around the section. At corners the edge length
+            is the wall thickness.
         splits: number of parts of each edge around the section, to refine the mesh evenly.
         layers: layers of hexahedra through a wall, an even number.
 
     Raises:
-        ValueError: the lengths are not positive and rising, edges are not split into whole ones,
-            the layers are no even number, there are no two distinct places.
+        ValueError: the lengths are not positive and ascending, the number of parts is not a whole
+            number, the number of layers is odd, or there are no two distinct places.
     """
     if not 0.0 < along[0] <= along[1] < np.inf:
         raise ValueError(f"the lengths along x must be positive numbers of m, rising, got {along}")
@@ -101,7 +102,7 @@ def mesh_quarter(
 
 
 def _growing(length: float, smallest: float, largest: float, growth: float) -> Array:
-    """Return edges of growing length, up to the largest."""
+    """Return edge lengths that grow up to the largest."""
     edges = [min(smallest, largest)]
     while sum(edges) < length:
         edges.append(min(growth * edges[-1], largest))
@@ -109,14 +110,14 @@ def _growing(length: float, smallest: float, largest: float, growth: float) -> A
 
 
 def _across(distance: float, wall: float, size: float, splits: int, layers: int) -> Array:
-    """Return planes from the middle to the outside of a wall with mid-line at half the distance."""
+    """Return the planes from the middle of the box to the outside of a wall."""
     clear = _growing(0.5 * (distance - wall), wall, size, _GROWTH_AROUND)[::-1]
     edges = [np.repeat(clear / splits, splits), np.full(layers, wall / layers)]
     return np.concatenate([[0.0], np.cumsum(np.concatenate(edges))])
 
 
 def _walls(planes: tuple[Array, Array, Array], layers: int) -> tuple[Array, Indices]:
-    """Return points and cells of a lattice in the outermost layers."""
+    """Return the points and cells of a lattice that are in the walls, its outermost layers."""
     shape = tuple(plane.size for plane in planes)
     number = np.arange(np.prod(shape)).reshape(shape)
     j, k = np.indices((shape[1] - 1, shape[2] - 1))
@@ -134,7 +135,7 @@ def _walls(planes: tuple[Array, Array, Array], layers: int) -> tuple[Array, Indi
 
 
 class _SolidPlates(Plates):
-    """Space and forms of a solid, which has no rotations, on one process."""
+    """Function space and forms of a solid on one process; a solid has no rotations."""
 
     @cached_property
     def nodes(self) -> Sequence[tuple[Array, Indices]]:
@@ -148,13 +149,13 @@ class _SolidPlates(Plates):
 class SolidFamily(Shell):
     """Solid model K u = f and M ü of a quarter, with the energies of the whole segment.
 
-    It is on one process, and there are no rotations.
+    It is on one process, and has no rotations.
 
     Args:
         fixed: (num_fixed,) constrained degrees of freedom.
         section: the walls.
-        middles: (num_middles, 3) places on the mid-surfaces of the whole segment in m.
-        means: (3 num_middles, num_dofs) the mean displacements over the thickness there.
+        middles: positions (num_middles, 3) on the mid-surfaces of the whole segment in m.
+        means: rows (3 num_middles, num_dofs) of the mean displacements over the thickness there.
     """
 
     fixed: Indices
@@ -185,12 +186,12 @@ class SolidFamily(Shell):
         return 0, self.num_dofs
 
     def outline(self, x: float) -> SectionNodes:
-        """Return the means at x, a plane of the mesh; only :meth:`row` accepts their readings."""
+        """Return the means at x, a mesh plane, for operators that :meth:`row` accepts."""
         at = np.flatnonzero(np.abs(self.middles[:, 0] - x) < ON_LINE)
         return SectionNodes(x, self.middles[at], 3 * at[:, None] + np.arange(3), self.section)
 
     def row(self, weights: Row) -> Array:
-        """Return the row (num_dofs,) of a reading of means for the motions of the class."""
+        """Return the row (num_dofs,) of an operator on means, for the motions of the class."""
         of_means = np.zeros(self.means.shape[0])
         of_means[list(weights)] = list(weights.values())
         of_means = self.means.T @ of_means
@@ -223,12 +224,12 @@ def solid_forms(space: Any, material: Material) -> SolidForms:
 def assemble_solid(segment: Segment, mesh: SolidMesh, family: SymmetryClass) -> SolidFamily:
     """Assemble one symmetry class of a segment's motions on this process.
 
-    A pinned support fixes the whole section along y and z, which leaves it free to tilt; a
-    clamped one fixes every displacement of it.
+    A pinned support fixes the whole section along y and z, so that it can still rotate. A clamped
+    support fixes all displacements of the section.
 
     Args:
-        segment: with a box section, on rigid supports.
-        mesh: mesh of a quarter, with planes at supports and wherever an outline is read.
+        segment: segment with a box section on rigid supports.
+        mesh: mesh of a quarter, with planes at supports and outlines.
         family: the symmetry class.
 
     Raises:
@@ -264,7 +265,7 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: SymmetryClass) -> 
 
 
 def _means(mesh: SolidMesh, nodes: Array, family: SymmetryClass) -> tuple[Array, csr_matrix]:
-    """Return places on the mid-surfaces of the whole segment, and the rows of the means there."""
+    """Return positions on mid-surfaces of the whole segment, and the rows of the means there."""
     places, quarter = _quarter_means(mesh, nodes)
     parts: list[tuple[Array, csr_matrix]] = []
     for signs, sides in zip(family.signs[:, :3], _SIDES, strict=True):
@@ -304,7 +305,7 @@ def _quarter_means(mesh: SolidMesh, nodes: Array) -> tuple[Array, csr_matrix]:
 
 
 def _stencils(num_y: int, num_z: int, layers: int) -> Iterator[tuple[Indices, Indices, Array]]:
-    """Return positions along y and z, and weights, of the nodes of the mean at each place.
+    """Return the positions along y and z and the weights of the nodes of each mean.
 
     There are ``layers`` of cells through a wall.
     """

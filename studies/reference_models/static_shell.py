@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Static shell of any triangle mesh, on one process.
+"""Static shell with any triangle mesh, on one process.
 
-Degrees of freedom are components in space, so that supports, loads and readings are named by
-places, whatever the facets' frames are.
+Degrees of freedom are components in space, so that supports, loads and outputs do not depend on the
+frames of the facets.
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ class StaticShell:
         drilling, shear_correction: see :func:`forms.ShellForms`.
 
     Attributes:
-        nodes: (num_nodes, 3) places of the displacement nodes in m: points and middles of edges.
+        nodes: positions (num_nodes, 3) of the displacement nodes in m: points and mid-sides.
         node_dofs: (num_nodes, 3) rows of their displacements.
-        rotation_nodes: (num_edges, 3) places of the rotation nodes in m: middles of edges.
+        rotation_nodes: positions (num_edges, 3) of the rotation nodes in m: mid-sides.
         rotation_dofs: (num_edges, 3) rows of their rotations.
         stiffness: (num_dofs, num_dofs).
     """
@@ -83,19 +83,19 @@ class StaticShell:
         return node
 
     def at(self, axis: int, place: float) -> Mask:
-        """Return which displacement nodes (num_nodes,) lie at a place in m along an axis."""
+        """Return the mask (num_nodes,) of displacement nodes at a coordinate in m along an axis."""
         return np.asarray(np.abs(self.nodes[:, axis] - place) < ON_LINE)
 
     def hold_at(
         self, axis: int, place: float, along: Sequence[int], about: Sequence[int] = ()
     ) -> dict[int, float]:
-        """Return constraints along and about axes of all nodes at a place in m along an axis."""
+        """Return constraints of displacements and rotations of all nodes at a coordinate in m."""
         turned = np.abs(self.rotation_nodes[:, axis] - place) < ON_LINE
         moved = self.node_dofs[self.at(axis, place)]
         return hold(moved[:, list(along)]) | hold(self.rotation_dofs[turned][:, list(about)])
 
     def mirror(self, axis: int) -> dict[int, float]:
-        """Return the symmetry constraints on the plane through the origin across an axis."""
+        """Return the symmetry constraints on the plane through the origin normal to an axis."""
         return self.hold_at(axis, 0.0, [axis], [i for i in range(3) if i != axis])
 
     def surface_load(
@@ -103,7 +103,7 @@ class StaticShell:
     ) -> Array:
         """Return the load (num_dofs,) of a uniform force (3,) in N/m² and couple (3,) in N m/m².
 
-        On the facets that ``on`` (num_triangles,) names, or all.
+        The load acts on the facets of the mask ``on`` (num_triangles,), by default on all.
         """
         v, eta = ufl.split(ufl.TestFunction(self._plates.space))
         domain = self._plates.space.mesh
@@ -118,15 +118,15 @@ class StaticShell:
         return compat.assemble_vector(form)
 
     def point_load(self, place: Array, force: Array) -> Array:
-        """Return the load (num_dofs,) of a force (3,) in N on the node at a place (3,) in m."""
+        """Return the load (num_dofs,) of a force (3,) in N on the node at a position (3,) in m."""
         load = np.zeros(self.num_dofs)
         load[self.node_dofs[self.node_at(place)]] = force
         return load
 
     def line_load(self, on_line: Mask, force: Array) -> Array:
-        """Return the load (num_dofs,) of a force (3,) in N spread evenly over a line of edges.
+        """Return the load (num_dofs,) of a force (3,) in N, uniform along a line of edges.
 
-        ``on_line`` (num_nodes,) names nodes: points and middles by turns.
+        ``on_line`` is the mask (num_nodes,) of its nodes, alternately points and mid-sides.
         """
         nodes = np.flatnonzero(on_line)
         places = self.nodes[nodes]
@@ -146,11 +146,11 @@ class StaticShell:
         """Return displacements in m and rotations in rad (num_dofs,), by MUMPS.
 
         Args:
-            held: constraints, enough to leave no rigid motion.
-            load: (num_dofs,) in N and N m.
+            held: constraints that prevent all rigid motions.
+            load: load (num_dofs,) in N and N·m.
 
         Raises:
-            NumericsError: rigid motions are left, so that forces do not balance.
+            NumericsError: rigid motions are possible, so that there is no equilibrium.
         """
         rows = np.fromiter(held, dtype=PETSc.IntType, count=len(held))
         matrix = self.stiffness.copy()
@@ -181,7 +181,7 @@ class StaticShell:
         return np.asarray(times(self.stiffness, solution[:, None])[:, 0])
 
     def held(self, dofs: Held) -> Shell:
-        """Return the shell with some degrees of freedom fixed, for vibration."""
+        """Return the shell with fixed degrees of freedom, for vibration."""
         rows = np.fromiter(dofs, dtype=np.int32, count=len(dofs))
         zero = fem.Function(self._plates.space)
         conditions = [fem.dirichletbc(zero, np.sort(rows))]

@@ -1,25 +1,24 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Motion of the unreduced shells, the reference of the reduction.
 
-Every segment moves by the generalised-α method, its matrix factorised once. Contact and friction
-are condensed: a step is one back-substitution for each segment without them, then a small
-problem in the forces of the rows, whose compliance does not change from step to step, then their
-displacements, which are known combinations of columns. The forces are those at the time of the
-method's own balance, friction opposes the way over the whole step, and what it holds stays where it
-is to round-off.
+Each segment moves by the generalised-α method; its matrix is factorised once. A step has three
+parts: one back-substitution for each segment without contact and friction; a small problem for the
+forces of contact and friction rows, whose compliance is constant; and the displacements by these
+forces. Forces act at the time of the equilibrium equation of the method. Friction opposes the
+displacement over the whole step, and rows that stick do not move, to round-off.
 
 The generalised-α method (Chung and Hulbert 1993) is
 
     M a_{n+1−αm} + K d_{n+1−αf} = q − Rᵀ p,    d_{n+1} = d_n + h v_n + h² [(½ − β) a_n + β a_{n+1}],
     v_{n+1} = v_n + h [(1 − γ) a_n + γ a_{n+1}]
 
-with the forces p of contact and friction on the rows R. In the unknown d* = d_{n+1−αf} it reads
+with the forces p of contact and friction on the rows R. For the unknown d* = d_{n+1−αf} it is
 
     (K + σ M) d* = q − Rᵀ p + M (σ x − αm a_n),    σ = (1 − αm)/c,    c = (1 − αf) β h²
 
 where x is d* for a_{n+1} = 0. The matrix is the same in every step.
 
-Unaccounted energy is the algorithmic dissipation, and the error of a step in which a contact
+The energy residual includes the algorithmic dissipation and the error of steps in which a contact
 opens or closes. Any number of ranks may share the shells.
 """
 
@@ -52,8 +51,8 @@ class GeneralisedAlpha:
 
     Args:
         step: h in s, positive.
-        radius: ρ∞, amplitude ratio of the fastest modes per step, from 0 to 1. At 1 it is the
-            midpoint rule, which keeps the energy.
+        radius: ρ∞, amplitude ratio of the fastest modes per step, from 0 to 1. For 1 the
+            method is the midpoint rule, which conserves energy.
 
     Raises:
         ValueError: an argument is out of its range.
@@ -85,7 +84,7 @@ class GeneralisedAlpha:
 
     @property
     def beta(self) -> float:
-        """Parameter β, with most dissipation of fast modes and least of slow ones."""
+        """Parameter β, for large dissipation of fast modes and small dissipation of slow modes."""
         return 0.25 * (1.0 - self.mass_shift + self.force_shift) ** 2
 
     @property
@@ -132,7 +131,7 @@ class SegmentStepper:
         self._start()
 
     def free_response(self) -> None:
-        """Solve for d* without forces on rows: the only solution of a large system in a step."""
+        """Solve for d* without forces on rows; a step has only this solution of a large system."""
         alpha, h = self._alpha, self._alpha.step
         part = (1.0 - alpha.force_shift) * h
         self._d.copy(self._x)
@@ -144,7 +143,7 @@ class SegmentStepper:
         self._star.array[:] = self._effective(self._scratch.array[:, None])[:, 0]
 
     def read(self) -> Array:
-        """Return this rank's part (num_rows,) of the readings of d*, in m."""
+        """Return this rank's part (num_rows,) of the row displacements of d* in m."""
         return np.asarray(self._rows @ self._star.array)
 
     def push(self, forces: Array) -> None:
@@ -206,12 +205,12 @@ class DirectMotion:
 
     Args:
         time: (num_times,) in s.
-        observed: name → (num_times,) in the unit of what is read.
+        observed: outputs (num_times,) by name.
         contact_forces: (num_times, num_contacts) in N, means over the output interval that ends at
             the time, positive where the inner segment presses up.
         friction_forces: (num_times, num_frictions) in N, likewise, positive where they push the
             inner segment along its row.
-        slides: (num_times, num_frictions) readings of the friction rows, in m.
+        slides: displacements (num_times, num_frictions) of the friction rows in m.
         energies: (num_times, 7), the columns of ``ENERGIES`` in J.
         step: step in s.
     """
@@ -226,7 +225,7 @@ class DirectMotion:
 
     @property
     def energy_residual(self) -> float:
-        """Largest unaccounted energy as a part of the energy put in."""
+        """Largest error of the energy balance, as a fraction of the input energy."""
         return float(np.abs(energy_residual(self.energies)).max())
 
 
@@ -242,16 +241,16 @@ def integrate_directly(
 
     Args:
         full: a flat boom with constant loads and prescribed normal forces.
-        duration: duration in s; a whole number of output steps is made, at least one.
-        step: step in s, made smaller to fit the output step.
+        duration: duration in s; it is rounded to a whole number of output steps, at least one.
+        step: step in s; it is reduced so that the output step is a multiple.
         output_step: output step in s.
         radius: ρ∞, see :class:`GeneralisedAlpha`.
-        energy_bound: largest energy residual that passes.
+        energy_bound: largest permitted energy residual.
 
     Raises:
         BoomError: the direct integration does not support a feature of the boom.
-        NumericsError: forces are not found, numbers are not finite, or the energy residual passes
-            its bound.
+        NumericsError: forces do not converge, numbers are not finite, or the energy residual
+            exceeds its bound.
     """
     _check(full)
     outputs = max(1, round(duration / output_step))
@@ -339,6 +338,6 @@ def _march(
 
 
 def _rows(readings: Sequence[Reading], number: int, shell: SegmentShell) -> scipy.sparse.csr_matrix:
-    """Return this rank's part (num_readings, num_owned) of the readings of a segment."""
+    """Return this rank's part (num_rows, num_owned) of the displacement rows of a segment."""
     parts = [shell.row(reading.get(number, Row())) for reading in readings]
     return scipy.sparse.csr_matrix(np.array(parts).reshape(-1, shell.free.size))

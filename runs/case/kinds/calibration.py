@@ -35,8 +35,8 @@ if TYPE_CHECKING:
 OF_MOTION = ("contact", "step")
 
 
-def _named_or_table(given: Any) -> str:
-    return "name" if isinstance(given, str) else "shell"
+def _named_or_table(value: Any) -> str:
+    return "name" if isinstance(value, str) else "shell"
 
 
 # The tag of the table is its kind, which error paths contain.
@@ -117,13 +117,13 @@ class CalibratedTable(BeamTable):
             return super().build(model_boom, context)
         from beam_model.calibration import calibrate
 
-        made = self.calibrated_by.build(model_boom, context)
-        assert made.shell is not None
+        built_shell = self.calibrated_by.build(model_boom, context)
+        assert built_shell.shell is not None
         begin = perf_counter()
-        boom, shell = model_boom.boom, made.shell
+        boom, shell = model_boom.boom, built_shell.shell
         calibration = calibrate(boom, shell.system, shell.probe_responses, self.segments)
         built = self.motion_model(self.build_calibrated(model_boom, calibration), shell, boom)
-        seconds = made.seconds | {"calibration": perf_counter() - begin}
+        seconds = built_shell.seconds | {"calibration": perf_counter() - begin}
         return replace(built, seconds=seconds)
 
     def build_calibrated(self, model_boom: ModelBoom, calibration: Calibration) -> BuiltModel:

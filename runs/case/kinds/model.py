@@ -75,9 +75,9 @@ class ModelBoom:
 
     def beams(self, model: BeamTable) -> BeamSegments:
         """Return the beam segments of a model; equal models share one object."""
-        for known in self._beams:
-            if known.model == model:
-                return known
+        for beams in self._beams:
+            if beams.model == model:
+                return beams
         self._beams.append(BeamSegments(self.boom, model))
         return self._beams[-1]
 

@@ -132,11 +132,11 @@ class Shell(ModelTable):
         boom, options = self.content(model_boom.boom)
         # A small shell does not repay the seconds that a second process takes to load FEniCSx.
         helper = context.helper if self.estimate_dofs(boom) > _SMALL else None
-        made = context.cached_shell(
+        standard_shell = context.cached_shell(
             (boom, options),
             partial(reduce_boom, boom, options, context.comm, context.progress, helper),
         )
-        shell = with_plays_and_loads(made, model_boom.boom)
+        shell = with_plays_and_loads(standard_shell, model_boom.boom)
         factor = shell.critical_factor
         if (boom.driven or model_boom.boom.axial_changes) and factor is not None:
             # The reduced shell gives the factor at t = 0, the beam over the whole motion.
