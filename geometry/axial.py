@@ -68,7 +68,7 @@ def with_compression(
         segments: segments from the base to the tip.
         joints: joints with the positions of locks.
         thrusts: axial forces on the segments.
-        gravity: acceleration towards the base in m/s²; it acts on all masses, including those of
+        gravity: acceleration towards the base in m/s²; it acts on all masses, including
             collars and diaphragms.
     """
     passed: list[list[tuple[float, float]]] = [[] for _ in segments]

@@ -62,7 +62,7 @@ class PadSize:
     thickness: Length | None = field(default=None, kw_only=True)
     """the thickness in m, from which the joint's stiffness follows unless given"""
     modulus: Annotated[Positive, In("Pa")] = field(default=POLYAMIDE, kw_only=True)
-    """the modulus of compression in Pa; unless given, that of moist cast polyamide"""
+    """the modulus of compression in Pa; the modulus of moist cast polyamide unless given"""
     allowable_pressure: Annotated[Positive, In("Pa")] | None = field(default=None, kw_only=True)
     """the permitted pressure in Pa; no utilisation unless given"""
     bears: Literal["wall", "corner"] = field(default="wall", kw_only=True)

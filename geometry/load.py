@@ -32,7 +32,7 @@ class Member(Body, Protocol):
     """Segment of a model under all kinds of loads."""
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
-        """Return the load vector of 1 N/m between both x in m of ``span``; None: everywhere."""
+        """Return the load vector of 1 N/m between the x in m of ``span``, by default everywhere."""
 
     def inertia(self, direction: Direction, force: float) -> Array:
         """Return the inertia load of a uniform acceleration of the whole segment.

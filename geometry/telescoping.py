@@ -54,7 +54,7 @@ class TelescopingStations:
 
 
 def telescoping_stations(boom: Boom) -> list[TelescopingStations]:
-    """Return the stations that drives move: of each joint with a drive, and of stops."""
+    """Return the moving stations of each joint with a drive, and of stops."""
     moved: dict[tuple[int, ...], list[int]] = {}
     for station, joints in _driven_stations(boom):
         if joints:

@@ -115,7 +115,7 @@ def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
 
 
 def _category_range(where: str, category: float, least: float) -> UsualRange:
-    """Return the range of a detail category; ``least`` is that of steel or of any metal."""
+    """Return the range of a detail category; ``least`` applies to steel or to any metal."""
     what = "the detail category after EN 1993-1-9, in N/mm^2,"
     return UsualRange(f"{where}.detail_category", what, category, "1", least, 160.0, 10.0)
 

@@ -82,7 +82,7 @@ class CranePosition(NamedTuple):
         axes.set_title(self.title, fontsize=17)
 
     def draw(self, axes: Axes, time: float) -> Iterator[Artist]:
-        """Draw the boom, the rope and the load at a time in s, and yield what was drawn."""
+        """Draw the boom, the rope and the load at a time in s, and yield the artists."""
         step = int(np.abs(self.time - time).argmin())
         style: dict[str, Any] = {"color": theme.INK, "clip_on": False}
         red = style | {"color": theme.FORCE}

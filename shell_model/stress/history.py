@@ -219,7 +219,7 @@ def _summed_history(history: xr.Dataset) -> StressHistory:
 
 
 def _largest(shell: ShellStress, history: xr.Dataset) -> Largest:
-    """Return the largest stress of bands at all output times, and of all triangles at some."""
+    """Return the largest stress: bands at all output times, all triangles at some output times."""
     bands = history["von_mises"].values
     stride = max(1, shell.time.size // INSTANTS)
     segments = np.unique(shell.segment)
