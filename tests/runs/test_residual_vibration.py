@@ -43,6 +43,8 @@ def case(folder: Path, drive: str, extension: str = "5.0") -> Case:
         "extension = 5.0": f"extension = {extension}",
         "play = 0.014": PLAYLESS,
         "stiffness = 1e9": "stiffness = 1e7",
+        # A flat boom without a drive needs the forces.
+        "friction = 0.2": "normal_forces = [0.0, 0.0]\nfriction = 0.2",
         "duration = 7.0": "duration = 0.6",
         "[[model]]": LOAD,
     }.items():
