@@ -31,17 +31,24 @@ class _SignalProofPool(ProcessPoolExecutor):
 
     def submit(self, work: Callable[..., Any], /, *positional: Any, **named: Any) -> Future[Any]:
         """Submit work. A process that starts for it inherits the signal mask and the variables."""
-        signals = {signal.SIGINT, signal.SIGTERM}
-        signal.pthread_sigmask(signal.SIG_BLOCK, signals)
-        outside = {name: os.environ[name] for name in _WORKER_VARIABLES if name in os.environ}
-        os.environ.update(_WORKER_VARIABLES)
-        try:
+        with _worker_environment():
             return super().submit(work, *positional, **named)
-        finally:
-            for name in _WORKER_VARIABLES:
-                del os.environ[name]
-            os.environ.update(outside)
-            signal.pthread_sigmask(signal.SIG_UNBLOCK, signals)
+
+
+@contextmanager
+def _worker_environment() -> Iterator[None]:
+    """Block signals, and set the variables of processes that start in this context."""
+    signals = {signal.SIGINT, signal.SIGTERM}
+    signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+    outside = {name: os.environ[name] for name in _WORKER_VARIABLES if name in os.environ}
+    os.environ.update(_WORKER_VARIABLES)
+    try:
+        yield
+    finally:
+        for name in _WORKER_VARIABLES:
+            del os.environ[name]
+        os.environ.update(outside)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, signals)
 
 
 @contextmanager
@@ -52,7 +59,9 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
         count: number of processes; None for one per core.
         prepare: function that each process calls first.
     """
-    pool = _SignalProofPool(count or os.cpu_count(), get_context("spawn"), _start, (prepare,))
+    # The process that counts semaphores starts with the pool, and is to warn of none.
+    with _worker_environment():
+        pool = _SignalProofPool(count or os.cpu_count(), get_context("spawn"), _start, (prepare,))
     try:
         with when_interrupted(end):
             yield pool
