@@ -246,7 +246,7 @@ def resolve_segments(part: _Part, where: str, segments: Sequence[Segment]) -> _P
         if isinstance(name, str):
             if name not in names:
                 raise BoomError(f"{where}.{key}", f"{name!r} is no segment; give {choices(names)}")
-            # Type hints cannot restrict a type variable to dataclasses.
-            part = replace(part, **{key: names.index(name)})  # type: ignore[type-var]
+            # Hints cannot restrict a type variable to dataclasses, which all parts are.
+            part = replace(part, **{key: names.index(name)})  # type: ignore[type-var] # see above
     outer, inner = (getattr(part, key, getattr(part, "segment", 0)) for key in ("outer", "inner"))
     return resolve_distances(part, segments[inner].start, segments[outer].end)

@@ -170,12 +170,12 @@ def at(place: float | Distance, tail: float, head: float) -> float:
 
 def resolve_distances(part: _Part, tail: float, head: float) -> _Part:
     """Return a part whose distances from the ends ``tail`` and ``head`` are replaced by x in m."""
-    # Type hints cannot restrict a type variable to dataclasses.
+    # Hints cannot restrict a type variable to dataclasses, which all parts are.
     resolved: dict[str, Any] = {}
-    for field in fields(part):  # type: ignore[arg-type]
+    for field in fields(part):  # type: ignore[arg-type] # see above
         value = getattr(part, field.name)
         if isinstance(value, Distance):
             resolved[field.name] = at(value, tail, head)
         elif isinstance(value, tuple) and any(isinstance(one, Distance) for one in value):
             resolved[field.name] = tuple(at(one, tail, head) for one in value)
-    return replace(part, **resolved) if resolved else part  # type: ignore[type-var]
+    return replace(part, **resolved) if resolved else part  # type: ignore[type-var] # see above

@@ -163,8 +163,8 @@ class ModelTable(CaseTable):
         self._boom = boom
 
     # With this private attribute pydantic validates without __init__: a case file must give name
-    # and kind.
-    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+    # and kind. Functions are typed without attributes.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined] # see above
 
     # True if the model has a mesh of the plates and writes fields.
     meshed: ClassVar[bool] = False
