@@ -59,7 +59,7 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
         count: number of processes; None for one per core.
         prepare: function that each process calls first.
     """
-    # The process that counts semaphores starts with the pool, and is to warn of none.
+    # The tracker of semaphores starts with the pool; the variables switch its warnings off.
     with _worker_environment():
         pool = _SignalProofPool(count or os.cpu_count(), get_context("spawn"), _start, (prepare,))
     try:

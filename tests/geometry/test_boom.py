@@ -346,10 +346,10 @@ def test_a_boom_finds_the_places_of_its_parts(paper_boom: Boom) -> None:
     # Fields are typed as they are in a boom, with x in m; a user may give other places before.
     arm = replace(
         outer,
-        supports=(Support("tail"), Support(2.0)),  # type: ignore[arg-type] # not yet x
-        collars=(Collar((Distance(head=0.5), "head"), 0.01),),  # type: ignore[arg-type] # not yet x
+        supports=(Support("tail"), Support(2.0)),  # type: ignore[arg-type] # see above
+        collars=(Collar((Distance(head=0.5), "head"), 0.01),),  # type: ignore[arg-type] # see above
     )
-    stop = Stop("inner", Distance(head=1.0), 0.002, PowerContact(1.0e9))  # type: ignore[arg-type] # not yet x
+    stop = Stop("inner", Distance(head=1.0), 0.002, PowerContact(1.0e9))  # type: ignore[arg-type] # see above
     boom = Boom((arm, inner), paper_boom.joints, stops=(stop,))
     assert boom.segments[0].supports == (Support(0.0), Support(2.0))
     assert boom.segments[0].collars[0].span == (9.5, 10.0)
