@@ -9,7 +9,6 @@ from geometry.boom import Lateral, Segment
 def in_space(segment: Segment) -> Segment:
     """Return a segment that bends along y and twists as its plates do, without load along y."""
     box, density = segment.section, segment.material.density
-    assert box is not None
     lateral = Lateral(
         second_moment_of_area=box.lateral_second_moment_of_area,
         rotary_inertia=density * box.lateral_second_moment_of_area,

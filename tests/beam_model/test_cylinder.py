@@ -167,7 +167,6 @@ def test_two_inclined_cylinders_hold_the_twist_by_the_slope(beam: Beam) -> None:
     boom = Boom((base, inner), (joint,), cylinders=(pair,))
     models = finite_element_segments(boom, 0.5, "euler-bernoulli", rotary_inertia=True)
     modes = BoomModes(boom, models)
-    assert base.lateral is not None
     twisting = base.material.shear_modulus * base.lateral.torsion_constant
     bending = base.material.youngs_modulus * base.lateral.second_moment_of_area
     along, up = pair.direction

@@ -34,7 +34,6 @@ def bending(
 
 def shear_stiffness(segment: Segment, theory: Theory) -> float:
     """G A of the webs in N."""
-    assert segment.section is not None
     if theory == "euler-bernoulli":
         return np.inf
     return 2.0 * segment.section.height * segment.section.web * 2.1e11 / 2.6

@@ -39,7 +39,6 @@ def pushed(boom: Boom, *loads: float) -> Boom:
     """Return the boom with uniform loads along y in N/m."""
     segments = []
     for segment, load in zip(boom.segments, loads, strict=True):
-        assert segment.lateral is not None
         segments.append(replace(segment, lateral=replace(segment.lateral, load=load)))
     return replace(boom, segments=tuple(segments))
 
@@ -69,7 +68,6 @@ def test_twisting_frequencies(
     (κπh/L)²/24."""
     segment = in_space(beam(supports=supports))
     lateral = segment.lateral
-    assert lateral is not None
     speed = np.sqrt(
         segment.material.shear_modulus * lateral.torsion_constant / lateral.polar_inertia
     )
@@ -90,7 +88,6 @@ def test_twisting_frequencies(
 def test_a_torque_twists_in_proportion_to_its_arm(beam: Beam) -> None:
     """Reference: analytic, T x/(G J_t) up to the torque and constant beyond; exact at nodes."""
     segment = in_space(beam(supports=(Support(3.0),)))
-    assert segment.lateral is not None
     stiffness = segment.material.shear_modulus * segment.lateral.torsion_constant
     model = finite_element_segment(segment, 1.7, (5.5,), "timoshenko", False).components["twist"]
     rest = np.linalg.solve(model.stiffness, 900.0 * model.at(5.5))
@@ -182,8 +179,6 @@ def test_pads_resist_roll(spatial_boom: Boom) -> None:
     station: half the law at each of ± b/2. Beside it, pressed in y, k h² θ²/8."""
     system = gap_system(touching(spatial_boom, LAW, LATERAL_LAW), beams(spatial_boom))
     inner = spatial_boom.segments[1]
-    assert inner.section is not None
-    assert inner.lateral is not None
     roll = np.zeros(system.num_modes)
     up, aside = rigid_motion(system, ""), rigid_motion(system, "_lateral")
     # The one rigid motion that neither tip nor tail show: 1/√(I L) of twist in its mode.

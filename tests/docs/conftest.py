@@ -21,8 +21,6 @@ def module_of_docs() -> Callable[[str], ModuleType]:
 
     def load(name: str) -> ModuleType:
         spec = spec_from_file_location(f"docs_{name}", DOCS / f"{name}.py")
-        assert spec is not None
-        assert spec.loader is not None
         module = sys.modules[spec.name] = module_from_spec(spec)
         spec.loader.exec_module(module)
         return module

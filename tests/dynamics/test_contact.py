@@ -131,7 +131,6 @@ def test_each_side_has_its_own_clearance() -> None:
 def test_parts_are_those_of_its_law() -> None:
     y = np.linspace(-0.02, 0.02, 41)
     above = UNEQUAL.one_sided(1)
-    assert above is not None
     assert above.terms == SOFT_ABOVE.upper().behind(4.0e-3, 10.0e-3).terms
     assert above.one_sided(-1) is None
     assert SOFT_ABOVE.upper().behind(4.0e-3).one_sided(-1) is None
@@ -267,8 +266,6 @@ def test_the_energy_is_the_area_under_the_table() -> None:
 def test_parts_are_tables_again() -> None:
     y = np.linspace(-12.0e-3, 12.0e-3, 25)
     above, below = TABLE.one_sided(1), TABLE.one_sided(-1)
-    assert above is not None
-    assert below is not None
     assert above.one_sided(-1) is None
     np.testing.assert_allclose(above.force(y) + below.force(y), TABLE.force(y), atol=1e-8)
     np.testing.assert_allclose(TABLE.shared(0.25).force(y), 0.25 * TABLE.force(y), atol=1e-8)

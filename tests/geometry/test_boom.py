@@ -58,8 +58,6 @@ def test_ends_belong_to_a_segment(paper_boom: Boom) -> None:
 
 def test_a_segment_turned_has_its_planes_exchanged(spatial_boom: Boom) -> None:
     inner = spatial_boom.segments[1]
-    assert inner.section is not None
-    assert inner.lateral is not None
     turned = replace(inner, lateral=replace(inner.lateral, load=7.0)).turned()
     assert turned.second_moment_of_area == inner.section.lateral_second_moment_of_area
     assert turned.rotary_inertia == 7850.0 * inner.section.lateral_second_moment_of_area

@@ -44,8 +44,6 @@ def test_a_bonded_joint_has_none(paper_boom: Boom) -> None:
 def test_pads_in_space_are_in_the_corners(spatial_boom: Boom) -> None:
     """Reference: analytic, by hand: 4 flange pads at each station, then 4 web pads at each."""
     outer, inner = (segment.section for segment in spatial_boom.segments)
-    assert outer is not None
-    assert inner is not None
     found = pads(spatial_boom)
     assert [(pad.station, pad.x) for pad in found[::4]] == [
         (0, 9.0),
@@ -80,7 +78,6 @@ def test_stations_are_those_of_the_boom(spatial_boom: Boom) -> None:
     """Three segments and a stop, one joint bonded or none."""
     (joint,) = spatial_boom.joints
     inner = spatial_boom.segments[1]
-    assert inner.section is not None
     box = replace(inner.section, height=0.4, width=0.2)
     last = replace(inner, name="last", start=17.0, end=26.0, section=box)
     for bonded in (False, True):

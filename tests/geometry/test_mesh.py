@@ -462,8 +462,6 @@ def test_refinement_zones_are_at_loads_supports_and_stiffeners(paper_boom: Boom)
     """Reference: by hand, with a collar, a diaphragm and pads. Four times the tolerance, twice the
     size."""
     outer, inner = paper_boom.segments
-    assert outer.section is not None
-    assert inner.section is not None
     b, h = 0.5 * outer.section.width, 0.5 * outer.section.height
     stiff = replace(outer, collars=(Collar((8.0, 8.5), 0.01),), diaphragms=(Diaphragm(5.0, 0.01),))
     boom = replace(paper_boom, segments=(stiff, inner))

@@ -66,7 +66,6 @@ def printed(show: Callable[..., object], *given: Any, width: int = 160) -> str:
 def answers_of(case: Case, comm: Intracomm | None = None) -> DesignResults:
     """Return the results of a run of a case, as read from a folder."""
     run = run_case(case, "", RunContext(comm))
-    assert run is not None
     run.evaluate()
     return Summary.model_validate_json(str(run.results.summary)).design
 

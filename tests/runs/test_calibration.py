@@ -159,12 +159,10 @@ def test_a_run_leaves_its_card(case: Case, tmp_path: Path) -> None:
     """Reference: non-regression, what the summary tells of the same calibration."""
     alone = case_file.select(case, "", ["sprung"])
     run = run_models(alone, "", RunContext(MPI.COMM_SELF))
-    assert run is not None
     run.evaluate()
     write(run, Addition(), tmp_path)
     told = json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))
     summary = run.results.summary.models["sprung"].calibration
-    assert summary is not None
     assert told == {"sprung": summary.model_dump()}
     report = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "Local springs of the stations, for sprung" in report

@@ -80,7 +80,6 @@ def test_late_and_low_model_differs_at_each_level() -> None:
     }
     data = trajectories(kantorovich_4=members["kantorovich-4"][0], kantorovich_5=swing())
     found = compare_models(case_of(*SERIES), data, ensembles(members), CUTOFF)
-    assert found is not None
     assert found.reference == "kantorovich-5"
     assert not found.whole
     (level,) = found.ensembles.values()
@@ -114,7 +113,6 @@ def test_with_friction_every_model_is_compared_to_the_end() -> None:
     data = trajectories(kantorovich_4=above, kantorovich_5=swing(), beam_fe_bonded=0.1 * swing())
     case = case_of(*SERIES, "beam-fe-bonded", friction=0.2)
     found = compare_models(case, data, None, None)
-    assert found is not None
     assert list(found.whole) == ["kantorovich-4", "beam-fe-bonded"]
     whole = found.whole["kantorovich-4"]
     assert whole.until == [5.0, 10.0]
@@ -147,7 +145,6 @@ def test_a_short_run_with_friction_is_compared_to_its_end_alone() -> None:
     data = trajectories(kantorovich_4=0.9 * swing(), kantorovich_5=swing())
     case = case_of(*SERIES, friction=0.2)
     found = compare_models(case, data.sel(time=slice(None, 2.0)), None, None)
-    assert found is not None
     assert found.whole["kantorovich-4"].until == [2.0]
     assert found.whole["kantorovich-4"].largest == pytest.approx([0.1], rel=1e-6)
 
@@ -295,7 +292,6 @@ def test_steps_for_peaks_are_counted_and_rated() -> None:
 
 def test_contact_laws_are_those_of_the_models() -> None:
     table = law_table(results())
-    assert table is not None
     assert table.rows == [
         (name, "inner in outer", "14.0", "k 1e+13, n 2", "168.9") for name in MODELS[:2]
     ]

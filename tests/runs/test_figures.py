@@ -151,7 +151,6 @@ def test_deflections_are_in_millimetres(results: Results, drawn: Drawn) -> None:
 def test_contact_forces_keep_their_impulse(results: Results, drawn: Drawn) -> None:
     """Reference: analytic. A running mean has the sum of what it averages, but for its ends."""
     (figure,) = drawn(first_contacts, results)
-    assert figure.chart is not None
     assert len(figure.chart.curves) == 2 * len(WITH_PLAY)
     for curve in figure.chart.curves:
         force = results.trajectories["contact_force"].sel(model=curve.name)

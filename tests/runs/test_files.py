@@ -178,7 +178,6 @@ def test_leftovers_of_killed_processes_only_are_removed(
     killed, live = in_the_making(folder), in_the_making(folder)
     parts = []
     for process in (killed, live):
-        assert process.stdout is not None
         parts.append(Path(process.stdout.readline().strip()))
     killed.kill()
     killed.wait()

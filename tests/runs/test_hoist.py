@@ -38,7 +38,6 @@ def test_hanging_load_at_rest() -> None:
     weight = 5000.0 * 9.80665
     across = LoadTable(segment="fly", x="head", magnitude=-0.5 * weight)  # type: ignore[arg-type] # read as in a file
     force = case.axial[0].force
-    assert force is not None
     axial = case.axial[0].model_copy(update={"force": force + np.sqrt(0.75) * weight})
     loaded = case.model_copy(update={"hoist": None, "loads": (across,), "axial": (axial,)})
     assert static_tip(case, 5.0) == pytest.approx(static_tip(loaded, 0.0), rel=1e-6)
@@ -53,7 +52,6 @@ def test_results_of_a_hoist() -> None:
     (summary,) = results.summary.models.values()
     assert summary.energy_residual < 1e-11
     found = results.summary.design.models["series"].hoisting
-    assert found is not None
     data = results.trajectories.sel(model="series")
     height = data["load_height"].values
     # The ground, a hundred times as stiff as four falls, is left at this height.
@@ -72,7 +70,6 @@ def test_work_of_the_winch() -> None:
     case = of_beam(load(str(CASES / "hoist.toml")))
     results = run_case(change(case, **{"time.duration": 1.0, "gravity.angle": 0.0}))
     drives = results.summary.design.models["series"].drives
-    assert drives is not None
     work = float(results.trajectories["drive_work"].values[0, -1])
     assert work > 100.0
     assert drives.winch_work == pytest.approx(work, rel=1e-4)
@@ -86,7 +83,6 @@ def test_ensemble_and_comparison_without_play() -> None:
     table = EnsembleTable(members=2, vary="load", relative=1e-3, seed=1)
     results = run_case(case.model_copy(update={"ensemble": table}))
     found = results.summary.models["series"].ensemble
-    assert found is not None
     assert found.energy_residual < 1e-11
     own = results.summary.design.models["series"]
     assert own.motion_bonded is not None
@@ -135,7 +131,6 @@ def test_load_swings_under_wind() -> None:
     swung = results.trajectories["swing_out"]
     assert swung.attrs["length"] == 2.0
     found = results.summary.design.models["series"].hoisting
-    assert found is not None
     assert found.swing_out == pytest.approx(np.abs(swung.values).max())
     assert (found.lift_off, found.swing_aside) == (None, None)
     # The load begins at rest, below the tip that sways as it falls onto its supports.

@@ -58,7 +58,6 @@ def test_limits_decide_by_the_numbers_of_a_run() -> None:
         np.log(10.0) / (0.02 * 2.0 * np.pi * frequency), rel=1e-4
     )
     table = limit_table(results)
-    assert table is not None
     assert [row[1] for row in table.rows] == ["✓", "✗", "✓"]
     (fault,) = limit_faults(results)
     far = 1e3 * measure(results, "beam")["tip"]

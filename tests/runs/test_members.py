@@ -52,7 +52,6 @@ def told() -> list[tuple[str, str, float]]:
 @pytest.fixture(scope="module")
 def run(case: Case, told: list[tuple[str, str, float]]) -> Run:
     finished = run_case(case, "", RunContext(progress=lambda *what: told.append(what)))
-    assert finished is not None
     finished.evaluate()
     return finished
 
@@ -60,7 +59,6 @@ def run(case: Case, told: list[tuple[str, str, float]]) -> Run:
 def test_member_0_is_the_trajectory(run: Run) -> None:
     """Reference: by hand, the model's own run, but for the single precision."""
     ensembles = run.results.ensembles
-    assert ensembles is not None
     assert ensembles["model"].values.tolist() == SERIES
     assert ensembles["tip"].dims == ("model", "member", "time")
     for place in ("tip", "head"):
@@ -77,10 +75,8 @@ def test_summary_has_horizons_and_slow_peaks(run: Run) -> None:
     assert models["beam-fe-bonded"].ensemble is None
     for name in SERIES:
         ensemble = models[name].ensemble
-        assert ensemble is not None
         assert 0.5 < (ensemble.horizon(0.01) or 0.0) < 1.5
         peaks = ensemble.slow_peaks
-        assert peaks is not None
         assert 0.5 < peaks.time[0] < 0.6
         assert 0.14 < peaks.height[0] < 0.17
         assert peaks.height_spread[0] < peaks.height_spread[1] < 0.05
@@ -113,7 +109,6 @@ def test_a_boom_out_of_proportion_has_no_slow_motion(case: Case) -> None:
 def test_ensemble_data_have_names_and_units(run: Run) -> None:
     """As the trajectories of the same places do."""
     ensembles = run.results.ensembles
-    assert ensembles is not None
     assert ensembles.attrs["Conventions"] == "CF-1.8"
     for name, values in ensembles.data_vars.items():
         assert values.attrs == run.results.trajectories[name].attrs
@@ -124,7 +119,6 @@ def test_ensemble_data_have_names_and_units(run: Run) -> None:
 def test_ensembles_are_read_back(run: Run, tmp_path: Path) -> None:
     write(run, Addition(), tmp_path)
     results = Results.load(tmp_path)
-    assert results.ensembles is not None
     assert run.results.ensembles is not None
     xr.testing.assert_equal(results.ensembles, run.results.ensembles)
     assert results.ensembles["tip"].attrs["units"] == "m"
@@ -138,7 +132,6 @@ def test_a_run_without_ensembles_has_no_file_of_them(case: Case, tmp_path: Path)
         update={"ensemble": None, "time": case.time.model_copy(update={"duration": 0.1})}
     )
     without = run_case(short, "", RunContext())
-    assert without is not None
     without.evaluate()
     write(without, Addition(), tmp_path)
     assert not (tmp_path / "ensembles.nc").exists()
@@ -159,7 +152,6 @@ def test_figures_have_bands_and_horizons(
     """Reference: the ensembles themselves, 5 to 95 % of the members at each time, in mm."""
     captions = {figure.path.stem: figure.caption for figure in draw(run.results, tmp_path)}
     ensembles = run.results.ensembles
-    assert ensembles is not None
     for place in ("tip", "head"):
         assert "5 to 95 % of the 5 members" in captions[place]
         bands = [b for a in sheets[place].axes for b in a.collections]
@@ -196,7 +188,6 @@ def test_slow_peaks_are_drawn_with_their_spreads(
     (axes,) = sheets["slow-peaks"].axes
     for name, container in zip(SERIES, axes.containers, strict=True):
         peaks = ensembles_of(run)[name].slow_peaks
-        assert peaks is not None
         points, _, (across, along) = container.lines
         drawn = np.asarray(points.get_xydata(), dtype=float)
         np.testing.assert_allclose(drawn[:, 0], peaks.time)
@@ -210,7 +201,6 @@ def test_slow_peaks_are_drawn_with_their_spreads(
 def test_models_are_compared_in_the_summary(run: Run) -> None:
     """Reference: the series' slow peaks in the same summary."""
     found = run.results.summary.comparisons
-    assert found is not None
     assert found.reference == "kantorovich-5"
     assert list(found.ensembles) == ["kantorovich-4"]
     level = found.ensembles["kantorovich-4"]
@@ -274,7 +264,6 @@ def test_fewest_sufficient_steps_are_counted(five_terms: tuple[GapSystem, float]
     # Beside a dashpot of no strength every step is made on its own.
     single = replace(system, dashpots=np.zeros((1, system.num_modes)))
     found = steps_for_peaks(Motion(single, 4.0, STEP), peaks_of(system, cutoff, 0.03), cutoff)
-    assert found is not None
     sizes = [trial.step for trial in found.trials]
     assert sizes == pytest.approx([STEP * 2.0**i for i in range(-4, len(sizes) - 4)])
     assert sizes[-1] < 0.25 / cutoff <= 2.0 * sizes[-1]
@@ -292,7 +281,6 @@ def test_missing_peaks_are_kept_by_no_step(five_terms: tuple[GapSystem, float]) 
     peaks = peaks_of(system, cutoff, 0.0)
     peaks = replace(peaks, height=1.05 * peaks.height)
     found = steps_for_peaks(Motion(system, 4.0, STEP), peaks, cutoff)
-    assert found is not None
     assert found.fewest is None
 
 

@@ -51,7 +51,6 @@ def found(boom: Boom, models: list[SegmentModel]) -> list[Mode]:
 def test_modes_are_those_of_an_exact_beam(arm: Boom) -> None:
     """Reference: analytic, (βL)² = 3.51602, 22.0345 and √(GJ/I) / 4L (Blevins 1979)."""
     root, lateral = arm.segments[0], arm.segments[0].lateral
-    assert lateral is not None
     first = finite_element_segments(arm, 0.5, "euler-bernoulli", rotary_inertia=False)
     names = {(mode.motion, mode.number): mode for mode in found(arm, first)}
     for way, second_moment in (
@@ -74,7 +73,6 @@ def test_a_mode_is_found_again_whatever_its_place(arm: Boom) -> None:
     here, there = found(arm, models), found(arm, series)
     moved = list(reversed(there))
     for mode, match in zip(here, match_modes(arm, here, moved), strict=True):
-        assert match is not None
         other = moved[match.number - 1]
         assert (other.motion, other.number) == (mode.motion, mode.number)
         assert match.alike > 0.999

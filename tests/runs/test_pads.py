@@ -108,7 +108,6 @@ def test_pressure_stands_beside_the_pad_strength(tmp_path: Path) -> None:
     """Reference: by hand, half of the station's largest force over 0.01 m², against 20 MPa."""
     found = results(tmp_path, PAD)
     table = pad_table(found)
-    assert table is not None
     peaks = np.abs(found.trajectories["contact_force_peak"].values[0]).max(axis=0)
     assert peaks.min() > 0.0
     assert [row[0:4] for row in table.rows] == [
@@ -125,10 +124,8 @@ def test_summary_names_the_governing_pad(tmp_path: Path) -> None:
     """Reference: the table of all pads; a pad that may bear next to nothing stands out."""
     found = results(tmp_path, PAD.replace("2e7", "1e3"))
     table = summary_table(found)
-    assert table is not None
     told = {row[0]: row[1] for row in table.rows}
     pads = pad_table(found)
-    assert pads is not None
     columns = {column.heading: column for column in pads.columns}
     most = int(np.argmax([float(p) for p in columns["pressure\nMPa"].cells]))
     force, pressure = (columns[name].text[most] for name in ("maximum force\nkN", "pressure\nMPa"))
@@ -215,7 +212,6 @@ def test_each_pad_tells_its_pressure(tmp_path: Path) -> None:
     ]
     found = results(tmp_path, several(*pads))
     table = pad_table(found)
-    assert table is not None
     told = {column.heading: column.cells for column in table.columns}
     assert told["side"] == ["above", "below", "below"] * 2
     peaks = found.trajectories["contact_force_peak"].values[0]
@@ -239,7 +235,6 @@ def test_shimmed_pads_tell_the_force_of_their_side(tmp_path: Path) -> None:
     peaks = found.trajectories["contact_force_peak"].values[0]
     rest = 2.0 * found.boom.joints[0].pads[0].stiffness * (0.1 - 0.007)
     table = pad_table(found)
-    assert table is not None
     forces = {column.heading: column.cells for column in table.columns}["maximum force\nkN"]
     for station, own in enumerate(peaks.T):
         # The harder side presses with the peak, the other with 2 k s less the peak.

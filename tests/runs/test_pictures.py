@@ -190,7 +190,6 @@ def test_the_scale_of_deflections_ends_with_the_largest() -> None:
 def test_the_scale_of_stresses_ends_with_the_largest(steep: float) -> None:
     """Reference: analytic, the stresses; the end of the bar is not above the largest."""
     stress = moving_scene(state=steep).stress
-    assert stress is not None
     of_stress = Sheet(STRESS_PIXELS, 0)
     StressScale.of(stress, [0.5]).add_bar(of_stress)
     labels = [label.get_text() for label in of_stress.figure.axes[-1].get_xticklabels()]

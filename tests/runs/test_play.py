@@ -56,8 +56,6 @@ def test_play_adds_its_lever_at_rest(answers: DesignResults) -> None:
 def test_motions_are_held_against_those_without_play(answers: DesignResults) -> None:
     """Reference: another model, the case's own bonded one of the same elements."""
     own, bonded = (answers.models[name] for name in ("beam-fe", "beam-fe-bonded"))
-    assert own.motion_bonded is not None
-    assert bonded.motion is not None
     assert bonded.motion_bonded is None
     for peak, other in zip(own.motion_bonded.peaks, bonded.motion.peaks, strict=True):
         assert (peak.what, peak.where) == (other.what, other.where)
@@ -65,7 +63,6 @@ def test_motions_are_held_against_those_without_play(answers: DesignResults) -> 
     found = numbers(answers, "beam-fe")
     for one in found.values():
         assert one.with_play >= 0.0
-    assert own.motion is not None
     largest = own.motion.peaks[0].largest - bonded.motion.peaks[0].largest
     assert found["deflection", "tip"].increase == pytest.approx(largest, rel=1e-6)
     assert ("stress", "inner") in found

@@ -88,7 +88,6 @@ def tip_by_hand(boom: Boom, stiffness: list[float]) -> float:
     found = 0.0
     for own, virtual in zip(real, unit, strict=True):
         segment = own.segment
-        assert segment.section is not None
         shear = segment.material.shear_modulus * segment.section.shear_area
         places = {segment.start, segment.end, *(x for x, _ in (*own.forces, *own.moments))}
         for a, b in pairwise(sorted(places)):
@@ -111,7 +110,6 @@ def tip_by_hand(boom: Boom, stiffness: list[float]) -> float:
 def level(name: str) -> Case:
     """Return the horizontal case under its weights alone, without axial forces but of cylinders."""
     case = case_file.load(str(CASES / f"{name}.toml"))
-    assert case.gravity is not None
     gravity = case.gravity.model_copy(update={"angle": 0.0})
     return case.model_copy(update={"gravity": gravity, "axial": (), "loads": ()})
 
@@ -151,11 +149,9 @@ def test_moments_about_the_pin_are_in_balance(name: str, lowered: float) -> None
     case = case.model_copy(update={"segments": (base, *others)})
     boom = build_boom(case)
     (jack,), foot = boom.cylinders, boom.segments[0].foot
-    assert foot is not None
     assert foot.depth == lowered
     rest, _ = rest_of(case, boom)
     at_pin, at_lug = reactions(rest)
-    assert case.gravity is not None
     angle = np.radians(case.gravity.angle)
     masses = [
         (mass, x)

@@ -54,14 +54,12 @@ def answering(results: Results, **changes: Any) -> Results:
 
 def cells(table: Table | None) -> dict[str, dict[str, str]]:
     """Each row by its first cell."""
-    assert table is not None
     return {row[0]: dict(zip(table.headings, row, strict=True)) for row in table.rows}
 
 
 def test_summary_table_equals_the_design_results(results: Results) -> None:
     """Reference: summary.json, in mm, Hz, s, kN; a swing dies as exp(−2π ζ f t)."""
     own = results.summary.design.models[PLAYED]
-    assert own.motion is not None
     found = cells(summary_table(results))
     said = {
         asked: row[PLAYED].replace("−", "-").split("\n")[0].split(" ")[0]
@@ -128,7 +126,6 @@ def test_tables_of_rest_name_their_loads(results: Results) -> None:
 def with_stress(results: Results, stress: float) -> Results:
     """Return results with a stress in Pa at the outer fibre, 10 % more in plates; f_y = 355 MPa."""
     moved = results.summary.design.models[PLAYED].motion
-    assert moved is not None
     fibre = replace(moved.fibres[0], stress=-stress, x=2.0, utilisation=stress / 355e6)
     patch = 1.1 * stress
     wall = WallStress("outer", 10.0, patch, 0.5, 3.0 * patch, patch / 355e6)
@@ -146,13 +143,11 @@ def test_stresses_near_the_yield_strength_are_marked(results: Results) -> None:
     assert found[fibre][PLAYED] == "300, 84.5 %\nouter, x = 2.0 m"
     assert found[wall][PLAYED] == "330, 93 %\nouter, x = 10.0 m"
     assert found[wall][BONDED] == "–"
-    assert near is not None
     assert list(near.strong) == [found[wall][PLAYED]]
     beyond = summary_table(with_stress(results, 340e6))
     found = cells(beyond)
     assert found[fibre][PLAYED] == "340, 95.8 %\nouter, x = 2.0 m"
     assert found[wall][PLAYED] == "374, 105 %\nbeyond yield\nouter, x = 10.0 m"
-    assert beyond is not None
     assert set(beyond.strong) == {found[fibre][PLAYED], found[wall][PLAYED]}
 
 
@@ -198,7 +193,6 @@ def test_exhausted_fatigue_life_exceeds_the_limit(results: Results) -> None:
     terminal = printed(print_results, told, width=250).splitlines()
     assert terminal[-1].startswith(f"{PLAYED}: utilisation 320 % at detail, inner segment")
     table = summary_table(told)
-    assert table is not None
     assert list(table.strong) == ["3.2"]
     assert cells(table)["Fatigue damage (Miner)"][PLAYED] == "3.2"
 
@@ -235,7 +229,6 @@ def test_one_line_says_how_near_models_are(results: Results) -> None:
     line = f"Deviation of the static tip deflection (maximum load) from {PLAYED}: "
     assert deviation_note(both) == f"{line}kantorovich-4 −10 %."
     table = summary_table(both)
-    assert table is not None
     assert list(table.headings) == ["", PLAYED, "kantorovich-4", BONDED]
 
 
@@ -246,14 +239,12 @@ def test_every_answer_has_its_table(results: Results) -> None:
     assert titles == [*expected, *(["life"] if HAS_RAINFLOW else [])]
     modes = cells(mode_table(results))
     own = results.summary.design
-    assert own is not None
     assert own.quality_notes
     first = own.models[BONDED].modes[0]
     assert float(modes[f"{first.motion} 1"][f"{BONDED}\nHz"]) == pytest.approx(
         first.frequency, rel=1e-3
     )
     table = stress_table(results)
-    assert table is not None
     assert not any("wall" in heading for heading in table.headings)
 
 

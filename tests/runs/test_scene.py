@@ -205,7 +205,6 @@ def test_smoothed_stresses_keep_to_their_walls(shell: Scene) -> None:
     """Reference: analytic. What is the same all over a wall stays so up to its folds; a field that
     is linear along x is met between the triangles around a point."""
     stress = shell.stress
-    assert stress is not None
     walls = stress.wall.astype(float) + 10.0 * shell.segment
     smooth = smooth_corners(stress, shell.triangles, walls)
     np.testing.assert_allclose(smooth, np.repeat(walls[:, None], 3, axis=1))
@@ -344,7 +343,6 @@ def test_sections_are_as_large_as_the_case_says(name: str) -> None:
     plates = [patch for patch in panel.patches if isinstance(patch, Polygon)]
     assert len(plates) == sum(len(s.section.plates) for s in boom.segments if s.section)
     first = boom.segments[0].section
-    assert first is not None
     heights = np.concatenate([plate.get_xy()[:, 1] for plate in plates[: len(first.plates)]])
     low, high = first.reach("z")
     thickest = max(plate.thickness for plate in first.plates)

@@ -122,7 +122,6 @@ def test_pin_carries_axial_forces(answers: DesignResults) -> None:
     assert pin.along == pytest.approx(along, rel=1e-3)
     assert lug.along == pytest.approx(0.8 * FORCE, rel=1e-3)
     moved = answers.models["beam"].motion
-    assert moved is not None
     joint_thrust = {peak.what: peak for peak in moved.peaks if "reaction" in peak.what}
     for what, force in (
         ("reaction", across),
@@ -145,7 +144,6 @@ def test_a_pin_at_the_very_end_bears_the_same(tmp_path: Path) -> None:
     text = CASE.replace("span = [0.0, 10.0]", "span = [1.0, 10.0]")
     force = ACROSS * 9.0 * 4.5 / (0.6 * 3.0)
     moved = answers_of(read_case(tmp_path, text)).models["beam"].motion
-    assert moved is not None
     (joint_thrust,) = (peak for peak in moved.peaks if peak.what == "reaction along the boom")
     assert joint_thrust.largest == pytest.approx(0.8 * force - 9.0 * ALONG, rel=2e-3)
 
@@ -153,7 +151,6 @@ def test_a_pin_at_the_very_end_bears_the_same(tmp_path: Path) -> None:
 def test_the_fibre_feels_the_normal_force(answers: DesignResults) -> None:
     """Reference: by hand, M z/J + N/A before the lug, where M is q 6²/2."""
     moved = answers.models["beam"].motion
-    assert moved is not None
     (fibre,) = moved.fibres
     bent = 0.5 * ACROSS * 6.0**2 * 0.204 / BOX.second_moment_of_area
     pulled = (0.8 * FORCE - 6.0 * ALONG) / BOX.area
@@ -215,7 +212,6 @@ def test_stress_figure_states_maximum_and_limits(tmp_path: Path) -> None:
 
 def test_stress_table_has_the_force_of_each_wall() -> None:
     table = wall_table(results(STRESS))
-    assert table is not None
     assert table.rows == [("shell", "outer", "2", "top", "−12.50", "0.00", "3.06")]
     assert "91.6 MPa at x = 9.03 m in 'inner', outer face of the wall 'right'" in table.notes[0]
 
@@ -229,7 +225,6 @@ def test_the_largest_stress_stands_beside_the_yield_strength_where_it_is_known()
     """Reference: 91.6 MPa of 355 MPa."""
     plain = results(STRESS)
     material = plain.case.material
-    assert material is not None
     steel = replace(material, yield_strength=355e6)
     known = replace(plain, case=plain.case.model_copy(update={"material": steel}))
     said = [table.notes[0] for found in (plain, known) if (table := wall_table(found))]

@@ -46,7 +46,6 @@ def test_stresses_are_stored_beside_every_contact_and_support() -> None:
     )
     assert left.stresses["place"].values.tolist() == [0.0, 2.0, 4.0, 9.0, 9.5, 10.0, 19.0]
     assert left.largest.von_mises == 0.0
-    assert left.modes is not None
     moved = np.tensordot(left.modes["state"].values, left.modes["modes"].values, axes=1)
     np.testing.assert_allclose(np.linalg.norm(moved, axis=2).max(axis=1), 1.0, rtol=1e-5)
     assert set(left.meshes) == {"outer", "inner"}

@@ -242,7 +242,6 @@ def _check_shown(results: Results, folder: Path) -> None:
     read = Summary.model_validate_json(str(results.summary))
     assert read.models["kantorovich-5"].stick_slip["drive_force"] == own
     table = stick_slip_table(results)
-    assert table is not None
     assert [column.cells[0] for column in table.columns] == [
         "kantorovich-5", "inner", own.mean, own.peak, own.sticks, own.slip, own.behind, own.speed,
         own.acceleration,

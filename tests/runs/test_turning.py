@@ -141,7 +141,6 @@ def test_shaper_proposed_by_check(tmp_path: Path, bonded: bool, least: float, mo
         r"without play, and takes ([\d.]+) s longer\.",
         line,
     )
-    assert offered is not None
     frequency, damping, longer = map(float, offered.groups())
     vibrations = []
     for shaper, end in (((), 1.5), (((frequency, damping),), 1.5 + longer)):
@@ -189,7 +188,6 @@ def test_table_of_luffing() -> None:
         update={"luff": LuffTable(travel=-5.0, time=1.0), "models": case.models[:1]}
     )
     table = luffing_table(run_case(change(case, **{"time.duration": 0.2})))
-    assert table is not None
     cells = {column.title: column.cells[0] for column in table.columns}
     lug, ground = np.hypot(4.2, 0.55), np.hypot(1.6, 1.7)
     opening = np.arctan2(1.7, 1.6) - np.arctan2(0.55, 4.2)
@@ -232,7 +230,6 @@ def test_flat_boom_does_not_slew(tmp_path: Path) -> None:
 def test_unit_of_angles_in_a_file(tmp_path: Path, unit: str, factor: float) -> None:
     (tmp_path / "angles.csv").write_text(f"t [s],psi [{unit}]\n0,0\n2,0.5\n", encoding="utf-8")
     case = slewing_arm(tmp_path, '[slew]\nfile = "angles.csv"\n')
-    assert case.slew is not None
     assert case.slew.table == ((0.0, 0.0), (2.0, pytest.approx(0.5 * factor)))
 
 
@@ -261,8 +258,6 @@ def test_slewing_crane_with_load() -> None:
     boom = build_boom(case)
     data = motion(rope_force=[1.2e4] * 3, swing_out=[0.0, 0.0, 0.1], swing_aside=[0.0, 0.0, 0.6])
     position = CranePosition.of(case, boom, data)
-    assert position is not None
-    assert position.load is not None
     out, turned = boom.tip * np.cos(np.pi / 6.0), np.deg2rad(15.0)
     along, aside = np.array([np.cos(turned), np.sin(turned)]), [-np.sin(turned), np.cos(turned)]
     np.testing.assert_allclose(position.boom[:, 0], 0.0, atol=1e-12)
@@ -280,8 +275,6 @@ def test_luffing_and_hoisting_crane() -> None:
     position = CranePosition.of(
         case, boom, motion(rope_force=[0.0] * 3, load_height=[0.0, 0.1, 0.4])
     )
-    assert position is not None
-    assert position.load is not None
     start, end = (boom.tip * np.array([np.cos(a), np.sin(a)]) for a in np.deg2rad([60.0, 70.0]))
     np.testing.assert_allclose(position.boom[0, 1], start)
     np.testing.assert_allclose(position.boom[-1, 1], end)
@@ -299,6 +292,5 @@ def test_other_booms_have_no_position() -> None:
     boom, data = build_boom(case), motion()
     hung = HoistTable(mass=5000.0, stiffness=1.0e6, hanging=True, dropped=True)
     dropped = CranePosition.of(case.model_copy(update={"hoist": hung}), boom, data)
-    assert dropped is not None
     assert dropped.load is None
     assert CranePosition.of(case.model_copy(update={"hoist": None}), boom, data) is None

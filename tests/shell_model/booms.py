@@ -94,7 +94,6 @@ def three_segments(bonded: bool = False) -> Boom:
     """Return the boom with a third box in the second, with the overlap of the first joint."""
     two = flat_boom()
     inner = two.segments[1].section
-    assert inner is not None
     inmost = BoxSection(inner.height - 0.025, inner.width - 0.025, inner.flange, inner.web)
     middle = replace(two.segments[1], end=16.0)
     third = box_segment("third", 15.0, 21.0, inmost, 40.0)

@@ -111,8 +111,6 @@ def test_segments_rolling_together_keep_their_gaps() -> None:
     state[rigid] = np.linalg.solve(rows, [0.0, 0.0, 0.0, 0.0, 1.0e-3])
     section = flat_boom().segments[1].section
     outer = flat_boom().segments[0].section
-    assert section is not None
-    assert outer is not None
     along_z = np.array(system.station_directions)[system.station_of_row] == "z"
     gaps = system.rows @ state
     assert np.abs(gaps[along_z]) == pytest.approx(0.5e-3 * section.width, rel=1.0e-9)

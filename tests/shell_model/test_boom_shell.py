@@ -61,7 +61,6 @@ def test_first_contact_follows_the_beam() -> None:
 def test_fields_agree_with_observers() -> None:
     """The mean of u_z over the tip's vertices follows the tip's observer within distortion."""
     shell = reduced(flat_boom(), 0.25, moments=2)
-    assert shell.fields is not None
     state = AdaptiveStep()(Motion(shell.system, 0.1)).states[-1]
     displacement = np.tensordot(state, shell.fields["modes"].values, axes=1)
     at_tip = np.abs(shell.fields["points"].values[:, 0] - 19.0) < 1.0e-9

@@ -142,7 +142,6 @@ def test_a_bonded_joint_has_no_play() -> None:
     tip = system.observers["tip"].row @ rest
     assert tip == pytest.approx(beams.observers["tip"].row @ expected, rel=2.0e-3)
     # The pictures' modes are those of the coordinates.
-    assert shell.fields is not None
     moved = np.tensordot(rest, shell.fields["modes"].values, axes=1)
     at_tip = np.abs(shell.fields["points"].values[:, 0] - boom.tip) < 1.0e-9
     assert moved[at_tip, 2].mean() == pytest.approx(tip, rel=1.0e-3)

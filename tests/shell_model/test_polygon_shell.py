@@ -240,7 +240,6 @@ def test_polygon_segment_with_all_attachments(
     assert np.isfinite(found.local_compliance[:-2]).all() or line == "surface"
     inner = boom.segments[1]
     section = inner.section
-    assert section is not None
     mass = STEEL.density * (
         section.area * 10.0 + section.perimeter * 0.004 * 0.5 + section.enclosed_area * 0.005
     )

@@ -121,7 +121,6 @@ def test_a_tilted_approach_presses_as_its_integral() -> None:
     tilt = 1.0e-3
     state = _rigid(system, {"tip": LAW.above + 10.0 * tilt, "tail": LAW.above})
     section = flat_boom().segments[1].section
-    assert section is not None
     expected = given * section.width * tilt**2 / 3.0
     assert _forces(system, state).sum() == pytest.approx(expected, rel=1.0e-6)
 
@@ -173,7 +172,6 @@ def test_in_space_each_point_presses_one_corner() -> None:
     )
     arms = system.rows @ state
     section = flat_boom().segments[1].section
-    assert section is not None
     for walls, size in ((along_z, section.width), (~along_z, section.height)):
         sides, stiffnesses = np.array([w.terms[0][:2] for w in system.laws])[walls].T
         above = np.where(sides > 0.0, stiffnesses, 0.0)
@@ -263,7 +261,6 @@ def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
     corners = 1 if len(sides) == 2 else 2
     assert len(rows.contacts) == 2 * len(pads) * corners
     for contact, pad in zip(rows.contacts, places, strict=True):
-        assert pad.patch is not None
         across = COMPONENT["y" if pad.direction == "z" else "z"]
         moved = np.zeros(inner.free.size)
         moved[inner.node_dofs[:, COMPONENT[pad.direction]]] = inner.nodes[:, across] ** 2

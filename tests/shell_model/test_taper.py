@@ -83,7 +83,6 @@ def test_its_walls_stand_where_the_section_is(shape: str) -> None:
     boom = cantilever(shape)
     (shell,) = assemble_segments(boom, ShellOptions(mesh_size=0.2), MPI.COMM_SELF)
     segment, mesh = boom.segments[0], shell.mesh
-    assert mesh is not None
     points, walls = mesh.points, np.unique(mesh.triangles[mesh.on_walls])
     for point in points[walls]:
         assert segment.section_at(point[0]).on_plates(point[None, 1:]).all()

@@ -21,7 +21,6 @@ def test_wheel_contains_the_packages_of_the_readme_and_no_tests() -> None:
     assert options.pop("namespaces") is False
     brought = {name.split(".")[0] for name in setuptools.find_packages(str(ROOT), **options)}
     said = re.search(r"top-level names\s+(.*?), and no other", read("README.md"), re.DOTALL)
-    assert said is not None
     assert brought == set(re.findall(r"`(\w+)`", said[1]))
     assert "tests" not in brought
 
@@ -30,6 +29,4 @@ def test_version_equals_changelog_and_citation() -> None:
     version = re.sub(r"\.dev\d+$", "", PYPROJECT["project"]["version"])
     newest = re.search(r"^## \[(.+?)\]", read("CHANGELOG.md"), re.MULTILINE)
     cited = re.search(r"^version: (.+)$", read("CITATION.cff"), re.MULTILINE)
-    assert newest is not None
-    assert cited is not None
     assert newest[1] == cited[1] == version

@@ -50,7 +50,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     time = case.time.model_copy(update={"duration": 2.0})
     case = case.model_copy(update={"time": time, "ensemble": ensemble})
     finished = run_case(case, "", RunContext())
-    assert finished is not None
     finished.evaluate()
     finished.results.summary.models["kantorovich-5"].horizons = {
         "relatives": [1e-12, 1e-9, 1e-6, 1e-3], "shares": [0.01, 0.2],

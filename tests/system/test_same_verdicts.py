@@ -32,7 +32,6 @@ def chaotic() -> Case:
 def run(change: float) -> Results:
     """Results with E changed in relative terms."""
     case = chaotic()
-    assert case.material is not None
     modulus = case.material.youngs_modulus * (1.0 + change)
     material = replace(case.material, youngs_modulus=modulus)
     case = case.model_copy(update={"material": material})

@@ -142,7 +142,6 @@ with workers(2) as pool:
 def test_processes_end_with_their_parent() -> None:
     """Reference: by construction. Output ends when the last process that could write to it does."""
     process = start(ROOT, "-c", WORKERS)
-    assert process.stdout is not None
     assert process.stdout.readline() == "works\n"
     process.terminate()
     assert process.communicate(timeout=30) == ("", "protractile: interrupted\n")

@@ -66,7 +66,6 @@ def _shell(cache: Cache) -> bytes:
     case = case_file.select(case_file.load(_COARSE), "", ["shell"], 1.0)
     short = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.15})})
     run = run_case(short, "", RunContext(MPI.COMM_SELF, cache=cache, motions=cache))
-    assert run is not None
     left = run.results.trajectories, run.shells["shell"].fields
     return b"".join(bytes(data.to_netcdf(engine="scipy")) for data in left)
 
