@@ -395,7 +395,7 @@ def springs_table(found: Mapping[str, BoomErrors], sizes: Sizes) -> Table:
     columns = {
         "boom": "", "first peak,\nworst (%)": ".3f", "tip,\nworst (%)": ".2f",
         "free bending of the\ninner segment (Hz)": ".1f", "error of the\nbeam (%)": ".2f",
-        "0.065 (f/f_fl)²\n(%)": ".2f",
+        "0.065 (ω/ω_fl)²\n(%)": ".2f",
     }  # fmt: skip
     return Table.of_rows(
         "rule-of-thumb-springs",

@@ -174,9 +174,9 @@ def other_programs(most: int, budget: float, problems: Sequence[str] = tuple(PRO
     """
     rows: list[Sequence[Cell]] = []
     notes = [
-        "Errors are off our run in steps of 2.5 µs, and of the ball off Moreau and Jean's scheme "
-        "in steps of 1 µs. Exudyn's beams stretch, and its contact is a penalty; Siconos has a law "
-        "of impact with the restitution 0, ours is a damped penalty.",
+        "The reference of beams is a run of protractile with steps of 2.5 µs, that of the ball "
+        "the scheme of Moreau and Jean with steps of 1 µs. Exudyn's beams stretch, and its contact "
+        "is a penalty. Siconos has an impact law with restitution 0, protractile a damped penalty.",
     ]
     for problem in (PROBLEMS[name]() for name in problems):
         program = problem.program
@@ -185,8 +185,8 @@ def other_programs(most: int, budget: float, problems: Sequence[str] = tuple(PRO
         else:
             notes.append(f"{program.name} is left out: not installed; {program.remedy}.")
     columns = {
-        "motion": "", "at most off (%)": ".2g", "program": "", "step (s)": ".1g",
-        "off (%)": ".2g", "wall s": "", "over the time step": ".2g",
+        "motion": "", "permitted error (%)": ".2g", "program": "", "step (s)": ".1g",
+        "error (%)": ".2g", "wall time (s)": "", "ratio to protractile": ".2g",
     }  # fmt: skip
     title = "Other programs at equal error of the tip"
     return Table.of_rows("others", title, columns, rows, notes)
@@ -203,7 +203,7 @@ def _at_levels(
         if found[0] is None or found[1] is None:
             continue
         base = float(np.median(found[0][2]))
-        names = ("time step", problem.program.name)
+        names = ("protractile", problem.program.name)
         for name, run in zip(names, found, strict=True):
             assert run is not None
             step, off, seconds = run

@@ -69,7 +69,7 @@ def test_the_page_has_every_row() -> None:
     cheap = [*validation.released_slider(), *validation.rubbing_mass(), validation.impact_pair()]
     assert {verification.what for verification in cheap} < {row[0] for row in computed}
     compared = [row for row in rows if len(row) == 7 and row[0] != "motion"]
-    assert {row[2] for row in compared} == {"time step", "Exudyn", "Siconos"}
+    assert {row[2] for row in compared} == {"protractile", "Exudyn", "Siconos"}
     assert all(float(row[4]) <= float(row[1]) for row in compared)
     # What is not computed says what is missing.
     others = [row for row in rows if len(row) not in (7, 9)]
