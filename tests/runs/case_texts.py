@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What cases of several tests say alike, and how they are read and refused."""
 
+import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,6 +18,31 @@ youngs_modulus = 2.1e11
 poissons_ratio = 0.3
 density = 7850.0
 """
+
+
+def table(heading: str, **keys: object) -> str:
+    """Return a table of a case by its heading, such as ``[time]`` or ``[[model]]``."""
+    lines = (f"{key} = {as_toml(value)}" for key, value in keys.items())
+    return "\n".join(["", heading, *lines, ""])
+
+
+def as_toml(value: object) -> str:
+    """Return a value of a case file, its tables inline."""
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{key} = {as_toml(entry)}' for key, entry in value.items())} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(as_toml, value))}]"
+    return json.dumps(value)
+
+
+REST = table("[start]", state="equilibrium")
+HINGED = 'supports = [{ x = 0.0, kind = "hinged" }]'
+CLAMPED = 'supports = [{ x = 0.0, kind = "clamped" }]'
+
+
+def elements(name: str, **keys: object) -> str:
+    """Return a model of beam elements."""
+    return table("[[model]]", name=name, kind="finite-element", **keys)
 
 
 _SIZES = "height", "width", "flange", "web"

@@ -12,7 +12,9 @@ from rich.console import Console
 
 from dynamics.trajectory import Trajectory
 from runs.case.build import build_boom
+from runs.case.checked_case import CheckedCase
 from runs.case.schema import Case
+from runs.check import print_check
 from runs.pipeline.context import RunContext
 from runs.pipeline.design_results import DesignResults
 from runs.pipeline.models import MotionPlan, build
@@ -61,6 +63,11 @@ def printed(show: Callable[..., object], *given: Any, width: int = 160) -> str:
     show(*given, console)
     assert isinstance(console.file, StringIO)
     return console.file.getvalue()
+
+
+def printed_check(case: Case, width: int = 200) -> str:
+    """Return the text that ``check`` prints of a case, to a console of a width."""
+    return printed(print_check, CheckedCase(case), width=width)
 
 
 def answers_of(case: Case, comm: Intracomm | None = None) -> DesignResults:

@@ -8,42 +8,25 @@ import pytest
 
 from dynamics.excitation import PiecewiseLinear, Ramp, Sine, Step
 from protractile.cases import run_case
-from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.kinds.finite_element import BeamElements
-from runs.case.messages import BadInput
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
+from tests.runs.case_texts import CLAMPED, REST, STEEL, elements, read_case, refusal, table
 
-CANTILEVER = """
+CANTILEVER = f"""
 title = "One segment"
-
-[time]
-duration = 2.0
-output_step = 1e-3
-
-[material]
-youngs_modulus = 2.1e11
-poissons_ratio = 0.3
-density = 7850.0
-
+time = {{ duration = 2.0, output_step = 1e-3 }}
+{STEEL}
 [[segment]]
 name = "beam"
 span = [0.0, 10.0]
-supports = [{ x = 0.0, kind = "clamped" }]
+{CLAMPED}
 mass_per_length = 83.16
 second_moment_of_area = 3.7986e-4
 rotary_inertia = 0.0
 """
 
-ELEMENTS = """
-[[model]]
-name = "beam-fe"
-kind = "finite-element"
-theory = "euler-bernoulli"
-element_length = 1.0
-"""
-
+ELEMENTS = elements("beam-fe", theory="euler-bernoulli", element_length=1.0)
 BENDING = 2.1e11 * 3.7986e-4
 # βL of a cantilever's first mode.
 FIRST = (1.875104069 / 10.0) ** 2 * np.sqrt(BENDING / 83.16)
@@ -51,9 +34,12 @@ FIRST = (1.875104069 / 10.0) ** 2 * np.sqrt(BENDING / 83.16)
 
 def run(folder: Path, text: str) -> Results:
     """Results of the cantilever with what ``text`` says besides."""
-    path = folder / "case.toml"
-    path.write_text(CANTILEVER + text + ELEMENTS, encoding="utf-8")
-    return run_case(case_file.load(str(path)))
+    return run_case(read_case(folder, CANTILEVER + text + ELEMENTS))
+
+
+def load(**keys: object) -> str:
+    """Return a load on the cantilever."""
+    return table("[[load]]", segment="beam", **keys)
 
 
 def tip(folder: Path, text: str) -> np.ndarray:
@@ -62,35 +48,16 @@ def tip(folder: Path, text: str) -> np.ndarray:
 
 def test_a_point_load_at_rest_bends_as_it_should(tmp_path: Path) -> None:
     """Reference: analytic, P L³ / 3 E J, under a load that has acted for ever and goes on."""
-    text = """
-    [start]
-    state = "equilibrium"
-    [[load]]
-    segment = "beam"
-    x = 10.0
-    magnitude = -500.0
-    """
-    moved = tip(tmp_path, text)
+    moved = tip(tmp_path, REST + load(x=10.0, magnitude=-500.0))
     assert moved == pytest.approx(np.full(moved.size, -500.0 * 10.0**3 / (3.0 * BENDING)), rel=1e-6)
 
 
 def test_boom_at_rest_has_contact_forces_and_no_peak(tmp_path: Path) -> None:
     """Reference: analytic, the lever rule on the stop; a stiff stop carries 3/8 of a uniform
     load."""
-    text = """
-    [start]
-    state = "equilibrium"
-    [[load]]
-    segment = "beam"
-    magnitude = -1000.0
-    [[stop]]
-    segment = "beam"
-    x = 10.0
-    play = 0.0
-    stiffness = 0.0
-    stiffness_below = 1e12
-    """
-    results = run(tmp_path, text)
+    floor = {"x": 10.0, "play": 0.0, "stiffness": 0.0, "stiffness_below": 1e12}
+    stop = table("[[stop]]", segment="beam", **floor)
+    results = run(tmp_path, REST + load(magnitude=-1000.0) + stop)
     forces = results.trajectories["contact_force"].values[0, :, 0]
     assert forces == pytest.approx(np.full(forces.size, -0.375 * 10_000.0), rel=1e-3)
     assert results.summary.models["beam-fe"].first_peak["tip"] == (None, None)
@@ -98,14 +65,7 @@ def test_boom_at_rest_has_contact_forces_and_no_peak(tmp_path: Path) -> None:
 
 def test_a_released_load_leaves_the_beam_swinging(tmp_path: Path) -> None:
     """Reference: analytic. It starts where the load held it, and swings about zero."""
-    text = """
-    [[load]]
-    segment = "beam"
-    x = 10.0
-    magnitude = -500.0
-    released = true
-    """
-    moved = tip(tmp_path, text)
+    moved = tip(tmp_path, load(x=10.0, magnitude=-500.0, released=True))
     held = -500.0 * 10.0**3 / (3.0 * BENDING)
     assert moved[0] == pytest.approx(held, rel=1e-6)
     time = np.arange(moved.size) / 1000
@@ -126,29 +86,10 @@ def test_a_payload_hangs_from_the_tip_with_its_mass(tmp_path: Path) -> None:
 
 def test_the_ground_s_acceleration_is_a_load_on_every_mass(tmp_path: Path) -> None:
     """Reference: the same loads given one by one."""
-    given = """
-    [[load]]
-    segment = "beam"
-    magnitude = 83.16
-    frequency = 0.7
-    [[load]]
-    segment = "beam"
-    x = 10.0
-    magnitude = 300.0
-    frequency = 0.7
-    [payload]
-    mass = 300.0
-    gravity = 0.0
-    """
-    shaken = """
-    [[base]]
-    acceleration = -1.0
-    frequency = 0.7
-    [payload]
-    mass = 300.0
-    gravity = 0.0
-    """
-    expected, found = tip(tmp_path, given), tip(tmp_path, shaken)
+    payload = table("[payload]", mass=300.0, gravity=0.0)
+    given = load(magnitude=83.16, frequency=0.7) + load(x=10.0, magnitude=300.0, frequency=0.7)
+    shaken = table("[[base]]", acceleration=-1.0, frequency=0.7)
+    expected, found = (tip(tmp_path, text + payload) for text in (given, shaken))
     assert found == pytest.approx(expected, abs=1e-9 * np.ptp(expected))
 
 
@@ -162,16 +103,8 @@ def test_a_thrown_segment_has_the_momentum_of_its_speed(tmp_path: Path) -> None:
 
 def test_damping_of_all_modes_takes_the_energy(tmp_path: Path) -> None:
     """Reference: analytic, e^(−ζ ω t) (cos ω' t + ζ ω / ω' sin ω' t) with ω' = √(1 − ζ²) ω."""
-    text = """
-    [damping]
-    modal = 0.05
-    [[load]]
-    segment = "beam"
-    x = 10.0
-    magnitude = -500.0
-    released = true
-    """
-    moved = tip(tmp_path, text)
+    released = load(x=10.0, magnitude=-500.0, released=True)
+    moved = tip(tmp_path, table("[damping]", modal=0.05) + released)
     time = np.arange(moved.size) / 1000
     slower = np.sqrt(1.0 - 0.05**2) * FIRST
     swings = np.cos(slower * time) + 0.05 * FIRST / slower * np.sin(slower * time)
@@ -181,12 +114,9 @@ def test_damping_of_all_modes_takes_the_energy(tmp_path: Path) -> None:
 
 def test_constant_loads_are_weights_and_forces(tmp_path: Path) -> None:
     """Reference: analytic, the weight m g and P at the tip times each mode's deflection there."""
-    path = tmp_path / "case.toml"
-    load = '[[load]]\nsegment = "beam"\nx = 10.0\nmagnitude = 900.0\n'
-    path.write_text(CANTILEVER + "[payload]\nmass = 500.0\n" + load + ELEMENTS, encoding="utf-8")
-    case = case_file.load(str(path))
+    loads = table("[payload]", mass=500.0) + load(x=10.0, magnitude=900.0)
+    case = read_case(tmp_path, CANTILEVER + loads + ELEMENTS)
     (model,) = case.models
-    assert isinstance(model, BeamElements)
     plan = MotionPlan.of(build(case, build_boom(case), model).system, case, model)
     expected = (900.0 - 500.0 * 9.80665) * plan.motion.system.observers["tip"].row
     np.testing.assert_allclose(plan.motion.system.load, expected, rtol=1e-12)
@@ -194,20 +124,10 @@ def test_constant_loads_are_weights_and_forces(tmp_path: Path) -> None:
 
 def test_histories_follow_the_case(tmp_path: Path) -> None:
     (tmp_path / "gust.csv").write_text("0, 0\n0.5, 1\n2, -0.25\n", encoding="utf-8")
-    text = "".join(
-        f'[[load]]\nsegment = "beam"\nmagnitude = 1.0\n{history}\n'
-        for history in (
-            "",
-            "ramp = 0.3",
-            "frequency = 2.0",
-            "table = [[0.0, 1.0], [1.0, 2.0]]",
-            'file = "gust.csv"',
-        )
-    )
-    path = tmp_path / "case.toml"
-    path.write_text(CANTILEVER + text + ELEMENTS, encoding="utf-8")
-    histories = [load.history for load in build_boom(case_file.load(str(path))).loads]
-    assert histories == [
+    given = {}, {"ramp": 0.3}, {"frequency": 2.0}, {"table": [[0, 1], [1, 2]]}, {"file": "gust.csv"}
+    text = "".join(load(magnitude=1.0, **history) for history in given)
+    boom = build_boom(read_case(tmp_path, CANTILEVER + text + ELEMENTS))
+    assert [load.history for load in boom.loads] == [
         Step(),
         Ramp(0.3),
         Sine(2.0),
@@ -253,8 +173,5 @@ def test_bad_actions_are_refused(tmp_path: Path, text: str, line: str) -> None:
     (tmp_path / "words.csv").write_text("time, factor\n0, one\n", encoding="utf-8")
     (tmp_path / "three.csv").write_text("0, 1, 2\n", encoding="utf-8")
     (tmp_path / "back.csv").write_text("0, 1\n0.2, 2\n0.1, 3\n", encoding="utf-8")
-    path = tmp_path / "case.toml"
-    path.write_text(CANTILEVER + text + ELEMENTS, encoding="utf-8")
-    with pytest.raises(BadInput) as caught:
-        case_file.load(str(path))
-    assert str(caught.value) == f"{path}: {line.format(folder=tmp_path)}"
+    refused = refusal(tmp_path, CANTILEVER + text + ELEMENTS)
+    assert refused == line.format(folder=tmp_path)

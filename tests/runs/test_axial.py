@@ -10,38 +10,23 @@ from geometry.section import BoxSection
 from protractile.cases import run_case
 from runs import CASES
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
-from runs.check import print_check
 from runs.report.formatting import number
 from runs.report.model_tables import buckling_table
-from tests.runs.case_texts import STEEL, box, joint, read_case, refusal
-from tests.runs.summaries import printed
+from tests.runs.case_texts import CLAMPED, STEEL, box, elements, joint, read_case, refusal, table
+from tests.runs.summaries import printed_check
 
 LIFT = f"""
 title = "Lift"
 [time]
 duration = 0.05
 {STEEL}
-{box("mast", (0.0, 8.0), (0.40, 0.30, 0.008, 0.006))}
-supports = [{{ x = 0.0, kind = "clamped" }}]
+{box("mast", (0.0, 8.0), (0.40, 0.30, 0.008, 0.006), CLAMPED)}
 {box("fly", (6.0, 14.0), (0.36, 0.26, 0.006, 0.005))}
 {joint("fly", "mast", 0.01, (6.0, 8.0))}
-[[load]]
-segment = "fly"
-x = 14.0
-magnitude = -200.0
-[[model]]
-name = "beam"
-kind = "finite-element"
-theory = "euler-bernoulli"
+{table("[[load]]", segment="fly", x=14.0, magnitude=-200.0)}
+{elements("beam", theory="euler-bernoulli")}
 """
-BONDED = """
-[[model]]
-name = "bonded"
-kind = "finite-element"
-theory = "euler-bernoulli"
-bonded = true
-"""
+BONDED = elements("bonded", theory="euler-bernoulli", bonded=True)
 MAST = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
 FLY = BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005)
 
@@ -114,7 +99,7 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
     results = run_case(case)
     table = buckling_table(results)
     factor = results.summary.models["bonded"].critical_factor
-    shown = printed(print_check, CheckedCase(case), width=120)
+    shown = printed_check(case, 120)
     words = [line.replace("│", " ").split() for line in shown.splitlines()]
     assert ["mast", "40", number(0.04 / MAST.area, 4)] in words
     assert number(factor, 4) in shown
@@ -139,7 +124,7 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
 def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | None) -> None:
     """Each on its slip, none on what is in proportion."""
     case = read_case(tmp_path, (LIFT + text + BONDED).replace("= 0.05", "= 0.5"))
-    checked = printed(print_check, CheckedCase(case), width=200).splitlines()
+    checked = printed_check(case).splitlines()
     told = run_case(case, models=["bonded"]).summary.cautions
     if caution is None:
         assert told == []
@@ -181,14 +166,7 @@ def test_bad_axial_forces_are_refused(tmp_path: Path, text: str, line: str) -> N
 TAPERED = """section = { height = 0.7, width = 0.3, flange = 0.012, web = 0.012 }
 head_section = { height = 0.5, width = 0.3, flange = 0.006, web = 0.006 }
 """
-PRESSED = """[[axial]]
-force = 3e5
-
-[[model]]
-name = "beam"
-kind = "finite-element"
-theory = "euler-bernoulli"
-"""
+PRESSED = table("[[axial]]", force=3e5) + elements("beam", theory="euler-bernoulli")
 
 
 def test_a_tapered_boom_is_pressed_most_where_it_is_drawn_to(tmp_path: Path) -> None:
@@ -200,7 +178,6 @@ def test_a_tapered_boom_is_pressed_most_where_it_is_drawn_to(tmp_path: Path) -> 
     own = inner[inner.index("mass_per_length") : inner.index("load")]
     parts = head, outer.replace(numbers, TAPERED), inner.replace(own, box).partition("[[model]]")[0]
     case = read_case(tmp_path, "[[segment]]\n".join(parts) + PRESSED)
-    told = printed(print_check, CheckedCase(case), width=120)
-    rows = [line.replace("│", " ").split() for line in told.splitlines()]
+    rows = [line.replace("│", " ").split() for line in printed_check(case, 120).splitlines()]
     stress = 300e3 / (2.0 * (0.3 + 0.52) * 6.6e-3) / 1e6
     assert ["outer", "300", number(stress, 4)] in rows

@@ -9,23 +9,17 @@ import pytest
 from geometry.boom import Boom, Cylinder, Support
 from protractile.cases import run_case
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
 from runs.case.schema import Case
 from runs.case.toml import dumps
-from runs.check import print_check
-from tests.runs.case_texts import STEEL, box, joint, read_case
-from tests.runs.summaries import printed
+from tests.runs.case_texts import REST, STEEL, box, elements, joint, read_case, table
+from tests.runs.summaries import printed_check
 
 LUFFED = f"""
 title = "A boom on its cylinder"
-[time]
-duration = 0.05
-output_step = 1e-3
-{STEEL}
-[gravity]
-acceleration = 9.80665
-[start]
-state = "equilibrium"
+time = {{ duration = 0.05, output_step = 1e-3 }}
+gravity = {{ acceleration = 9.80665 }}
+payload = {{ mass = 1000.0 }}
+{STEEL}{REST}
 {box("base", (0.0, 9.0), (0.60, 0.40, 0.010, 0.008))}
 supports = [{{ x = 0.0, kind = "hinged", depth = 0.2 }}]
 {box("fly", (7.5, 15.0), (0.56, 0.36, 0.008, 0.006))}
@@ -37,24 +31,10 @@ depth = 0.5
 ground = [1.2, -2.4]
 stiffness = 6e7
 dashpot = 2e4
-[payload]
-mass = 1000.0
-[[model]]
-name = "elements"
-kind = "finite-element"
-element_length = 1.5
-[[model]]
-name = "series"
-kind = "kantorovich"
-terms = [10, 8]
-base = "complete"
-[[model]]
-name = "rigid"
-kind = "rigid"
-[[model]]
-name = "bonded"
-kind = "finite-element"
-bonded = true
+{elements("elements", element_length=1.5)}
+{table("[[model]]", name="series", kind="kantorovich", terms=[10, 8], base="complete")}
+{table("[[model]]", name="rigid", kind="rigid")}
+{elements("bonded", bonded=True)}
 """
 
 
@@ -101,7 +81,7 @@ def test_every_model_stands_on_its_cylinder(case: Case) -> None:
 def test_check_tells_the_cylinder_and_how_far_its_dashpot_damps(case: Case) -> None:
     """Reference: analytic, the arm of its line about the pin, the moment of the weights, and
     the component along the boom between pin and lug."""
-    told = printed(print_check, CheckedCase(case), width=200)
+    told = printed_check(case)
     row = next(line for line in told.split("cylinder of")[1].splitlines() if "base" in line)
     _, x, length, arm, force = row.split()
     assert x == "3"

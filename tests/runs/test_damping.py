@@ -6,21 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.runs.case_texts import STEEL, box, joint, read_case
+from tests.runs.case_texts import REST, STEEL, box, elements, joint, read_case, table
 from tests.runs.summaries import motion_of
 
 HEAD = f"""
 title = "Under its weight"
-[time]
-duration = 0.5
-output_step = 1e-2
-{STEEL}
-[start]
-state = "equilibrium"
-[[model]]
-name = "elements"
-kind = "finite-element"
-element_length = 2.5
+time = {{ duration = 0.5, output_step = 1e-2 }}
+{STEEL}{REST}{elements("elements", element_length=2.5)}
 """
 
 # Three segments of 18 m with a cage, on which a load comes.
@@ -31,13 +23,8 @@ load = -640.0
 {box("fly", (11.5, 18.0), (0.32, 0.18, 0.005, 0.004), "load = -330.0")}
 {joint("middle", "base", 0.006, (6.0, 7.0))}
 {joint("fly", "middle", 0.006, (11.5, 12.5))}
-[payload]
-mass = 230.0
-[[load]]
-segment = "fly"
-x = 18.0
-magnitude = -300.0
-ramp = 0.2
+{table("[payload]", mass=230.0)}
+{table("[[load]]", segment="fly", x=18.0, magnitude=-300.0, ramp=0.2)}
 """
 
 # An arm in space in a gust from a file.
@@ -46,11 +33,7 @@ ARM = f"""
 load = -800.0
 {box("fly", (7.0, 14.0), (0.46, 0.28, 0.006, 0.005), "load = -500.0")}
 {joint("fly", "base", 0.006, (7.0, 8.0), "lateral_play = 0.006")}
-[[load]]
-segment = "fly"
-direction = "y"
-magnitude = 120.0
-file = "gust.csv"
+{table("[[load]]", segment="fly", direction="y", magnitude=120.0, file="gust.csv")}
 """
 
 

@@ -1,20 +1,27 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Cautions for numbers out of proportion, and refusals of impossible ones."""
 
-import io
 import re
 from pathlib import Path
 
 import pytest
-from rich.console import Console
 
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
-from runs.check import print_check
 from runs.pipeline.proportions import proportion_cautions
-from tests.runs.case_texts import STEEL, box, joint, read_case, refused
+from tests.runs.case_texts import (
+    CLAMPED,
+    HINGED,
+    STEEL,
+    box,
+    elements,
+    joint,
+    read_case,
+    refusal,
+    table,
+)
+from tests.runs.summaries import printed_check
 
 LIFT = f"""
 title = "A lift"
@@ -25,8 +32,7 @@ payload = {{ mass = 300.0 }}
 load = [{{ segment = "fly", x = "head", magnitude = -1595.0, ramp = 0.1 }}]
 cylinder = [{{ segment = "base", x = 2.4, depth = 0.25, ground = [0.7, -1.1], stiffness = 3e7 }}]
 {STEEL}
-{box("base", (0.0, 6.5), (0.300, 0.220, 0.006, 0.005))}
-supports = [{{ x = 0.0, kind = "hinged" }}]
+{box("base", (0.0, 6.5), (0.300, 0.220, 0.006, 0.005), HINGED)}
 {box("fly", (5.3, 11.3), (0.256, 0.180, 0.005, 0.004))}
 [[joint]]
 outer = "base"
@@ -34,10 +40,7 @@ inner = "fly"
 stations = ["tail", "head"]
 play = 0.003
 pad = {{ length = 0.12, width = 0.05, thickness = 0.012 }}
-[[model]]
-name = "beam"
-kind = "finite-element"
-theory = "euler-bernoulli"
+{elements("beam", theory="euler-bernoulli")}
 """
 PLAY = "play = 0.003\npad = { length = 0.12, width = 0.05, thickness = 0.012 }\n"
 SHIMMED = """play = 0.003
@@ -48,11 +51,10 @@ PRESSED = "play = 0.0\nstiffness = 1e8\nexponent = 1.0\n"
 LOAD = '{ segment = "fly", x = "head", magnitude = -1595.0, ramp = 0.1 }'
 
 
-def written(folder: Path, old: str, new: str) -> str:
+def edited(old: str, new: str) -> str:
     """Return the text of the lift with a replacement."""
-    assert LIFT.count(old) == 1 or old == ""
-    (folder / "case.toml").write_text(LIFT.replace(old, new) if old else LIFT, encoding="utf-8")
-    return "case.toml"
+    assert LIFT.count(old) == 1
+    return LIFT.replace(old, new)
 
 
 @pytest.mark.parametrize(
@@ -119,12 +121,8 @@ def written(folder: Path, old: str, new: str) -> str:
          "usual is from 36 up to 160; check the number and its unit"),
     ],
 )  # fmt: skip
-def test_impossible_numbers_are_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, old: str, new: str, line: str
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    with refused(f"case.toml: {line}"):
-        case_file.load(written(tmp_path, old, new))
+def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line: str) -> None:
+    assert refusal(tmp_path, edited(old, new)) == line
 
 
 @pytest.mark.parametrize(
@@ -207,31 +205,21 @@ def test_impossible_numbers_are_refused(
          "weights turn it down; those that pull down are negative"),
     ],
 )  # fmt: skip
-def test_unusual_numbers_give_cautions(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, old: str, new: str, line: str
-) -> None:
+def test_unusual_numbers_give_cautions(tmp_path: Path, old: str, new: str, line: str) -> None:
     """Each on its slip alone."""
-    monkeypatch.chdir(tmp_path)
-    case = case_file.load(written(tmp_path, old, new))
+    case = read_case(tmp_path, edited(old, new))
     assert proportion_cautions(case, build_boom(case)) == [f"caution: {line}"]
 
 
-def test_a_run_shorter_than_a_swing_is_told(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_shorter_than_a_swing_is_told(tmp_path: Path) -> None:
     """Reference: the frequency that stands above it."""
-    monkeypatch.chdir(tmp_path)
-    shown = io.StringIO()
-    declared = case_file.load_checked(written(tmp_path, "duration = 3.0", "duration = 0.2"))
-    print_check(declared, Console(file=shown, width=200))
+    shown = printed_check(read_case(tmp_path, edited("duration = 3.0", "duration = 0.2")))
     line = (
         "caution: time.duration: the run of 0.2 s is shorter than one period in the beam estimate, "
         "0.605 s; usual are three periods at least"
     )
-    assert line in shown.getvalue().splitlines()
-    (frequency,) = re.findall(
-        r"joints in contact, in the beam estimate: ([0-9.]+) Hz", shown.getvalue()
-    )
+    assert line in shown.splitlines()
+    (frequency,) = re.findall(r"joints in contact, in the beam estimate: ([0-9.]+) Hz", shown)
     assert 1.0 / float(frequency) == pytest.approx(0.605, rel=1e-3)
 
 
@@ -245,8 +233,7 @@ youngs_modulus = 7e10
 poissons_ratio = 0.33
 density = 2700.0
 yield_strength = 2e8
-{box("outer", (0.0, 0.6), (0.020, 0.015, 0.0012, 0.001))}
-supports = [{{ x = 0.0, kind = "clamped" }}]
+{box("outer", (0.0, 0.6), (0.020, 0.015, 0.0012, 0.001), CLAMPED)}
 {box("inner", (0.5, 1.0), (0.017, 0.0125, 0.001, 0.001))}
 [[joint]]
 outer = "outer"
@@ -254,13 +241,9 @@ inner = "inner"
 stations = [0.5, 0.6]
 play = 0.0002
 pad = {{ length = 0.01, width = 0.004, thickness = 0.0008 }}
-[[model]]
-name = "beam"
-kind = "finite-element"
-element_length = 0.05
+{elements("beam", element_length=0.05)}
 """
 
-HINGED = 'supports = [{ x = 0.0, kind = "hinged" }]'
 RUBBING = "friction = 0.1\nnormal_forces = [0.0, 0.0]"
 CRANE = (
     f"""
@@ -282,23 +265,14 @@ yield_strength = 9.6e8
         + joint(inner, outer, 0.006, (11.8 * i, 11.8 * i + 1.2), RUBBING)
         for i, (outer, inner) in enumerate(["ab", "bc", "cd", "de"], start=1)
     )
-    + """
-[[model]]
-name = "beam"
-kind = "finite-element"
-element_length = 1.0
-"""
+    + elements("beam", element_length=1.0)
 )
 
 
 @pytest.mark.parametrize("text", [LIFT, LABORATORY, CRANE], ids=["lift", "laboratory", "crane"])
 def test_usual_booms_give_no_caution(tmp_path: Path, text: str) -> None:
     """Booms of 1 m to 60 m; all printed text of `check` counts."""
-    path = tmp_path / "case.toml"
-    path.write_text(text, encoding="utf-8")
-    shown = io.StringIO()
-    print_check(CheckedCase(case_file.load(str(path))), Console(file=shown, width=200))
-    assert "caution" not in shown.getvalue()
+    assert "caution" not in printed_check(read_case(tmp_path, text))
 
 
 CASE = f"""
@@ -306,20 +280,13 @@ title = "An arm"
 [time]
 duration = 1.0
 {STEEL}
-[payload]
-mass = 500.0
+{table("[payload]", mass=500.0)}
 {box("arm", (0.0, 8.0), (0.4, 0.3, 0.008, 0.006), "load = -670.0")}
-supports = [{{ x = 0.0, kind = "clamped" }}]
+{CLAMPED}
 {box("fly", (7.0, 14.0), (0.36, 0.26, 0.006, 0.005), "load = -470.0")}
 {joint("fly", "arm", 0.004, (7.0, 8.0), "stiffness = 1e8")}
-[[model]]
-name = "beam"
-kind = "finite-element"
-element_length = 0.5
-[[model]]
-name = "shell"
-kind = "shell"
-mesh_size = 0.1
+{elements("beam", element_length=0.5)}
+{table("[[model]]", name="shell", kind="shell", mesh_size=0.1)}
 """
 
 
@@ -392,10 +359,8 @@ def test_folds_and_heads_are_walls_too(tmp_path: Path) -> None:
 
 
 def test_weights_of_the_wrong_sign_are_told(tmp_path: Path) -> None:
-    path = tmp_path / "case.toml"
     text = CASE.replace("load = -", "load = ").replace("[payload]\nmass = 500.0\n", "")
-    path.write_text(text, encoding="utf-8")
-    case = case_file.load(str(path))
+    case = read_case(tmp_path, text)
     assert proportion_cautions(case, build_boom(case)) == [
         "caution: the loads pull upwards, by 8650 N in all; those that pull down, as weights do, "
         "are negative"
@@ -407,9 +372,7 @@ README = Path(__file__).parents[2] / "README.md"
 
 def test_the_boom_of_the_readme_has_no_slip(tmp_path: Path) -> None:
     section = README.read_text("utf-8").split("## Your own boom\n")[1].split("\n## ")[0]
-    path = tmp_path / "lift.toml"
-    path.write_text(section.split("```toml\n")[1].split("```")[0], encoding="utf-8")
-    case = case_file.load(str(path))
+    case = read_case(tmp_path, section.split("```toml\n")[1].split("```")[0])
     boom = build_boom(case)
     assert proportion_cautions(case, boom) == []
     assert boom.tip == 11.3

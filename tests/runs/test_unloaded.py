@@ -7,43 +7,36 @@ import numpy as np
 import pytest
 
 from runs.pipeline.results import Results
-from tests.runs.case_texts import STEEL, box, joint
+from tests.runs.case_texts import CLAMPED, REST, STEEL, box, elements, joint, table
 from tests.system.run_folder import protractile
 
-CLAMP = 'supports = [{ x = 0.0, kind = "clamped" }]'
 UNLOADED = f"""
 title = "A boom that nothing loads"
-[time]
-duration = 0.1
-output_step = 1e-3
+time = {{ duration = 0.1, output_step = 1e-3 }}
 {STEEL}
-[damping]
-modal = 0.01
-{box("base", (0.0, 6.5), (0.300, 0.220, 0.006, 0.005), CLAMP)}
+{table("[damping]", modal=0.01)}
+{box("base", (0.0, 6.5), (0.300, 0.220, 0.006, 0.005), CLAMPED)}
 {box("fly", (5.3, 11.3), (0.256, 0.180, 0.005, 0.004))}
 {joint("fly", "base", 0.003, (5.3, 6.5))}
-[[model]]
-name = "elements"
-kind = "finite-element"
-[[model]]
-name = "rigid"
-kind = "rigid"
-[[model]]
-name = "bonded"
-kind = "finite-element"
-bonded = true
+{elements("elements")}
+{table("[[model]]", name="rigid", kind="rigid")}
+{elements("bonded", bonded=True)}
 """
+
+
+def load(**keys: object) -> str:
+    """Return a load at the tip."""
+    return table("[[load]]", segment="fly", x="head", **keys)
+
 
 # What is added, and whether the boom moves.
 ADDED = {
     "nothing": ("", False),
-    "at rest": ('[start]\nstate = "equilibrium"\n', False),
-    "a load of nothing": ('[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = 0.0\n', False),
-    "thrown": ("[start]\nvelocity = { fly = 0.1 }\n", True),
-    "let go": (
-        '[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = -500.0\nreleased = true\n', True,
-    ),
-}  # fmt: skip
+    "at rest": (REST, False),
+    "a load of nothing": (load(magnitude=0.0), False),
+    "thrown": (table("[start]", velocity={"fly": 0.1}), True),
+    "let go": (load(magnitude=-500.0, released=True), True),
+}
 
 
 @pytest.fixture(autouse=True)
